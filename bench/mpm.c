@@ -1,4 +1,4 @@
-/* mpm.c - benchmark of the WLS-MPM step: ns per particle-step of the library beside the anchor of
+/* create.c - benchmark of the WLS-MPM step: ns per particle-step of the library beside the anchor of
  * mpm_anchor.h, a bare step of the same equations for full supports. All contenders are timed in
  * turn, in rounds, in one process; minima are compared, so that the ratios hold when the machine's
  * speed drifts.

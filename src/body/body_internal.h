@@ -3,8 +3,8 @@
 #ifndef MPSI_BODY_H
 #define MPSI_BODY_H
 
-#include "core/given.h"
-#include "core/state.h"
+#include "core/base/given.h"
+#include "core/state/state.h"
 
 #include <mps/contact.h>
 

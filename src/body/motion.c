@@ -3,7 +3,7 @@
 #include "body_internal.h"
 
 #include "contact_internal.h"
-#include "core/retain.h"
+#include "core/context/retain.h"
 #include "rotation.h"
 #include "signal/signal_internal.h"
 

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body_internal.h"
 
-#include "core/polygon.h"
+#include "core/base/polygon.h"
 
 #include <stdio.h>
 

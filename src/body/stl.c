@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh.h"
 
-#include "core/text.h"
+#include "core/base/text.h"
 
 #include <string.h>
 

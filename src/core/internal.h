@@ -4,7 +4,7 @@
 #ifndef MPSI_INTERNAL_H
 #define MPSI_INTERNAL_H
 
-#include "released_sizes.h"
+#include "core/context/released_sizes.h"
 
 #include <mps/context.h>
 

@@ -7,10 +7,10 @@
 #ifndef MPSI_DOMAIN_INTERNAL_H
 #define MPSI_DOMAIN_INTERNAL_H
 
-#include "core/exact.h"
-#include "core/given.h"
+#include "core/base/exact.h"
+#include "core/base/given.h"
 #include "core/internal.h"
-#include "core/state.h"
+#include "core/state/state.h"
 
 #include <mps/domain.h>
 

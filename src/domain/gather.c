@@ -1,7 +1,7 @@
 /* gather.c - the particles of all ranks as one set on rank 0.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
-#include "core/state.h"
+#include "core/particles/particles_internal.h"
+#include "core/state/state.h"
 #include "domain_private.h"
 
 #include <stdio.h>

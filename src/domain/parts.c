@@ -1,7 +1,7 @@
 /* parts.c - sets of particles in parts: each rank is given the same fills and keeps its part of
  * them (core/deal.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "domain_private.h"
 #include "migrate.h"
 

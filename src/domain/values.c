@@ -1,6 +1,6 @@
 /* values.c - values of a few particles, on whatever rank they are, for all ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "domain_private.h"
 
 #include <string.h>

@@ -22,14 +22,14 @@
 #ifndef MPSI_DYNAMICS_PRIVATE_H
 #define MPSI_DYNAMICS_PRIVATE_H
 
-#include "core/exact.h"
-#include "core/guard.h"
-#include "core/particles_internal.h"
-#include "core/state.h"
+#include "core/base/exact.h"
+#include "core/context/guard.h"
+#include "core/particles/particles_internal.h"
+#include "core/state/state.h"
 #include "domain/halo.h"
-#include "kernels.h"
-#include "layout.h"
-#include "mesh.h"
+#include "dynamics/step/kernels.h"
+#include "dynamics/pairs/layout.h"
+#include "dynamics/pairs/mesh.h"
 
 #include <mps/dynamics.h>
 #include <mps/io.h>

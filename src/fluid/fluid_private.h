@@ -23,12 +23,12 @@
 #define MPSI_FLUID_PRIVATE_H
 
 #include "body/body_internal.h"
-#include "core/guard.h"
+#include "core/context/guard.h"
 #include "core/internal.h"
-#include "core/particles_internal.h"
-#include "core/retain.h"
-#include "core/room.h"
-#include "core/state.h"
+#include "core/particles/particles_internal.h"
+#include "core/context/retain.h"
+#include "core/base/room.h"
+#include "core/state/state.h"
 
 #include <mps/fluid.h>
 

@@ -20,11 +20,11 @@
 #ifndef MPSI_ELASTIC_PRIVATE_H
 #define MPSI_ELASTIC_PRIVATE_H
 
-#include "core/particles_internal.h"
-#include "cholesky.h"
-#include "core/guard.h"
+#include "core/particles/particles_internal.h"
+#include "implicit/solve/cholesky.h"
+#include "core/context/guard.h"
 #include "core/internal.h"
-#include "core/state.h"
+#include "core/state/state.h"
 #include "domain/domain_internal.h"
 
 #include <mps/elastic_solver.h>

@@ -3,7 +3,7 @@
 #ifndef MPSI_IO_CHECKPOINT_H
 #define MPSI_IO_CHECKPOINT_H
 
-#include "core/state.h"
+#include "core/state/state.h"
 
 #include <mps/io.h>
 

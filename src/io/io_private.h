@@ -5,7 +5,7 @@
 #define MPSI_IO_PRIVATE_H
 
 #include "core/internal.h"
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 
 #include <mps/io.h>
 

@@ -3,7 +3,7 @@
 #ifndef MPSI_CONSTANTS_H
 #define MPSI_CONSTANTS_H
 
-#include "core/ranges.h"
+#include "core/base/ranges.h"
 #include "material_private.h"
 
 /* Checks one parameter: low <= value < high. Records the error with the value and the range. */

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
-#include "core/levels.h"
+#include "core/context/levels.h"
 
 const mpsi_law_table *mpsi_laws_select(int32_t isa) {
   const int32_t level = mpsi_level(isa);

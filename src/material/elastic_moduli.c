@@ -2,7 +2,7 @@
  * that the solvers of elasticity read, from a material.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* geostatic.c - the stress of ground at rest: weight of the layers above, K0 sideways; or what a
  * caller's function says.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
-#include "core/ranges.h"
+#include "core/particles/particles_internal.h"
+#include "core/base/ranges.h"
 
 #include <mps/geostatic.h>
 

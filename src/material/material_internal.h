@@ -24,7 +24,7 @@
 #ifndef MPSI_MATERIAL_INTERNAL_H
 #define MPSI_MATERIAL_INTERNAL_H
 
-#include "core/given.h"
+#include "core/base/given.h"
 #include "core/internal.h"
 
 #include <mps/material.h>

@@ -6,7 +6,7 @@
  * The yield functions are linear and the flow directions are constant, so each return is one step:
  * solved exactly, without iteration.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/symmetric.h"
+#include "core/base/symmetric.h"
 #include "material_private.h"
 
 /* Principal stresses in any order, and how to go back. */

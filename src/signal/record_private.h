@@ -3,7 +3,7 @@
 #ifndef MPSI_RECORD_PRIVATE_H
 #define MPSI_RECORD_PRIVATE_H
 
-#include "core/text.h"
+#include "core/base/text.h"
 
 #include <mps/signal.h>
 

@@ -3,9 +3,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "signal_private.h"
 
-#include "core/guard.h"
-#include "core/hash.h"
-#include "core/retain.h"
+#include "core/context/guard.h"
+#include "core/base/hash.h"
+#include "core/context/retain.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 #ifndef MPSI_SIGNAL_INTERNAL_H
 #define MPSI_SIGNAL_INTERNAL_H
 
-#include "core/given.h"
+#include "core/base/given.h"
 
 #include <mps/signal.h>
 

@@ -4,7 +4,7 @@
 #include "elastic_common.h"
 #include "pthread_executor.h"
 
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 
 /* Displacements, reactions and stresses of an L-shape of 10 000 particles (2500 if quick) after a
  * solution and three Newmark steps, by id: 8 doubles a particle. */

@@ -4,7 +4,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "mpm/mpm_private.h"
+#include "mpm/base/solver.h"
 
 #include <mps/mpm_energy.h>
 

@@ -3,7 +3,7 @@
 #include "test_common.h"
 #include "test_allocator.h"
 
-#include "core/guard.h"
+#include "core/context/guard.h"
 
 #include <mps/kernel.h>
 #include <mps/particles.h>

@@ -3,7 +3,7 @@
 #include "test_common.h"
 
 #include "core/internal.h"
-#include "core/symmetric.h"
+#include "core/base/symmetric.h"
 
 static double noise(uint64_t *seed) {
   *seed = *seed * 6364136223846793005u + 1442695040888963407u;

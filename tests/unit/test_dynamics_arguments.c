@@ -2,7 +2,7 @@
  * range, and nothing changes.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "test_fixture.h"
 
 static mps_particles *block(double width, double height) {

@@ -1,6 +1,6 @@
 /* test_dynamics_run.c - running the explicit MPS solver: hooks, restart, rollback, change of the
  * time step, divergence, warnings. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "soil_column.h"
 #include "test_fixture.h"
 

@@ -2,7 +2,7 @@
  * symbolic factor is kept, memory limits, failures inside CHOLMOD.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "test_allocator.h"
 
 #include "implicit/elastic_private.h"

@@ -1,7 +1,7 @@
 /* test_elastic_steps.c - steps of implicit elasticity among callers: whole or not at all, repeated
  * after a rollback, runs and their callbacks, numbers of boundaries and loads, arrays of facets.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "elastic_common.h"
 
 typedef struct hook {

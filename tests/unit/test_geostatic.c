@@ -1,6 +1,6 @@
 /* test_geostatic.c - the stress of ground at rest: layers, surfaces, a caller's function, errors.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
 

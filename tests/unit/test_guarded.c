@@ -5,7 +5,7 @@
 
 #include "test_allocator.h"
 
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 
 #include <mps/dynamics.h>
 #include <mps/mpm.h>

@@ -1,7 +1,7 @@
 /* test_hdf5_mpm.c - a WLS-MPM run that goes on from a checkpoint in a new solver is, bit for bit,
  * the run that never stopped, on any number of threads; a solver built otherwise is refused by
  * name. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "mpm_twins.h"
 #include "test_allocator.h"
 #include "test_hdf5.h"

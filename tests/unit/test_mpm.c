@@ -1,6 +1,6 @@
 /* test_mpm.c - the WLS-MPM solver: arguments, errors, memory, ownership.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "mpm_scene.h"
 #include "test_allocator.h"
 #include "test_fixture.h"

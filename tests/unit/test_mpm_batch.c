@@ -1,5 +1,5 @@
-/* test_mpm_batch.c - particles beside bodies, four of one stencil at once (src/mpm/batch.c), give
- * to the nodes and take from them what fitted.c gives and takes one by one: to round-off, in all
+/* test_mpm_batch.c - particles beside bodies, four of one stencil at once (src/mpm/transfer/least_squares_batch.c), give
+ * to the nodes and take from them what least_squares.c gives and takes one by one: to round-off, in all
  * geometries, with both kernels, at fitted and mirrored walls, beside thin walls and in corners,
  * and with one to four particles a stencil. SPDX-License-Identifier: BSD-3-Clause */
 #define MPSI_LEVEL                                                                                 \
@@ -7,7 +7,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "mpm/loops.h"
+#include "mpm/base/loops.h"
 
 /* ---- the functions of the level that the context has ----------------------------------------- */
 

@@ -2,7 +2,7 @@
  * was, callbacks may only ask, runs go forwards and end where told, forces are of the measure.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "test_fixture.h"
 
 static mps_mpm_def small_def(void) {

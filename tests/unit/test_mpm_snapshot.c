@@ -2,7 +2,7 @@
  * that followed the snapshot, bit for bit, on any number of threads; whose snapshot it is; refused
  * memory changes nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "mpm_twins.h"
 #include "test_allocator.h"
 

@@ -1,6 +1,6 @@
 /* test_mpm_walls.c - walls, moving nodes and loads of the WLS-MPM solver: arguments, memory; what
  * it says of bodies and steps that do not suit it. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/particles_internal.h"
+#include "core/particles/particles_internal.h"
 #include "mpm_held.h"
 #include "test_allocator.h"
 #include "test_fixture.h"

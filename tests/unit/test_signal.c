@@ -4,7 +4,7 @@
 #include "test_allocator.h"
 #include "test_fixture.h"
 
-#include "core/retain.h"
+#include "core/context/retain.h"
 
 #include <mps/signal.h>
 

@@ -1,0 +1,13 @@
+/* polygon.h - the check of a polygon's corners that fills and rigid bodies share.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_POLYGON_H
+#define MPSI_POLYGON_H
+
+#include "core/internal.h"
+
+/* MPS_ERROR_ARGUMENT unless the n >= 3 finite corners xy[2 * k], xy[2 * k + 1] make a simple
+ * polygon: no two edges cross or touch but neighbours at their corner. */
+mps_status mpsi_polygon_check(mps_context *context, const char *function, int64_t n,
+                              const double *xy);
+
+#endif

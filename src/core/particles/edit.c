@@ -1,0 +1,288 @@
+/* edit.c - the guard of the store: editing of fields by the caller, and the solvers and recorders
+ * that hold a set.
+ *
+ *   caller                      set                                holders
+ *   mps_particles_edit ------>  field open: steps are refused
+ *   writes through the view
+ *   mps_particles_commit ---->  finite? in range? ------------->   commit(field): may refuse, else
+ *                               field closed                       reads it before the next step
+ *   mps_particles_abandon --->  former values, field closed
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "particles_private.h"
+
+#include "fields.h"
+#include "core/base/hash.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- holders --------------------------------------------------------------------------------- */
+
+static const mpsi_holder *holder_in_the_way(const mps_particles *p, mpsi_use kind) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (kind != MPSI_USE_LOOK && h->kind != MPSI_USE_LOOK &&
+        (kind == MPSI_USE_MOVE || h->kind == MPSI_USE_MOVE))
+      return h;
+  return NULL;
+}
+
+mps_status mpsi_particles_check_hold(const mps_particles *p, const char *function, mpsi_use kind) {
+  const mps_status status = mpsi_particles_ready(p, function);
+  if (status != MPS_OK) return status;
+  const mpsi_holder *other = holder_in_the_way(p, kind);
+  const bool unnamed = kind == MPSI_USE_MOVE && p->pins > 0;
+  if (!other && !unnamed) return MPS_OK;
+  return mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                   "the particle set is held by %s: destroy that first, or use a set of its own",
+                   other ? other->name : "a solver");
+}
+
+mps_status mpsi_particles_hold(mps_particles *p, const char *function, mpsi_holder *holder) {
+  const mps_status status = mpsi_particles_check_hold(p, function, holder->kind);
+  if (status != MPS_OK) return status;
+  holder->next = p->holders;
+  p->holders = holder;
+  return MPS_OK;
+}
+
+int64_t mpsi_particles_runs(const mps_particles *p, int32_t rank, mpsi_row_run *out) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->runs) return h->runs(h->self, out);
+  if (out) *out = (mpsi_row_run){.at = {0, 0, rank}, .rows = p->count};
+  return 1;
+}
+
+mps_status mpsi_particles_outside_callbacks(const mps_particles *p, const char *function) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->guard && h->guard->callback)
+      return mpsi_fail(
+          p->context, function, MPS_ERROR_STATE,
+          "the particle set is held by %s, which is in %s: a callback may only read it", h->name,
+          h->guard->callback);
+  return MPS_OK;
+}
+
+mps_status mpsi_particles_writable(const mps_particles *p, const char *function) {
+  const mps_status status = mpsi_particles_outside_callbacks(p, function);
+  return status == MPS_OK ? mpsi_particles_ready(p, function) : status;
+}
+
+void mpsi_particles_release(mps_particles *p, mpsi_holder *holder) {
+  if (!p) return;
+  mpsi_holder **link = &p->holders;
+  while (*link && *link != holder) link = &(*link)->next;
+  if (!*link) return; /* it never held the set */
+  *link = holder->next;
+  mpsi_particles_free_if_unused(p);
+}
+
+/* ---- checks of values ------------------------------------------------------------------------ */
+
+typedef struct range {
+  const char *name;
+  double lower, upper;
+} range;
+
+static range range_of(const char *name) {
+#define ROW(name, lower, upper) {#name, lower, upper},
+  static const range ranges[] = {MPSI_FIELD_RANGES(ROW)};
+#undef ROW
+  for (size_t k = 0; k < sizeof ranges / sizeof *ranges; k++)
+    if (strcmp(ranges[k].name, name) == 0) return ranges[k];
+  return (range){name, -MPSI_LARGEST, MPSI_LARGEST};
+}
+
+static mps_status check_value(const mps_particles *p, const char *function, const mpsi_field *field,
+                              range r, double value, int64_t particle) {
+  if (value >= r.lower && value <= r.upper) return MPS_OK;
+  char whose[48] = "";
+  if (particle >= 0) snprintf(whose, sizeof whose, " of particle %lld", (long long)particle);
+  (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                  "field '%s'%s is %g%s%s, allowed are %g to %g", field->name, whose, value,
+                  *field->unit ? " " : "", strcmp(field->unit, "-") == 0 ? "" : field->unit,
+                  r.lower, r.upper);
+  mpsi_fail_where(p->context, -1, particle);
+  mpsi_fail_object(p->context, "field '%s'", field->name);
+  return MPS_ERROR_ARGUMENT;
+}
+
+mps_status mpsi_field_check_value(const mps_particles *p, const char *function,
+                                  const mpsi_field *field, double value) {
+  return check_value(p, function, field, range_of(field->name), value, -1);
+}
+
+static mps_status check_field(const mps_particles *p, const char *function,
+                              const mpsi_field *field) {
+  if (field->dtype.code != 2) return MPS_OK;
+  const range r = range_of(field->name);
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int32_t c = 0; c < field->components; c++) {
+    const double *value = mpsi_field_column(field, c);
+    for (int64_t k = 0; k < p->count; k++) {
+      const mps_status status = check_value(p, function, field, r, value[k], id[k]);
+      if (status != MPS_OK) return status;
+    }
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_particles_tell(mps_particles *p, const char *function, const char *field,
+                               const double *former) {
+  mps_status status = MPS_OK;
+  for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
+    if (h->commit)
+      status = h->commit(h->self, function, field,
+                         h->compares && h->compares(h->self, field) ? former : NULL);
+  return status;
+}
+
+/* ---- editing --------------------------------------------------------------------------------- */
+
+/* Copies a field to what is kept of it, or back. */
+static void copy_former(const mps_particles *p, mpsi_field *field, bool back) {
+  for (int32_t c = 0; c < field->components; c++) {
+    char *column = mpsi_field_column(field, c), *kept = (char *)(field->former + c * p->count);
+    memcpy(back ? column : kept, back ? kept : column, (size_t)p->count * 8);
+  }
+}
+
+/* Keeps what a field is before the caller writes it; the memory stays for the next time. */
+static mps_status keep_former(mps_particles *p, const char *function, mpsi_field *field) {
+  const int64_t items = field->components * p->count;
+  if (items > field->former_capacity || !field->former) {
+    double *former = mpsi_alloc(p->context, items, sizeof *former);
+    if (!former) return mpsi_fail_memory(p->context, function, (size_t)items * 8);
+    mpsi_free(p->context, field->former);
+    field->former = former;
+    field->former_capacity = items;
+  }
+  copy_former(p, field, false);
+  return MPS_OK;
+}
+
+mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_edit *out) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = particles->context;
+  if (out) out->data = NULL;
+  mps_status status = mpsi_as(particles->context, __func__,
+                              mps_particles_view(particles, name, out ? &out->view : NULL));
+  if (status != MPS_OK) return status;
+  mpsi_field *field = mpsi_field_find(particles, name);
+  const char *reason = NULL;
+  if (field->flags & MPS_VIEW_READONLY) reason = "is written by the library only";
+  if (field->open) reason = "is being edited already: mps_particles_commit ends that";
+  if (reason) {
+    memset(out, 0, sizeof *out);
+    (void)mpsi_fail(context, __func__, field->open ? MPS_ERROR_STATE : MPS_ERROR_FIELD,
+                    "field '%s' %s", name, reason);
+    mpsi_fail_object(context, "field '%s'", name);
+    return field->open ? MPS_ERROR_STATE : MPS_ERROR_FIELD;
+  }
+  status = mpsi_particles_outside_callbacks(particles, __func__);
+  if (status == MPS_OK) status = keep_former(particles, __func__, field);
+  if (status != MPS_OK) {
+    memset(out, 0, sizeof *out);
+    return status;
+  }
+  field->open = true;
+  particles->open_edits++;
+  out->data = field->data;
+  out->view.flags &= ~MPS_VIEW_READONLY;
+  return MPS_OK;
+}
+
+/* The open field that `edit` is of; NULL with an error recorded. */
+static mpsi_field *find_open(const mps_particles *p, const char *function, const mps_edit *edit) {
+  if (!edit) {
+    (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "edit is NULL");
+    return NULL;
+  }
+  for (int32_t f = 0; f < p->field_count; f++)
+    if (p->fields[f]->open && p->fields[f]->data == edit->data) return p->fields[f];
+  (void)mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                  "edit is not of a field that is being edited: mps_particles_edit gives it");
+  return NULL;
+}
+
+static void close_field(mps_particles *p, mpsi_field *field, mps_edit *edit) {
+  field->open = false;
+  p->open_edits--;
+  edit->data = NULL;
+  edit->view.flags |= MPS_VIEW_READONLY;
+}
+
+mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mpsi_field *field = find_open(particles, __func__, edit);
+  if (!field) return mps_context_error(particles->context)->status;
+  mps_status status = check_field(particles, __func__, field);
+  if (status == MPS_OK)
+    status = mpsi_particles_tell(particles, __func__, field->name, field->former);
+  if (status == MPS_OK) close_field(particles, field, edit);
+  return status;
+}
+
+mps_status mps_particles_abandon(mps_particles *particles, mps_edit *edit) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mpsi_field *field = find_open(particles, __func__, edit);
+  if (!field) return mps_context_error(particles->context)->status;
+  copy_former(particles, field, true);
+  close_field(particles, field, edit);
+  return MPS_OK;
+}
+
+/* ---- one value for all -------------------------------------------------------------------- */
+
+/* Fills a column; where a holder refuses that, the column is as before. */
+static mps_status set_column(mps_particles *p, const char *function, const char *name,
+                             int32_t component, double value) {
+  double *column = mpsi_particles_column(p, name, component), *former = NULL;
+  if (p->holders) {
+    former = mpsi_alloc(p->context, p->count, sizeof *former);
+    if (!former) return mpsi_fail_memory(p->context, function, (size_t)p->count * sizeof *former);
+    memcpy(former, column, (size_t)p->count * sizeof *former);
+  }
+  for (int64_t i = 0; i < p->count; i++) column[i] = value;
+  const mpsi_field *field = mpsi_field_find(p, name);
+  const mps_status status =
+      mpsi_particles_tell(p, function, name, field->components == 1 ? former : NULL);
+  if (status != MPS_OK) memcpy(column, former, (size_t)p->count * sizeof *former);
+  mpsi_free(p->context, former);
+  return status;
+}
+
+/* All ranks give a set in parts the same constants: solvers compare the hash. */
+static uint64_t note_constant(uint64_t hash, const char *name, int32_t component, double value) {
+  hash = mpsi_hash(hash, name, strlen(name) + 1);
+  hash = mpsi_hash(hash, &component, sizeof component);
+  return mpsi_hash(hash, &value, sizeof value);
+}
+
+mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t component,
+                             double value) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
+  mpsi_field shape;
+  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
+  if (status == MPS_OK) status = mpsi_field_look_up(particles, __func__, name, &shape);
+  if (status != MPS_OK) return status;
+  if (shape.dtype.code != 2)
+    return mpsi_fail(
+        particles->context, __func__, MPS_ERROR_FIELD,
+        "field '%s' is of int64, only float64 fields can be set: use mps_particles_edit", name);
+  if (component < 0 || component >= shape.components)
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
+                     "component of field '%s' is %d, allowed are 0 to %d", name, component,
+                     shape.components - 1);
+  const bool present = mpsi_field_find(particles, name) != NULL;
+  if (present && shape.open) return mpsi_particles_ready(particles, __func__);
+  const int32_t fields = particles->field_count;
+  status = mpsi_field_check_value(particles, __func__, &shape, value);
+  if (status == MPS_OK && !present)
+    status = mpsi_as(particles->context, __func__, mps_particles_add_field(particles, name, 0));
+  if (status == MPS_OK) status = set_column(particles, __func__, name, component, value);
+  if (status == MPS_OK && particles->deal)
+    particles->deal->constants = note_constant(particles->deal->constants, name, component, value);
+  if (status != MPS_OK) mpsi_particles_drop_fields(particles, fields);
+  return status;
+}

@@ -1,0 +1,259 @@
+/* state.c - see state.h: a solver's state out of it, snapshots, and the way back.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "state_private.h"
+
+#include "core/particles/particles_internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static mps_status list(const mpsi_state_of *of, const char *function, mpsi_state *out) {
+  *out = (mpsi_state){.context = of->context, .solver = of->solver};
+  of->list(out, of->solver);
+  if (of->particles && mpsi_state_any_particles(of)) mpsi_particles_list_state(out, of->particles);
+  if (!out->refused) return MPS_OK;
+  mpsi_free(of->context, out->item);
+  return mpsi_fail_memory(of->context, function, (size_t)out->capacity * 2 * sizeof *out->item);
+}
+
+mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out) {
+  mpsi_state s;
+  mps_status status = of->particles ? mpsi_particles_ready(of->particles, function) : MPS_OK;
+  if (status == MPS_OK) status = list(of, function, &s);
+  if (status != MPS_OK) return status;
+  bool good = mpsi_values_reserve(of->context, &out->state, s.count);
+  for (int32_t k = 0; good && k < s.count; k++)
+    good = mpsi_value_reserve(of->context, &out->state.item[k], s.item[k].type, s.item[k].rows,
+                              s.item[k].columns);
+  for (int32_t k = 0; good && k < s.count; k++) {
+    const mpsi_state_item *from = &s.item[k];
+    mpsi_value *to = &out->state.item[k];
+    memcpy(to->name, from->name, sizeof to->name);
+    to->type = from->type;
+    to->agrees = from->agrees, to->table = from->table != NULL, to->text = from->text;
+    to->columns = from->columns, to->rows = from->rows;
+    mpsi_state_read_item(from, to->data);
+  }
+  if (good) out->state.count = s.count;
+  mpsi_free(of->context, s.item);
+  return good ? MPS_OK
+              : mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
+                          "could not allocate the state of the solver: %d items", s.count);
+}
+
+/* ---- snapshots ----------------------------------------------------------------------------- */
+
+struct mpsi_identity {
+  mps_context *context;
+  int32_t shares; /* one thread at a time: no atomics */
+};
+
+void mpsi_state_forget(mpsi_identity **identity) {
+  if (!*identity) return;
+  mps_context *context = (*identity)->context;
+  if (--(*identity)->shares == 0) {
+    mpsi_free(context, *identity);
+    mpsi_context_release(context);
+  }
+  *identity = NULL;
+}
+
+static mpsi_identity *identify(const mpsi_state_of *of) {
+  if (!*of->identity) {
+    mpsi_identity *made = mpsi_alloc(of->context, 1, sizeof *made);
+    if (!made) return NULL;
+    *made = (mpsi_identity){mpsi_context_retain(of->context), 1};
+    *of->identity = made;
+  }
+  return *of->identity;
+}
+
+static mps_snapshot *new_snapshot(const mpsi_state_of *of) {
+  mpsi_identity *identity = identify(of);
+  mps_snapshot *made = identity ? mpsi_alloc(of->context, 1, sizeof *made) : NULL;
+  if (!made) return NULL;
+  made->context = mpsi_context_retain(of->context);
+  made->identity = identity;
+  identity->shares++;
+  return made;
+}
+
+void mps_snapshot_destroy(mps_snapshot **snapshot) {
+  if (!snapshot || !*snapshot) return;
+  mps_snapshot *old = *snapshot;
+  mps_context *context = old->context;
+  *snapshot = NULL;
+  mpsi_values_free(context, &old->state);
+  mpsi_values_free(context, &old->fields);
+  mpsi_state_forget(&old->identity);
+  mpsi_free(context, old);
+  mpsi_context_release(context);
+}
+
+static mps_status check_owner(const mpsi_state_of *of, const char *function,
+                              const mps_snapshot *snapshot) {
+  if (*of->identity && snapshot->identity == *of->identity) return MPS_OK;
+  return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT,
+                   "the snapshot is of another solver than this %s: each solver needs its own",
+                   of->name);
+}
+
+/* What is allocated comes first, so that a snapshot that is filled again stays as it was when that
+ * is refused: values of the state are written after the fields' memory is there. */
+mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
+                               mps_snapshot **snapshot) {
+  if (!snapshot)
+    return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT,
+                     "snapshot is NULL, must be the "
+                     "address of a pointer, which may be NULL at first");
+  mps_snapshot *made = *snapshot;
+  mps_status status = made ? check_owner(of, function, made) : MPS_OK;
+  if (status != MPS_OK) return status;
+  if (!made && !(made = new_snapshot(of)))
+    return mpsi_fail_memory(of->context, function, sizeof *made);
+  if (of->particles) status = mpsi_particles_reserve_state(of->particles, function, made);
+  if (status == MPS_OK) status = mpsi_state_get(of, function, made);
+  if (status == MPS_OK && of->particles) mpsi_particles_get_state(of->particles, made);
+  if (status != MPS_OK && !*snapshot) mps_snapshot_destroy(&made);
+  if (status == MPS_OK) *snapshot = made;
+  return status;
+}
+
+mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
+                               const mps_snapshot *snapshot) {
+  if (!snapshot) return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL");
+  const mps_status status = check_owner(of, function, snapshot);
+  if (status != MPS_OK) return status;
+  return mpsi_state_put(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);
+}
+
+mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
+                                 const mps_snapshot *snapshot, mpsi_state_prepared *out) {
+  return mpsi_state_prepare(of, function, snapshot, "the snapshot", MPS_ERROR_STATE, out);
+}
+
+/* ---- going back ---------------------------------------------------------------------------- */
+
+/* One call. */
+typedef struct way_back {
+  const mpsi_state_of *of;
+  const char *function, *source;
+  mps_status status; /* of a disagreement */
+} way_back;
+
+static mps_status compare(const way_back *w, const mpsi_state_item *now, const mpsi_value *then) {
+  mps_context *context = w->of->context;
+  if (now->text) {
+    if (strcmp(now->own.text, then->data) == 0) return MPS_OK;
+    return mpsi_fail(context, w->function, w->status, "in %s %s is '%.60s', in this solver '%.60s'",
+                     w->source, now->name, (const char *)then->data, now->own.text);
+  }
+  if (now->type == MPSI_STATE_I64) {
+    const int64_t value = *(const int64_t *)then->data;
+    if (value == now->own.integer) return MPS_OK;
+    return mpsi_fail(context, w->function, w->status, "in %s %s is %lld, in this solver %lld",
+                     w->source, now->name, (long long)value, (long long)now->own.integer);
+  }
+  const double value = *(const double *)then->data;
+  if (value == now->own.number) return MPS_OK;
+  return mpsi_fail(context, w->function, w->status, "in %s %s is %.17g, in this solver %.17g",
+                   w->source, now->name, value, now->own.number);
+}
+
+/* The value that belongs to item k: nearly always number k. */
+static const mpsi_value *value_of(const mps_snapshot *from, const mpsi_state *s, int32_t k) {
+  if (k < from->state.count && strcmp(from->state.item[k].name, s->item[k].name) == 0)
+    return &from->state.item[k];
+  return mpsi_values_find(&from->state, s->item[k].name);
+}
+
+static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapshot *from) {
+  for (int32_t k = 0; k < s->count; k++) {
+    const mpsi_state_item *now = &s->item[k];
+    const mpsi_value *then = value_of(from, s, k);
+    const bool same = then && then->type == now->type && then->columns == now->columns &&
+                      (now->table || then->rows == now->rows);
+    if (!same)
+      return mpsi_fail(w->of->context, w->function, w->status,
+                       "%s has %s '%s', which this solver has", w->source,
+                       then ? "another number of" : "no", now->name);
+    const mps_status status = now->agrees ? compare(w, now, then) : MPS_OK;
+    if (status != MPS_OK) return status;
+  }
+  if (from->state.count == s->count) return MPS_OK;
+  return mpsi_fail(w->of->context, w->function, w->status, "%s has %d items, this solver %d",
+                   w->source, from->state.count, s->count);
+}
+
+mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
+                            const char *source, mps_status disagreement) {
+  const way_back w = {of, function, source, disagreement};
+  mpsi_state s;
+  mps_status status = list(of, function, &s);
+  if (status != MPS_OK) return status;
+  status = match(&w, &s, from);
+  mpsi_free(of->context, s.item);
+  return status;
+}
+
+static bool reserve(const mpsi_state *s, const mps_snapshot *from) {
+  for (int32_t k = 0; k < s->count; k++) {
+    const mpsi_state_table *table = s->item[k].table;
+    const mpsi_value *then = value_of(from, s, k);
+    if (table && table->reserve && !table->reserve(s->item[k].owner, then->rows, then->data))
+      return false;
+  }
+  return true;
+}
+
+mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
+                              const mps_snapshot *from, const char *source, mps_status disagreement,
+                              mpsi_state_prepared *out) {
+  const way_back w = {of, function, source, disagreement};
+  mpsi_state s;
+  *out = (mpsi_state_prepared){.from = from};
+  mps_status status = list(of, function, &s);
+  const bool listed = status == MPS_OK;
+  if (listed) status = match(&w, &s, from);
+  const bool room =
+      status == MPS_OK && reserve(&s, from) &&
+      (!of->particles || !of->make_room || of->make_room(of->solver, from->particles));
+  if (status == MPS_OK && !room)
+    status = mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
+                       "could not allocate what going back to %s needs", source);
+  const int32_t fields = of->particles ? mps_particles_field_count(of->particles) : 0;
+  if (status == MPS_OK && of->particles)
+    status = mpsi_particles_prepare_state(of->particles, function, from, &out->scratch);
+  const bool prepared = status == MPS_OK;
+  if (status == MPS_OK && of->prepare)
+    status = of->prepare(of->solver, function, from, source, disagreement);
+  if (of->settle) status = of->settle(of->solver, function, status);
+  if (prepared && status != MPS_OK && of->particles) {
+    mpsi_particles_drop_prepared(of->particles, out->scratch);
+    mpsi_particles_drop_fields(of->particles, fields);
+  }
+  if (listed && status != MPS_OK) mpsi_free(of->context, s.item);
+  if (status != MPS_OK) return status;
+  out->item = s.item;
+  out->count = s.count;
+  return MPS_OK;
+}
+
+void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared) {
+  const mps_snapshot *from = prepared->from;
+  const mpsi_state s = {.item = prepared->item, .count = prepared->count};
+  if (of->particles) mpsi_particles_put_state(of->particles, from, prepared->scratch);
+  if (of->bind) of->bind(of->solver);
+  for (int32_t k = 0; k < s.count; k++) mpsi_state_write_item(&s.item[k], value_of(from, &s, k));
+  if (of->after) of->after(of->solver);
+  mpsi_free(of->context, prepared->item);
+  *prepared = (mpsi_state_prepared){.item = NULL};
+}
+
+mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
+                          const char *source, mps_status disagreement) {
+  mpsi_state_prepared prepared;
+  const mps_status status = mpsi_state_prepare(of, function, from, source, disagreement, &prepared);
+  if (status == MPS_OK) mpsi_state_go(of, &prepared);
+  return status;
+}

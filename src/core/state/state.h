@@ -1,0 +1,240 @@
+/* state.h - the state of a solver, listed once. From the one list follow a snapshot in memory, the
+ * way back to it bit for bit (this header), and a checkpoint file (io/checkpoint.h).
+ *
+ * A solver writes one function that lists, in a fixed order, what its steps change, and what must
+ * not have changed between saving and going back. The particle set goes along by itself: number,
+ * ids, order and all fields. All that a solver needs:
+ *
+ *   static void list_state(mpsi_state *s, void *solver) {
+ *     mps_foo *foo = solver;
+ *     mpsi_state_agree_integer(s, "scheme", foo->def.scheme); // compared, never written
+ *     mpsi_state_f64(s, "time", &foo->time, 1);
+ *     mpsi_state_i64(s, "steps", &foo->steps, 1);
+ *     mpsi_state_f64(s, "residual", foo->residual, foo->freedoms);
+ *     mpsi_state_enter(s, "boundary%d", k);                   // names: "boundary0/force"
+ *     mpsi_state_f64(s, "force", foo->boundary[k].force, 3);
+ *     mpsi_state_leave(s);
+ *   }
+ *   static mpsi_state_of state_of(mps_foo *foo) {
+ *     return (mpsi_state_of){.solver = foo, .name = "foo", .context = foo->context,
+ *                            .particles = foo->particles, .identity = &foo->identity,
+ *                            .list = list_state, .bind = bind_fields,
+ *                            .time = foo->time, .dt = foo->dt, .steps = foo->steps};
+ *   }
+ *   mps_status mps_foo_snapshot(mps_foo *foo, mps_snapshot **snapshot) {
+ *     if (!foo) return MPS_ERROR_ARGUMENT;
+ *     const mpsi_state_of of = state_of(foo);
+ *     return mpsi_state_snapshot(&of, __func__, snapshot);
+ *   }
+ *   // mps_foo_rollback: mpsi_state_rollback; mps_foo_save: mpsi_checkpoint_save;
+ *   // mps_foo_restore: mpsi_checkpoint_restore
+ *
+ * and `mpsi_state_forget(&foo->identity)` where foo is destroyed. What has a length that steps
+ * change, or is kept in another form than the solver's, is a mpsi_state_table.
+ *
+ * Going back has two phases: first everything is compared and every byte of memory is allocated;
+ * then values are written, which cannot fail. So an error changes nothing.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_STATE_H
+#define MPSI_STATE_H
+
+#include "core/internal.h"
+
+#include <mps/particles.h>
+#include <mps/solver.h>
+
+#include <string.h>
+
+#define MPSI_STATE_NAME 96 /* bytes of an item's name, with the terminating zero */
+
+typedef struct mpsi_state mpsi_state; /* a list */
+
+/* ---- listing ------------------------------------------------------------------------------- */
+
+/* Values that are always there, `count` of them at an address that holds until the list is used.
+ * Copied out and in. In a file all are float64 or int64. */
+void mpsi_state_f64(mpsi_state *state, const char *name, double *values, int64_t count);
+void mpsi_state_i64(mpsi_state *state, const char *name, int64_t *values, int64_t count);
+void mpsi_state_i32(mpsi_state *state, const char *name, int32_t *values, int64_t count);
+void mpsi_state_bool(mpsi_state *state, const char *name, bool *value);
+/* Bytes of the caller's or the machine's own form; a file holds them as they are. */
+void mpsi_state_bytes(mpsi_state *state, const char *name, void *values, int64_t count);
+
+/* The members of a reaction. */
+void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction);
+
+/* How the solver was built or is set up: going back is an error where it differs now, which names
+ * the item and both values. */
+void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value);
+void mpsi_state_agree_number(mpsi_state *state, const char *name, double value);
+void mpsi_state_agree_text(mpsi_state *state, const char *name, const char *value);
+
+/* Names listed until the matching leave begin with this one and "/". Not nested deeper than 3. */
+void mpsi_state_enter(mpsi_state *state, const char *format, ...) MPSI_PRINTF(2, 3);
+void mpsi_state_leave(mpsi_state *state);
+
+typedef enum mpsi_state_type {
+  MPSI_STATE_F64 = 0,
+  MPSI_STATE_I64 = 1,
+  MPSI_STATE_BYTES = 2
+} mpsi_state_type;
+
+/* A table whose number of rows the steps change, or that the solver keeps in another form. Tables
+ * are written in the order of the list. */
+typedef struct mpsi_state_table {
+  mpsi_state_type type;
+  int32_t columns;
+  int64_t (*rows)(const void *solver);
+  void (*get)(const void *solver, void *values); /* rows * columns, row by row */
+  /* Makes room for what `set` will write, keeping the present contents; false: memory refused.
+   * NULL: none is needed. */
+  bool (*reserve)(void *solver, int64_t rows, const void *values);
+  void (*set)(void *solver, int64_t rows, const void *values); /* cannot fail */
+} mpsi_state_table;
+void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_table *table);
+/* A table of another object than the solver, which its functions are given instead. */
+void mpsi_state_add_table_of(mpsi_state *state, const char *name, const mpsi_state_table *table,
+                             void *owner);
+
+/* ---- a solver's description ---------------------------------------------------------------- */
+
+typedef struct mpsi_identity mpsi_identity; /* tells solvers apart, also those destroyed */
+
+typedef struct mpsi_state_of {
+  void *solver;
+  const char *name; /* of the kind of solver: "WLS-MPM" */
+  mps_context *context;
+  mps_particles *particles; /* NULL: none goes along */
+  mpsi_identity **identity; /* a member of the solver, NULL at first */
+  void (*list)(mpsi_state *state, void *solver);
+  /* Of a file only, may be NULL: do the values fit, such as indices into arrays? False: the file is
+   * malformed; `*what` says in what. It may mend a value in place. */
+  bool (*fits)(void *solver, mps_snapshot *values, const char **what);
+  /* Makes room for what the solver keeps for each of so many particles, keeping what is there;
+   * false: refused. May be NULL. Where neither this nor `prepare` is given, the solver cannot go
+   * back to other particles; where one is, the ids to come and the occupied lattice sites of the
+   * set belong to the state too. */
+  bool (*make_room)(void *solver, int64_t particles);
+  /* The same for a solver that makes more of its particles than room, which `bind` then puts in
+   * place: everything of `from` that it needs, whose ids are known to be good. It refuses, with an
+   * error of status `disagreement` that names `source`, where the state is not of this solver. It
+   * may be called again, or never followed by `bind`. May be NULL. */
+  mps_status (*prepare)(void *solver, const char *function, const mps_snapshot *from,
+                        const char *source, mps_status disagreement);
+  /* Of a file only, may be NULL: leaves of the values those of this rank's particles; `status` is
+   * what has become of reading them here. */
+  mps_status (*take_share)(void *solver, const char *function, mps_status status,
+                           mps_snapshot *values);
+  /* May be NULL: of a solver on several ranks. What has become of all of them, when all that can
+   * fail on this one is done; its own status so far is `status`. */
+  mps_status (*settle)(void *solver, const char *function, mps_status status);
+  /* May be NULL, cannot fail. `bind`: the set is back, its columns may have moved and its number of
+   * particles changed; the values of the list are still to be written. `after`: they are too. */
+  void (*bind)(void *solver);
+  void (*after)(void *solver);
+  double time, dt; /* s, for the head of a file */
+  int64_t steps;
+} mpsi_state_of;
+
+/* Fills *snapshot, made if it is NULL, and otherwise one that this solver has filled before
+ * (MPS_ERROR_ARGUMENT): its memory is reused. On an error it is as before. */
+mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
+                               mps_snapshot **snapshot);
+/* Puts the solver and its set back. MPS_ERROR_ARGUMENT: NULL, or of another solver;
+ * MPS_ERROR_STATE: something that must agree is not as it was. On an error nothing has changed. */
+mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
+                               const mps_snapshot *snapshot);
+/* The two phases of a rollback, for a solver that looks ahead and goes back: all that can fail
+ * comes before what it does in between. mpsi_state_ready_back: as mpsi_state_rollback, without
+ * going; mpsi_state_go goes, once, and cannot fail. */
+typedef struct mpsi_state_prepared {
+  const mps_snapshot *from;
+  struct mpsi_state_item *item; /* the list */
+  int32_t count;
+  void *scratch;
+} mpsi_state_prepared;
+mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
+                                 const mps_snapshot *snapshot, mpsi_state_prepared *out);
+void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared);
+/* Whether the solver can go back to other particles than the set has. */
+static inline bool mpsi_state_any_particles(const mpsi_state_of *of) {
+  return of->make_room || of->prepare;
+}
+/* Where a solver is destroyed. */
+void mpsi_state_forget(mpsi_identity **identity);
+
+/* ---- the values: for this folder and io ------------------------------------------------------ */
+
+/* A value of the list: [row][column]; a field of the set: [component][particle]. */
+typedef struct mpsi_value {
+  char name[MPSI_STATE_NAME];
+  mpsi_state_type type;
+  bool agrees, table, text; /* text: terminated bytes */
+  int32_t columns;
+  int64_t rows;
+  void *data;
+  int64_t capacity; /* bytes of data */
+} mpsi_value;
+
+typedef struct mpsi_values {
+  mpsi_value *item;
+  int32_t count, capacity; /* items from `count` on may have memory for another time */
+} mpsi_values;
+
+struct mps_snapshot {
+  mps_context *context;
+  mpsi_identity *identity; /* of the solver that filled it */
+  int64_t particles;
+  mpsi_values state, fields;
+};
+
+static inline int64_t mpsi_state_size(mpsi_state_type type) {
+  return type == MPSI_STATE_BYTES ? 1 : 8;
+}
+static inline bool mpsi_state_name_ends(const char *name, const char *end) {
+  const size_t n = strlen(name), m = strlen(end);
+  return n >= m && strcmp(name + n - m, end) == 0;
+}
+/* Room for `count` items, and in one of them for rows of a type; contents stay; false: refused. */
+bool mpsi_values_reserve(mps_context *context, mpsi_values *values, int32_t count);
+bool mpsi_value_reserve(mps_context *context, mpsi_value *value, mpsi_state_type type, int64_t rows,
+                        int32_t columns);
+const mpsi_value *mpsi_values_find(const mpsi_values *values, const char *name); /* or NULL */
+void mpsi_values_free(mps_context *context, mpsi_values *values);
+
+/* The state alone, without the set, into `out` (empty, or filled before). */
+mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out);
+/* Does what must agree agree? `source` and `status` are those of the following. */
+mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
+                            const char *source, mps_status status);
+/* The first phase, and both. `source` names where the values come from ("'run.h5'", "the
+ * snapshot"), `status` is that of a disagreement. Fields that the set lacks are added. */
+mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
+                              const mps_snapshot *from, const char *source, mps_status status,
+                              mpsi_state_prepared *out);
+mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
+                          const char *source, mps_status status);
+
+/* ---- state_particles.c: the set's part ------------------------------------------------------- */
+
+/* All fields of the set with their ids, in order: first the memory, then, which cannot fail, the
+ * values. */
+mps_status mpsi_particles_reserve_state(mps_particles *particles, const char *function,
+                                        mps_snapshot *out);
+void mpsi_particles_get_state(const mps_particles *particles, mps_snapshot *out);
+/* Lists what a set has besides its fields. A state that has it may be gone back to from another
+ * number of particles. */
+void mpsi_particles_list_state(mpsi_state *state, mps_particles *particles);
+/* Makes an item, which has room for one integer, the one of that list that tells the id to come. */
+void mpsi_particles_name_next_id(mpsi_value *item, int64_t next_id);
+/* Once such a state is put back without a solver's list. */
+void mpsi_particles_take_next_id(mps_particles *particles, const mps_snapshot *from);
+/* The two phases of going back. A field that `from` lacks keeps its values, each with its particle
+ * (zero in one that comes back); one that the set lacks is added. `scratch` is what the first phase
+ * hands to the second, which frees it. */
+mps_status mpsi_particles_prepare_state(mps_particles *particles, const char *function,
+                                        const mps_snapshot *from, void **scratch);
+void mpsi_particles_drop_prepared(mps_particles *particles, void *scratch);
+void mpsi_particles_put_state(mps_particles *particles, const mps_snapshot *from, void *scratch);
+
+#endif

@@ -1,0 +1,188 @@
+/* files.c - checkpoints of a body that lies on several ranks. Rank 0 writes what the run without a
+ * domain would write: particles and lists in the order of the whole body, sums over all ranks. Each
+ * rank reads the whole file and takes its share of it, so that a run goes on with any number of
+ * ranks, or without a domain. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles/particles_internal.h"
+#include "dynamics/dynamics_private.h"
+#include "io/checkpoint.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* How the values of a rank and those of the file belong together. */
+typedef enum merging {
+  SAME, /* on all ranks */
+  SUM,  /* exact sums: of all ranks; read, they are rank 0's */
+  COUNT,
+  ROWS /* of lists in the order of particles; of columns the last rank's */
+} merging;
+
+static merging merging_of(const mpsi_value *value) {
+  if (value->agrees) return SAME;
+  if (value->table) return mpsi_state_name_ends(value->name, "sites") ? SAME : ROWS;
+  if (strncmp(value->name, "work_", 5) == 0 || mpsi_state_name_ends(value->name, "/pushed") ||
+      mpsi_state_name_ends(value->name, "/impulse") || mpsi_state_name_ends(value->name, "/work"))
+    return SUM;
+  return mpsi_state_name_ends(value->name, "/particles") ? COUNT : SAME;
+}
+
+/* ---- numbers of list rows that belong to the body ----------------------------------------------
+ */
+
+static int64_t body_rows(const mps_dynamics *dynamics, const mpsi_value *value) {
+  int64_t rows = 0;
+  if (strcmp(value->name, "held_values") == 0)
+    for (int64_t k = 0; k < dynamics->bounds; k++)
+      rows += dynamics->bound[k].particle < dynamics->body;
+  else
+    for (int64_t k = 0; k < dynamics->dashpots; k++)
+      rows += dynamics->dashpot[k].particle < dynamics->body;
+  return rows;
+}
+
+/* Particles of a boundary that are counted here. */
+static int64_t counted(const mps_dynamics *dynamics, const mpsi_dynamics_part *part) {
+  int64_t count = 0;
+  for (int64_t k = 0; k < part->count; k++)
+    count += part->particle[k] < dynamics->body || dynamics->lead;
+  return count;
+}
+
+static const mpsi_dynamics_part *part_of(const mps_dynamics *dynamics, const char *name) {
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+    char own[MPSI_STATE_NAME];
+    snprintf(own, sizeof own, "boundary%d/particles", (int)k);
+    if (dynamics->boundary[k] && strcmp(own, name) == 0) return &dynamics->boundary[k]->part;
+  }
+  return NULL;
+}
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+static mps_status merge(mps_dynamics *dynamics, const char *function, mpsi_values *state) {
+  mps_status status = MPS_OK;
+  for (int32_t k = 0; k < state->count && status == MPS_OK; k++) {
+    mpsi_value *value = &state->item[k];
+    const merging how = merging_of(value);
+    if (how == SUM)
+      status = mpsi_domain_sum_exact(dynamics->domain, function,
+                                     (int32_t)(value->rows / MPSI_EXACT_LIMBS), value->data);
+    if (how == ROWS)
+      status =
+          mpsi_domain_gather_rows(dynamics->domain, function,
+                                  dynamics->lead ? value->rows : body_rows(dynamics, value), value);
+    if (how != COUNT) continue;
+    *(int64_t *)value->data = counted(dynamics, part_of(dynamics, value->name));
+    status = mpsi_domain_sum(dynamics->domain, function, 1, value->data);
+  }
+  return status;
+}
+
+mps_status mpsi_dynamics_save_shares(mps_dynamics *dynamics, const mpsi_state_of *of,
+                                     const char *function, const char *path,
+                                     const mps_checkpoint *info) {
+  mps_snapshot state = {.context = dynamics->context};
+  mps_particles *whole = NULL;
+  mps_status status =
+      mpsi_domain_settle(dynamics->domain, function, mpsi_state_get(of, function, &state));
+  if (status == MPS_OK) status = merge(dynamics, function, &state.state);
+  if (status == MPS_OK)
+    status = mpsi_as(dynamics->context, function,
+                     mps_domain_gather(dynamics->domain, dynamics->particles, &whole));
+  if (status == MPS_OK) {
+    if (mps_domain_rank(dynamics->domain) == 0)
+      status = mpsi_checkpoint_save_values(of, function, path, info, whole, &state.state);
+    status = mpsi_domain_settle(dynamics->domain, function, status);
+  }
+  mps_particles_destroy(&whole);
+  mpsi_values_free(dynamics->context, &state.state);
+  return status;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static mps_status misfit(const mps_dynamics *dynamics, const char *function, const char *what) {
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_FORMAT,
+                   "the file is of another body: %s is another", what);
+}
+
+/* Rows of this rank's particles, in their order. */
+static mps_status take_fields(mps_dynamics *dynamics, const char *function, mps_snapshot *values) {
+  mps_context *context = dynamics->context;
+  const mpsi_value *id = mpsi_values_find(&values->fields, "id");
+  const int64_t made = mpsi_particles_made(dynamics->particles), all = values->particles;
+  const int64_t *own = mpsi_particles_integers(dynamics->particles, "id"), n = dynamics->count;
+  if (all != dynamics->whole || !id || id->rows != all)
+    return misfit(dynamics, function, "the number of particles");
+  int64_t *at = mpsi_alloc(context, made, sizeof *at), *column = mpsi_alloc(context, n, 8);
+  mps_status status = at && column ? MPS_OK : mpsi_fail_memory(context, function, (size_t)made * 8);
+  for (int64_t k = 0; status == MPS_OK && k < made; k++) at[k] = -1;
+  for (int64_t k = 0; status == MPS_OK && k < all; k++) {
+    const int64_t i = ((const int64_t *)id->data)[k];
+    if (i < 0 || i >= made) status = misfit(dynamics, function, "an id");
+    if (status == MPS_OK) at[i] = k;
+  }
+  for (int64_t k = 0; status == MPS_OK && k < n; k++)
+    if (at[own[k]] < 0) status = misfit(dynamics, function, "an id");
+  for (int32_t f = 0; status == MPS_OK && f < values->fields.count; f++) {
+    mpsi_value *field = &values->fields.item[f];
+    for (int32_t c = 0; c < field->columns; c++) { /* n <= all: no column overtakes another */
+      for (int64_t k = 0; k < n; k++)
+        memcpy(&column[k], (const char *)field->data + 8 * (c * all + at[own[k]]), 8);
+      memcpy((char *)field->data + 8 * c * n, column, (size_t)n * 8);
+    }
+    field->rows = n;
+  }
+  mpsi_free(context, at);
+  mpsi_free(context, column);
+  if (status == MPS_OK) values->particles = n;
+  return status;
+}
+
+/* `before`: rows of the body on lower ranks, and on all. */
+static mps_status take_rows(const mps_dynamics *dynamics, const char *function, mpsi_value *value,
+                            const int64_t before[2]) {
+  const int64_t row = value->columns * mpsi_state_size(value->type);
+  const int64_t body = body_rows(dynamics, value);
+  const int64_t own =
+      strcmp(value->name, "held_values") == 0 ? dynamics->bounds : dynamics->dashpots;
+  char *data = value->data;
+  if (value->rows != before[1] + own - body) return misfit(dynamics, function, value->name);
+  memmove(data, data + before[0] * row, (size_t)(body * row));
+  memmove(data + body * row, data + before[1] * row, (size_t)((own - body) * row));
+  value->rows = own;
+  return MPS_OK;
+}
+
+mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_status status,
+                                     mps_snapshot *values) {
+  mps_dynamics *dynamics = solver;
+  mps_domain *domain = dynamics->domain;
+  const int32_t rank = mps_domain_rank(domain), ranks = mps_domain_size(domain);
+  if (!mpsi_domain_many(domain)) return status;
+  int64_t *rows = NULL;
+  if (status == MPS_OK && !(rows = mpsi_alloc(dynamics->context, ranks, sizeof *rows)))
+    status = mpsi_fail_memory(dynamics->context, function, (size_t)ranks * 8);
+  if (status == MPS_OK) status = take_fields(dynamics, function, values);
+  status = mpsi_domain_settle(domain, function, status);
+  for (int32_t k = 0; status == MPS_OK && k < values->state.count; k++) {
+    mpsi_value *value = &values->state.item[k];
+    const merging how = merging_of(value);
+    if (how == SUM && rank > 0) memset(value->data, 0, (size_t)(value->rows * value->columns) * 8);
+    if (how == COUNT) {
+      int64_t all = counted(dynamics, part_of(dynamics, value->name)), *kept = value->data;
+      status = mpsi_domain_sum(domain, function, 1, &all);
+      if (status == MPS_OK && all != *kept) status = misfit(dynamics, function, value->name);
+      *kept = part_of(dynamics, value->name)->count;
+    }
+    if (how != ROWS) continue;
+    for (int32_t r = 0; r < ranks; r++) rows[r] = r == rank ? body_rows(dynamics, value) : 0;
+    status = mpsi_domain_sum(domain, function, ranks, rows);
+    int64_t before[2] = {0, 0};
+    for (int32_t r = 0; r < ranks; r++) before[0] += r < rank ? rows[r] : 0, before[1] += rows[r];
+    if (status == MPS_OK) status = take_rows(dynamics, function, value, before);
+    status = mpsi_domain_settle(domain, function, status);
+  }
+  mpsi_free(dynamics->context, rows);
+  return status;
+}

@@ -1,0 +1,296 @@
+/* state.c - the state of the explicit MPS solver (core/state.h): snapshots, rollback, checkpoints;
+ * a look at the step to come.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/state/state.h"
+
+#include "core/particles/particles_internal.h"
+#include "dynamics/dynamics_private.h"
+#include "io/checkpoint.h"
+
+#include <string.h>
+
+/* ---- what is held or driven, dashpots ----------------------------------------------------------
+ */
+
+enum { BOUND = 4 };
+
+static int64_t count_bounds(const void *solver) { return ((const mps_dynamics *)solver)->bounds; }
+
+/* The next in order of particles, then of components, in which lists are kept outside of the
+ * solver: the whole body's is then made of those of its parts. The list itself has the component
+ * first. */
+typedef struct walk {
+  int64_t at[3], end[3];
+} walk;
+
+static walk begin_walk(const mps_dynamics *dynamics) {
+  walk w = {{0}, {0}};
+  int64_t k = 0;
+  for (int c = 0; c < 3; c++) {
+    w.at[c] = k;
+    while (k < dynamics->bounds && dynamics->bound[k].component == c) k++;
+    w.end[c] = k;
+  }
+  return w;
+}
+
+static mpsi_dynamics_bound *next_bound(const mps_dynamics *dynamics, walk *w) {
+  int64_t *least = NULL;
+  for (int c = 0; c < 3; c++)
+    if (w->at[c] < w->end[c] &&
+        (!least || dynamics->bound[w->at[c]].particle < dynamics->bound[*least].particle))
+      least = &w->at[c];
+  return least ? &dynamics->bound[(*least)++] : NULL;
+}
+
+static void get_bounds(const void *solver, void *values) {
+  const mps_dynamics *dynamics = solver;
+  double *row = values;
+  walk w = begin_walk(dynamics);
+  for (const mpsi_dynamics_bound *q; (q = next_bound(dynamics, &w)); row += BOUND) {
+    const double of[BOUND] = {q->rest, q->at, q->before, q->force};
+    memcpy(row, of, sizeof of);
+  }
+}
+
+static void set_bounds(void *solver, int64_t rows, const void *values) {
+  mps_dynamics *dynamics = solver;
+  const double *row = values, *end = row + rows * BOUND;
+  walk w = begin_walk(dynamics);
+  for (mpsi_dynamics_bound *q; row < end && (q = next_bound(dynamics, &w)); row += BOUND)
+    q->rest = row[0], q->at = row[1], q->before = row[2], q->force = row[3];
+}
+
+static int64_t count_dashpots(const void *solver) {
+  return ((const mps_dynamics *)solver)->dashpots;
+}
+
+/* Backwards: in order of particles. */
+static void get_dashpots(const void *solver, void *values) {
+  const mps_dynamics *dynamics = solver;
+  for (int64_t k = 0; k < dynamics->dashpots; k++)
+    ((double *)values)[k] = dynamics->dashpot[dynamics->dashpots - 1 - k].force;
+}
+
+static void set_dashpots(void *solver, int64_t rows, const void *values) {
+  mps_dynamics *dynamics = solver;
+  for (int64_t k = 0; k < rows && k < dynamics->dashpots; k++)
+    dynamics->dashpot[dynamics->dashpots - 1 - k].force = ((const double *)values)[k];
+}
+
+static const mpsi_state_table bounds_table = {MPSI_STATE_F64, BOUND, count_bounds,
+                                              get_bounds,     NULL,  set_bounds};
+static const mpsi_state_table dashpots_table = {MPSI_STATE_F64, 1,    count_dashpots,
+                                                get_dashpots,   NULL, set_dashpots};
+
+/* ---- the list
+ * ------------------------------------------------------------------------------------ */
+
+static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
+  const mps_dynamics_def *def = &dynamics->def;
+  mpsi_state_agree_integer(s, "integrator", def->integrator);
+  mpsi_state_agree_integer(s, "rotation", def->rotation);
+  mpsi_state_agree_integer(s, "damping", def->damping);
+  mpsi_state_agree_integer(s, "watch_damping", def->watch_damping);
+  mpsi_state_agree_integer(s, "kernel", mps_kernel_get_kind(dynamics->kernel));
+  mpsi_state_agree_number(s, "radius_ratio", def->radius_ratio);
+  mpsi_state_agree_number(s, "f1", def->f1);
+  mpsi_state_agree_number(s, "f2", def->f2);
+  mpsi_state_agree_number(s, "period_x", isnan(def->period_x) ? 0.0 : def->period_x);
+  mpsi_state_agree_number(s, "measure", def->measure);
+  mpsi_state_agree_number(s, "torque", dynamics->torque);
+  mpsi_state_agree_integer(s, "particles_made", mpsi_particles_made(dynamics->particles));
+}
+
+static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t number) {
+  mpsi_state_enter(s, "boundary%d", (int)number);
+  mpsi_state_agree_integer(s, "kind", b->kind);
+  mpsi_state_agree_integer(s, "dofs", b->dofs);
+  mpsi_state_i64(s, "particles", &b->part.count, 1);
+  mpsi_state_i64(s, "pushed", b->pushed[0].limb, 3 * MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "impulse", b->impulse[0].limb, 3 * MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "work", b->work.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_f64(s, "kick", &b->kick, 1);
+  mpsi_state_leave(s);
+}
+
+static void list_state(mpsi_state *s, void *solver) {
+  mps_dynamics *dynamics = solver;
+  list_setting(s, dynamics);
+  int64_t boundaries = 0;
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) boundaries += dynamics->boundary[k] != NULL;
+  mpsi_state_agree_integer(s, "boundaries", boundaries);
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    if (dynamics->boundary[k]) list_boundary(s, dynamics->boundary[k], k);
+  mpsi_state_f64(s, "dt", &dynamics->dt, 1);
+  mpsi_state_f64(s, "length", &dynamics->length, 1);
+  mpsi_state_f64(s, "kept", &dynamics->kept, 1);
+  mpsi_state_f64(s, "lag", &dynamics->lag, 1);
+  mpsi_state_f64(s, "base_time", &dynamics->base_time, 1);
+  mpsi_state_i64(s, "base_step", &dynamics->base_step, 1);
+  mpsi_state_i64(s, "steps", &dynamics->steps, 1);
+  mpsi_state_bool(s, "fresh", &dynamics->fresh);
+  mpsi_state_bool(s, "diverged", &dynamics->diverged);
+  mpsi_state_bool(s, "begun", &dynamics->begun);
+  mpsi_state_bool(s, "no_rate", &dynamics->no_rate);
+  mpsi_state_i64(s, "work_loads", dynamics->works.loads.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "work_boundaries", dynamics->works.boundaries.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "work_damping", dynamics->works.damping.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_f64(s, "energy_start", &dynamics->works.start, 1);
+  mpsi_state_add_table(s, "held_values", &bounds_table);
+  mpsi_state_add_table(s, "dashpot_forces", &dashpots_table);
+}
+
+static void bind(void *solver) {
+  mps_dynamics *dynamics = solver;
+  mpsi_dynamics_bind(dynamics);
+  if (!dynamics->change) return;
+  mpsi_dynamics_use_change(dynamics);
+  mpsi_dynamics_drop_change(dynamics);
+}
+
+/* What follows from the state. */
+static void after(void *solver) {
+  mps_dynamics *dynamics = solver;
+  const mpsi_dynamics_state *s = &dynamics->state;
+  if (mpsi_dynamics_set_coefficients(dynamics)) {
+    mpsi_dynamics_renew_dashpots(dynamics);
+    dynamics->forces_stale = true; /* masses may be others */
+    dynamics->have_limit = false;
+  }
+  dynamics->unread = false;
+  dynamics->rewritten = dynamics->broken = NULL;
+  dynamics->begins = false;
+  dynamics->kernels->trig[dynamics->def.rotation](s, 0, dynamics->count);
+  for (int64_t k = 0; k < dynamics->bounds; k++) {
+    mpsi_dynamics_bound *q = &dynamics->bound[k];
+    q->c = s->c[q->particle];
+    q->s = s->s[q->particle];
+  }
+  dynamics->checked = !isnan(dynamics->dt);
+}
+
+static mps_status agree_to_go_back(void *solver, const char *function, mps_status status) {
+  return mpsi_domain_settle(((mps_dynamics *)solver)->domain, function, status);
+}
+
+static mpsi_state_of state_of(mps_dynamics *dynamics) {
+  return (mpsi_state_of){.solver = dynamics,
+                         .name = "explicit dynamics",
+                         .context = dynamics->context,
+                         .particles = dynamics->particles,
+                         .identity = &dynamics->identity,
+                         .list = list_state,
+                         .prepare = mpsi_dynamics_prepare_state,
+                         .settle = agree_to_go_back,
+                         .take_share = mpsi_dynamics_take_values,
+                         .bind = bind,
+                         .after = after,
+                         .time = mps_dynamics_time(dynamics),
+                         .dt = isnan(dynamics->dt) ? 0.0 : dynamics->dt,
+                         .steps = dynamics->steps};
+}
+
+/* ---- what the caller does
+ * ------------------------------------------------------------------------ */
+
+/* A state is kept between steps only, with what has been edited taken up. */
+static mps_status check_whole(mps_dynamics *dynamics, const char *function) {
+  mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
+  if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, function);
+  return status == MPS_OK ? mpsi_dynamics_take_edits(dynamics, function, MPS_OK) : status;
+}
+
+mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_whole(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  const mpsi_state_of of = state_of(dynamics);
+  return mpsi_domain_settle(dynamics->domain, __func__,
+                            mpsi_state_snapshot(&of, __func__, snapshot));
+}
+
+/* What follows from a state and lies on other ranks. */
+static mps_status settle_back(mps_dynamics *dynamics, const char *function, mps_status status) {
+  double other = !dynamics->have_limit;
+  if (status != MPS_OK || !mpsi_domain_many(dynamics->domain)) return status;
+  status = mpsi_dynamics_join_coefficients(dynamics, function, MPS_OK);
+  if (status == MPS_OK) status = mpsi_domain_max(dynamics->domain, function, 1, &other);
+  if (other != 0.0) dynamics->have_limit = false;
+  return status;
+}
+
+mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *snapshot) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  const mpsi_state_of of = state_of(dynamics);
+  return settle_back(dynamics, __func__, mpsi_state_rollback(&of, __func__, snapshot));
+}
+
+mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps_checkpoint *info) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_whole(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  const mpsi_state_of of = state_of(dynamics);
+  if (mpsi_domain_many(dynamics->domain))
+    return mpsi_dynamics_save_shares(dynamics, &of, __func__, path, info);
+  return mpsi_checkpoint_save(&of, __func__, path, info);
+}
+
+mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_checkpoint *info) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  const mpsi_state_of of = state_of(dynamics);
+  return settle_back(dynamics, __func__, mpsi_checkpoint_restore(&of, __func__, path, info));
+}
+
+/* ---- the step to come
+ * ---------------------------------------------------------------------------- */
+
+/* Takes a step and goes back, keeping its accelerations and pressures in `kept`. */
+static mps_status look_ahead(mps_dynamics *dynamics, const char *function, double *kept) {
+  const size_t bytes = (size_t)dynamics->count * sizeof(double);
+  const mpsi_state_of of = state_of(dynamics);
+  const double limit = dynamics->def.divergence;
+  mpsi_state_prepared back;
+  mps_status status = mpsi_domain_settle(dynamics->domain, function,
+                                         mpsi_state_snapshot(&of, function, &dynamics->present));
+  if (status == MPS_OK) /* what going back needs; agreed upon by all ranks */
+    status = mpsi_state_ready_back(&of, function, dynamics->present, &back);
+  if (status != MPS_OK) return status;
+  dynamics->def.divergence = INFINITY; /* that is for the step itself to find */
+  mpsi_guard_enter(&dynamics->guard, dynamics->context, function);
+  status = mpsi_dynamics_advance(dynamics, function, 1, dynamics->dt, true);
+  mpsi_guard_end(&dynamics->guard);
+  dynamics->def.divergence = limit;
+  memcpy(kept, dynamics->state.ax, bytes);
+  memcpy(kept + dynamics->count, dynamics->state.ay, bytes);
+  memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
+  mpsi_state_go(&of, &back);
+  const mps_status settled = settle_back(dynamics, function, MPS_OK);
+  return status == MPS_OK || status == MPS_ERROR_DIVERGED ? settled : status;
+}
+
+mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_dynamics_ready(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  double *kept = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *kept);
+  if (dynamics->begins)
+    status = mpsi_dynamics_begin(dynamics, __func__, mps_dynamics_time(dynamics));
+  if (status == MPS_OK && !kept)
+    status =
+        mpsi_fail_memory(dynamics->context, __func__, (size_t)dynamics->count * 3 * sizeof *kept);
+  status = mpsi_domain_settle(dynamics->domain, __func__, status);
+  if (status == MPS_OK) status = look_ahead(dynamics, __func__, kept);
+  const size_t bytes = (size_t)dynamics->count * sizeof(double);
+  if (status == MPS_OK) {
+    memcpy(dynamics->state.ax, kept, bytes);
+    memcpy(dynamics->state.ay, kept + dynamics->count, bytes);
+    memcpy(dynamics->state.p, kept + 2 * dynamics->count, bytes);
+  }
+  mpsi_free(dynamics->context, kept);
+  return status;
+}

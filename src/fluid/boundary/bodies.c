@@ -1,0 +1,361 @@
+/* bodies.c - rigid bodies in the fluid: convex polygons whose edges are walls of finite length
+ * (faces). A face has two nodes, its corners: the velocity of a rigid body along a straight edge's
+ * normal is linear between them. The body is moved by its caller between steps; the fluid keeps the
+ * pose that it had at the last step, and takes the present one as that of the end of the next.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/ranks/share.h"
+#include "signal/signal_internal.h"
+
+#include "body/body_internal.h"
+
+#include <string.h>
+
+#define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
+#define FLUSH 0.1      /* l0: a corner that near a boundary stands on it */
+
+/* Corner k of the body in a pose. */
+static void corner(const mps_body *body, const mpsi_fluid_pose *pose, int64_t k, double *x) {
+  const double *xy = body->xy + 2 * k;
+  for (int c = 0; c < 2; c++)
+    x[c] = pose->x[c] + pose->R[2 * c] * xy[0] + pose->R[2 * c + 1] * xy[1];
+}
+
+void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x) {
+  corner(body->body, next ? &body->next : &body->pose, k, x);
+}
+
+static mpsi_fluid_pose pose_of(const mps_body *body) {
+  const mpsi_pose *p = &body->pose;
+  return (mpsi_fluid_pose){.x = {p->x[0], p->x[1]},
+                           .R = {p->R[0], p->R[1], p->R[3], p->R[4]},
+                           .v = {p->v[0], p->v[1]},
+                           .spin = p->spin[2]};
+}
+
+/* Velocity of a body's point at x. */
+static void velocity_at(const mpsi_fluid_pose *pose, const double *x, double *v) {
+  v[0] = pose->v[0] - pose->spin * (x[1] - pose->x[1]);
+  v[1] = pose->v[1] + pose->spin * (x[0] - pose->x[0]);
+}
+
+/* ---- places ---------------------------------------------------------------------------------- */
+
+/* The boundaries at which point x stands, bits. */
+static uint32_t standing_on(const mps_fluid *f, const double *x) {
+  uint32_t on = 0;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (w->used && mpsi_fluid_distance(w, w->now.s, x[0], x[1]) < FLUSH * f->l0)
+      on |= UINT32_C(1) << b;
+  }
+  return on;
+}
+
+/* Puts the faces where the pose has them. Where a corner stands on a boundary the face goes on
+ * behind it; one that lies on a boundary is none. */
+static void place_faces(mps_fluid *f, mpsi_fluid_body *body) {
+  for (int k = 0; k < body->faces; k++) {
+    mpsi_fluid_wall *w = &f->wall[body->first + k];
+    double end[2][2], v[2];
+    corner(body->body, &body->pose, k, end[0]);
+    corner(body->body, &body->pose, k + 1, end[1]);
+    const double d[2] = {end[1][0] - end[0][0], end[1][1] - end[0][1]}, length = hypot(d[0], d[1]);
+    w->normal[0] = d[1] / length, w->normal[1] = -d[0] / length;
+    w->node[0] = 0.0, w->node[1] = w->length = length;
+    for (int c = 0; c < 2; c++) w->at[c] = end[0][c];
+    for (int n = 0; n < 2; n++) {
+      velocity_at(&body->pose, end[n], v);
+      w->now.s[n] = 0.0;
+      w->now.u[n] = v[0] * w->normal[0] + v[1] * w->normal[1];
+    }
+    const uint32_t on[2] = {standing_on(f, end[0]), standing_on(f, end[1])};
+    w->from = on[0] ? -INFINITY : 0.0;
+    w->to = on[1] ? (double)INFINITY : length;
+    w->used = (on[0] & on[1]) == 0;
+    memcpy(w->stands_on, on, sizeof on);
+  }
+}
+
+void mpsi_fluid_place_bodies(mps_fluid *f) {
+  for (int k = 0; k < MPSI_FLUID_BODIES; k++)
+    if (f->body[k].body) place_faces(f, &f->body[k]);
+}
+
+/* m: half its circumference over pi. */
+double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *f) {
+  double sum = 0.0;
+  for (int k = 0; k < body->faces; k++) sum += f->wall[body->first + k].length;
+  return sum / 6.283185307179586;
+}
+
+/* Where the body is at the end of a step with the accelerations `rate`. */
+static void drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
+  const mps_body_def *def = &body->body->def;
+  mpsi_fluid_pose *p = &body->next;
+  for (int c = 0; c < 2; c++) {
+    p->v[c] = (p->v[c] + dt * body->rate[c]) / (1.0 + dt * def->damping[0]);
+    p->x[c] += dt * p->v[c];
+  }
+  p->spin = (p->spin + dt * body->rate[2] / mpsi_fluid_body_length(body, f)) /
+            (1.0 + dt * def->damping[1]);
+  const double angle = dt * p->spin, C = cos(angle), S = sin(angle);
+  const double R[4] = {p->R[0], p->R[1], p->R[2], p->R[3]};
+  for (int c = 0; c < 2; c++)
+    p->R[c] = C * R[c] - S * R[2 + c], p->R[2 + c] = S * R[c] + C * R[2 + c];
+}
+
+/* Where the faces go in the step being made. */
+void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_body *body = &f->body[b];
+    if (!body->body) continue;
+    body->next = pose_of(body->body);
+    if (body->floats) drift(f, body, dt);
+    for (int k = 0; k < body->faces; k++) {
+      mpsi_fluid_wall *w = &f->wall[body->first + k];
+      for (int n = 0; n < 2; n++) {
+        double from[2], to[2], v[2];
+        corner(body->body, &body->pose, k + n, from);
+        corner(body->body, &body->next, k + n, to);
+        velocity_at(&body->next, to, v);
+        w->next.s[n] = (to[0] - from[0]) * w->normal[0] + (to[1] - from[1]) * w->normal[1];
+        w->next.u[n] = v[0] * w->normal[0] + v[1] * w->normal[1];
+        w->next.a[n] = (w->next.u[n] - w->now.u[n]) / dt;
+        w->mean[n] = w->next.s[n] / dt;
+      }
+    }
+  }
+}
+
+/* Forces of the water on a body whose reference point is at `about`, by parts. */
+void mpsi_fluid_load_body(const mps_fluid *f, mpsi_fluid_body *own, const double *about) {
+  const mps_body *body = own->body;
+  memset(own->water, 0, sizeof own->water);
+  memset(own->wetted, 0, sizeof own->wetted);
+  for (int k = 0; k < own->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[own->first + k];
+    if (!w->used) continue;
+    const int32_t part = body->part_of[body->face_of[k]];
+    const double *force = w->load.force;
+    for (int c = 0; c < 2; c++) own->water[part].force[c] -= force[c];
+    own->water[part].moment[2] -= w->load.moment - (about[0] * force[1] - about[1] * force[0]);
+    own->wetted[part] += w->load.wetted;
+  }
+}
+
+/* The body feels the step's forces: of one that floats those with which its accelerations agree. */
+static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
+  if (!own->floats) mpsi_fluid_load_body(f, own, own->next.x);
+  mpsi_body_react(own->body, &own->source, f->dt, own->water, own->wetted);
+  if (own->floats) mpsi_body_advance(own->body, f->dt);
+  own->pose = own->floats ? pose_of(own->body) : own->next;
+}
+
+void mpsi_fluid_end_bodies(mps_fluid *f) {
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_body *body = &f->body[b];
+    if (!body->body) continue;
+    end_body(f, body);
+    for (int k = 0; k < body->faces; k++) {
+      mpsi_fluid_wall *w = &f->wall[body->first + k];
+      for (int n = 0; n < 2; n++) w->now.a[n] = w->next.a[n];
+    }
+  }
+  mpsi_fluid_place_bodies(f);
+}
+
+int mpsi_fluid_face_of(const mps_fluid *f, const mpsi_fluid_body *body, bool moved, const double *x,
+                       double *distance) {
+  int face = 0;
+  *distance = -INFINITY;
+  for (int k = 0; k < body->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[body->first + k];
+    const double d = mpsi_fluid_distance(w, moved ? w->next.s : w->now.s, x[0], x[1]);
+    if (d > *distance) *distance = d, face = body->first + k;
+  }
+  return face;
+}
+
+bool mpsi_fluid_inside_body(const mps_fluid *f, int besides, const double *x) {
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    double d;
+    if (!f->body[b].body || b + 1 == besides) continue;
+    mpsi_fluid_face_of(f, &f->body[b], f->stage == MPSI_FLUID_MOVED, x, &d);
+    if (d < 0.0) return true;
+  }
+  return false;
+}
+
+/* ---- the caller's bodies --------------------------------------------------------------------- */
+
+static mps_status check_body(mps_fluid *f, const char *function, const mps_body *body,
+                             int32_t kind) {
+  if (body->context != f->context || body->dim != 2 || body->shape != MPSI_POLYGON)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "the body is no polygon in the plane of the fluid's context");
+  if (kind != MPS_FLUID_BOUNDARY_SLIP && kind != MPS_FLUID_BOUNDARY_NO_SLIP)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "kind of the body is %d, allowed are 0 (slip) and 1 (no slip)", kind);
+  for (int64_t k = 0; k < body->edges; k++) {
+    const double *a = body->xy + 2 * k, *b = a + 2;
+    const double *c = k + 1 < body->edges ? b + 2 : body->xy + 2;
+    const double turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+    if (!(turn > 0.0) || !(hypot(b[0] - a[0], b[1] - a[1]) >= f->l0))
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "edge %lld of the body is shorter than l0 = %g m, or its end is no convex "
+                       "corner",
+                       (long long)k, f->l0);
+  }
+  return MPS_OK;
+}
+
+double mpsi_fluid_angle(const mps_fluid *f, const mpsi_fluid_wall *face, int b) {
+  const double *n = f->wall[b].normal;
+  if (!face->used || !((face->stands_on[0] | face->stands_on[1]) >> b & 1)) return 180.0;
+  const double cosine = -(face->normal[0] * n[0] + face->normal[1] * n[1]);
+  return acos(fmax(fmin(cosine, 1.0), -1.0)) * (180.0 / 3.141592653589793);
+}
+
+static mps_status check_angles(mps_fluid *f, const char *function, const mpsi_fluid_body *body) {
+  for (int k = 0; k < body->faces; k++)
+    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+      const double angle = mpsi_fluid_angle(f, &f->wall[body->first + k], b);
+      if (angle < MPSI_FLUID_LEAST_ANGLE - 1e-6)
+        return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                         "edge %d of the body and boundary %d enclose %g degrees of fluid, allowed "
+                         "are %g and more",
+                         k, b, angle, MPSI_FLUID_LEAST_ANGLE);
+    }
+  return MPS_OK;
+}
+
+static mps_status check_place(mps_fluid *f, const char *function, const mpsi_fluid_body *body) {
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  for (int64_t i = 0; i < f->count; i++) {
+    double d;
+    const double at[2] = {x[i], y[i]};
+    mpsi_fluid_face_of(f, body, false, at, &d);
+    if (d < LEAST_BODY * f->l0)
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "particle %lld at (%g, %g) m is %g m from the body, must be at least %g l0 "
+                       "= %g m",
+                       (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], d,
+                       LEAST_BODY, LEAST_BODY * f->l0);
+  }
+  return MPS_OK;
+}
+
+void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
+  for (int k = 0; k < body->faces; k++) mpsi_fluid_drop_wall(f, &f->wall[body->first + k]);
+  if (body->body) mpsi_body_leave(body->body, &body->source);
+  mps_body_destroy(&body->body);
+  *body = (mpsi_fluid_body){0};
+}
+
+/* Walls one after the other that no body has; -1: none. */
+static int free_faces(const mps_fluid *f, int64_t faces) {
+  int run = 0;
+  for (int b = MPS_FLUID_MAX_BOUNDARIES; b < MPSI_FLUID_WALLS; b++) {
+    run = f->wall[b].of_body ? 0 : run + 1;
+    if (run == faces) return b - run + 1;
+  }
+  return -1;
+}
+
+/* Status of all ranks, and whether all give the same body (NULL: none) this number. */
+static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
+                         int32_t kind, const mps_body *body) {
+  if (!f->share) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
+  mpsi_give(&given, "kind", kind);
+  if (status == MPS_OK) mpsi_body_give(&given, body);
+  return mpsi_domain_settle_given(f->def.domain, function, status, &given);
+}
+
+/* The walls from `first` on that the faces of body number `b` become. */
+static mps_status make_faces(mps_fluid *f, const char *function, mps_body *body, int32_t kind,
+                             int32_t b, int first) {
+  mpsi_fluid_body *own = &f->body[b];
+  mps_status status = MPS_OK;
+  body->references++;
+  *own = (mpsi_fluid_body){.body = body, .first = first, .faces = (int)body->edges};
+  own->pose = own->next = pose_of(body);
+  const double ends[6] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0}; /* along the normal (0, -1) */
+  for (int k = 0; k < own->faces && status == MPS_OK; k++) {
+    mpsi_fluid_wall *w = &f->wall[first + k];
+    *w = (mpsi_fluid_wall){.of_body = b + 1, .kind = kind, .normal = {0.0, -1.0}};
+    status = mpsi_fluid_make_motion(f, function, w, 2, ends);
+  }
+  if (status != MPS_OK) return status;
+  place_faces(f, own);
+  status = check_angles(f, function, own);
+  return status == MPS_OK ? check_place(f, function, own) : status;
+}
+
+mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_t *number) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  status = body ? check_body(f, __func__, body, kind)
+                : mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "body is NULL");
+  int32_t b = 0;
+  while (b < MPSI_FLUID_BODIES && f->body[b].body) b++;
+  const int first = status == MPS_OK ? free_faces(f, body->edges) : 0;
+  if (status == MPS_OK && (b == MPSI_FLUID_BODIES || first < 0))
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "the body has %lld edges: the fluid has room for %d of all bodies together",
+                       (long long)body->edges, MPSI_FLUID_WALLS - MPS_FLUID_MAX_BOUNDARIES);
+  const bool begun = status == MPS_OK;
+  if (begun) status = make_faces(f, __func__, body, kind, b, first);
+  status = settle(f, __func__, status, b, kind, body);
+  if (status != MPS_OK) {
+    if (begun) mpsi_fluid_drop_body(f, &f->body[b]);
+    return status;
+  }
+  mpsi_body_join(body, &f->body[b].source);
+  f->warned &= ~((uint32_t)MPSI_FLUID_WARNED_ANGLE << b);
+  f->stale = true, f->unknown = 1;
+  if (number) *number = b;
+  return MPS_OK;
+}
+
+static mps_status check_number(mps_fluid *f, const char *function, int32_t number) {
+  if (number >= 0 && number < MPSI_FLUID_BODIES && f->body[number].body) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "the fluid has no body of number %d",
+                   number);
+}
+
+mps_status mps_fluid_remove_body(mps_fluid *f, int32_t number) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(f->def.domain, __func__, check_number(f, __func__, number),
+                                   "number", number);
+  if (status != MPS_OK) return status;
+  mpsi_fluid_drop_body(f, &f->body[number]);
+  f->stale = true, f->unknown = 1;
+  return MPS_OK;
+}
+
+mps_status mps_fluid_get_body_reaction_sized(mps_fluid *f, int32_t number, mps_reaction *out,
+                                             size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_number(f, "mps_fluid_get_body_reaction", number);
+  if (status != MPS_OK) return status;
+  const mpsi_fluid_body *body = &f->body[number];
+  mps_reaction r = {0};
+  for (int k = 0; k < body->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[body->first + k];
+    for (int c = 0; c < 2; c++) r.force[c] -= w->load.force[c], r.impulse[c] -= w->impulse[c];
+    r.moment[2] -= w->load.moment;
+    r.moment_impulse[2] -= w->moment_impulse;
+    r.work += w->work;
+    r.count += w->load.wetted;
+  }
+  r.moment[2] -= body->pose.x[0] * r.force[1] - body->pose.x[1] * r.force[0];
+  r.moment_impulse[2] -= body->pose.x[0] * r.impulse[1] - body->pose.x[1] * r.impulse[0];
+  return mpsi_out_write(f->context, "mps_fluid_get_body_reaction", out, size, &r, sizeof r);
+}

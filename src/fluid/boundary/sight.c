@@ -1,0 +1,184 @@
+/* sight.c - who sees whom. A wall that ends (the face of a body, a boundary that meets another one
+ * at an angle other than 90 degrees) is a mirror of finite size: a particle sees an image in it
+ * only where the straight line to the image passes through the mirror, and sees another particle
+ * only where no face is in between. The line from a to the image of b folds into the one from b to
+ * the image of a, so a sees b's image exactly when b sees a's: the matrix stays symmetric. Every
+ * line from a particle meets one mirror first, so that images neither overlap nor leave gaps, at
+ * concave and at convex corners. Around a convex corner particles that do not see each other are
+ * neighbours at the length of the way around it: without them the water turns too hard there.
+ *
+ * A boundary that a body stands on ends at the body: its images are seen like those of a face.
+ * Where the body leans over the water, lines of sight that are reflected several times lead
+ * nowhere, as images at walls at an angle are not mirrored again; what particles lack there is no
+ * free surface. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/fluid_private.h"
+
+#define EDGE 1e-6  /* l0 */
+#define CORNER 1.5 /* l0 */
+#define WEDGE 3.1  /* l0: to the edge of an acute corner */
+#define TOWARDS 0.5
+
+static bool meet_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
+  const double cosine = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1];
+  return fabs(cosine) > 1e-6 && fabs(cosine) < 1.0 - 1e-9;
+}
+
+static bool makes_wedge(const mps_fluid *f, const mpsi_fluid_wall *face, uint32_t boundaries) {
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const double *n = f->wall[b].normal;
+    if ((boundaries >> b & 1) && n[0] * face->normal[0] + n[1] * face->normal[1] < -1e-6)
+      return true;
+  }
+  return false;
+}
+
+/* Where faces lean over the water at the boundary that they stand on. */
+static void find_wedges(mps_fluid *f) {
+  f->wedges = 0;
+  for (int b = MPS_FLUID_MAX_BOUNDARIES; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    for (int end = 0; w->used && end < 2; end++) {
+      if (!makes_wedge(f, w, w->stands_on[end]) || f->wedges == MPSI_FLUID_WEDGES) continue;
+      double *at = f->wedge[f->wedges++];
+      const double along = end ? w->length : 0.0;
+      at[0] = w->at[0] - along * w->normal[1], at[1] = w->at[1] + along * w->normal[0];
+    }
+  }
+}
+
+bool mpsi_fluid_near_wedge(const mps_fluid *f, int64_t i, const double *e) {
+  for (int k = 0; k < f->wedges; k++) {
+    const double dx = f->wedge[k][0] - f->x[0][i], dy = f->wedge[k][1] - f->x[1][i];
+    const double r2 = dx * dx + dy * dy;
+    if (!(r2 < WEDGE * WEDGE * f->l0 * f->l0)) continue;
+    if (!e || dx * e[0] + dy * e[1] > TOWARDS * sqrt(r2)) return true;
+  }
+  return false;
+}
+
+/* Which walls end, which are faces, and the acute corners between these and boundaries. */
+void mpsi_fluid_find_limits(mps_fluid *f) {
+  f->limited = f->faces = f->stood_on = 0;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    if (w->of_body) f->faces |= UINT32_C(1) << b, f->stood_on |= w->stands_on[0] | w->stands_on[1];
+    for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES && !w->of_body; k++)
+      if (k != b && f->wall[k].used && meet_at_an_angle(w, &f->wall[k]))
+        f->limited |= UINT32_C(1) << b;
+  }
+  f->limited |= f->faces;
+  find_wedges(f);
+}
+
+static double ahead(const mpsi_fluid_wall *w, const double *x) {
+  return mpsi_fluid_distance(w, w->now.s, x[0], x[1]);
+}
+
+/* Whether the line from a to b passes through the wall, and where. Through a corner is past it, and
+ * so it is from b to a, whatever the rounding. */
+static bool passes(const mps_fluid *f, const mpsi_fluid_wall *w, const double *a, const double *b,
+                   double *at) {
+  const double da = ahead(w, a), db = ahead(w, b);
+  if ((da > 0.0) == (db > 0.0)) return false;
+  const double t = da / (da - db);
+  for (int c = 0; c < 2; c++) at[c] = a[c] + t * (b[c] - a[c]);
+  if (!w->of_body) return true;
+  const double along = mpsi_fluid_along(w, at[0], at[1]);
+  return along > w->from + EDGE * f->l0 && along < w->to - EDGE * f->l0;
+}
+
+/* Whether a face besides those of `except` is between a and b. */
+static bool hidden(const mps_fluid *f, uint32_t except, const double *a, const double *b) {
+  double at[2];
+  for (uint32_t rest = f->faces & ~except, k = MPS_FLUID_MAX_BOUNDARIES; rest >> k && k < 32; k++)
+    if ((rest >> k & 1) && passes(f, &f->wall[k], a, b, at)) return true;
+  return false;
+}
+
+bool mpsi_fluid_hidden(const mps_fluid *f, int wall, const double *a, const double *b) {
+  return hidden(f, UINT32_C(1) << wall, a, b);
+}
+
+/* Whether the mirror passes through is there: not behind a boundary at an angle to it. */
+static bool mirror_is_there(const mps_fluid *f, int wall, const double *at) {
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (b != wall && w->used && meet_at_an_angle(w, &f->wall[wall]) && ahead(w, at) < -EDGE * f->l0)
+      return false;
+  }
+  return true;
+}
+
+static bool sees(const mps_fluid *f, int64_t i, int64_t j) {
+  const double a[2] = {f->x[0][i], f->x[1][i]}, b[2] = {f->x[0][j], f->x[1][j]};
+  const uint32_t flips = j < f->count ? 0 : f->flips[j - f->count] & (f->limited | f->stood_on);
+  if (!flips) return !hidden(f, 0, a, b);
+  for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    double at[2];
+    if (!(flips >> k & 1)) continue;
+    if (!(ahead(w, a) > 0.0) || !passes(f, w, a, b, at) || !mirror_is_there(f, k, at)) return false;
+    const double d = ahead(w, b),
+                 back[2] = {b[0] - 2.0 * d * w->normal[0], b[1] - 2.0 * d * w->normal[1]};
+    if (hidden(f, flips, a, at) || hidden(f, flips, at, back)) return false;
+  }
+  return true;
+}
+
+/* Whether particle i may have something in its list that it must not see: images are up to re
+ * behind and beyond a wall that ends. */
+static bool near_limit(const mps_fluid *f, int64_t i) {
+  const double x[2] = {f->x[0][i], f->x[1][i]}, reach = 2.0 * f->weight.re;
+  for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (!(f->limited >> k & 1) || !(fabs(ahead(w, x)) < reach)) continue;
+    const double along = mpsi_fluid_along(w, x[0], x[1]);
+    if (!w->of_body || (along > w->from - reach && along < w->to + reach)) return true;
+  }
+  return false;
+}
+
+bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
+  const double reach = CORNER * f->l0;
+  for (uint32_t k = MPS_FLUID_MAX_BOUNDARIES; f->faces >> k && k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    const double dx = f->x[0][i] - w->at[0], dy = f->x[1][i] - w->at[1];
+    if ((f->faces >> k & 1) && w->from == 0.0 && dx * dx + dy * dy < reach * reach) return true;
+  }
+  return false;
+}
+
+/* The way from a to b around the nearest corner of a body, m; INFINITY where there is none. */
+static double way_around(const mps_fluid *f, const double *a, const double *b) {
+  double least = INFINITY;
+  for (uint32_t k = MPS_FLUID_MAX_BOUNDARIES; k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (!(f->faces >> k & 1) || w->from < 0.0) continue; /* that corner stands on a boundary */
+    const double way =
+        hypot(a[0] - w->at[0], a[1] - w->at[1]) + hypot(b[0] - w->at[0], b[1] - w->at[1]);
+    if (way < least && way < f->weight.re && !hidden(f, 0, a, w->at) && !hidden(f, 0, w->at, b))
+      least = way;
+  }
+  return least;
+}
+
+int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32_t *index,
+                             double *r2) {
+  if (!near_limit(f, i)) return count;
+  int64_t kept = 0;
+  const double own[2] = {f->x[0][i], f->x[1][i]};
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t j = index[k];
+    double square = r2[k];
+    if (!sees(f, i, j)) {
+      const double other[2] = {f->x[0][j], f->x[1][j]};
+      const double way = j < f->count && f->faces ? way_around(f, own, other) : INFINITY;
+      if (!(way < f->weight.re)) continue;
+      square = way * way;
+    }
+    index[kept] = index[k], r2[kept] = square;
+    kept++;
+  }
+  return kept;
+}

@@ -1,0 +1,282 @@
+/* walls.c - plane walls, what moves them, and the mirror images (ghosts) of the particles within re
+ * of each. Walls are taken in the order of their numbers, and images are mirrored at later walls
+ * that stand at right angles to the earlier ones, so that corners of 90 degrees fill. At other
+ * corners only the particles themselves are mirrored, and sight.c says who sees which image.
+ *
+ * A ghost moves as the mirror image of its parent seen from the wall (velocity of the step before:
+ * free slip); its reduced pressure is the parent's less
+ * rho (a . N)(distance of the two), N out of the fluid: the one place where the wall's new velocity
+ * enters.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/fluid_private.h"
+#include "signal/signal_internal.h"
+
+#include <string.h>
+
+#define LATE 0.005 /* of a wall's acceleration: see late_share */
+#define LATE_AT_SURFACE 0.22
+#define SQUARE 1e-6 /* cosine of the angle of walls at right angles */
+
+/* ---- motion ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_fluid_look_ahead(mps_fluid *f, const char *function, double dt) {
+  const mpsi_guard outer = mpsi_guard_close(&f->guard, f->context, "a signal of the solver");
+  mps_status status = MPS_OK;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES && status == MPS_OK; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    const mpsi_signal_use use = {f->context, function, "boundary", b, -1};
+    mpsi_signal_motion m;
+    if (!w->used || !w->signal) continue;
+    status = mpsi_signal_evaluate(w->signal, use, f->time + dt, &m);
+    if (status != MPS_OK) break;
+    w->ahead[0] = w->factor * (m.u - w->origin);
+    w->ahead[1] = w->factor * m.v;
+  }
+  f->guard = outer;
+  return status;
+}
+
+/* Walls that nobody moves go on as they are. */
+void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used || w->of_body) continue;
+    for (int64_t k = 0; k < w->nodes; k++) {
+      if (w->signal) {
+        w->next.s[k] = w->ahead[0];
+        w->next.u[k] = (w->next.s[k] - w->now.s[k]) / dt;
+      } else if (!w->given) {
+        w->next.u[k] = w->now.u[k];
+        w->next.s[k] = w->now.s[k] + dt * w->now.u[k];
+      } else if (!w->placed) {
+        w->next.s[k] = w->now.s[k] + 0.5 * dt * (w->now.u[k] + w->next.u[k]);
+      }
+      w->next.a[k] = (w->next.u[k] - w->now.u[k]) / dt;
+      w->mean[k] = (w->next.s[k] - w->now.s[k]) / dt;
+    }
+  }
+  mpsi_fluid_drive_bodies(f, dt);
+}
+
+void mpsi_fluid_end_walls(mps_fluid *f) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used || w->of_body) continue;
+    memcpy(w->now.s, w->next.s, 3 * (size_t)w->nodes * sizeof *w->now.s);
+    w->rate = w->ahead[1];
+    w->given = w->placed = false;
+  }
+  mpsi_fluid_end_bodies(f);
+}
+
+void mpsi_fluid_add_impulses(mps_fluid *f) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    const mpsi_fluid_load *load = &w->load;
+    for (int c = 0; c < 2; c++) w->impulse[c] += load->force[c] * f->dt;
+    w->moment_impulse += load->moment * f->dt;
+    w->work += load->power * f->dt;
+    f->work_boundaries += load->power * f->dt;
+  }
+}
+
+mps_status mps_fluid_set_wall_motion(mps_fluid *f, int32_t number, const double *displacement_of,
+                                     const double *velocity) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_fluid_free(f, __func__);
+  if (status != MPS_OK) return status;
+  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used || !velocity)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "boundary is %d and velocity %s: must be one of the fluid's, and given",
+                     number, velocity ? "given" : "NULL");
+  mpsi_fluid_wall *w = &f->wall[number];
+  if (w->signal)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "boundary %d follows a signal",
+                     number);
+  for (int64_t k = 0; k < w->nodes; k++) {
+    const double s = displacement_of ? displacement_of[k] : 0.0;
+    if (!(fabs(velocity[k]) <= 1e6 && fabs(s) <= 1e12))
+      return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "velocity of node %lld of boundary %d is %g m/s, its displacement %g m: "
+                       "allowed are 1e6 m/s and 1e12 m",
+                       (long long)k, number, velocity[k], s);
+  }
+  for (int64_t k = 0; k < w->nodes; k++) {
+    const int64_t from = w->order[k];
+    if (displacement_of) w->next.s[k] = displacement_of[from];
+    w->next.u[k] = velocity[from];
+  }
+  w->given = true, w->placed = displacement_of != NULL;
+  if (f->stage != MPSI_FLUID_BETWEEN) f->stage = MPSI_FLUID_BEGUN;
+  return MPS_OK;
+}
+
+/* ---- ghosts ---------------------------------------------------------------------------------- */
+
+static bool square(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
+  return fabs(a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1]) < SQUARE;
+}
+
+/* Only images at boundaries at right angles to this wall are mirrored again. */
+static bool mirrors_again(const mps_fluid *f, int wall, uint32_t flips) {
+  for (int b = 0; b < wall; b++)
+    if ((flips >> b & 1) && (f->wall[b].of_body || !square(&f->wall[b], &f->wall[wall])))
+      return false;
+  return true;
+}
+
+static bool beyond_the_ends(const mps_fluid *f, const mpsi_fluid_wall *w, double x, double y) {
+  const double along = mpsi_fluid_along(w, x, y), re = f->weight.re;
+  return along < w->from - re || along > w->to + re;
+}
+
+/* Images of [begin, end) of the cloud at one wall; false where there is no room. A bent wall
+ * mirrors at its local position, and goes on beyond other walls as their mirror image: where an
+ * image's parent is. */
+static bool mirror(mps_fluid *f, int wall, int64_t begin, int64_t end) {
+  const mpsi_fluid_wall *w = &f->wall[wall];
+  for (int64_t i = begin; i < end; i++) {
+    const int64_t ghost = i - f->count, own = ghost < 0 ? i : f->parent[ghost];
+    const double x = f->x[0][i], y = f->x[1][i];
+    const double s = mpsi_fluid_of_wall(w, mpsi_fluid_places(f, w), f->x[0][own], f->x[1][own]);
+    const double d = (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] - s;
+    if (d >= f->weight.re || d < 0.0) continue;
+    if (ghost >= 0 && !mirrors_again(f, wall, f->flips[ghost])) continue;
+    const double to[2] = {x - 2.0 * d * w->normal[0], y - 2.0 * d * w->normal[1]};
+    if (w->of_body && beyond_the_ends(f, w, x, y)) continue;
+    if (f->count + f->ghosts == f->cloud_capacity) return false;
+    const int64_t g = f->ghosts++;
+    f->x[0][f->count + g] = to[0], f->x[1][f->count + g] = to[1];
+    f->parent[g] = (int32_t)own;
+    f->flips[g] = (ghost < 0 ? 0u : f->flips[ghost]) | UINT32_C(1) << wall;
+  }
+  return true;
+}
+
+/* For each chunk of particles the walls that some are within re of: bits, in sums. */
+static void find_walls(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  uint32_t near = 0;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    const double *s = mpsi_fluid_places(f, w);
+    bool any = false;
+    for (int64_t i = begin; i < end && !any; i++)
+      any = mpsi_fluid_distance(w, s, f->x[0][i], f->x[1][i]) < f->weight.re;
+    near |= (uint32_t)any << b;
+  }
+  f->system.sums[2 * chunk] = (double)near;
+}
+
+/* Images of the particles, then of the images so far. */
+static bool mirror_all(mps_fluid *f, int wall) {
+  mpsi_fluid_wall *w = &f->wall[wall];
+  const int64_t all = f->count + f->ghosts;
+  w->first_image = f->ghosts;
+  for (int64_t begin = 0; begin < f->count; begin += MPSI_FLUID_CHUNK) {
+    const int64_t end = begin + MPSI_FLUID_CHUNK < f->count ? begin + MPSI_FLUID_CHUNK : f->count;
+    const uint32_t near = (uint32_t)f->system.sums[2 * (begin / MPSI_FLUID_CHUNK)];
+    if ((near >> wall & 1) && !mirror(f, wall, begin, end)) return false;
+  }
+  w->images = f->ghosts - w->first_image;
+  return mirror(f, wall, f->count, all);
+}
+
+/* Arrays over the cloud; keeps the particles' part. */
+bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
+  enum { COLUMNS = 6 };
+  double **column[COLUMNS] = {&f->x[0], &f->x[1], &f->u[0], &f->u[1], &f->q, &f->system.x};
+  const int64_t padded = (capacity + 7) / 8 * 8 + 24;
+  double *block = mpsi_alloc(f->context, padded * (COLUMNS + 2), sizeof *block);
+  if (!block) return false;
+  for (int k = 0; k < COLUMNS; k++) {
+    if (f->cloud) memcpy(block + k * padded, *column[k], (size_t)f->count * sizeof *block);
+    *column[k] = block + k * padded;
+  }
+  f->offset = block + COLUMNS * padded;
+  f->parent = (int32_t *)(block + (COLUMNS + 1) * padded);
+  f->flips = (uint32_t *)(f->parent + padded);
+  mpsi_free(f->context, f->cloud);
+  f->cloud = block;
+  f->cloud_capacity = capacity;
+  return true;
+}
+
+mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
+  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, find_walls);
+  f->travel = 0.0;
+  for (bool room = false; !room;) {
+    f->ghosts = 0;
+    f->bent = f->sticky = 0;
+    mpsi_fluid_find_limits(f);
+    room = true;
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++)
+      f->bent |= (uint32_t)(f->wall[b].used && !f->wall[b].of_body && f->wall[b].nodes > 1) << b,
+          f->sticky |= (uint32_t)(f->wall[b].used && f->wall[b].kind == MPS_FLUID_BOUNDARY_NO_SLIP)
+                       << b;
+    for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
+      if (f->wall[b].used) room = mirror_all(f, b);
+    const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 8 + 256;
+    if (!room && !mpsi_fluid_grow_cloud(f, capacity))
+      return mpsi_fail_memory(f->context, function, (size_t)capacity * 12 * sizeof(double));
+  }
+  f->report.ghosts = f->ghosts;
+  return MPS_OK;
+}
+
+/* A load acts on an image as on its parent: so it presses the water against the wall. */
+static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t g = begin; g < end; g++) {
+    const int64_t j = f->count + g, own = f->parent[g];
+    double v[2], kick[2] = {0.0, 0.0};
+    for (int c = 0; c < 2; c++) {
+      if (f->driven) kick[c] = f->dt * f->push[c][own];
+      v[c] = f->u[c][own] - kick[c];
+    }
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+      if (!(f->flips[g] >> b & 1)) continue;
+      const mpsi_fluid_wall *w = &f->wall[b];
+      const double u = mpsi_fluid_of_wall(w, w->now.u, f->x[0][own], f->x[1][own]);
+      const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
+      v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
+    }
+    for (int c = 0; c < 2; c++) f->u[c][j] = v[c] + kick[c];
+  }
+}
+
+void mpsi_fluid_move_ghosts(mps_fluid *f) {
+  mpsi_fluid_for_all(f, f->ghosts, MPSI_FLUID_CHUNK, move_images);
+}
+
+/* Share of a wall's acceleration that the images of particle i take a step late, as velocity. The
+ * matrix is not quite the divergence of the gradient that moves the particles (move.c), so a step
+ * leaves divergence that the next one takes away: a force in phase with the wall's velocity. Where
+ * the first answer is too high it drives the wall, as where a wall crosses the surface (.3 rho
+ * l0^2 of mass, q is r ln r there). With these shares the first answer is too low instead, at every
+ * frequency and shape of the wall, and the force damps: by some .005 sin(omega dt) m omega. */
+static double late_share(const mps_fluid *f, int64_t i) {
+  return f->state[i] == MPSI_FLUID_SURFACE ? LATE_AT_SURFACE : LATE;
+}
+
+static void press_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t g = begin; g < end; g++) {
+    const int64_t j = f->count + g, own = f->parent[g];
+    const double apart[2] = {f->x[0][j] - f->x[0][own], f->x[1][j] - f->x[1][own]};
+    const double rho = (1.0 - late_share(f, own)) * f->def.density;
+    f->offset[g] =
+        f->push[0] ? rho * (f->push[0][own] * apart[0] + f->push[1][own] * apart[1]) : 0.0;
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+      if (!(f->flips[g] >> b & 1)) continue;
+      const mpsi_fluid_wall *w = &f->wall[b];
+      const double a = mpsi_fluid_of_wall(w, w->next.a, f->x[0][own], f->x[1][own]);
+      f->offset[g] -= rho * a * (apart[0] * w->normal[0] + apart[1] * w->normal[1]);
+    }
+  }
+}
+
+void mpsi_fluid_press_ghosts(mps_fluid *f) {
+  mpsi_fluid_for_all(f, f->ghosts, MPSI_FLUID_CHUNK, press_images);
+}

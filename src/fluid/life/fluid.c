@@ -1,0 +1,314 @@
+/* fluid.c - the fluid solver as an object: definition, creation, boundaries, questions.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/pressure/coarse.h"
+#include "fluid/base/loops.h"
+#include "fluid/ranks/share.h"
+
+#include <mps/body.h>
+
+#include <string.h>
+
+static const mps_fluid_def defaults = {
+    .struct_size = sizeof(mps_fluid_def),
+    .iterations = 2000,
+    .density = 1000.0,
+    .gravity = {0.0, -9.81, 0.0},
+    .level = NAN,
+    .measure = 1.0,
+    .dt = NAN,
+    .radius_ratio = 3.1,
+    .tolerance = 1e-5,
+};
+
+mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_fluid_def, def, size, &defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static bool within(double value, double low, double high) { return value >= low && value <= high; }
+
+static mps_status check_def(mps_context *context, const mps_fluid_def *d, double l0) {
+  const double g = hypot(d->gravity[0], d->gravity[1]);
+  const double longest = g > 0.0 ? 0.5 * sqrt(l0 / g) : INFINITY;
+  const struct {
+    const char *name, *allowed;
+    double value;
+    bool good;
+  } checks[] = {
+      {"iterations", ">= 1", d->iterations, d->iterations >= 1},
+      {"density", "in [1e-3, 1e6] kg/m3", d->density, within(d->density, 1e-3, 1e6)},
+      {"viscosity", "in [0, 1e6] Pa s", d->viscosity, within(d->viscosity, 0.0, 1e6)},
+      {"|gravity|", "at most 1e6 m/s2", g, g <= 1e6},
+      {"gravity[2]", "0: the fluid is in the plane", d->gravity[2], d->gravity[2] == 0.0},
+      {"level", "finite or NaN", d->level, isnan(d->level) || isfinite(d->level)},
+      {"measure", "in [1e-9, 1e9] m", d->measure, within(d->measure, 1e-9, 1e9)},
+      {"dt", "NaN, or > 0 and at most half of (l0/g)^1/2", d->dt,
+       isnan(d->dt) || (d->dt > 0.0 && d->dt <= longest)},
+      {"radius_ratio", "in [2.6, 4]", d->radius_ratio, within(d->radius_ratio, 2.6, 4.0)},
+      {"tolerance", "in [1e-14, 1e-2]", d->tolerance, within(d->tolerance, 1e-14, 1e-2)},
+  };
+  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
+    if (!checks[k].good)
+      return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
+                       "%s of the fluid is %g, allowed is %s", checks[k].name, checks[k].value,
+                       checks[k].allowed);
+  return MPS_OK;
+}
+
+/* The radius is that of the kernel, where there is one. */
+static mps_status read_kernel(mps_context *context, mps_fluid_def *d, double l0) {
+  if (!d->kernel) return MPS_OK;
+  if (mps_kernel_get_kind(d->kernel) != MPS_KERNEL_SMOOTH)
+    return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
+                     "kernel of the fluid is of kind %d, allowed is 3 (MPS_KERNEL_SMOOTH)",
+                     mps_kernel_get_kind(d->kernel));
+  d->radius_ratio = mps_kernel_radius(d->kernel) / l0;
+  if (!within(d->radius_ratio, 2.6, 4.0))
+    return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
+                     "kernel of the fluid has a radius of %g m, must be 2.6 to 4 spacings of %g m",
+                     mps_kernel_radius(d->kernel), l0);
+  return MPS_OK;
+}
+
+static mps_status check_particles(mps_context *context, mps_particles *particles) {
+  static const char *const function = "mps_fluid_create";
+  const int64_t n = mps_particles_count(particles);
+  if (mpsi_particles_context(particles) != context)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the particle set was made from another context");
+  if (mps_particles_dim(particles) != 2)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "the particle set has dim %d: the fluid is in the plane, dim 2",
+                     mps_particles_dim(particles));
+  if (n < 1 || n > MPSI_FLUID_MOST_PARTICLES)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the particle set has %lld particles, allowed are 1 to %d", (long long)n,
+                     MPSI_FLUID_MOST_PARTICLES);
+  static const char *const names[] = {"position", "velocity"};
+  for (int f = 0; f < 2; f++)
+    for (int c = 0; c < 2; c++) {
+      const double *value = mpsi_particles_column(particles, names[f], c);
+      for (int64_t i = 0; value && i < n; i++)
+        if (!(fabs(value[i]) <= 1e12))
+          return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                           "%s of particle %lld is %g, must be finite and at most 1e12", names[f],
+                           (long long)mpsi_particles_integers(particles, "id")[i], value[i]);
+    }
+  return MPS_OK;
+}
+
+/* ---- creation -------------------------------------------------------------------------------- */
+
+static void set_gravity(mps_fluid *f) {
+  const double *gravity = f->def.gravity;
+  f->g = hypot(gravity[0], gravity[1]);
+  f->up[0] = f->g > 0.0 ? -gravity[0] / f->g : 0.0;
+  f->up[1] = f->g > 0.0 ? -gravity[1] / f->g : 1.0;
+  f->level = f->def.level;
+  if (!isnan(f->level)) return;
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  f->level = -INFINITY;
+  for (int64_t i = 0; i < f->count; i++)
+    f->level = fmax(f->level, f->up[0] * x[i] + f->up[1] * y[i] + 0.5 * f->l0);
+}
+
+static mps_status add_fields(mps_particles *particles) {
+  static const char *const names[] = {"velocity",         "pressure",
+                                      "reduced_pressure", "reduced_pressure_old",
+                                      "free_surface",     "surface_rise"};
+  mps_status status = MPS_OK;
+  for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
+    status = mps_particles_add_field(particles, names[k], 0);
+  return status;
+}
+
+static void release(mps_fluid *f) {
+  mps_context *context = f->context;
+  mpsi_fluid_drop_solver(f);
+  mpsi_fluid_drop_loads(f);
+  mpsi_fluid_share_destroy(f);
+  mpsi_fluid_coarse_drop(f);
+  void *const parts[] = {f->slab,
+                         f->local,
+                         f->state,
+                         f->cloud,
+                         f->index_room.item,
+                         f->w_room.item,
+                         f->fit_room.item,
+                         f->lower_col_room.item,
+                         f->lower_room.item,
+                         f->near_wall_room.item};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) mpsi_fluid_drop_body(f, &f->body[b]);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
+  mpsi_state_forget(&f->identity);
+  mps_domain_destroy(&f->def.domain);
+  mps_kernel_destroy(&f->def.kernel);
+  mpsi_free(context, f);
+}
+
+static mps_status start(mps_fluid *f, const char *function) {
+  f->count = mps_particles_count(f->particles);
+  f->l0 = mps_particles_spacing(f->particles);
+  f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
+  f->most_near = 31, f->most_lower = 15;
+  f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
+  set_gravity(f);
+  mps_status status = mpsi_fluid_share_create(f, function);
+  if (status == MPS_OK && !(mpsi_fluid_coarse_create(f) && mpsi_fluid_reserve(f, f->count)))
+    status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
+  status = mpsi_fluid_settle(f, function, status);
+  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
+  if (status != MPS_OK) return status;
+  f->unknown = 1;
+  mpsi_fluid_find_speed(f);
+  double kinetic;
+  f->energy = mpsi_fluid_energy(f, &kinetic);
+  return MPS_OK;
+}
+
+/* Do all ranks make the same fluid? */
+static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, mps_status status,
+                                 mps_particles *particles) {
+  mpsi_given given;
+  if (!mpsi_domain_many(d->domain)) return status;
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, d, iterations);
+  MPSI_GIVE(&given, d, density);
+  MPSI_GIVE(&given, d, viscosity);
+  MPSI_GIVE_VECTOR(&given, d, gravity, 2);
+  MPSI_GIVE(&given, d, level);
+  MPSI_GIVE(&given, d, measure);
+  MPSI_GIVE(&given, d, dt);
+  MPSI_GIVE(&given, d, radius_ratio);
+  MPSI_GIVE(&given, d, tolerance);
+  status = mpsi_domain_settle_given(d->domain, function, status, &given);
+  return status == MPS_OK ? mpsi_domain_settle_particles(d->domain, function, status, particles)
+                          : status;
+}
+
+mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
+                            const mps_fluid_def *user_def, mps_fluid **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!particles || !out)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     particles ? "out" : "particles");
+  *out = NULL;
+  mps_fluid_def def = defaults;
+  mps_status status = MPS_OK;
+  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_fluid_def, user_def, &def);
+  if (status == MPS_OK) status = check_particles(context, particles);
+  const double l0 = mps_particles_spacing(particles);
+  if (status == MPS_OK) status = read_kernel(context, &def, l0);
+  if (status == MPS_OK) status = check_def(context, &def, l0);
+  if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
+  mps_fluid *f = NULL;
+  if (status == MPS_OK && !(f = mpsi_alloc(context, 1, sizeof *f)))
+    status = mpsi_fail_memory(context, __func__, sizeof *f);
+  status = agree_on_fluid(&def, __func__, status, particles);
+  if (status != MPS_OK) {
+    mpsi_free(context, f);
+    return status;
+  }
+  const int32_t fields = mps_particles_field_count(particles);
+  f->context = context;
+  f->particles = particles;
+  f->def = def;
+  f->def.domain = mpsi_domain_retain(def.domain);
+  f->def.kernel = def.kernel ? mpsi_kernel_retain(def.kernel) : NULL;
+  status = mpsi_fluid_settle(f, __func__, mpsi_as(context, __func__, add_fields(particles)));
+  if (status == MPS_OK) status = start(f, __func__);
+  if (status != MPS_OK) {
+    mpsi_particles_drop_fields(particles, fields);
+    release(f);
+    return status;
+  }
+  mpsi_context_retain(context);
+  f->holder = (mpsi_holder){.name = "a fluid solver (mps_fluid)",
+                            .self = f,
+                            .kind = MPSI_USE_MOVE,
+                            .guard = &f->guard,
+                            .commit = mpsi_fluid_commit,
+                            .insert = mpsi_fluid_insert,
+                            .remove = mpsi_fluid_remove,
+                            .renew = mpsi_fluid_renew};
+  (void)mpsi_particles_hold(particles, __func__, &f->holder); /* checked above */
+  *out = f;
+  return MPS_OK;
+}
+
+void mps_fluid_destroy(mps_fluid **fluid) {
+  if (!fluid || !*fluid) return;
+  mps_fluid *f = *fluid;
+  if (mpsi_fluid_free(f, __func__) != MPS_OK) return;
+  mps_context *context = f->context;
+  mps_particles *particles = f->particles;
+  *fluid = NULL;
+  mpsi_particles_release(particles, &f->holder); /* a member of f */
+  release(f);
+  mpsi_context_release(context);
+}
+
+/* ---- questions ------------------------------------------------------------------------------- */
+
+mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(f->def.domain, __func__, mpsi_fluid_check_dt(f, __func__, dt),
+                                   "dt", dt);
+  if (status == MPS_OK) f->def.dt = dt;
+  return status;
+}
+
+mps_status mps_fluid_get_def_sized(const mps_fluid *f, mps_fluid_def *out, size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_fluid_def def = f->def;
+  def.level = f->level;
+  return mpsi_def_write(f->context, "mps_fluid_get_def", out, size, &def, sizeof def);
+}
+
+mps_particles *mps_fluid_particles(const mps_fluid *f) { return f ? f->particles : NULL; }
+
+mps_context *mps_fluid_context(const mps_fluid *f) { return f ? f->context : NULL; }
+
+mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const double volume = f->l0 * f->l0 * f->def.measure, mass = f->def.density * volume;
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  const double *u = mpsi_particles_column(f->particles, "velocity", 0);
+  const double *v = mpsi_particles_column(f->particles, "velocity", 1);
+  mps_totals t = {.volume = volume * (double)f->count, .mass = mass * (double)f->count};
+  for (int64_t i = 0; i < f->count; i++) {
+    t.linear[0] += mass * u[i], t.linear[1] += mass * v[i];
+    t.angular[2] += mass * (x[i] * v[i] - y[i] * u[i]);
+  }
+  const double energy = mpsi_fluid_energy(f, &t.kinetic);
+  t.strain = energy - t.kinetic;
+  t.work_boundaries = f->work_boundaries;
+  t.work_loads = f->work_loads;
+  t.dissipated = t.scheme = f->work_boundaries + f->work_loads - (energy - f->energy);
+  return mpsi_out_write(f->context, "mps_fluid_get_totals", out, size, &t, sizeof t);
+}
+
+static int64_t bytes_of(const mps_fluid *f) {
+  const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
+  return 8 * (13 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
+         f->cloud_capacity * (8 * 8) + f->index_room.capacity * 4 + f->w_room.capacity * 4 +
+         f->push_room.capacity * 8 + f->lower_col_room.capacity * 2 + f->lower_room.capacity * 4 +
+         mpsi_fluid_coarse_bytes(f);
+}
+
+mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_fluid_report report = f->report;
+  report.bytes = bytes_of(f);
+  return mpsi_out_write(f->context, "mps_fluid_get_report", out, size, &report, sizeof report);
+}

@@ -1,0 +1,179 @@
+/* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. What follows
+ * from the particles' places, their neighbours and the surface, is found again when it is asked
+ * for. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/ranks/share.h"
+
+#include "core/state/state.h"
+#include "io/checkpoint.h"
+
+static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
+  mpsi_state_agree_integer(s, "kind", w->motion ? w->kind : -1);
+  if (!w->motion) return;
+  for (int c = 0; c < 2 && !w->of_body; c++) {
+    mpsi_state_agree_number(s, c ? "point_y" : "point_x", w->at[c]);
+    mpsi_state_agree_number(s, c ? "normal_y" : "normal_x", w->normal[c]);
+  }
+  mpsi_state_f64(s, "origin", &w->origin, 1);
+  mpsi_state_f64(s, "rate", &w->rate, 1);
+  mpsi_state_agree_integer(s, "nodes", w->nodes);
+  mpsi_state_f64(s, "displacement", w->now.s, w->nodes);
+  mpsi_state_f64(s, "velocity", w->now.u, w->nodes);
+  mpsi_state_f64(s, "acceleration", w->now.a, w->nodes);
+  mpsi_state_f64(s, "force", w->load.force, 2);
+  mpsi_state_f64(s, "moment", &w->load.moment, 1);
+  mpsi_state_f64(s, "impulse", w->impulse, 2);
+  mpsi_state_f64(s, "moment_impulse", &w->moment_impulse, 1);
+  mpsi_state_f64(s, "work", &w->work, 1);
+  mpsi_state_i64(s, "wetted", &w->load.wetted, 1);
+  mpsi_state_i64(s, "removed", &w->removed, 1);
+  mpsi_state_f64(s, "removed_mass", &w->removed_mass, 1);
+}
+
+static void list_state(mpsi_state *s, void *solver) {
+  mps_fluid *f = solver;
+  mpsi_state_agree_number(s, "density", f->def.density);
+  mpsi_state_agree_number(s, "radius_ratio", f->def.radius_ratio);
+  mpsi_state_agree_number(s, "level", f->level);
+  mpsi_state_agree_number(s, "gamma", f->classical.gamma);
+  mpsi_state_f64(s, "time", &f->time, 1);
+  mpsi_state_i64(s, "steps", &f->steps, 1);
+  mpsi_state_f64(s, "last_dt", &f->last_dt, 1);
+  mpsi_state_f64(s, "load_time", &f->load_time, 1);
+  mpsi_state_f64(s, "speed", &f->speed, 1);
+  mpsi_state_f64(s, "energy", &f->energy, 1);
+  mpsi_state_f64(s, "work_boundaries", &f->work_boundaries, 1);
+  mpsi_state_f64(s, "work_loads", &f->work_loads, 1);
+  mpsi_state_i64(s, "unknown", &f->unknown, 1);
+  mpsi_state_i64(s, "ghosts", &f->report.ghosts, 1);
+  mpsi_state_i64(s, "pairs", &f->report.pairs, 1);
+  mpsi_state_i64(s, "surface", &f->report.surface, 1);
+  mpsi_state_i64(s, "apart", &f->report.apart, 1);
+  mpsi_state_i64(s, "last_iterations", &f->report.iterations, 1);
+  mpsi_state_i64(s, "iterations", &f->report.all_iterations, 1);
+  mpsi_state_i64(s, "collisions", &f->report.collisions, 1);
+  mpsi_state_i64(s, "limited", &f->report.limited, 1);
+  mpsi_state_i64(s, "pushed", &f->report.pushed, 1);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    mpsi_state_enter(s, "boundary%d", b);
+    list_wall(s, &f->wall[b]);
+    mpsi_state_leave(s);
+  }
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_pose *pose = &f->body[b].pose;
+    mpsi_state_enter(s, "body%d", b);
+    mpsi_state_agree_integer(s, "faces", f->body[b].faces);
+    mpsi_state_f64(s, "position", pose->x, 2);
+    mpsi_state_f64(s, "orientation", pose->R, 4);
+    mpsi_state_f64(s, "velocity", pose->v, 2);
+    mpsi_state_f64(s, "spin", &pose->spin, 1);
+    mpsi_state_agree_integer(s, "floats", f->body[b].floats);
+    if (!f->body[b].body) {
+      mpsi_state_leave(s);
+      continue;
+    }
+    mpsi_body_list_source(s, f->body[b].body, &f->body[b].source);
+    if (!f->body[b].floats) {
+      mpsi_state_enter(s, "felt");
+      mpsi_body_list_account(s, f->body[b].body);
+      mpsi_state_leave(s);
+    } else {
+      mpsi_state_f64(s, "rate", f->body[b].rate, 3);
+      mpsi_state_f64(s, "mass", f->body[b].mass, 9);
+      mpsi_state_enter(s, "afloat"); /* it has a position and a velocity too */
+      mpsi_body_list_state(s, f->body[b].body);
+      mpsi_state_leave(s);
+    }
+    mpsi_state_leave(s);
+  }
+}
+
+/* Of a file: a step relies on places that are numbers. */
+static bool fits(void *solver, mps_snapshot *values, const char **what) {
+  (void)solver;
+  const char *const names[] = {"position", "velocity", "reduced_pressure", "reduced_pressure_old"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    const mpsi_value *value = mpsi_values_find(&values->fields, names[k]);
+    *what = "a particle's position, velocity or pressure is missing or not finite";
+    if (!value || value->type != MPSI_STATE_F64 || value->rows < 1) return false;
+    const double *x = value->data;
+    for (int64_t i = 0; i < value->rows * value->columns; i++)
+      if (!(fabs(x[i]) <= 1e150)) return false;
+  }
+  return true;
+}
+
+static bool make_room(void *solver, int64_t particles) {
+  return particles <= MPSI_FLUID_MOST_PARTICLES && mpsi_fluid_reserve(solver, particles);
+}
+
+static void after(void *solver) {
+  mps_fluid *f = solver;
+  f->stale = true;
+  f->count = mps_particles_count(f->particles);
+  f->ghosts = 0; /* of other particles: found again */
+  mpsi_fluid_place_bodies(f);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
+}
+
+static mps_status settle(void *fluid, const char *function, mps_status status) {
+  return mpsi_fluid_settle(fluid, function, status);
+}
+
+static mps_status have_read(void *fluid, const char *function, mps_status status,
+                            mps_snapshot *values) {
+  (void)values; /* every rank keeps all of them */
+  return settle(fluid, function, status);
+}
+
+static mpsi_state_of state_of(mps_fluid *f) {
+  return (mpsi_state_of){.solver = f,
+                         .name = "fluid",
+                         .context = f->context,
+                         .particles = f->particles,
+                         .identity = &f->identity,
+                         .list = list_state,
+                         .fits = fits,
+                         .make_room = make_room,
+                         .settle = settle,
+                         .take_share = have_read,
+                         .after = after,
+                         .time = f->time,
+                         .dt = f->dt,
+                         .steps = f->steps};
+}
+
+/* What a solver of the caller keeps from step to step belongs to no state. */
+static mps_status forget(mps_fluid *f, const char *function, mps_status status) {
+  return status == MPS_OK ? mpsi_fluid_forget(f, function) : status;
+}
+
+mps_status mps_fluid_snapshot(mps_fluid *f, mps_snapshot **snapshot) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  const mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
+  return settle(f, __func__,
+                status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
+}
+
+mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  const mps_status status = forget(f, __func__, mpsi_fluid_ready(f, __func__));
+  return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
+}
+
+mps_status mps_fluid_save(mps_fluid *f, const char *path, const mps_checkpoint *info) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
+  if (status == MPS_OK && mps_domain_rank(f->def.domain) <= 0) /* all ranks have the same */
+    status = mpsi_checkpoint_save(&of, __func__, path, info);
+  return settle(f, __func__, status);
+}
+
+mps_status mps_fluid_restore(mps_fluid *f, const char *path, mps_checkpoint *info) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  const mps_status status = forget(f, __func__, mpsi_fluid_ready(f, __func__));
+  return status == MPS_OK ? mpsi_checkpoint_restore(&of, __func__, path, info) : status;
+}

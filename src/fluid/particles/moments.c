@@ -1,0 +1,227 @@
+/* moments.c - what each particle's neighbours, ghosts included, say of its surroundings, with
+ * w = (1-z)^4 (1+4z), z = r/re:
+ *
+ *   n = sum w,  m = sum w dx,  S = sum w r^2/4,  M = sum w dx dx^T/r^2,
+ *   G = grad u = (sum w du dx^T/r^2) M^-1.
+ *
+ * A particle is at the free surface where |m| > .15 n0 l0 and nobody is within 2.1 l0 inside the
+ * cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010), but not
+ * where e points into an acute corner between a body and a boundary (sight.c). The surface then
+ * lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half a spacing
+ * outside. A particle with n < .12 n0 is apart from the rest and falls freely.
+ *
+ * Particles of the second row lack neighbours beyond the surface too (|m| = .06 n0 l0 in a
+ * lattice). Without a surface term their row of the pressure equation is not exact for a linear q,
+ * and water that a wall accelerates answers first as if its surface lay .2 l0 higher. Their
+ * surface point is the mean of those of their neighbours at the surface, with c = |m|/h too.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/loops.h"
+#include "fluid/ranks/share.h"
+
+#define APART 0.12     /* n/n0 */
+#define FEW 0.72       /* n/n0 */
+#define LEVEL 0.35     /* n/n0: below, spray, which tells no level */
+#define ONE_SIDED 0.15 /* |m|/(n0 l0) */
+#define CONE_REACH 2.1 /* l0 */
+#define CONE 0.70710678118654752
+#define LEAST_RATIO 0.1 /* of the eigenvalues of M */
+#define ZONE 1.6        /* l0 */
+#define LEAST_DEPTH 0.5 /* l0, of the second row below the surface */
+
+static double invert(const double *M, double *inverse) {
+  const double det = M[0] * M[2] - M[1] * M[1];
+  inverse[0] = M[2] / det, inverse[1] = -M[1] / det, inverse[2] = M[0] / det;
+  return det;
+}
+
+/* Adds to the diagonal of M where its smaller eigenvalue is below a tenth of the larger one. */
+static void regularise(double *M) {
+  const double mean = 0.5 * (M[0] + M[2]);
+  const double half = sqrt(0.25 * (M[0] - M[2]) * (M[0] - M[2]) + M[1] * M[1]);
+  const double largest = mean + half, smallest = mean - half;
+  const double add = LEAST_RATIO * largest - smallest;
+  if (add > 0.0) M[0] += add, M[2] += add;
+}
+
+/* True where nobody stands in the cone about e. */
+static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
+  const double reach2 = CONE_REACH * CONE_REACH * f->l0 * f->l0;
+  const int32_t *index = f->index + f->start[i];
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const double dx = f->x[0][index[k]] - f->x[0][i], dy = f->x[1][index[k]] - f->x[1][i];
+    const double r2 = dx * dx + dy * dy, along = dx * e[0] + dy * e[1];
+    if (r2 < reach2 && along > 0.0 && along * along > CONE * CONE * r2) return false;
+  }
+  return true;
+}
+
+static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m, double length) {
+  if (!(length > 0.0)) return false;
+  const double e[2] = {-m[0] / length, -m[1] / length};
+  const bool few = n < FEW * f->weight.n0;
+  if (!few && !(length > ONE_SIDED * f->weight.n0 * f->l0)) return false;
+  const bool wedge = f->company[i] & MPSI_FLUID_NEAR_WEDGE;
+  return (few || sees_out(f, i, e)) && !(wedge && mpsi_fluid_near_wedge(f, i, e));
+}
+
+/* Where the surface lies, and M with it. */
+static void place_surface(const mps_fluid *f, int64_t i, const double *M, double length,
+                          mpsi_fluid_local *local) {
+  const double l0 = f->l0, e[2] = {-local->m[0] / length, -local->m[1] / length};
+  const double h = l0 * (0.5 + (local->n - f->weight.half) / f->weight.slope);
+  local->h = fmin(fmax(h, 0.1 * l0), 2.0 * l0);
+  local->c = length / local->h;
+  local->qs = mpsi_fluid_head(f, f->x[0][i] + local->h * e[0], f->x[1][i] + local->h * e[1]);
+  if (f->over) local->qs += f->over[i];
+  const double c = local->c;
+  const double with[3] = {M[0] + c * e[0] * e[0], M[1] + c * e[0] * e[1], M[2] + c * e[1] * e[1]};
+  invert(with, local->with_surface);
+}
+
+/* Says to all within 1.6 l0 of a surface particle, own images included, that they may be in its
+ * zone. At a bent wall two particles may be at different distances from each other's images. */
+static void tell_zone(mps_fluid *f, int64_t i) {
+  const double reach2 = 1.2 * ZONE * ZONE * f->l0 * f->l0;
+  const int32_t *index = f->index + f->start[i];
+  atomic_store_explicit(&f->zone[i], 1, memory_order_relaxed);
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t j = index[k], own = j < f->count ? j : f->parent[j - f->count];
+    const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+    if (dx * dx + dy * dy < reach2) atomic_store_explicit(&f->zone[own], 1, memory_order_relaxed);
+  }
+}
+
+static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  const double n0 = f->weight.n0;
+  (void)chunk;
+  for (int64_t i = begin; i < end; i++) {
+    mpsi_fluid_sums s;
+    f->loops->add_up(f, i, &s);
+    mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = 0.25 * s.r2};
+    f->state[i] = MPSI_FLUID_APART;
+    double M[3] = {s.M[0], s.M[1], s.M[2]};
+    if (f->near[i] >= 2 && s.n >= APART * n0) {
+      regularise(M);
+      const double *I = local.inverse;
+      invert(M, local.inverse);
+      for (int c = 0; c < 2; c++) {
+        local.gradient[2 * c] = s.G[2 * c] * I[0] + s.G[2 * c + 1] * I[1];
+        local.gradient[2 * c + 1] = s.G[2 * c] * I[1] + s.G[2 * c + 1] * I[2];
+        local.rest[c] =
+            (s.du[c] - local.gradient[2 * c] * s.m[0] - local.gradient[2 * c + 1] * s.m[1]) / s.n;
+        local.shift[c] = s.shift[c] / n0;
+        local.with_surface[c] = I[c];
+      }
+      local.with_surface[2] = I[2];
+      const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
+      f->state[i] = at_surface(f, i, s.n, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
+      if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
+    }
+    f->local[i] = local;
+    if (f->state[i] != MPSI_FLUID_INSIDE) tell_zone(f, i);
+  }
+}
+
+/* The vector m of a particle's image. */
+static void mirrored_moment(const mps_fluid *f, int64_t ghost, double *m) {
+  const mpsi_fluid_local *local = &f->local[f->parent[ghost]];
+  m[0] = local->m[0], m[1] = local->m[1];
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    if (!(f->flips[ghost] >> b & 1)) continue;
+    const double *N = f->wall[b].normal, across = m[0] * N[0] + m[1] * N[1];
+    m[0] -= 2.0 * across * N[0], m[1] -= 2.0 * across * N[1];
+  }
+}
+
+/* Who is near the surface, and the surface's mean direction there. */
+static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  const double reach2 = ZONE * ZONE * f->l0 * f->l0;
+  for (int64_t i = begin; i < end; i++) {
+    if (!f->zone[i]) continue;
+    const int32_t *index = f->index + f->start[i];
+    const float *w = f->w + f->start[i];
+    bool near = f->state[i] != MPSI_FLUID_INSIDE;
+    double sum[2] = {near ? f->local[i].m[0] : 0.0, near ? f->local[i].m[1] : 0.0};
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int64_t j = index[k], ghost = j - f->count;
+      const int64_t own = ghost < 0 ? j : f->parent[ghost];
+      if (f->state[own] != MPSI_FLUID_SURFACE) continue;
+      const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+      if (dx * dx + dy * dy >= reach2) continue;
+      double m[2] = {f->local[own].m[0], f->local[own].m[1]};
+      if (ghost >= 0) mirrored_moment(f, ghost, m);
+      sum[0] += w[k] * m[0], sum[1] += w[k] * m[1];
+      near = true;
+    }
+    const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1]) + 1e-300;
+    f->zone[i] = near;
+    for (int c = 0; c < 2; c++) f->zone_normal[c][i] = -sum[c] / length;
+  }
+}
+
+/* Distance (m) along e to the mean surface point of i's neighbours at the surface; 0: none. *over
+ * receives their mean pressure, Pa. Images are left out: on average they add nothing. */
+static double depth_below(const mps_fluid *f, int64_t i, const double *e, double *over) {
+  const int32_t *index = f->index + f->start[i];
+  const float *w = f->w + f->start[i];
+  double sum = 0.0, depth = 0.0;
+  *over = 0.0;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t j = index[k];
+    if (j >= f->count || f->state[j] != MPSI_FLUID_SURFACE) continue;
+    const double *m = f->local[j].m, size = f->local[j].h / sqrt(m[0] * m[0] + m[1] * m[1]);
+    const double to[2] = {f->x[0][j] - size * m[0] - f->x[0][i],
+                          f->x[1][j] - size * m[1] - f->x[1][i]};
+    sum += w[k], depth += w[k] * (to[0] * e[0] + to[1] * e[1]);
+    if (f->over) *over += w[k] * f->over[j];
+  }
+  if (!(sum > 0.0)) return 0.0;
+  *over /= sum;
+  return depth / sum;
+}
+
+/* Surface terms of the second row. */
+static void find_depths(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t i = begin; i < end; i++) {
+    mpsi_fluid_local *local = &f->local[i];
+    if (!f->zone[i] || f->state[i] != MPSI_FLUID_INSIDE) continue;
+    if (f->company[i] & MPSI_FLUID_NEAR_WEDGE) continue; /* m is that of missing images */
+    const double length = sqrt(local->m[0] * local->m[0] + local->m[1] * local->m[1]);
+    if (!(length > 0.0)) continue;
+    const double e[2] = {-local->m[0] / length, -local->m[1] / length};
+    double over;
+    const double h = depth_below(f, i, e, &over);
+    if (!(h > LEAST_DEPTH * f->l0 && h < f->weight.re)) continue;
+    local->h = h, local->c = length / h;
+    local->qs = mpsi_fluid_head(f, f->x[0][i] + h * e[0], f->x[1][i] + h * e[1]) + over;
+  }
+}
+
+void mpsi_fluid_count(mps_fluid *f) {
+  int64_t surface = 0, apart = 0, pairs = 0;
+  for (int64_t i = 0; i < f->count; i++) {
+    surface += f->state[i] == MPSI_FLUID_SURFACE;
+    apart += f->state[i] == MPSI_FLUID_APART;
+    pairs += f->near[i];
+  }
+  f->report.surface = surface, f->report.apart = apart, f->report.pairs = pairs;
+}
+
+double mpsi_fluid_rise(const mps_fluid *f, int64_t i) {
+  const mpsi_fluid_local *local = &f->local[i];
+  if (f->state[i] != MPSI_FLUID_SURFACE || local->n < LEVEL * f->weight.n0) return 0.0;
+  const double length = sqrt(local->m[0] * local->m[0] + local->m[1] * local->m[1]);
+  return -(local->m[0] * f->up[0] + local->m[1] * f->up[1]) / length * local->h;
+}
+
+void mpsi_fluid_find_moments(mps_fluid *f) {
+  for (int64_t i = 0; i < f->count; i++) atomic_init(&f->zone[i], 0);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, look_around);
+  mpsi_fluid_tell_looks(f);
+  mpsi_fluid_count(f);
+  f->any_apart = f->report.apart > 0;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_zone);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_depths);
+}

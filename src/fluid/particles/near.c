@@ -1,0 +1,221 @@
+/* near.c - who is near whom: all particles and ghosts closer than re to each particle, found by
+ * cells of half that size, and the weights w of the pairs.
+ *
+ * Cells ascend in y first, so that the cells a search looks at lie side by side in each column of
+ * cells. Particles are sorted in the same order now and then (step.c), so that indices of
+ * neighbours are near each other too.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/loops.h"
+#include "fluid/ranks/share.h"
+
+#include <string.h>
+
+#define REACH 2 /* cells that re spans */
+#define MOST_CELLS 0x1p26
+#define CROWD 4096     /* candidates in the cells around a particle */
+#define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
+
+mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re) {
+  mpsi_fluid_weight w = {.re = re, .inverse = 1.0 / re};
+  const int reach = (int)(re / l0) + 1, samples = 2000;
+  for (int a = -reach; a <= reach; a++)
+    for (int b = -reach; b <= reach; b++) {
+      const double r = l0 * sqrt((double)(a * a + b * b));
+      if ((a == 0 && b == 0) || r >= re) continue;
+      const double weight = (float)mpsi_fluid_w(&w, r); /* as those of the pairs are */
+      w.n0 += weight;
+      w.square += 0.25 * r * r * weight;
+      if (b <= 0) w.half += weight;
+    }
+  /* integral of w over a row half a spacing above, by midpoints */
+  for (int k = 0; k < samples; k++) {
+    const double x = (k + 0.5) * re / samples, r = sqrt(x * x + 0.25 * l0 * l0);
+    if (r < re) w.slope += 2.0 * mpsi_fluid_w(&w, r) * re / samples / l0;
+  }
+  return w;
+}
+
+/* ---- cells ----------------------------------------------------------------------------------- */
+
+typedef struct cells {
+  double low[2], inverse;
+  int64_t n[2];
+  const int32_t *first; /* n[0] n[1] + 1: of the slots of each cell */
+} cells;
+
+static int64_t cell_along(const cells *c, int axis, double x) {
+  return (int64_t)((x - c->low[axis]) * c->inverse);
+}
+
+/* Of the sorted cloud, whose last part is read in whole vectors. */
+static int64_t sorted_room(int64_t all) { return (all + 7) / 8 * 8 + 24; }
+
+static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
+  const int64_t all = f->count + f->ghosts;
+  double high[2];
+  c->inverse = REACH * f->weight.inverse;
+  for (int k = 0; k < 2; k++) {
+    c->low[k] = INFINITY, high[k] = -INFINITY;
+    for (int64_t i = 0; i < all; i++) {
+      const double x = f->x[k][i];
+      c->low[k] = x < c->low[k] ? x : c->low[k];
+      high[k] = x > high[k] ? x : high[k];
+    }
+    const double cells_along = (high[k] - c->low[k]) * c->inverse + 1.0;
+    if (!(cells_along < MOST_CELLS))
+      return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                       "the fluid reaches from %g m to %g m along %c, more than %g radii re",
+                       c->low[k], high[k], k ? 'y' : 'x', MOST_CELLS / REACH);
+    c->n[k] = (int64_t)cells_along;
+  }
+  if (!((double)c->n[0] * (double)c->n[1] < 64.0 * (double)all + MOST_CELLS))
+    return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                     "the fluid is strewn over %lld x %lld cells of %g m", (long long)c->n[0],
+                     (long long)c->n[1], 1.0 / c->inverse);
+  const int64_t number = c->n[0] * c->n[1];
+  if (!mpsi_room_fit(f->context, &f->lower_col_room, 2 * (number + 1 + all), sizeof(uint16_t)) ||
+      !mpsi_room_fit(f->context, &f->lower_room, 5 * sorted_room(all), sizeof(float)))
+    return mpsi_fail_memory(f->context, function, (size_t)(number + 6 * all) * sizeof(int32_t));
+  f->slot_x[0] = f->lower_room.item;
+  f->slot_x[1] = f->slot_x[0] + sorted_room(all);
+  f->slot = (int32_t *)(f->slot_x[1] + sorted_room(all));
+  return MPS_OK;
+}
+
+/* Sorts the cloud by cells: slot[] says which index stands at each place, slot_x where it is. */
+static void sort_cloud(mps_fluid *f, cells *c) {
+  const int64_t all = f->count + f->ghosts, number = c->n[0] * c->n[1];
+  int32_t *first = f->lower_col_room.item, *cell = first + number + 1;
+  memset(first, 0, (size_t)(number + 1) * sizeof *first);
+  for (int64_t i = 0; i < all; i++) {
+    cell[i] = (int32_t)(cell_along(c, 0, f->x[0][i]) * c->n[1] + cell_along(c, 1, f->x[1][i]));
+    first[cell[i]]++;
+  }
+  for (int64_t k = 0, sum = 0; k <= number; k++) {
+    const int32_t here = first[k];
+    first[k] = (int32_t)sum;
+    sum += here;
+  }
+  for (int64_t i = 0; i < all; i++) {
+    const int32_t at = first[cell[i]]++;
+    f->slot[at] = (int32_t)i;
+    f->slot_x[0][at] = f->x[0][i], f->slot_x[1][at] = f->x[1][i];
+  }
+  for (int64_t k = number; k > 0; k--) first[k] = first[k - 1];
+  first[0] = 0;
+  c->first = first;
+}
+
+/* ---- pairs ----------------------------------------------------------------------------------- */
+
+/* Slots [begin, end) of the cells that particle i searches in one column of cells. */
+static void column_range(const cells *c, int64_t column, double y, int64_t *begin, int64_t *end) {
+  const int64_t at = cell_along(c, 1, y), last = c->n[1] - 1;
+  const int64_t low = at > REACH ? at - REACH : 0, high = at + REACH < last ? at + REACH : last;
+  *begin = c->first[column * c->n[1] + low];
+  *end = c->first[column * c->n[1] + high + 1];
+}
+
+/* Neighbours of particle i and the squares of their distances; at most `room` - 1 are written, and
+ * one that does not count. Returns their number. */
+static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t room, int32_t *index,
+                      double *r2) {
+  const double y = f->x[1][i];
+  const int64_t at = cell_along(c, 0, f->x[0][i]);
+  const int64_t low = at > REACH ? at - REACH : 0;
+  const int64_t high = at + REACH < c->n[0] - 1 ? at + REACH : c->n[0] - 1;
+  int64_t found = 0;
+  for (int64_t column = low; column <= high; column++) {
+    int64_t begin, end;
+    column_range(c, column, y, &begin, &end);
+    if (found + end - begin >= room) return room;
+    found = f->loops->search(f, i, begin, end, found, index, r2);
+  }
+  return found;
+}
+
+/* At a bent wall particle i may be at another distance from the image of j than j from that of i:
+ * the mean of both weights keeps the matrix symmetric. */
+static void average_weights(const mps_fluid *f, int64_t i, int64_t count, const int32_t *index,
+                            float *w) {
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t ghost = index[k] - f->count;
+    if (ghost < 0 || !(f->flips[ghost] & f->bent)) continue;
+    const int64_t own = f->parent[ghost];
+    double x[2] = {f->x[0][i], f->x[1][i]};
+    mpsi_fluid_mirror_point(f, f->flips[ghost], x);
+    const double r = hypot(x[0] - f->x[0][own], x[1] - f->x[1][own]);
+    const float back = r < f->weight.re ? (float)mpsi_fluid_w(&f->weight, r) : 0.0f;
+    w[k] = 0.5f * (w[k] + back);
+  }
+}
+
+typedef struct pass {
+  mps_fluid *fluid;
+  const cells *cells;
+  int64_t per_chunk, pairs; /* room for pairs; the last chunk may have less */
+  atomic_bool full, crowded;
+} pass;
+
+/* The pairs of a chunk of particles, one after the other in the chunk's stretch. */
+static void find_chunk(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  pass *p = data;
+  mps_fluid *f = p->fluid;
+  const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, full = (chunk + 1) * p->per_chunk;
+  const int64_t limit = full < p->pairs ? full : p->pairs;
+  int64_t at = chunk * p->per_chunk;
+  double r2[CROWD + MPSI_FLUID_WIDE];
+  int32_t apart[CROWD + MPSI_FLUID_WIDE]; /* where the stretch has no room for all candidates */
+  for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
+    const int64_t left = limit - at;
+    int32_t *index = left >= CROWD + MPSI_FLUID_WIDE ? f->index + at : apart;
+    float *w = f->w + at;
+    int64_t found = search(f, p->cells, i, CROWD, index, r2);
+    const bool crowded = found >= CROWD;
+    if (crowded || mpsi_fluid_padded((int32_t)found) > left) {
+      atomic_store(crowded ? &p->crowded : &p->full, true);
+      return;
+    }
+    if (index == apart) index = memcpy(f->index + at, apart, (size_t)found * sizeof *index);
+    if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, index, r2);
+    const int32_t company = f->loops->weigh(f, i, found, index, r2, w);
+    if (f->bent) average_weights(f, i, found, index, w);
+    f->company[i] =
+        (uint8_t)(company | (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
+                  (mpsi_fluid_near_wedge(f, i, NULL) ? MPSI_FLUID_NEAR_WEDGE : 0));
+    f->start[i] = at;
+    f->near[i] = (int32_t)found;
+    at += mpsi_fluid_padded((int32_t)found);
+  }
+}
+
+mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
+  cells c;
+  mps_status status = make_cells(f, function, &c);
+  if (status == MPS_OK) sort_cloud(f, &c);
+  for (;;) {
+    const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK,
+                  pairs = f->most_near * f->count + MPSI_FLUID_CHUNK;
+    const bool room = mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) &&
+                      mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w);
+    if (status == MPS_OK && !room)
+      status =
+          mpsi_fail_memory(f->context, function, (size_t)pairs * (sizeof *f->index + sizeof *f->w));
+    f->index = f->index_room.item;
+    f->w = f->w_room.item;
+    pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk, .pairs = pairs};
+    if (status == MPS_OK) mpsi_fluid_units(f, MPSI_FLUID_CHUNK, find_chunk, &p);
+    double full[2] = {atomic_load(&p.full), atomic_load(&p.crowded)};
+    status = mpsi_fluid_settle_max(f, function, status, 2, full);
+    if (status != MPS_OK || (full[0] == 0.0 && full[1] == 0.0)) return status;
+    if (full[1] > 0.0)
+      return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                       "a particle has more than %d others near it: the fluid has collapsed",
+                       CROWD);
+    if (f->most_near > MOST_NEAR)
+      return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                       "more than %d neighbours a particle: the fluid has collapsed", MOST_NEAR);
+    f->most_near += 1 + f->most_near / 32;
+  }
+}

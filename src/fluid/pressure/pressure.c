@@ -1,0 +1,130 @@
+/* pressure.c - the equation of the reduced pressure q,
+ *
+ *   sum w (q_j - q_i) + c (q_s - q_i) = S (rho/dt) (D - k/dt),  D = div u,
+ *
+ * symmetric and positive definite, exact for a linear q (Chen 2014, Tsuruta 2015). k holds the
+ * density: .003 (n/n0 - 1), not below -.0003; near the surface only what is above 0 (Tanaka 2010,
+ * Khayyer and Gotoh 2011). It is a rate in time: with steps below .05 (l0/g)^1/2 it is that much
+ * less. And it is less by |n/n0 - 1|/.003 where that is below 1: waves change n a little without
+ * changing the density, and a source in proportion to it took 1.5 % of a wave in 20 periods, at any
+ * spacing. Images of particles beyond a wall have their parent's q and an offset that the wall's
+ * acceleration a gives, -rho (a . N) times their distance, so they bring no unknowns; particles
+ * apart from the rest have no row and no column. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/ranks/share.h"
+
+#define DENSITY 0.003       /* k over the excess of n/n0 */
+#define SMALL_EXCESS 0.003  /* of n/n0: below, k falls as its square */
+#define FULL_STEP 0.05      /* (l0/g)^1/2: with shorter steps k is less */
+#define LEAST_DENSITY -3e-4 /* k */
+
+/* Share of k in a step of this length. */
+static double step_share(const mps_fluid *f) {
+  return fmin(f->dt * mpsi_fluid_rate(f) / FULL_STEP, 1.0);
+}
+
+static double density_source(const mps_fluid *f, int64_t i, double share) {
+  const double excess = f->local[i].n / f->weight.n0 - 1.0;
+  const double k = DENSITY * excess * fmin(fabs(excess) / SMALL_EXCESS, 1.0);
+  return share * fmax(k, f->zone[i] ? 0.0 : LEAST_DENSITY);
+}
+
+/* The diagonal, and a start vector that goes on as q has changed in the last step. */
+static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  mpsi_fluid_system *s = &f->system;
+  const double *old = mpsi_particles_column(f->particles, "reduced_pressure_old", 0);
+  const double ahead = f->last_dt > 0.0 ? f->dt / f->last_dt : 0.0;
+  for (int64_t i = begin; i < end; i++) {
+    s->diagonal[i] = 1.0, s->x[i] = 0.0;
+    if (f->state[i] == MPSI_FLUID_APART) continue;
+    const int32_t *index = f->index + f->start[i];
+    const float *w = f->w + f->start[i];
+    double sum = f->local[i].c + (f->any_apart ? 0.0 : f->local[i].n);
+    for (int32_t k = 0; f->any_apart && k < f->near[i]; k++) {
+      const int64_t j = index[k], ghost = j - f->count;
+      if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
+    }
+    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12;
+    s->x[i] = f->q[i] + ahead * (f->q[i] - old[i]);
+  }
+}
+
+/* The right side, with the walls' accelerations. */
+static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  const double rho = f->def.density, dt = f->dt, share = step_share(f);
+  for (int64_t i = begin; i < end; i++) {
+    f->system.right[i] = 0.0;
+    if (f->state[i] == MPSI_FLUID_APART) continue;
+    const mpsi_fluid_local *local = &f->local[i];
+    const int32_t *index = f->index + f->start[i];
+    const float *w = f->w + f->start[i];
+    double right = local->c * local->qs;
+    const int32_t near = f->company[i] & MPSI_FLUID_NEAR_IMAGES ? f->near[i] : 0;
+    for (int32_t k = 0; k < near; k++) {
+      const int64_t ghost = index[k] - f->count;
+      if (ghost >= 0 && f->state[f->parent[ghost]] != MPSI_FLUID_APART)
+        right += w[k] * f->offset[ghost];
+    }
+    const double divergence = local->gradient[0] + local->gradient[3];
+    f->system.right[i] =
+        right - local->S * rho / dt * (divergence - density_source(f, i, share) / dt);
+  }
+}
+
+/* No suction that the surface has not: where p would be below 0 it is 0. Particles apart have p =
+ * 0.
+ */
+static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t i = begin; i < end; i++) {
+    const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
+    const double p = f->state[i] == MPSI_FLUID_APART ? 0.0 : f->system.x[i] - none;
+    f->pressure[i] = fmax(p, mpsi_fluid_least(f, i));
+    f->q[i] = f->state[i] == MPSI_FLUID_APART ? none
+                                              : fmax(f->system.x[i], none + mpsi_fluid_least(f, i));
+  }
+}
+
+mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
+  const bool classical = f->classical.gamma > 0.0;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, classical ? mpsi_fluid_classical_rows : make_rows);
+  if (mpsi_fluid_solved_outside(f)) return mpsi_fluid_hand_matrix(f, function);
+  return mpsi_fluid_factor(f, function);
+}
+
+static mps_status solve_inside(mps_fluid *f, const char *function) {
+  const int64_t iterations = mpsi_fluid_pcg(f);
+  const mps_status lost = mpsi_fluid_lost(f, function);
+  if (lost != MPS_OK) return lost;
+  if (iterations < 0)
+    return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
+                     "step %lld, t = %g s: the pressure has not converged to %g in %d iterations; "
+                     "the step is not made",
+                     (long long)f->steps, f->time, f->def.tolerance, f->def.iterations);
+  f->report.iterations = iterations;
+  f->report.all_iterations += iterations;
+  return MPS_OK;
+}
+
+mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
+  const bool classical = f->classical.gamma > 0.0;
+  mps_status status = MPS_OK;
+  if (!classical) {
+    status = mpsi_fluid_check_space(f, function);
+    if (status != MPS_OK) return status;
+    mpsi_fluid_press_ghosts(f);
+    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
+    mpsi_fluid_balance(f);
+  }
+  status = mpsi_fluid_solved_outside(f) ? mpsi_fluid_solve_outside(f, function)
+                                        : solve_inside(f, function);
+  if (status != MPS_OK) return status;
+  if (!classical) mpsi_fluid_set_level(f);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
+                 classical ? mpsi_fluid_classical_solution : take_solution);
+  mpsi_fluid_tell_all(f, classical ? 2 : 1, (double *const[]){f->q, f->pressure});
+  if (classical) return MPS_OK;
+  for (int64_t g = 0; g < f->ghosts; g++) f->q[f->count + g] = f->q[f->parent[g]] + f->offset[g];
+  return MPS_OK;
+}

@@ -1,0 +1,56 @@
+/* share.h - the ranks of a domain (mps/domain.h) that compute a fluid together. Each has all of it:
+ * the set, walls, bodies, images. What is found row by row, neighbours, sums over them, rows of the
+ * matrix, its factor and iterations, velocities, each rank finds for its particles, whole blocks of
+ * the preconditioner (pcg.c), and tells the others what they need:
+ *
+ *   of the particles that are near others' ones  x, z (at each iteration), m, velocities
+ *   of all particles                             state, q, places, velocities, pressures
+ *
+ * and the sums of chunks and blocks, which every rank then adds in the same order: the bits of one.
+ * Loops of a step return no status. What the transport has failed with is kept, and
+ * mpsi_fluid_lost has it.
+ *
+ * Without a domain of several ranks nothing of this does anything, and a fluid's own particles are
+ * all. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_FLUID_SHARE_H
+#define MPSI_FLUID_SHARE_H
+
+#include "fluid/fluid_private.h"
+
+#include "domain/domain_internal.h"
+
+/* Of the definition's domain; collective. */
+mps_status mpsi_fluid_share_create(mps_fluid *fluid, const char *function);
+void mpsi_fluid_share_destroy(mps_fluid *fluid);
+
+/* Status of all ranks, as mpsi_domain_settle. Collective, as what follows. */
+mps_status mpsi_fluid_settle(mps_fluid *fluid, const char *function, mps_status status);
+mps_status mpsi_fluid_settle_max(mps_fluid *fluid, const char *function, mps_status status,
+                                 int32_t count, double *values);
+/* loads.c: adds the present factors of loads. Not collective. */
+void mpsi_fluid_give_loads(const mps_fluid *fluid, mpsi_given *list);
+/* Do walls, bodies and loads of all ranks move alike, and have all the same particles where the
+ * caller has edited them? `status` is this one's so far. */
+mps_status mpsi_fluid_settle_alike(mps_fluid *fluid, const char *function, mps_status status);
+mps_status mpsi_fluid_lost(mps_fluid *fluid, const char *function);
+
+/* Deals the particles to the ranks, in blocks of `block`: fluid->own. Not collective. */
+void mpsi_fluid_deal(mps_fluid *fluid, int64_t block);
+/* After the neighbours have been found: whom of others this rank's particles have among them. */
+mps_status mpsi_fluid_meet(mps_fluid *fluid, const char *function);
+
+/* Columns of values by particle: from their owners, to those who have them as neighbours. */
+#define MPSI_FLUID_SHARED 7 /* columns at most */
+void mpsi_fluid_tell_near(mps_fluid *fluid, int32_t columns, double *const *column);
+/* The same to all. */
+void mpsi_fluid_tell_all(mps_fluid *fluid, int32_t columns, double *const *column);
+/* system.sums of units of so many particles, two of each, to all. */
+void mpsi_fluid_tell_sums(mps_fluid *fluid, int64_t unit);
+/* The greatest of each value over the ranks, and 0 where the transport has failed. */
+void mpsi_fluid_tell_most(mps_fluid *fluid, int64_t count, double *values);
+/* States, numbers of neighbours and moments m, and who may be in whose zone (moments.c). */
+void mpsi_fluid_tell_looks(mps_fluid *fluid);
+/* fluid->local of all particles, as far as levels and loads use it, for who asks. */
+void mpsi_fluid_tell_local(mps_fluid *fluid);
+
+#endif

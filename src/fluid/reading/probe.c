@@ -1,0 +1,388 @@
+/* probe.c - what the fluid does at its edges: pressures along walls, the forces that they make, and
+ * the level of the surface.
+ *
+ * The pressure at a point of a wall is a weighted least-squares fit, linear ALONG the wall, with
+ * the weight (1 - r/(2.1 l0))^2, of q - rho (a . N)(distance from the wall), N out of the fluid;
+ * then p = q - rho g (height - level), and 0 where that is less than the air's at a surface near,
+ * or suction. What loads do to a particle counts like -a of the wall.
+ *
+ * Where a wall that moves ends in a free surface, q is r ln r: a line through the particles alone,
+ * extrapolated over the half spacing above them, has .1 rho a l0^2 too much force. So the surface
+ * above a particle is a point of the fit too, with the air's pressure. A particle stands for a
+ * spacing along the wall and the surface for the end of one: it has half the weight, the less the
+ * more the water's surface goes along the wall, or the wall is level.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/ranks/share.h"
+
+#define REACH 2.1         /* l0 */
+#define LEAST_SUM 0.05    /* of weights: below, there is no water */
+#define LEAST_SPREAD 0.02 /* l0^2: below, the mean is taken */
+#define SURFACE_PART 0.5  /* of a particle's weight, for the surface above it */
+#define LEVEL_RISE 0.5    /* l0: from a particle of an undisturbed surface to that */
+
+/* A particle near a wall. */
+typedef struct neighbour {
+  double d, s, q; /* distance; place along the wall; q carried over to it */
+  double air;     /* pressure on its surface, Pa; -infinity where it is inside */
+  double least;   /* pressure that it has at least, Pa */
+  double part;    /* of the weight, for the surface above; 0: none */
+  double top[3];  /* d, s and q there */
+  int64_t i;
+} neighbour;
+
+/* Sums of a fit. */
+typedef struct fit {
+  double water; /* the weights of particles */
+  double w, ws, wss, wq, wsq;
+  double air;   /* Pa, the largest of surfaces near; -infinity where none is */
+  double least; /* Pa, <= 0 */
+} fit;
+
+static const fit no_fit = {.air = -INFINITY};
+
+static double weight_of(const mps_fluid *f, double d, double s) {
+  const double a = 1.0 - sqrt(d * d + s * s) / (REACH * f->l0);
+  return a > 0.0 ? a * a : 0.0;
+}
+
+static void fit_point(fit *sum, double w, double s, double q) {
+  sum->w += w, sum->ws += w * s, sum->wss += w * s * s;
+  sum->wq += w * q, sum->wsq += w * s * q;
+}
+
+/* A particle near the point at `at` along the wall. */
+static void fit_add(const mps_fluid *f, fit *sum, double w, double at, const neighbour *n) {
+  sum->air = mpsi_fluid_larger(sum->air, n->air);
+  sum->least = -mpsi_fluid_larger(-sum->least, -n->least);
+  sum->water += w;
+  fit_point(sum, w, n->s - at, n->q);
+  if (n->part > 0.0)
+    fit_point(sum, n->part * weight_of(f, n->top[0], n->top[1] - at), n->top[1] - at, n->top[2]);
+}
+
+/* A point has water where its pressure is more than this: than that of the air at a surface. */
+static double driest(const fit *sum) { return sum->air > -INFINITY ? sum->air : sum->least; }
+
+/* Reduced pressure at s = 0. */
+static double fit_value(const mps_fluid *f, const fit *sum) {
+  const double det = sum->w * sum->wss - sum->ws * sum->ws;
+  const bool line = det > LEAST_SPREAD * sum->w * sum->w * f->l0 * f->l0;
+  return line ? (sum->wss * sum->wq - sum->ws * sum->wsq) / det : sum->wq / sum->w;
+}
+
+/* The place of a coordinate along the wall in space. */
+static void place(const mps_fluid *f, const mpsi_fluid_wall *w, double along, double *x) {
+  const double *at = mpsi_fluid_places(f, w);
+  const double s = w->nodes == 1 ? at[0] : mpsi_fluid_between(w, at, along);
+  x[0] = w->at[0] + s * w->normal[0] - along * w->normal[1];
+  x[1] = w->at[1] + s * w->normal[1] + along * w->normal[0];
+}
+
+/* Height (m) of the surface above particle i. Between steps it is the field's, as the moments are
+ * not of the present order of the particles. */
+static double rise_of(const mps_fluid *f, int64_t i) {
+  if (f->stage == MPSI_FLUID_BETWEEN)
+    return mpsi_particles_column(f->particles, "surface_rise", 0)[i];
+  return mpsi_fluid_rise(f, i);
+}
+
+/* The surface above particle i as a point of the fit. */
+static void find_top(const mps_fluid *f, const mpsi_fluid_wall *w, neighbour *n) {
+  const double along = w->normal[0] * f->up[1] - w->normal[1] * f->up[0];
+  const double across = w->normal[0] * f->up[0] + w->normal[1] * f->up[1];
+  const double rise = f->state[n->i] == MPSI_FLUID_SURFACE && f->g > 0.0 ? rise_of(f, n->i) : 0.0;
+  n->part = 0.0;
+  if (!(rise > 0.0)) return;
+  const double level = fmin(rise / (LEVEL_RISE * f->l0), 1.0);
+  const double *x[2] = {f->x[0], f->x[1]};
+  n->part = SURFACE_PART * along * along * level * level;
+  n->top[0] = n->d + rise * across, n->top[1] = n->s + rise * along;
+  n->top[2] =
+      n->air + mpsi_fluid_head(f, x[0][n->i] + rise * f->up[0], x[1][n->i] + rise * f->up[1]);
+}
+
+/* What a particle contributes: false where it is too far from the wall. Its acceleration is along
+ * the normal into the fluid, -N. */
+static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, neighbour *out) {
+  const double x = f->x[0][i], y = f->x[1][i];
+  out->d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x, y);
+  if (fabs(out->d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
+  if (w->of_body && out->d < 0.0) return false;
+  double a = mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y);
+  if (f->push[0]) a -= f->push[0][i] * w->normal[0] + f->push[1][i] * w->normal[1];
+  out->s = mpsi_fluid_along(w, x, y);
+  out->q = f->q[i] + f->def.density * a * out->d;
+  out->air = f->state[i] != MPSI_FLUID_SURFACE ? -INFINITY : f->over ? f->over[i] : 0.0;
+  out->least = mpsi_fluid_least(f, i);
+  out->i = i;
+  find_top(f, w, out);
+  return true;
+}
+
+/* The particles near a wall, in the order of the set, to near_wall_room: all that are have had an
+ * image there, unless something has gone further since than images reach beyond the fit. */
+static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
+                         int64_t *count) {
+  const bool imaged = f->travel < f->weight.re - REACH * f->l0;
+  const int64_t candidates = imaged ? w->images : f->count;
+  if (!mpsi_room_ensure(f->context, &f->near_wall_room, candidates + 1, sizeof(neighbour)))
+    return mpsi_fail_memory(f->context, function, (size_t)candidates * sizeof(neighbour));
+  neighbour *list = f->near_wall_room.item;
+  int64_t found = 0;
+  for (int64_t k = 0; k < candidates; k++) {
+    const int64_t i = imaged ? f->parent[w->first_image + k] : k;
+    if (near_wall(f, w, i, &list[found])) found++;
+  }
+  *count = found;
+  return MPS_OK;
+}
+
+/* Whether a point of wall b lies on its wetted side of the boundaries and outside of bodies. */
+static bool among_walls(const mps_fluid *f, int32_t b, const double *x) {
+  for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (k != b && w->used && mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x[0], x[1]) < 0.0)
+      return false;
+  }
+  return !f->faces || !mpsi_fluid_inside_body(f, f->wall[b].of_body, x);
+}
+
+/* Distance of a wall's points: the spacing, or a face's length in whole parts. */
+static double pitch(const mps_fluid *f, const mpsi_fluid_wall *w) {
+  return w->of_body ? w->length / fmax(round(w->length / f->l0), 1.0) : f->l0;
+}
+
+/* Places of the wall's points that have particles near: numbers low to high - 1. */
+static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near, int64_t *low,
+                         int64_t *high) {
+  const neighbour *list = f->near_wall_room.item;
+  double least = INFINITY, most = -INFINITY;
+  for (int64_t k = 0; k < near; k++) least = fmin(least, list[k].s), most = fmax(most, list[k].s);
+  *low = *high = 0;
+  if (!(least <= most)) return;
+  const double step = pitch(f, w);
+  *low = (int64_t)floor(least / step) - 4;
+  *high = (int64_t)ceil(most / step) + 4;
+  if (!w->of_body) return;
+  const int64_t points = (int64_t)round(w->length / step);
+  *low = *low > 0 ? *low : 0;
+  *high = *high < points ? *high : points;
+}
+
+static bool sees_point(const mps_fluid *f, int32_t b, double along, int64_t i) {
+  double at[2];
+  const double x[2] = {f->x[0][i], f->x[1][i]};
+  place(f, &f->wall[b], along, at);
+  return !mpsi_fluid_hidden(f, b, x, at);
+}
+
+/* Calls `point` for each wetted point of wall b with its place and pressure. */
+typedef void (*point_fn)(void *user, const double *x, double p);
+
+static mps_status for_points(mps_fluid *f, int32_t b, const char *function, point_fn point,
+                             void *user) {
+  const mpsi_fluid_wall *w = &f->wall[b];
+  const double step = pitch(f, w);
+  int64_t low, high, near;
+  const mps_status status = gather(f, w, function, &near);
+  if (status != MPS_OK) return status;
+  wetted_range(f, w, near, &low, &high);
+  fit *sum = NULL;
+  if (high > low) {
+    if (!mpsi_room_ensure(f->context, &f->fit_room, high - low, sizeof *sum))
+      return mpsi_fail_memory(f->context, function, (size_t)(high - low) * sizeof *sum);
+    sum = f->fit_room.item;
+    for (int64_t k = 0; k < high - low; k++) sum[k] = no_fit;
+  }
+  const neighbour *list = f->near_wall_room.item;
+  for (int64_t n = 0; n < near && high > low; n++) {
+    const double s = list[n].s;
+    const double reach = REACH * f->l0 / step;
+    const int64_t first = (int64_t)floor(s / step - reach), last = (int64_t)(s / step + reach);
+    for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
+      const double at = ((double)k + 0.5) * step, weight = weight_of(f, list[n].d, s - at);
+      if (weight > 0.0 && (!f->faces || sees_point(f, b, at, list[n].i)))
+        fit_add(f, &sum[k - low], weight, at, &list[n]);
+    }
+  }
+  for (int64_t k = low; k < high; k++) {
+    double x[2];
+    place(f, w, ((double)k + 0.5) * step, x);
+    if (sum[k - low].water <= LEAST_SUM || !among_walls(f, b, x)) continue;
+    const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
+    if (p > driest(&sum[k - low])) point(user, x, p);
+  }
+  return MPS_OK;
+}
+
+/* ---- forces ---------------------------------------------------------------------------------- */
+
+typedef struct resultant {
+  mpsi_fluid_wall *wall;
+  double area;
+} resultant;
+
+static void add_force(void *user, const double *x, double p) {
+  const resultant *r = user;
+  const double force[2] = {p * r->area * r->wall->normal[0], p * r->area * r->wall->normal[1]};
+  mpsi_fluid_load *load = &r->wall->load;
+  for (int c = 0; c < 2; c++) load->force[c] += force[c];
+  load->moment += x[0] * force[1] - x[1] * force[0];
+  load->power += p * r->area * mpsi_fluid_of_wall(r->wall, r->wall->mean, x[0], x[1]);
+  load->wetted++;
+}
+
+mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
+  mps_status status = MPS_OK;
+  if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_tell_local(f); /* by then the rooms are taken */
+  for (int32_t b = 0; status == MPS_OK && b < MPSI_FLUID_WALLS; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    w->load = (mpsi_fluid_load){0};
+    resultant r = {w, pitch(f, w) * f->def.measure};
+    status = for_points(f, b, function, add_force, &r);
+  }
+  return mpsi_fluid_settle(f, function, status);
+}
+
+static mps_status check_wall(mps_fluid *f, const char *function, int32_t number) {
+  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "the fluid has no boundary of number %d", number);
+  return MPS_OK;
+}
+
+mps_status mps_fluid_get_reaction_sized(mps_fluid *f, int32_t number, mps_reaction *out,
+                                        size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!MPSI_FLUID_IS_BOUNDARY(f, number)) return check_wall(f, "mps_fluid_get_reaction", number);
+  const mpsi_fluid_wall *w = &f->wall[number];
+  mps_reaction reaction = {.count = w->load.wetted,
+                           .work = w->work,
+                           .removed = w->removed,
+                           .removed_mass = w->removed_mass};
+  for (int c = 0; c < 2; c++)
+    reaction.force[c] = w->load.force[c], reaction.impulse[c] = w->impulse[c];
+  reaction.moment[2] = w->load.moment;
+  reaction.moment_impulse[2] = w->moment_impulse;
+  return mpsi_out_write(f->context, "mps_fluid_get_reaction", out, size, &reaction,
+                        sizeof reaction);
+}
+
+/* Pressures belong to a state: of the last step, or of the last solution in an open step. */
+static mps_status check_pressure(mps_fluid *f, const char *function) {
+  f->report_before_look = f->report;
+  if (f->stage == MPSI_FLUID_BEGUN)
+    return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                     "the open step's pressure has not been solved");
+  return mpsi_fluid_refresh(f, function);
+}
+
+/* ---- pressures ------------------------------------------------------------------------------- */
+
+typedef struct listing {
+  int64_t capacity, count;
+  double *x, *pressure;
+} listing;
+
+static void list_point(void *user, const double *x, double p) {
+  listing *list = user;
+  const int64_t k = list->count++;
+  if (k >= list->capacity) return;
+  if (list->x) list->x[3 * k] = x[0], list->x[3 * k + 1] = x[1], list->x[3 * k + 2] = 0.0;
+  if (list->pressure) list->pressure[k] = p;
+}
+
+mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, double *x,
+                              double *pressure, int64_t *count) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_wall(f, __func__, number);
+  if (status != MPS_OK) return status;
+  if (capacity < 0 || !count)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "capacity is %lld and count %s: must be >= 0 and given", (long long)capacity,
+                     count ? "given" : "NULL");
+  listing list = {.capacity = capacity, .x = x, .pressure = pressure};
+  status = check_pressure(f, __func__);
+  if (status == MPS_OK) status = for_points(f, number, __func__, list_point, &list);
+  status = mpsi_fluid_show_surface(f, mpsi_fluid_settle(f, __func__, status));
+  if (status == MPS_OK) *count = list.count;
+  return status;
+}
+
+/* Points are given on the wall as it is, or as it was without displacement. */
+static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
+                               int64_t count, const double *x) {
+  for (int64_t k = 0; k < count; k++) {
+    const double off = mpsi_fluid_distance(w, w->now.s, x[3 * k], x[3 * k + 1]);
+    const double s = mpsi_fluid_of_wall(w, w->now.s, x[3 * k], x[3 * k + 1]);
+    if (!(fabs(off) <= 0.01 * f->l0) && !(fabs(off + s) <= 0.01 * f->l0))
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
+                       (long long)k, x[3 * k], x[3 * k + 1], off, 0.01 * f->l0);
+  }
+  return MPS_OK;
+}
+
+mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, const double *x,
+                                  double *pressure) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_wall(f, __func__, number);
+  if (status == MPS_OK && (count < 0 || (count > 0 && (!x || !pressure))))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld, x and pressure must be given", (long long)count);
+  int64_t near = 0;
+  if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
+  status = mpsi_fluid_settle(f, __func__, status);
+  if (status != MPS_OK) return status;
+  status = check_pressure(f, __func__);
+  if (status == MPS_OK) status = gather(f, &f->wall[number], __func__, &near);
+  status = mpsi_fluid_show_surface(f, mpsi_fluid_settle(f, __func__, status));
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < count; k++) {
+    const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);
+    const neighbour *list = f->near_wall_room.item;
+    double to[2];
+    fit sum = no_fit;
+    for (int64_t i = 0; i < near; i++) {
+      const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
+      if (weight > 0.0) fit_add(f, &sum, weight, at, &list[i]);
+    }
+    place(f, &f->wall[number], at, to);
+    const double head = mpsi_fluid_head(f, to[0], to[1]);
+    const double p = sum.water > LEAST_SUM ? fit_value(f, &sum) - head : 0.0;
+    pressure[k] = p > driest(&sum) ? p : 0.0;
+  }
+  return MPS_OK;
+}
+
+/* ---- level ----------------------------------------------------------------------------------- */
+
+mps_status mps_fluid_get_levels(mps_fluid *f, int64_t count, const double *station, double *level) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  if (count < 0 || (count > 0 && (!station || !level)))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld, station and level must be given", (long long)count);
+  for (int64_t k = 0; k < count; k++)
+    if (!isfinite(station[k]))
+      return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "station %lld is %g m, must be finite", (long long)k, station[k]);
+  const mps_status status = mpsi_fluid_know(f, __func__);
+  if (status != MPS_OK) return status;
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  const double *rise = mpsi_particles_column(f->particles, "surface_rise", 0);
+  for (int64_t k = 0; k < count; k++) {
+    double sum = 0.0, height = 0.0;
+    for (int64_t i = 0; i < f->count; i++) {
+      if (rise[i] == 0.0) continue;
+      const double across = f->up[1] * x[i] - f->up[0] * y[i];
+      const double weight = 1.0 - fabs(across - station[k]) / (2.0 * f->l0);
+      if (!(weight > 0.0)) continue;
+      sum += weight;
+      height += weight * (f->up[0] * x[i] + f->up[1] * y[i] + rise[i]);
+    }
+    level[k] = sum > 0.0 ? height / sum : (double)NAN;
+  }
+  return MPS_OK;
+}

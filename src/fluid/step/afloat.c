@@ -1,0 +1,180 @@
+/* afloat.c - bodies that the water carries. In each step the accelerations a (two of the reference
+ * point and one of the rotation, times a length) are sought with which pressure, loads and inertia
+ * agree:
+ *
+ *   F(a) + loads - M a = 0,  M the body's masses.
+ *
+ * F is linear in a but for suction that is cut off: F = F0 - M_a a, M_a the added masses. So
+ * Newton's method with E = M + M_a is stable however light the body is. E is learnt from the
+ * solutions made (Broyden 1965) and kept from step to step, so that two or three solutions do.
+ *
+ * The pressure acts through the step: velocity first, then place, as the particles move
+ * (mpsi_body_advance). SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/fluid_private.h"
+
+#include "body/body_internal.h"
+#include "domain/domain_internal.h"
+
+#include <string.h>
+
+#define REPEATS 40      /* most solutions a step */
+#define AGREED 2e-4     /* of the acceleration */
+#define FLOOR 2e-5      /* of gravity */
+#define FIRST_ADDED 1.0 /* of the displaced mass: added mass before anything is known */
+
+mps_status mps_fluid_float_body(mps_fluid *f, int32_t number, int32_t floats) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
+  mpsi_give(&given, "floats", floats);
+  status = mpsi_domain_settle_given(f->def.domain, __func__, status, &given);
+  if (status != MPS_OK) return status;
+  if (number < 0 || number >= MPSI_FLUID_BODIES || !f->body[number].body || floats < 0 ||
+      floats > 1)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "body is %d and floats %d: must be one of the fluid's, and 0 or 1", number,
+                     floats);
+  mpsi_fluid_body *own = &f->body[number];
+  if (floats && own->body->def.motion != MPS_BODY_MOTION_FREE)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "body %d is prescribed: a body that floats must be free", number);
+  const mpsi_body_source *mover = mpsi_body_mover(own->body);
+  if (floats && mover && mover != &own->source)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
+                     "another solver moves body %d: make its contact with mover 1 (other)", number);
+  if (floats && !own->floats) memset(&own->body->pending, 0, sizeof own->body->pending);
+  own->floats = own->source.moves = floats;
+  memset(own->mass, 0, sizeof own->mass);
+  memset(own->rate, 0, sizeof own->rate);
+  return MPS_OK;
+}
+
+bool mpsi_fluid_any_afloat(const mps_fluid *f) {
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+    if (f->body[b].floats) return true;
+  return false;
+}
+
+/* ---- one body -------------------------------------------------------------------------------- */
+
+/* Masses by component, kg. */
+static void masses(const mpsi_fluid_body *body, double length, double *mass) {
+  mass[0] = mass[1] = body->body->def.mass;
+  mass[2] = body->body->def.inertia[2] / (length * length);
+}
+
+/* Forces in a step of dt that the accelerations do not explain. Those of other solvers are the
+ * impulses that they have given to the body since it last moved. */
+static void imbalance(const mpsi_fluid_body *own, const double *mass, double length, double dt,
+                      double *g) {
+  const mps_body *body = own->body;
+  for (int c = 0; c < 2; c++)
+    g[c] =
+        body->load.force[c] + body->def.mass * body->def.gravity[c] + body->pending.force[c] / dt;
+  g[2] = (body->load.moment[2] + body->pending.moment[2] / dt) / length;
+  for (int32_t part = 0; part < body->parts; part++) {
+    for (int c = 0; c < 2; c++) g[c] += own->water[part].force[c];
+    g[2] += own->water[part].moment[2] / length;
+  }
+  for (int c = 0; c < 3; c++) g[c] -= mass[c] * own->rate[c];
+}
+
+/* Masses with the added ones of a body of whose water nothing is known. */
+static void first_guess(const mps_fluid *f, mpsi_fluid_body *own, const double *mass,
+                        double length) {
+  const double displaced =
+      FIRST_ADDED * f->def.density * f->def.measure * 3.141592653589793 * length * length;
+  memset(own->mass, 0, sizeof own->mass);
+  for (int c = 0; c < 3; c++) own->mass[4 * c] = mass[c] + displaced * (c < 2 ? 1.0 : 0.25);
+}
+
+/* x of E x = g, by Cramer's rule; false where E is no mass. */
+static bool solve3(const double *E, const double *g, double *x) {
+  const double minor[3] = {E[4] * E[8] - E[5] * E[7], E[5] * E[6] - E[3] * E[8],
+                           E[3] * E[7] - E[4] * E[6]};
+  const double det = E[0] * minor[0] + E[1] * minor[1] + E[2] * minor[2];
+  if (!(det > 1e-6 * fabs(E[0] * E[4] * E[8]))) return false;
+  for (int c = 0; c < 3; c++) {
+    double A[9];
+    memcpy(A, E, sizeof A);
+    for (int r = 0; r < 3; r++) A[3 * r + c] = g[r];
+    x[c] = (A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
+            A[2] * (A[3] * A[7] - A[4] * A[6])) /
+           det;
+  }
+  return true;
+}
+
+/* What the change of g over that of a says of E. */
+static void learn(double *E, const double *da, const double *dg) {
+  const double square = da[0] * da[0] + da[1] * da[1] + da[2] * da[2];
+  if (!(square > 0.0)) return;
+  for (int r = 0; r < 3; r++) {
+    const double miss = -dg[r] - (E[3 * r] * da[0] + E[3 * r + 1] * da[1] + E[3 * r + 2] * da[2]);
+    for (int c = 0; c < 3; c++) E[3 * r + c] += miss * da[c] / square;
+  }
+}
+
+typedef struct trial {
+  double rate[3], g[3];
+} trial;
+
+/* Judges the last solution: true where the body's accelerations agree with it; else the next to
+ * try. `before` is the trial before this one, if any. The body then moves with just these
+ * accelerations, which the water has answered to: what is left of forces counts as the water's. */
+static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool first) {
+  const double length = mpsi_fluid_body_length(own, f);
+  double mass[3], g[3], step[3], largest = 0.0, change = 0.0;
+  masses(own, length, mass);
+  mpsi_fluid_load_body(f, own, own->pose.x);
+  imbalance(own, mass, length, f->dt, g);
+  if (!(own->mass[0] > 0.0)) first_guess(f, own, mass, length);
+  if (!first) {
+    double da[3], dg[3];
+    for (int c = 0; c < 3; c++) da[c] = own->rate[c] - before->rate[c], dg[c] = g[c] - before->g[c];
+    learn(own->mass, da, dg);
+  }
+  if (!solve3(own->mass, g, step)) {
+    first_guess(f, own, mass, length);
+    (void)solve3(own->mass, g, step);
+  }
+  for (int c = 0; c < 3; c++) {
+    largest = fmax(largest, fabs(own->rate[c]));
+    change = fmax(change, fabs(step[c]));
+  }
+  const double g_size = hypot(own->body->def.gravity[0], own->body->def.gravity[1]);
+  if (change <= AGREED * largest + FLOOR * fmax(g_size, f->g)) {
+    for (int c = 0; c < 2; c++) own->water[0].force[c] -= g[c];
+    own->water[0].moment[2] -= length * g[2];
+    return true;
+  }
+  memcpy(before->rate, own->rate, sizeof before->rate);
+  memcpy(before->g, g, sizeof before->g);
+  for (int c = 0; c < 3; c++) own->rate[c] += step[c];
+  return false;
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
+  trial before[MPSI_FLUID_BODIES];
+  for (int repeat = 0; repeat < REPEATS; repeat++) {
+    mpsi_fluid_drive_bodies(f, f->dt);
+    f->stage = MPSI_FLUID_BEGUN;
+    mps_status status = mpsi_fluid_solve_pressure(f, function);
+    f->stage = MPSI_FLUID_SOLVED;
+    if (status == MPS_OK) status = mpsi_fluid_load_walls(f, function);
+    if (status != MPS_OK) return status;
+    bool agreed = true;
+    for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+      if (f->body[b].floats) agreed &= judge(f, &f->body[b], &before[b], repeat == 0);
+    if (agreed) return MPS_OK;
+  }
+  return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
+                   "step %lld, t = %g s: the bodies afloat and the water have not agreed in %d "
+                   "solutions; the step is not made",
+                   (long long)f->steps, f->time, REPEATS);
+}

@@ -1,0 +1,338 @@
+/* move.c - from the pressure to the new velocities and positions:
+ *
+ *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
+ *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
+ *
+ * the first part of a .12 dt s0 near the surface but in breakers and the second times 10 dt s0 <= 1
+ * where walls meet it, where v is what a linear velocity
+ * field leaves over (moments.c) and s0 = sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu
+ * takes the share nu dt n/S of v, and a only what that leaves. Guards: pairs that approach within
+ * l0/2 share their momentum, who strikes a wall is stopped .35 l0 before it, |u| <= 1.1 of
+ * the neighbours' largest plus a free fall's share, and nobody comes nearer than .1 l0 to a wall;
+ * the report counts them. Then
+ *
+ *   x += dt u + f,  u += b G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
+ *
+ * near the surface .3 of its part along it, keeps the particles evenly apart (Lind 2012, Khayyer
+ * 2017); b = max(0, 1 - |G|^2/(.05 s0^2)).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/loops.h"
+#include "fluid/ranks/share.h"
+
+#define SMOOTH 0.6
+#define FREE_SMOOTH 0.18 /* the same without gravity, where the rate is that of the fastest jet */
+#define ZONE_SMOOTH 0.2  /* of it, within 1.6 l0 of the surface */
+#define BREAKING 0.05    /* g/l0: |G|^2 where all of smoothing and shift is left there */
+#define MOST_SMOOTH 0.5
+#define LONGEST_STEP 0.1 /* (l0/g)^1/2: the limit of a fluid at rest */
+#define SHIFT 2.5
+#define MOST_SHIFT 0.05 /* l0 */
+#define ZONE_SHIFT 0.3  /* of the shift, within 1.6 l0 of the surface */
+#define OFF_WALL 0.1    /* l0 */
+#define PAIR 0.5        /* l0: where two particles collide */
+#define OWN_IMAGE 0.7   /* l0: one and its image, .35 l0 from the wall, .. */
+#define IMPACT 0.3      /* (g/l0)^1/2: .. where they approach at this rate */
+
+/* How steep the flow at particle i is, 1 where it is as in breakers. */
+static double steepness(const mps_fluid *f, int64_t i) {
+  const double *G = f->local[i].gradient, s0 = mpsi_fluid_rate(f);
+  const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
+  return s0 > 0.0 ? square / (BREAKING * s0 * s0) : 0.0;
+}
+
+static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
+  const mpsi_fluid_local *local = &f->local[i];
+  double sum[2];
+  f->loops->slope(f, i, sum);
+  if (f->state[i] == MPSI_FLUID_SURFACE) { /* c = |m|/h and e = -m/|m| */
+    const double s = (local->qs - f->q[i]) / (local->h * local->h);
+    sum[0] -= s * local->m[0], sum[1] -= s * local->m[1];
+  }
+  const double *I = local->with_surface;
+  gradient[0] = I[0] * sum[0] + I[1] * sum[1];
+  gradient[1] = I[1] * sum[0] + I[2] * sum[1];
+}
+
+/* Share of smoothing and shift: less near the surface, `least` of them in gentle waves, all where
+ * the flow is as steep as in breakers; round a body's corner it is as steep without breaking. */
+static double near_surface(const mps_fluid *f, int64_t i, double least) {
+  if (!f->zone[i] || !(mpsi_fluid_rate(f) > 0.0)) return 1.0;
+  if (f->company[i] & MPSI_FLUID_NEAR_CORNER) return least;
+  return fmin(1.0, least + steepness(f, i));
+}
+
+/* Part of v that is taken over: of a rough velocity field more, but not where the flow turns around
+ * a corner, which is no linear field however smooth it is. Near the surface less: among neighbours
+ * on one side v is not 0 for the curved field of a wave, which it would damp. Where a wall meets
+ * the surface the water rises by ln r beside it: v is no roughness there either, and what is taken
+ * of it in a step must not grow as the steps get shorter. */
+static double smoothing(const mps_fluid *f, int64_t i) {
+  const mpsi_fluid_local *local = &f->local[i];
+  double steep = 1e-4 * f->g * f->l0, v2 = 0.0;
+  for (int c = 0; c < 4; c++) steep += f->l0 * f->l0 * local->gradient[c] * local->gradient[c];
+  for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
+  const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
+  const bool waterline = f->zone[i] && (f->company[i] & MPSI_FLUID_NEAR_IMAGES);
+  const double time = waterline ? fmin(f->dt * mpsi_fluid_rate(f) / LONGEST_STEP, 1.0) : 1.0;
+  const double rough = steep > 0.0 && !corner ? 2.0 * time * v2 / steep : 0.0;
+  const double part = f->g > 0.0 ? SMOOTH : FREE_SMOOTH;
+  const double a = part * near_surface(f, i, ZONE_SMOOTH) * f->dt * mpsi_fluid_rate(f) + rough;
+  return fmin(a, MOST_SMOOTH);
+}
+
+/* v of the velocity field that sticks to the walls of no slip: there an image moves with the
+ * opposite velocity. */
+static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
+  const mpsi_fluid_local *local = &f->local[i];
+  const int32_t *index = f->index + f->start[i];
+  const float *w = f->w + f->start[i];
+  v[0] = local->rest[0], v[1] = local->rest[1];
+  if (!f->sticky) return;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int64_t j = index[k], ghost = j - f->count;
+    if (ghost < 0 || !(f->flips[ghost] & f->sticky)) continue;
+    double stuck[2] = {f->u[0][j], f->u[1][j]};
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+      const double *N = f->wall[b].normal;
+      if (!(f->flips[ghost] & f->sticky & UINT32_C(1) << b)) continue;
+      const double across = stuck[0] * N[0] + stuck[1] * N[1];
+      for (int c = 0; c < 2; c++) stuck[c] = 2.0 * across * N[c] - stuck[c];
+    }
+    for (int c = 0; c < 2; c++) v[c] += w[k] * (stuck[c] - f->u[c][j]) / local->n;
+  }
+}
+
+static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end) {
+  const double rho = f->def.density, dt = f->dt, nu = f->def.viscosity / rho;
+  for (int64_t i = begin; i < end; i++) {
+    const mpsi_fluid_local *local = &f->local[i];
+    double u[2] = {f->u[0][i], f->u[1][i]};
+    if (f->state[i] == MPSI_FLUID_APART) {
+      for (int c = 0; c < 2; c++) u[c] -= dt * f->g * f->up[c];
+    } else {
+      double gradient[2];
+      pressure_gradient(f, i, gradient);
+      const double a = smoothing(f, i), share = nu * dt * local->n / local->S;
+      double v[2] = {0.0, 0.0};
+      if (share > 0.0) viscous_rest(f, i, v);
+      for (int c = 0; c < 2; c++)
+        u[c] += -dt / rho * gradient[c] + share * v[c] + fmax(a - share, 0.0) * local->rest[c];
+    }
+    for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c];
+  }
+}
+
+/* ---- guards ---------------------------------------------------------------------------------- */
+
+/* Cuts velocities that no neighbour explains. */
+static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  const double allowed = 0.5 * sqrt(f->g * f->l0) + 2.0 * f->g * f->dt;
+  int64_t cuts = 0;
+  for (int64_t i = begin; i < end; i++) {
+    const int32_t *index = f->index + f->start[i];
+    const double u2 = f->u_new[0][i] * f->u_new[0][i] + f->u_new[1][i] * f->u_new[1][i];
+    double most = f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i];
+    const double least = 1.1 * sqrt(most) + allowed;
+    if (f->g == 0.0 || !(u2 > least * least)) continue;
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int32_t j = index[k];
+      const int64_t own = j < f->count ? j : f->parent[j - f->count];
+      most = mpsi_fluid_larger(most, f->u[0][own] * f->u[0][own] + f->u[1][own] * f->u[1][own]);
+    }
+    const double limit = 1.1 * sqrt(most) + allowed;
+    if (!(u2 > limit * limit)) continue;
+    const double factor = limit / sqrt(u2);
+    for (int c = 0; c < 2; c++) f->u_new[c][i] *= factor;
+    cuts++;
+  }
+  f->system.sums[2 * chunk] = (double)cuts;
+}
+
+static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  find_accelerated(f, begin, end);
+  limit_speed(f, begin, end, chunk);
+}
+
+/* The velocity that image j has after the step. */
+static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
+  const int64_t own = f->parent[ghost];
+  v[0] = f->u_new[0][own], v[1] = f->u_new[1][own];
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    if (!(f->flips[ghost] >> b & 1)) continue;
+    const mpsi_fluid_wall *w = &f->wall[b];
+    const double u = mpsi_fluid_of_wall(w, w->next.u, f->x[0][own], f->x[1][own]);
+    const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
+    v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
+  }
+}
+
+/* Pairs that are too close and approach lose half their relative velocity each. A particle and its
+ * own image do so earlier: no gradient of pressure stops it, as its image has its pressure, but the
+ * closer they come the more divergence they show to the neighbours, and the pressure of a thin jet
+ * on a wall rose to 20 rho g H in three steps. The result goes to r and z of the system, free now.
+ */
+static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  const double l02 = f->l0 * f->l0, pair2 = PAIR * PAIR * l02, own2 = OWN_IMAGE * OWN_IMAGE * l02;
+  int64_t collisions = 0;
+  for (int64_t i = begin; i < end; i++) {
+    const int32_t *index = f->index + f->start[i];
+    double u[2] = {f->u_new[0][i], f->u_new[1][i]};
+    const double own[2] = {u[0], u[1]};
+    const int32_t near = f->company[i] & MPSI_FLUID_NEAR_CLOSE ? f->near[i] : 0;
+    for (int32_t k = 0; k < near; k++) {
+      const int32_t j = index[k];
+      const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+      const double r2 = dx * dx + dy * dy;
+      const bool image = j >= f->count && f->parent[j - f->count] == i;
+      if (!(r2 < (image ? own2 : pair2)) || !(r2 > 0.0)) continue;
+      double v[2];
+      if (j < f->count)
+        v[0] = f->u_new[0][j], v[1] = f->u_new[1][j];
+      else
+        image_velocity(f, j - f->count, v);
+      const double approach = (own[0] - v[0]) * dx + (own[1] - v[1]) * dy;
+      if (!(approach > 0.0)) continue;
+      if (!(r2 < pair2 || approach > IMPACT * mpsi_fluid_rate(f) * r2)) continue;
+      u[0] -= 0.5 * approach * dx / r2, u[1] -= 0.5 * approach * dy / r2;
+      collisions++;
+    }
+    f->system.r[i] = u[0], f->system.z[i] = u[1];
+  }
+  f->system.sums[2 * chunk + 1] = (double)collisions;
+}
+
+static void swap(double **a, double **b) {
+  double *const other = *a;
+  *a = *b, *b = other;
+}
+
+void mpsi_fluid_find_velocities(mps_fluid *f) {
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  const bool classical = f->classical.gamma > 0.0;
+  for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
+                 classical ? mpsi_fluid_classical_accelerate : accelerate);
+  mpsi_fluid_tell_near(f, 2, f->u_new);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
+  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  swap(&f->u_new[0], &f->system.r);
+  swap(&f->u_new[1], &f->system.z);
+  for (int64_t k = 0; k < chunks; k++) {
+    f->report.limited += (int64_t)f->system.sums[2 * k];
+    f->report.collisions += (int64_t)f->system.sums[2 * k + 1];
+  }
+}
+
+/* ---- positions ------------------------------------------------------------------------------- */
+
+/* The shift that keeps the particles evenly apart. Along the surface it takes water from crests to
+ * troughs, so it is less there. In an acute corner it is left out: images of images are missing
+ * there, and it would press the particles into the corner. */
+static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
+  shift[0] = shift[1] = 0.0;
+  if (f->state[i] == MPSI_FLUID_APART || (f->company[i] & MPSI_FLUID_NEAR_WEDGE)) return;
+  const double size = SHIFT * f->dt * mpsi_fluid_rate(f) * f->l0;
+  for (int c = 0; c < 2; c++) shift[c] = -size * f->local[i].shift[c];
+  if (f->zone[i]) {
+    const double e[2] = {f->zone_normal[0][i], f->zone_normal[1][i]};
+    const double across = shift[0] * e[0] + shift[1] * e[1];
+    const double least = near_surface(f, i, ZONE_SHIFT);
+    for (int c = 0; c < 2; c++) shift[c] = least * (shift[c] - across * e[c]);
+  }
+  const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1]), most = MOST_SHIFT * f->l0;
+  if (length > most)
+    for (int c = 0; c < 2; c++) shift[c] *= most / length;
+}
+
+/* Share of G f in the velocity of a shifted particle: all in gentle flow, nothing in breakers. G is
+ * that of one side at the root of a jet, and as particles shift into the jet they gain energy by
+ * it: two blocks of 10 x 10 particles that strike ended with .94 of theirs, where .73 is right. */
+static double carried(const mps_fluid *f, int64_t i) { return fmax(1.0 - steepness(f, i), 0.0); }
+
+/* Puts x back to `off` from a wall that is nearer than that, and takes its velocity into the wall.
+ */
+static bool keep_off(const mps_fluid *f, const mpsi_fluid_wall *w, double *x, double *u) {
+  const double d = mpsi_fluid_distance(w, w->next.s, x[0], x[1]), off = OFF_WALL * f->l0;
+  if (d >= off) return false;
+  const double moves = mpsi_fluid_of_wall(w, w->next.u, x[0], x[1]);
+  const double into = u[0] * w->normal[0] + u[1] * w->normal[1] - moves;
+  for (int c = 0; c < 2; c++) {
+    x[c] += (off - d) * w->normal[c];
+    if (into < 0.0) u[c] -= into * w->normal[c];
+  }
+  return true;
+}
+
+static int64_t keep_off_walls(const mps_fluid *f, double *x, double *u) {
+  int64_t pushed = 0;
+  for (int b = 0; f->faces && b < MPSI_FLUID_BODIES; b++) {
+    double d;
+    if (!f->body[b].body) continue;
+    const int face = mpsi_fluid_face_of(f, &f->body[b], true, x, &d);
+    if (d < OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, &f->wall[face], x, u);
+  }
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+    if (f->wall[b].used) pushed += keep_off(f, &f->wall[b], x, u);
+  return pushed;
+}
+
+#define FASTEST 1e100 /* m/s: kinetic energies are numbers */
+
+static bool finite(const double *x, const double *u) {
+  return isfinite(x[0]) && isfinite(x[1]) && fabs(u[0]) <= FASTEST && fabs(u[1]) <= FASTEST;
+}
+
+static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  int64_t pushed = 0;
+  double far2 = 0.0;
+  for (int64_t i = begin; i < end; i++) {
+    double shift[2], x[2], u[2];
+    find_shift(f, i, shift);
+    /* the classical particles have moved by u* already */
+    const bool moved = f->classical.gamma > 0.0;
+    const double *G = f->local[i].gradient, part = carried(f, i);
+    for (int c = 0; c < 2; c++) {
+      x[c] = f->x[c][i] + f->dt * (f->u_new[c][i] - (moved ? f->u[c][i] : 0.0)) + shift[c];
+      u[c] = f->u_new[c][i] + part * (G[2 * c] * shift[0] + G[2 * c + 1] * shift[1]);
+    }
+    pushed += keep_off_walls(f, x, u);
+    mpsi_fluid_rises(f)[i] = mpsi_fluid_rise(f, i);
+    const double way[2] = {x[0] - f->x[0][i], x[1] - f->x[1][i]};
+    const double way2 = way[0] * way[0] + way[1] * way[1];
+    far2 = finite(x, u) ? mpsi_fluid_larger(way2, far2) : (double)INFINITY;
+    for (int c = 0; c < 2; c++) f->x[c][i] = x[c], f->u[c][i] = u[c];
+  }
+  f->system.sums[2 * chunk] = (double)pushed;
+  f->system.sums[2 * chunk + 1] = far2;
+}
+
+/* m: the farthest that a wall goes in the step. */
+static double wall_travel(const mps_fluid *f) {
+  double most = 0.0;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    for (int64_t k = 0; w->used && k < w->nodes; k++)
+      most = fmax(most, fabs(w->next.s[k] - w->now.s[k]));
+  }
+  return most;
+}
+
+int64_t mpsi_fluid_advance(mps_fluid *f) {
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
+  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_tell_all(
+      f, 6,
+      (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure, mpsi_fluid_rises(f)});
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  double far2 = 0.0;
+  for (int64_t k = 0; k < chunks; k++) {
+    f->report.pushed += (int64_t)f->system.sums[2 * k];
+    far2 = fmax(far2, f->system.sums[2 * k + 1]);
+  }
+  f->travel = sqrt(far2) + wall_travel(f);
+  for (int64_t i = 0; far2 == (double)INFINITY && i < f->count; i++) {
+    const double x[2] = {f->x[0][i], f->x[1][i]}, u[2] = {f->u[0][i], f->u[1][i]};
+    if (!finite(x, u)) return i;
+  }
+  return -1;
+}

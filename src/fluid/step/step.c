@@ -1,0 +1,381 @@
+/* step.c - the order of a step, its size, and what goes wrong.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/ranks/share.h"
+
+#include <string.h>
+
+#define SORT_EVERY 32   /* steps */
+#define EVEN_STEPS 32   /* at the end of a run */
+#define LEAST_STEP 1e-4 /* of the step at rest */
+
+/* ---- fields and cloud ------------------------------------------------------------------------ */
+
+static double *column(const mps_fluid *f, const char *name, int32_t component) {
+  return mpsi_particles_column(f->particles, name, component);
+}
+
+static void store_part(mps_fluid *f, int64_t begin, int64_t end, int64_t part) {
+  const size_t bytes = (size_t)(end - begin) * sizeof(double);
+  double *q = column(f, "reduced_pressure", 0), most = 0.0;
+  memcpy(column(f, "surface_rise", 0) + begin, mpsi_fluid_rises(f) + begin, bytes);
+  int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
+  for (int c = 0; c < 2; c++) {
+    memcpy(column(f, "position", c) + begin, f->x[c] + begin, bytes);
+    memcpy(column(f, "velocity", c) + begin, f->u[c] + begin, bytes);
+  }
+  memcpy(column(f, "reduced_pressure_old", 0) + begin, q + begin, bytes);
+  memcpy(q + begin, f->q + begin, bytes);
+  memcpy(column(f, "pressure", 0) + begin, f->pressure + begin, bytes);
+  for (int64_t i = begin; i < end; i++) {
+    surface[i] = f->state[i];
+    most = mpsi_fluid_larger(f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i], most);
+  }
+  f->system.sums[part] = most;
+}
+
+static void store_cloud(mps_fluid *f) {
+  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_COPIED, store_part);
+  f->last_dt = f->dt;
+  f->unknown = 0;
+  double most = 0.0;
+  for (int64_t k = 0; k * MPSI_FLUID_COPIED < f->count; k++)
+    most = mpsi_fluid_larger(f->system.sums[k], most);
+  f->speed = sqrt(most);
+}
+
+/* ---- one step -------------------------------------------------------------------------------- */
+
+static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
+  const long long id = (long long)mpsi_particles_integers(f->particles, "id")[i];
+  const mps_status status = mpsi_fail(
+      f->context, function, MPS_ERROR_DIVERGED,
+      "step %lld, t = %g s: particle %lld at (%g, %g) m moves with (%g, %g) m/s; dt was "
+      "%g s, %.3g of the recommended limit; the step was not made",
+      (long long)f->steps, f->time, id, column(f, "position", 0)[i], column(f, "position", 1)[i],
+      f->u[0][i], f->u[1][i], f->dt, f->dt / mps_fluid_limit(f));
+  mpsi_fail_where(f->context, f->steps, id);
+  return status;
+}
+
+/* Loads and the caller's forces on particles, over the step: the pressure then answers to them. */
+static mps_status add_loads(mps_fluid *f, const char *function) {
+  const mps_status status = mpsi_fluid_find_loads(f, function, f->time);
+  if (status != MPS_OK) return status;
+  f->load_time = f->time;
+  f->driven = f->push[0] != NULL;
+  for (int c = 0; f->driven && c < 2; c++)
+    for (int64_t i = 0; i < f->count; i++) f->u[c][i] += f->dt * f->push[c][i];
+  return MPS_OK;
+}
+
+/* What a step that fails leaves as it was. */
+static void note_state(mps_fluid *f) {
+  f->before = f->report;
+  f->load_time_before = f->load_time;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_body *body = &f->body[b];
+    memcpy(body->rate_before, body->rate, sizeof body->rate);
+    memcpy(body->mass_before, body->mass, sizeof body->mass);
+  }
+}
+
+/* Forgets what was done of a step, if one was begun. */
+static void abandon(mps_fluid *f) {
+  if (f->stage == MPSI_FLUID_BETWEEN) return;
+  f->report = f->before;
+  f->load_time = f->load_time_before;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].load = f->wall[b].before;
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_body *body = &f->body[b];
+    memcpy(body->rate, body->rate_before, sizeof body->rate);
+    memcpy(body->mass, body->mass_before, sizeof body->mass);
+  }
+  f->stage = MPSI_FLUID_BETWEEN;
+  f->stale = true;
+}
+
+/* A step is made in three parts. They read and write the cloud; the fields change when all is
+ * done. Where one fails, the surroundings are found again when they are asked for. */
+static mps_status begin(mps_fluid *f, const char *function, double dt) {
+  mps_status status = mpsi_particles_ready(f->particles, function);
+  if (status == MPS_OK) status = mpsi_fluid_look_ahead(f, function, dt);
+  status = mpsi_fluid_settle(f, function, status);
+  if (status != MPS_OK) return status;
+  f->stage = MPSI_FLUID_BEGUN;
+  f->dt = dt;
+  note_state(f);
+  mpsi_fluid_begin_walls(f, dt);
+  mpsi_fluid_load_cloud(f);
+  status = add_loads(f, function);
+  const bool classical = f->classical.gamma > 0.0;
+  if (!classical)
+    status = mpsi_fluid_look_around(f, function, status);
+  else
+    status = mpsi_fluid_classical_look(f, function, status);
+  return status == MPS_OK ? mpsi_fluid_prepare_pressure(f, function) : status;
+}
+
+static mps_status solve(mps_fluid *f, const char *function) {
+  return mpsi_fluid_any_afloat(f) ? mpsi_fluid_solve_afloat(f, function)
+                                  : mpsi_fluid_solve_pressure(f, function);
+}
+
+static mps_status finish(mps_fluid *f, const char *function) {
+  const mps_status walls = mpsi_fluid_check_walls(f, function);
+  if (walls != MPS_OK) return walls;
+  mpsi_fluid_tell_local(f); /* for the work of loads, and for the surface at walls */
+  mpsi_fluid_find_velocities(f);
+  const int64_t bad = mpsi_fluid_advance(f);
+  const mps_status lost = mpsi_fluid_lost(f, function);
+  if (lost != MPS_OK) return lost;
+  if (bad >= 0) return went_wrong(f, function, bad);
+  f->stage = MPSI_FLUID_MOVED;
+  return mpsi_fluid_load_walls(f, function);
+}
+
+/* After all parts: keeps the new state and sorts it now and then. */
+static mps_status keep(mps_fluid *f, const char *function) {
+  mpsi_fluid_end_walls(f);
+  f->stage = MPSI_FLUID_BETWEEN;
+  mpsi_fluid_add_impulses(f);
+  f->work_loads += mpsi_fluid_work_of_loads(f);
+  store_cloud(f);
+  f->time += f->dt;
+  f->steps++;
+  mpsi_fluid_warn_of_guards(f);
+  mpsi_fluid_warn_of_angles(f);
+  mpsi_fluid_let_go(f);
+  if (f->steps % SORT_EVERY != 0) return MPS_OK;
+  f->stale = true;
+  return mpsi_fluid_sort(f, function);
+}
+
+static mps_status take_step(mps_fluid *f, const char *function, double dt) {
+  mps_status status = begin(f, function, dt);
+  if (status == MPS_OK) status = solve(f, function);
+  if (status == MPS_OK) status = finish(f, function);
+  if (status == MPS_OK) return keep(f, function);
+  abandon(f);
+  return status;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+/* The step that gravity and viscosity allow a fluid at rest, s. */
+static double limit_at_rest(const mps_fluid *f) {
+  double limit = f->g > 0.0 ? 0.1 * sqrt(f->l0 / f->g) : INFINITY;
+  if (f->def.viscosity > 0.0)
+    limit = fmin(limit, 0.2 * f->l0 * f->l0 * f->def.density / f->def.viscosity);
+  return limit;
+}
+
+double mps_fluid_limit(const mps_fluid *f) {
+  if (!f) return 0.0;
+  double limit = limit_at_rest(f);
+  if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 / f->speed);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    double u = fabs(w->rate);
+    for (int64_t k = 0; k < w->nodes; k++) u = fmax(u, fabs(w->now.u[k]));
+    if (u > 0.0) limit = fmin(limit, 0.2 * f->l0 / u);
+  }
+  return limit;
+}
+
+double mps_fluid_dt(const mps_fluid *f) {
+  if (!f) return 0.0;
+  return isnan(f->def.dt) ? mps_fluid_limit(f) : f->def.dt;
+}
+
+double mps_fluid_time(const mps_fluid *f) { return f ? f->time : 0.0; }
+
+int64_t mps_fluid_steps(const mps_fluid *f) { return f ? f->steps : 0; }
+
+/* The library chooses no step below LEAST_STEP of that at rest, or of a thousandth of the run
+ * (`span`, s) where nothing limits that: the fluid has gone astray, and the run would hardly end.
+ */
+static mps_status check_dt(mps_fluid *f, const char *function, double span) {
+  const double dt = mps_fluid_dt(f), rest = limit_at_rest(f);
+  const double least = LEAST_STEP * (isfinite(rest) ? rest : 1e-3 * span);
+  if (isnan(f->def.dt) && isfinite(least) && dt < least)
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_DIVERGED,
+        "step %lld, t = %g s: velocities of %g m/s limit the step to %g s; below %g s it "
+        "is not chosen: give dt",
+        (long long)f->steps, f->time, f->speed, dt, least);
+  if (isfinite(dt)) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                   "nothing limits the step: without gravity and motion, give dt");
+}
+
+/* On one rank, on all. */
+static mps_status ask_cancel(mps_fluid *f, const char *function) {
+  mps_status status = MPS_OK;
+  if (mpsi_cancelled(f->context))
+    status = mpsi_fail(f->context, function, MPS_ERROR_CANCELLED,
+                       "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps,
+                       f->time);
+  return mpsi_fluid_settle(f, function, status);
+}
+
+mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status == MPS_OK && count < 0)
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                       (long long)count);
+  status = mpsi_domain_settle_same(f->def.domain, __func__, status, "count", (double)count);
+  if (status != MPS_OK) return status;
+  mpsi_guard_enter(&f->guard, f->context, __func__);
+  for (int64_t k = 0; k < count && status == MPS_OK; k++) {
+    status = ask_cancel(f, __func__);
+    if (status == MPS_OK) status = check_dt(f, __func__, INFINITY);
+    if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
+  }
+  mpsi_guard_end(&f->guard);
+  return status;
+}
+
+/* ---- a step in parts ------------------------------------------------------------------------- */
+
+mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status == MPS_OK) status = mpsi_fluid_check_dt(f, __func__, dt);
+  if (status != MPS_OK) return status;
+  if (f->classical.gamma > 0.0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
+                     "the classical scheme's steps cannot be made in parts");
+  mpsi_guard_enter(&f->guard, f->context, __func__);
+  status = ask_cancel(f, __func__);
+  if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__, INFINITY);
+  if (status == MPS_OK) {
+    status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
+    if (status != MPS_OK) abandon(f);
+  }
+  mpsi_guard_end(&f->guard);
+  return status;
+}
+
+static mps_status check_stage(mps_fluid *f, const char *function, mpsi_fluid_stage least) {
+  const mps_status status = mpsi_fluid_free(f, function);
+  if (status != MPS_OK || f->stage >= least) return status;
+  return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                   f->stage == MPSI_FLUID_BETWEEN ? "no step is open: begin it first"
+                                                  : "the open step's pressure has not been solved");
+}
+
+mps_status mps_fluid_solve_pressure(mps_fluid *f) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
+  if (status != MPS_OK) return status;
+  mpsi_guard_enter(&f->guard, f->context, __func__);
+  status = mpsi_fluid_settle(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
+  if (status == MPS_OK) {
+    f->stage = MPSI_FLUID_BEGUN;
+    mpsi_fluid_begin_walls(f, f->dt);
+    status = mpsi_fluid_settle_alike(f, __func__, MPS_OK);
+    if (status == MPS_OK) status = solve(f, __func__);
+    f->stage = status == MPS_OK ? MPSI_FLUID_SOLVED : MPSI_FLUID_BEGUN;
+  }
+  mpsi_guard_end(&f->guard);
+  if (status != MPS_OK) return status;
+  status = mpsi_fluid_load_walls(f, __func__);
+  if (status != MPS_OK) f->stage = MPSI_FLUID_BEGUN;
+  return status;
+}
+
+mps_status mps_fluid_end_step(mps_fluid *f) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_stage(f, __func__, MPSI_FLUID_SOLVED);
+  if (status != MPS_OK) return status;
+  status = mpsi_fluid_settle(f, __func__, mpsi_particles_ready(f->particles, __func__));
+  if (status != MPS_OK) return status;
+  status = finish(f, __func__);
+  if (status == MPS_OK) return keep(f, __func__);
+  abandon(f);
+  return status;
+}
+
+mps_status mps_fluid_abandon_step(mps_fluid *f) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
+  if (status != MPS_OK) return status;
+  abandon(f);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
+  return MPS_OK;
+}
+
+/* ---- runs ------------------------------------------------------------------------------------ */
+
+static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
+  if (!callback) return MPS_OK;
+  mpsi_guard_enter(&f->guard, f->context, "the callback of mps_fluid_run");
+  return mpsi_fluid_settle(
+      f, "mps_fluid_run",
+      mpsi_guard_leave(&f->guard, f->context, "mps_fluid_run", callback(user, f)));
+}
+
+/* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a
+ * change of the step shows in the pressure. */
+static double even_step(double rest, double full) {
+  const double steps = ceil(rest / full * (1.0 - 1e-9));
+  return steps > EVEN_STEPS ? full : rest / steps;
+}
+
+/* A run under way. */
+typedef struct run {
+  double start, t_end;
+  int64_t every;
+  mps_fluid_fn callback;
+  void *user;
+} run;
+
+static mps_status march(mps_fluid *f, const char *function, const run *r) {
+  const double slice = 0.01 * (r->t_end - r->start);
+  int64_t done = 0, reported = 0;
+  mps_status status = call_back(f, r->callback, r->user);
+  while (status == MPS_OK && f->time < r->t_end) {
+    status = check_dt(f, function, r->t_end - r->start);
+    if (status != MPS_OK) break;
+    const double rest = r->t_end - f->time, full = mps_fluid_dt(f);
+    const bool last = rest <= full * (1.0 + 1e-9);
+    status = take_step(f, function, last ? rest : even_step(rest, full));
+    if (status != MPS_OK) break;
+    if (last) f->time = r->t_end;
+    done++;
+    if (done % r->every == 0 || last) status = call_back(f, r->callback, r->user);
+    if (last || f->time >= r->start + slice * (double)(reported + 1)) {
+      reported = last ? 100 : (int64_t)((f->time - r->start) / slice);
+      mpsi_progress(f->context, "fluid", f->steps, f->time - r->start, r->t_end - r->start);
+    }
+    if (status == MPS_OK && !last) status = ask_cancel(f, function);
+  }
+  return status;
+}
+
+mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn callback,
+                         void *user) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status == MPS_OK && (!isfinite(t_end) || t_end < f->time || every < 1))
+    status =
+        mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                  "t_end is %g s and every %lld: allowed are times from now, %g s, on, and >= 1",
+                  t_end, (long long)every, f->time);
+  mps_domain *domain = f->def.domain;
+  status = mpsi_domain_settle_same(domain, __func__, status, "t_end", t_end);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle_same(domain, __func__, status, "every", (double)every);
+  if (status == MPS_OK)
+    status =
+        mpsi_domain_settle_same(domain, __func__, status, "having a callback", callback != NULL);
+  if (status != MPS_OK) return status;
+  const run r = {f->time, t_end, every, callback, user};
+  mpsi_guard_enter(&f->guard, f->context, __func__);
+  status = march(f, __func__, &r);
+  mpsi_guard_end(&f->guard);
+  return status;
+}

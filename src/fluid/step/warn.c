@@ -1,0 +1,107 @@
+/* warn.c - what the model assumes and a step may break: walls that go little in a step and bend
+ * little, particles that are fine enough for the flow, bodies that leave room for water above what
+ * they stand on. A step that breaks it is refused, one that comes near says so to the log, once a
+ * solver each, once a body where it is the body's.
+ *
+ * Images are those of the step's beginning, so a wall that goes a spacing passes particles. A bent
+ * wall mirrors at its local position along the normal that it has when plane: the error grows as
+ * the square of the slope.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/fluid_private.h"
+
+#define WARN_FROM 50      /* steps */
+#define MOST_GUARDED 0.01 /* of the particles, in a step on average */
+#define FAR_TRAVEL 0.5    /* l0 a step: above, a warning .. */
+#define MOST_TRAVEL 1.5   /* .. and an error */
+#define FAR_SLOPE 0.1     /* of a bent wall */
+#define MOST_SLOPE 1.0
+
+/* True the first time that this is asked of the solver. */
+static bool first_time(mps_fluid *f, uint32_t warning) {
+  const bool first = !(f->warned & warning);
+  f->warned |= warning;
+  return first;
+}
+
+void mpsi_fluid_warn_of_guards(mps_fluid *f) {
+  const mps_fluid_report *r = &f->report;
+  const double acted = (double)(r->collisions + r->limited + r->pushed);
+  const double share = acted / ((double)f->steps * (double)f->count + 1.0);
+  if (f->steps < WARN_FROM || !(share > MOST_GUARDED) || !first_time(f, MPSI_FLUID_WARNED_GUARDS))
+    return;
+  mpsi_log(f->context, MPS_LOG_WARNING,
+           "step %lld of the fluid: collisions, cut velocities and particles pushed off walls are "
+           "%.1f %% of the particles a step, above %g %%: the flow wants a smaller spacing or step",
+           (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
+}
+
+/* A body that rolls makes with time the acute corners that mpsi_fluid_add_body refuses. */
+void mpsi_fluid_warn_of_angles(mps_fluid *f) {
+  for (int number = 0; f->faces && number < MPSI_FLUID_BODIES; number++) {
+    const mpsi_fluid_body *body = &f->body[number];
+    for (int k = 0; body->body && k < body->faces; k++)
+      for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+        const double angle = mpsi_fluid_angle(f, &f->wall[body->first + k], b);
+        if (angle >= MPSI_FLUID_LEAST_ANGLE ||
+            !first_time(f, (uint32_t)MPSI_FLUID_WARNED_ANGLE << number))
+          continue;
+        mpsi_log(f->context, MPS_LOG_WARNING,
+                 "step %lld of the fluid: edge %d of body %d and boundary %d enclose %.3g degrees "
+                 "of fluid, below the %g degrees that the fluid resolves: pressures in that corner "
+                 "are not to be relied on",
+                 (long long)f->steps, k, number, b, angle, MPSI_FLUID_LEAST_ANGLE);
+      }
+  }
+}
+
+/* The farthest that a node of the wall goes in the step, m. */
+static double travel_of(const mpsi_fluid_wall *w) {
+  double most = 0.0;
+  for (int64_t k = 0; k < w->nodes; k++) most = fmax(most, fabs(w->next.s[k] - w->now.s[k]));
+  return most;
+}
+
+/* The steepest slope of a bent wall at the end of the step. Faces are straight. */
+static double slope_of(const mpsi_fluid_wall *w) {
+  double most = 0.0;
+  for (int64_t k = 1; !w->of_body && k < w->nodes; k++)
+    most = fmax(most, fabs(w->next.s[k] - w->next.s[k - 1]) / (w->node[k] - w->node[k - 1]));
+  return most;
+}
+
+/* "boundary 2" or "body 0", of a message. */
+static const char *kind_of(const mpsi_fluid_wall *w) { return w->of_body ? "body" : "boundary"; }
+
+mps_status mpsi_fluid_check_walls(mps_fluid *f, const char *function) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    const int number = w->of_body ? w->of_body - 1 : b;
+    const double travel = travel_of(w), slope = slope_of(w);
+    if (!(travel <= MOST_TRAVEL * f->l0))
+      return mpsi_fail(
+          f->context, function, MPS_ERROR_DIVERGED,
+          "step %lld, t = %g s: %s %d goes %g m in the step of %g s, allowed is %g l0 = %g "
+          "m; the step is not made",
+          (long long)f->steps, f->time, kind_of(w), number, travel, f->dt, MOST_TRAVEL,
+          MOST_TRAVEL * f->l0);
+    if (!(slope <= MOST_SLOPE))
+      return mpsi_fail(
+          f->context, function, MPS_ERROR_DIVERGED,
+          "step %lld, t = %g s: boundary %d bends to a slope of %g, allowed is %g: walls "
+          "bend little; the step is not made",
+          (long long)f->steps, f->time, b, slope, MOST_SLOPE);
+    if (travel > FAR_TRAVEL * f->l0 && first_time(f, MPSI_FLUID_WARNED_TRAVEL))
+      mpsi_log(f->context, MPS_LOG_WARNING,
+               "step %lld of the fluid: %s %d goes %g m in the step of %g s, more than half the "
+               "spacing of %g m: the pressure there wants a smaller step",
+               (long long)f->steps, kind_of(w), number, travel, f->dt, f->l0);
+    if (slope > FAR_SLOPE && first_time(f, MPSI_FLUID_WARNED_SLOPE))
+      mpsi_log(
+          f->context, MPS_LOG_WARNING,
+          "step %lld of the fluid: boundary %d bends to a slope of %g, above %g: its images are "
+          "those of walls that bend little",
+          (long long)f->steps, b, slope, FAR_SLOPE);
+  }
+  return MPS_OK;
+}

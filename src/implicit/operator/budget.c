@@ -1,0 +1,108 @@
+/* budget.c - energies and works (mps/solver.h, mps_totals).
+ *
+ * In a step from u, v to u', v' the forces do work with the mean of their values before and after
+ * it, over du = u' - u. With Newmark's average acceleration, M (a + a')/2 . du is the change of
+ * kinetic energy of what is free, so that the equations of motion at both ends, taken times du, are
+ * the budget. What is prescribed gains its kinetic energy from its boundary.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "implicit/elastic_private.h"
+
+#include <string.h>
+
+static double kinetic_energy(const mps_elastic *e, const double *v) {
+  double sum = 0.0;
+  for (int64_t k = 0; k < e->n * e->dim; k++) sum += 0.5 * e->mass[k / e->dim] * v[k] * v[k];
+  return sum;
+}
+
+mps_status mpsi_elastic_strain_energy(mps_elastic *e, const char *function, double *out) {
+  const mps_status status = mpsi_elastic_apply(e, function, e->displacement, e->work);
+  *out = 0.0;
+  for (int64_t k = 0; k < e->n * e->dim; k++) *out += 0.5 * e->displacement[k] * e->work[k];
+  return status;
+}
+
+mps_status mpsi_elastic_note_strain(mps_elastic *e, const char *function) {
+  mpsi_elastic_motion *m = e->motion;
+  int64_t now[2];
+  if (!m) return MPS_OK;
+  mpsi_elastic_find_fabric(e, now);
+  if (now[MPSI_FABRIC_MODULI] != m->fabric[MPSI_FABRIC_MODULI])
+    return MPS_OK; /* of the first of several changes */
+  const mps_status status = mpsi_elastic_strain_energy(e, function, &m->strain);
+  m->strain_known = status == MPS_OK;
+  return status;
+}
+
+mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function) {
+  e->ledger = (mpsi_ledger){.kinetic = kinetic_energy(e, e->motion->velocity)};
+  return mpsi_elastic_strain_energy(e, function, &e->ledger.strain);
+}
+
+void mpsi_elastic_count_solution(mps_elastic *e) {
+  const int64_t all = e->n * e->dim;
+  e->ledger = (mpsi_ledger){.loads = 0.0};
+  for (int64_t k = 0; k < all; k++) {
+    e->ledger.loads += 0.5 * e->load[k] * e->displacement[k];
+    e->work[k] = 0.5 * e->reaction[k];
+  }
+  mpsi_elastic_forget_reactions(e);
+  e->ledger.boundaries = mpsi_elastic_count_work(e, e->work, e->displacement, NULL, NULL);
+  mpsi_elastic_count_reactions(e, 0.0);
+}
+
+void mpsi_elastic_count_step(mps_elastic *e, const double *u, const double *v, const double *inner,
+                             const double *held) {
+  mpsi_elastic_motion *m = e->motion;
+  mpsi_ledger *l = &e->ledger;
+  double *du = e->work, *mean = m->scratch;
+  for (int64_t k = 0; k < e->n * e->dim; k++) {
+    du[k] = u[k] - e->displacement[k];
+    mean[k] = 0.5 * (held[k] + m->held[k]);
+    l->loads += 0.5 * (e->load[k] + m->force[k]) * du[k];
+    l->inner += 0.5 * (inner[k] + m->inner[k]) * du[k];
+    l->mass_damping += 0.5 * m->a0 * e->mass[k / e->dim] * (v[k] + m->velocity[k]) * du[k];
+  }
+  l->boundaries += mpsi_elastic_count_work(e, mean, du, m->velocity, v);
+}
+
+static void sum_momenta(const mps_elastic *e, mps_totals *t) {
+  for (int64_t i = 0; i < e->n; i++) {
+    double x[3] = {0.0, 0.0, 0.0}, p[3] = {0.0, 0.0, 0.0};
+    t->volume += e->volume[i];
+    if (e->mass) t->mass += e->mass[i];
+    for (int c = 0; e->motion && c < e->dim; c++) {
+      x[c] = e->x[i * e->dim + c] + e->displacement[i * e->dim + c];
+      p[c] = e->mass[i] * e->motion->velocity[i * e->dim + c];
+    }
+    for (int c = 0; c < 3; c++) {
+      const int a = (c + 1) % 3, b = (c + 2) % 3;
+      t->linear[c] += p[c];
+      t->angular[c] += x[a] * p[b] - x[b] * p[a];
+    }
+  }
+}
+
+mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out, size_t size) {
+  static const char function[] = "mps_elastic_get_totals";
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_check_between(e, function);
+  if (status != MPS_OK) return status;
+  const mpsi_elastic_motion *m = e->motion;
+  const mpsi_ledger *l = &e->ledger;
+  mps_totals t = {.work_loads = l->loads, .work_boundaries = l->boundaries};
+  sum_momenta(e, &t);
+  const bool agreed = mpsi_elastic_begin_reading(e);
+  status = mpsi_elastic_strain_energy(e, function, &t.strain);
+  e->agreed = agreed;
+  if (status != MPS_OK) return status;
+  if (m) {
+    t.kinetic = kinetic_energy(e, m->velocity);
+    const double kept = mpsi_elastic_former_strain(e, t.strain) - l->strain;
+    const double damping = l->mass_damping + (m->a1 > 0.0 ? l->inner - kept : 0.0);
+    if (!m->conserving)
+      t.scheme = l->loads + l->boundaries - damping - kept - (t.kinetic - l->kinetic);
+    t.dissipated = damping + t.scheme;
+  }
+  return mpsi_out_write(e->context, function, out, size, &t, sizeof t);
+}

@@ -1,0 +1,269 @@
+/* energy.c - see energy.h. Within a block sums go in their order, over blocks they are exact.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "body/rotation.h"
+#include "mpm/contact/particle.h"
+#include "kernels.h"
+
+#include <string.h>
+
+void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy) {
+  if (mpm->energy.counts) mpsi_exact_add(&mpm->energy.step[which], energy);
+}
+
+void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy) {
+  if (mpm->energy.counts) mpsi_exact_add(&mpm->energy.sum[which], energy);
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static mpsi_cell_energy *of_cells(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  return &mpm->energy.cells[cells - mpm->grid.cells];
+}
+
+static double kinetic_of(const mps_mpm *mpm, int64_t begin, int64_t end) {
+  const mpsi_columns *p = &mpm->p;
+  double sum = 0.0;
+  for (int64_t k = begin; k < end; k++)
+    for (int c = 0; c < mpm->dim; c++) sum += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
+  return sum;
+}
+
+void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
+                            int64_t end) {
+  of_cells(mpm, cells)->kinetic_before += kinetic_of(mpm, begin, end);
+}
+
+void mpsi_mpm_energy_after(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  of_cells(mpm, cells)->kinetic += kinetic_of(mpm, begin, end);
+}
+
+/* Column of the velocity gradient and of the stress of d(v_a)/d(x_b). */
+static int gradient_column(int dim, int a, int b) { return dim * a + b; }
+static int stress_column(int a, int b) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  return symmetric[a][b];
+}
+
+void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  const mpsi_columns *p = &mpm->p;
+  const int dim = mpm->dim;
+  double loads = 0.0, stresses = 0.0;
+  for (int64_t k = begin; k < end; k++) {
+    double power = 0.0;
+    for (int a = 0; a < dim; a++) {
+      loads += (p->m[k] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][k] : 0.0)) * p->v[a][k];
+      for (int b = 0; b < dim; b++)
+        power += p->s[stress_column(a, b)][k] * p->L[gradient_column(dim, a, b)][k];
+    }
+    if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
+    stresses += p->V[k] * power;
+  }
+  of_cells(mpm, cells)->loads += mpm->run.dt * loads;
+  of_cells(mpm, cells)->stresses += mpm->run.dt * stresses;
+}
+
+void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
+                                const double *v) {
+  const mpsi_columns *p = &mpm->p;
+  double power = 0.0;
+  for (int a = 0; a < mpm->dim; a++)
+    power += (p->m[particle] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][particle] : 0.0)) * v[a];
+  if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC)
+    power -= p->V[particle] * p->s[2][particle] * v[0] / p->x[0][particle];
+  of_cells(mpm, cells)->returned += mpm->run.dt * power;
+}
+
+void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out) {
+  const size_t bytes = (size_t)(end - begin) * sizeof(double);
+  for (int c = 0; c < 2 * mpm->dim; c++) memcpy(out->stress[c], mpm->p.s[c] + begin, bytes);
+  memcpy(out->volume, mpm->p.V + begin, bytes);
+}
+
+/* Recoverable energy (J/m3) of an isotropic elastic solid by its stress. */
+static double elastic_energy(const double *s, double bulk, double shear) {
+  const double trace = s[0] + s[1] + s[2], mean = trace / 3.0;
+  const double a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
+  const double square = a * a + b * b + c * c + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+  return trace * mean / (6.0 * bulk) + square / (4.0 * shear);
+}
+
+/* sum of V sigma_ab d_ab over the step, trapezoidal in V sigma; `trace`: that of its mean stress.
+ */
+static double stress_work(const mps_material_block *block, int64_t k, const double *s0,
+                          const double *s1, double V0, double V1, double *trace) {
+  double mean[6], work = 0.0, rate = 0.0;
+  for (int c = 0; c < 6; c++) mean[c] = 0.5 * (V0 * s0[c] + V1 * s1[c]);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      const double *L = block->gradient[3 * a + b];
+      if (L) work += mean[stress_column(a, b)] * L[k];
+      if (L && a == b) rate += L[k];
+    }
+  *trace = block->dt * rate * (mean[0] + mean[1] + mean[2]) / 3.0;
+  return block->dt * work;
+}
+
+void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+                         const mps_material_block *block, const mpsi_before_law *before,
+                         int64_t begin) {
+  const mpsi_columns *p = &mpm->p;
+  const mpsi_kept kept = mpsi_material_kept(law->material);
+  const double shear = mpsi_material_shear(law->material), bulk = law->modulus - 4.0 / 3.0 * shear;
+  mpsi_cell_energy *sum = of_cells(mpm, cells);
+  for (int64_t k = 0; k < block->count; k++) {
+    double s0[6] = {0.0}, s1[6] = {0.0}, trace;
+    for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k], s1[c] = p->s[c][begin + k];
+    const double V0 = before->volume[k], V1 = p->V[begin + k];
+    sum->seen += stress_work(block, k, s0, s0, V0, V0, &trace);
+    const double work = stress_work(block, k, s0, s1, V0, V1, &trace);
+    double stays = work;
+    if (kept == MPSI_KEPT_PRESSURE)
+      stays = trace;
+    else if (kept == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
+      stays = 0.5 * (V0 + V1) * (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear));
+    sum->kept += stays;
+    sum->spent += work - stays;
+  }
+}
+
+void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
+                              const mpsi_before_law *before, int64_t begin, int64_t end) {
+  const mpsi_columns *p = &mpm->p;
+  mpsi_cell_energy *sum = of_cells(mpm, cells);
+  for (int64_t k = begin; k < end; k++) {
+    double s0[6] = {0.0}, s1[6] = {0.0}, wave, shear;
+    if (!mpsi_law_of(mpm, k)->opens) continue;
+    mpsi_mpm_elastic(mpm, k, &wave, &shear);
+    for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k - begin], s1[c] = p->s[c][k];
+    const double bulk = wave - 4.0 / 3.0 * shear, V = 0.5 * (before->volume[k - begin] + p->V[k]);
+    const double lost = V * (elastic_energy(s0, bulk, shear) - elastic_energy(s1, bulk, shear));
+    sum->smoothed += lost;
+  }
+}
+
+/* ---- nodes ----------------------------------------------------------------------------------- */
+
+/* Work of all bodies on node k with the velocity v. */
+static void count_contact(const mps_mpm *mpm, const mpsi_node_block *nodes, int k, const double *v,
+                          mpsi_node_energy *out) {
+  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
+    const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
+    const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
+    if (at->mass == 0.0) continue;
+    out->normal += mpm->run.dt * mpsi_dot3(at->force, v);
+    if (mpm->contact.handle[pair->body]->def.friction == 0.0 || pair->mass == 0.0) continue;
+    double x[3], surface[3], f[3];
+    mpsi_node_place(mpm, nodes->at, k, x);
+    mpsi_body_velocity(&mpm->contact.body[pair->body]->pose, x, surface);
+    for (int c = 0; c < 3; c++) f[c] = mpm->run.dt * at->mass * at->slip[c];
+    out->friction += mpsi_dot3(f, v);
+    out->surface += mpsi_dot3(f, surface);
+  }
+}
+
+void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held,
+                           const mpsi_node *damped) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
+  const mpsi_node *side = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+  mpsi_node_energy sum = {0};
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    const double m = node[k][MPSI_MASS], *v = node[k] + MPSI_VECTOR;
+    const double *before = side[k] + MPSI_VECTOR;
+    if (!(m > 0.0)) continue;
+    for (int c = 0; c < 3; c++) {
+      sum.kinetic_before += 0.5 * m * before[c] * before[c];
+      sum.kinetic += 0.5 * m * v[c] * v[c];
+      sum.jump += 0.5 * m * (v[c] - before[c]) * (v[c] - before[c]);
+      sum.holds += m * (damped[k][MPSI_VECTOR + c] - held[k][MPSI_VECTOR + c]) * v[c];
+      sum.damping += m * (v[c] - damped[k][MPSI_VECTOR + c]) * v[c];
+    }
+    count_contact(mpm, nodes, k, v, &sum);
+  }
+  mpm->energy.nodes[g] = sum;
+}
+
+/* ---- springs of contacts ----------------------------------------------------------------------
+ */
+
+/* Half the normal force times the depth that it comes from, of all that touches: `sign` times that
+ * is what the springs have now, and the bodies' work on them less. */
+static void add_springs(mps_mpm *mpm, double sign) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const mps_contact *contact = mpm->contact.handle[b];
+    if (mpsi_by_impulses(contact)) continue;
+    for (int64_t k = 0; k < mpm->p.count; k++) {
+      mpsi_contact_particle c;
+      double x[3] = {0.0};
+      for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
+      if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
+          !mpsi_find_contact(mpm, contact, mpm->dim, k, &c))
+        continue;
+      const double energy =
+          sign * 0.5 * sqrt(mpsi_dot3(c.force, c.force)) * (c.depth + contact->def.offset);
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPRINGS, energy);
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, -energy);
+    }
+  }
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function) {
+  mpsi_energy *e = &mpm->energy;
+  if (!e->counts) return MPS_OK;
+  const int64_t cells = mpm->grid.cell_count, nodes = mpsi_all_nodes(&mpm->grid);
+  if (!mpsi_room_ensure(mpm->context, &e->cells_room, cells, sizeof *e->cells) ||
+      !mpsi_room_ensure(mpm->context, &e->nodes_room, nodes, sizeof *e->nodes))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)cells * sizeof *e->cells + (size_t)nodes * sizeof *e->nodes);
+  e->cells = e->cells_room.item;
+  e->nodes = e->nodes_room.item;
+  if (cells > 0) memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
+  if (nodes > 0) memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
+  memset(e->step, 0, sizeof e->step);
+  add_springs(mpm, -1.0);
+  return MPS_OK;
+}
+
+static void add_cells(mps_mpm *mpm) {
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_energy *e = &mpm->energy.cells[b];
+    if (mpm->grid.cells[b].ghost) continue;
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic + e->returned);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->kept - e->smoothed);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPENT, e->spent + e->smoothed);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_LOADS, e->loads);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->seen - e->kept - e->spent);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STRAIN, e->stresses - e->seen);
+  }
+}
+
+/* Of the bodies' work that is not by friction or on nodes, the springs have some. */
+static void add_nodes(mps_mpm *mpm) {
+  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
+    const mpsi_node_energy *e = &mpm->energy.nodes[g];
+    if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) continue;
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic - e->kinetic_before);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->jump - e->surface - e->normal);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, -e->holds);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_FRICTION_LOSS, e->surface - e->friction);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_DAMPING_LOSS, -e->damping);
+  }
+}
+
+void mpsi_mpm_energy_end(mps_mpm *mpm) {
+  mpsi_energy *e = &mpm->energy;
+  const double bodies = e->bodies; /* all ranks know it: one counts it */
+  e->work_bodies += bodies;
+  e->bodies = 0.0;
+  if (!e->counts) return;
+  add_cells(mpm);
+  add_nodes(mpm);
+  add_springs(mpm, 1.0);
+  if (!mpm->share || mps_domain_rank(mpm->share->domain) == 0)
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, bodies);
+  for (int k = 0; k < MPSI_ENERGY_SUMS; k++) mpsi_exact_merge(&e->sum[k], &e->step[k]);
+}

@@ -1,0 +1,110 @@
+/* energy.h - the energy budget of WLS-MPM: what each part of a step does to the energy, measured
+ * where it happens, so that the sum is a check. With nodes i, particles p, the velocities v before
+ * and v' after a step, and J the impulses on a node,
+ *
+ *   sum m_i (v'_i - v_i) . v'_i = sum J_i . v'_i,
+ *
+ * so all works are those of the velocity at the end, with which particles move. The left side is
+ * the change of kinetic energy of the nodes and half of sum m |v' - v|^2, which an explicit step
+ * loses. On the right the works of stresses and loads are found at the particles (G2P is the
+ * adjoint of P2G), those of contacts and boundaries at the nodes. What the transfers take is the
+ * kinetic energy of the particles less that of the nodes, before and after.
+ *
+ * Sums over blocks, particles and ranks are exact: they do not depend on who has what. On several
+ * ranks each has its part of them.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_ENERGY_H
+#define MPSI_MPM_ENERGY_H
+
+#include "mpm/grid/blocks.h"
+#include "mpm/particles/laws.h"
+#include "core/base/exact.h"
+#include "core/base/room.h"
+
+/* J, of the step being made, of the particles of a block of cells. */
+typedef struct mpsi_cell_energy {
+  double kinetic_before, kinetic;
+  double loads;    /* work of gravity, loads and fields of forces */
+  double returned; /* its part by the velocities that light nodes give back (least_squares.c) */
+  double stresses; /* work of the nodes against the stresses at the beginning of the step */
+  double seen;     /* the same by the gradient that the laws see */
+  double kept;     /* work against the mean stresses of the step that the laws keep */
+  double spent;    /* the rest of that: plasticity, viscosity */
+  double smoothed; /* elastic energy that the smoothing of frictional stresses takes */
+} mpsi_cell_energy;
+
+/* Likewise of a block of nodes. */
+typedef struct mpsi_node_energy {
+  double kinetic_before, kinetic;
+  double jump;     /* half of m |v' - v|^2 */
+  double normal;   /* work of the normal forces of bodies */
+  double friction; /* work of their friction on the nodes */
+  double surface;  /* the same force times the velocity of the bodies */
+  double holds;    /* work of the boundaries' impulses on the nodes */
+  double damping;  /* work of damping */
+} mpsi_node_energy;
+
+/* J, since creation. */
+typedef enum mpsi_energy_sum {
+  MPSI_ENERGY_KINETIC, /* change */
+  MPSI_ENERGY_KEPT,
+  MPSI_ENERGY_SPENT,
+  MPSI_ENERGY_SPRINGS,
+  MPSI_ENERGY_LOADS, /* works */
+  MPSI_ENERGY_BOUNDARIES,
+  MPSI_ENERGY_BOUNDARY_LOSS,
+  MPSI_ENERGY_FRICTION_LOSS,
+  MPSI_ENERGY_DAMPING_LOSS,
+  MPSI_ENERGY_TRANSFER,
+  MPSI_ENERGY_STEPPING,
+  MPSI_ENERGY_STRAIN,
+  MPSI_ENERGY_SUMS
+} mpsi_energy_sum;
+
+typedef struct mpsi_energy {
+  bool counts; /* the definition asks for the budget */
+  mpsi_cell_energy *cells;
+  mpsi_node_energy *nodes;
+  mpsi_exact sum[MPSI_ENERGY_SUMS];
+  mpsi_exact step[MPSI_ENERGY_SUMS]; /* of the step being made, which may fail */
+  double work_bodies;                /* J, since creation, the same on all ranks; */
+  double bodies;                     /* and of the step being made */
+  mpsi_room cells_room, nodes_room;
+} mpsi_energy;
+
+/* What mpsi_mpm_energy_law needs of a run of particles from before their law. */
+typedef struct mpsi_before_law {
+  double stress[6][64], volume[64];
+} mpsi_before_law;
+
+/* Where the budget is wanted: to the step being made, or (at once) to what has been. */
+void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy);
+void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy);
+/* Before the step: room, and the springs. */
+mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
+/* Particles [begin, end) of a block: kinetic energy before and after G2P, the latter before lists
+ * of held particles get theirs (walls.c), though with means the laws come later than these. */
+void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_energy_after(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+/* Works of loads and stresses by the velocities of the nodes. */
+void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+/* Of a particle: `v`, the part of its new velocity that light nodes give back. The nodes' forces do
+ * no work by it, as the fit knows nothing of it. */
+void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
+                                const double *v);
+/* Particles of one law, at most 64 of them: before it, and after. */
+void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out);
+void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+                         const mps_material_block *block, const mpsi_before_law *before,
+                         int64_t begin);
+/* Frictional particles from `begin` on, as many, whose stresses were smoothed after their law
+ * (volumetric.c) and had been those of `before`: what their elastic energy loses is spent. */
+void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
+                              const mpsi_before_law *before, int64_t begin, int64_t end);
+/* Nodes of block g, all forces known: `held` has their velocities before the boundaries, `damped`
+ * those before damping. */
+void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held, const mpsi_node *damped);
+/* After the step: adds it to the sums. */
+void mpsi_mpm_energy_end(mps_mpm *mpm);
+
+#endif

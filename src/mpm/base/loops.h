@@ -1,0 +1,298 @@
+/* loops.h - what the inner loops share: vectors of nodes, tiles, and chunks of particles. For the
+ * files that are compiled once for each instruction set, with MPSI_LEVEL set.
+ *
+ * A node is four doubles {m, x, y, z}. A row of a stencil, its four nodes along x, is one array of
+ * vectors of MPSI_WIDE nodes each. A particle gives its nodes a linear function of s, which along a
+ * row is w_j w_k w_i (B + s_i D) with B and D common to the row: two multiply-adds a node and all
+ * four quantities at once (they are fused where the processor can: these files, unlike the others,
+ * allow it).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_LOOPS_H
+#define MPSI_MPM_LOOPS_H
+
+#include "kernels.h"
+
+#include <string.h>
+
+#define MPSI_JOIN_(a, b) a##b
+#define MPSI_JOIN(a, b) MPSI_JOIN_(a, b)
+#define MPSI_LEVELLED(name) MPSI_JOIN(name##_v, MPSI_LEVEL)
+#define MPSI_SIMD _Pragma("omp simd")
+#define MPSI_UNROLL _Pragma("GCC unroll 4")
+
+#define MPSI_VARIANTS(X)                                                                           \
+  X(plane_strain, cubic, MPS_MPM_PLANE_STRAIN, 3)                                                  \
+  X(plane_strain, quadratic, MPS_MPM_PLANE_STRAIN, 2)                                              \
+  X(axisymmetric, cubic, MPS_MPM_AXISYMMETRIC, 3)                                                  \
+  X(axisymmetric, quadratic, MPS_MPM_AXISYMMETRIC, 2)                                              \
+  X(space, cubic, MPS_MPM_SPACE, 3)                                                                \
+  X(space, quadratic, MPS_MPM_SPACE, 2)
+
+MPSI_INLINE int mpsi_dim_of(int geometry) { return geometry == MPS_MPM_SPACE ? 3 : 2; }
+
+/* ---- vectors --------------------------------------------------------------------------------- */
+
+typedef double mpsi_quad __attribute__((vector_size(32)));
+typedef double mpsi_quad_any __attribute__((vector_size(32), aligned(8), may_alias));
+typedef int32_t mpsi_index __attribute__((vector_size(16)));
+#if MPSI_LEVEL == 4
+#define MPSI_WIDE 2
+typedef double mpsi_vec __attribute__((vector_size(64)));
+typedef double mpsi_vec_any __attribute__((vector_size(64), aligned(8), may_alias));
+#else
+#define MPSI_WIDE 1
+typedef mpsi_quad mpsi_vec;
+typedef mpsi_quad_any mpsi_vec_any;
+#endif
+#define MPSI_ROW (4 / MPSI_WIDE) /* vectors in a row */
+
+MPSI_INLINE mpsi_quad mpsi_get(const double *from) { return *(const mpsi_quad_any *)from; }
+MPSI_INLINE void mpsi_put(double *to, mpsi_quad v) { *(mpsi_quad_any *)to = v; }
+MPSI_INLINE mpsi_vec mpsi_get_row(const double *from) { return *(const mpsi_vec_any *)from; }
+MPSI_INLINE void mpsi_put_row(double *to, mpsi_vec v) { *(mpsi_vec_any *)to = v; }
+
+typedef int64_t mpsi_mask __attribute__((vector_size(32))); /* of comparisons: 0 or -1 */
+#ifdef __clang__
+#define MPSI_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define MPSI_SHUFFLE_WIDE MPSI_SHUFFLE
+#else
+typedef int64_t mpsi_mask_wide __attribute__((vector_size(64)));
+#define MPSI_SHUFFLE_WIDE(a, b, ...) __builtin_shuffle(a, b, (mpsi_mask_wide){__VA_ARGS__})
+#define MPSI_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (mpsi_mask){__VA_ARGS__})
+#endif
+
+/* Rows to columns. */
+MPSI_INLINE void mpsi_transpose(mpsi_quad *a) {
+  const mpsi_quad p = MPSI_SHUFFLE(a[0], a[1], 0, 4, 2, 6),
+                  q = MPSI_SHUFFLE(a[0], a[1], 1, 5, 3, 7);
+  const mpsi_quad r = MPSI_SHUFFLE(a[2], a[3], 0, 4, 2, 6),
+                  s = MPSI_SHUFFLE(a[2], a[3], 1, 5, 3, 7);
+  a[0] = MPSI_SHUFFLE(p, r, 0, 1, 4, 5);
+  a[1] = MPSI_SHUFFLE(q, s, 0, 1, 4, 5);
+  a[2] = MPSI_SHUFFLE(p, r, 2, 3, 6, 7);
+  a[3] = MPSI_SHUFFLE(q, s, 2, 3, 6, 7);
+}
+
+/* The same node values for every node of a vector. */
+MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
+#if MPSI_WIDE == 2
+  return (mpsi_vec){a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3]};
+#else
+  return a;
+#endif
+}
+
+/* Inverse of a symmetric positive definite matrix by Gauss and Jordan; returns its determinant.
+ * Rows are vectors: what is written by parts and read whole would wait for the memory. */
+MPSI_INLINE double mpsi_invert(int n, double m[4][4]) {
+  double determinant = 1.0;
+  mpsi_quad row[4] = {{0.0}};
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < 4; j++) row[i][j] = j >= n ? 0.0 : j < i ? m[j][i] : m[i][j];
+  MPSI_UNROLL for (int p = 0; p < n; p++) {
+    const double pivot = row[p][p];
+    determinant *= pivot;
+    row[p][p] = 1.0;
+    row[p] *= 1.0 / pivot;
+    MPSI_UNROLL for (int i = 0; i < n; i++) {
+      if (i == p) continue;
+      const double factor = row[i][p];
+      row[i][p] = 0.0;
+      row[i] -= factor * row[p];
+    }
+  }
+  for (int i = 0; i < n; i++) mpsi_put(m[i], row[i]);
+  return determinant;
+}
+
+/* c[i], and c[i + 1], ..., for all values of the nodes from i in a vector. */
+MPSI_INLINE mpsi_vec mpsi_by_node(const double *c, int i) {
+#if MPSI_WIDE == 2
+  return (mpsi_vec){c[i], c[i], c[i], c[i], c[i + 1], c[i + 1], c[i + 1], c[i + 1]};
+#else
+  return (mpsi_vec){c[i], c[i], c[i], c[i]};
+#endif
+}
+
+/* As many particles of a stencil at once. */
+#if MPSI_LEVEL == 4
+#define MPSI_LANES 8
+#else
+#define MPSI_LANES 4
+#endif
+typedef double mpsi_lanes __attribute__((vector_size(8 * MPSI_LANES)));
+typedef double mpsi_lanes_any __attribute__((vector_size(8 * MPSI_LANES), aligned(8), may_alias));
+MPSI_INLINE mpsi_lanes mpsi_get_lanes(const double *from) { return *(const mpsi_lanes_any *)from; }
+MPSI_INLINE void mpsi_put_lanes(double *to, mpsi_lanes v) { *(mpsi_lanes_any *)to = v; }
+
+/* The derivative of a B-spline is the fit's slope w s/m2 and, times `excess`, the difference of
+ * second (quadratic) or third order (cubic) of the nodes of its stencil: sums of differences serve
+ * all particles of a stencil. t as of mpsi_weights. */
+MPSI_INLINE mpsi_lanes mpsi_excess(int spline, mpsi_lanes t) {
+  const mpsi_lanes f = t - 1.0, g = 2.0 - t;
+  return spline == 3 ? 0.5 * (f * f) * (g * g) : 2.0 * f * (f * f - 0.25);
+}
+
+MPSI_INLINE double mpsi_difference(int spline, int i) {
+  static const double second[4] = {1.0, -2.0, 1.0, 0.0}, third[4] = {-1.0, 3.0, -3.0, 1.0};
+  return spline == 3 ? third[i] : second[i];
+}
+
+/* ---- chunks of particles --------------------------------------------------------------------- */
+
+#define MPSI_SEGMENT 16 /* particles of one stencil at most that are summed at once */
+
+#define MPSI_COLUMN (MPSI_CHUNK + 8) /* some from any particle of a chunk on are there */
+
+/* Where the particles of a chunk are in the tile. */
+typedef struct mpsi_places {
+  double t[3][MPSI_COLUMN];                           /* from the lowest node */
+  double w[3][4][MPSI_COLUMN], ws[3][4][MPSI_COLUMN]; /* w, w s of each axis */
+  int32_t first[MPSI_CHUNK];                          /* lowest node */
+} mpsi_places;
+
+/* The weights along x of each particle, of the four nodes of a row side by side. */
+typedef struct mpsi_rows {
+  double w[MPSI_CHUNK][4], ws[MPSI_CHUNK][4];
+} mpsi_rows;
+
+/* The first `n` values (at least 1), if fewer than four with the first again: what comes after may
+ * be at work elsewhere, and 0 may be far from the block. */
+MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
+  if (n >= 4) return mpsi_get(from);
+  mpsi_quad out = {from[0], from[0], from[0], from[0]};
+  for (int i = 1; i < n; i++) out[i] = from[i];
+  return out;
+}
+
+/* Cells from the block's first node to four particles at x, along axis c. */
+MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cell_block *cells, int c,
+                                      mpsi_quad x) {
+  return (x - mpm->def.origin[c]) * mpm->grid.inverse - (double)cells->at[c] * MPSI_SIDE;
+}
+
+/* Weights of four particles along one axis. */
+MPSI_INLINE void mpsi_lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
+  const mpsi_quad f = t - 1.0, g = 2.0 - t;
+  if (spline == 3) {
+    w[0] = g * g * g * (1.0 / 6.0);
+    w[1] = 2.0 / 3.0 + f * f * (0.5 * f - 1.0);
+    w[2] = 2.0 / 3.0 + g * g * (0.5 * g - 1.0);
+    w[3] = f * f * f * (1.0 / 6.0);
+  } else {
+    w[0] = 0.5 * (0.5 - f) * (0.5 - f);
+    w[1] = 0.75 - f * f;
+    w[2] = 0.5 * (0.5 + f) * (0.5 + f);
+  }
+}
+
+/* The same, each times s too, for particles of a chunk. */
+MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_COLUMN],
+                                   double (*ws)[MPSI_COLUMN]) {
+  mpsi_quad a[4];
+  mpsi_lane_weights(spline, t, a);
+  for (int i = 0; i <= spline; i++) {
+    mpsi_put(w[i], a[i]);
+    mpsi_put(ws[i], a[i] * ((double)i - t));
+  }
+}
+
+MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                  int spline, int64_t begin, int n, mpsi_places *out) {
+  for (int k = 0; k < n; k += 4) {
+    mpsi_index first = {0};
+    int stride = 1;
+    for (int c = 0; c < dim; c++, stride *= MPSI_TILE_SIDE) {
+      /* counted from the block: not negative, so that truncation is floor */
+      const mpsi_quad X =
+          mpsi_from_block(mpm, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
+      const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
+                                          : __builtin_convertvector(X - 0.5, mpsi_index);
+      const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);
+      first += base * stride;
+      mpsi_put(out->t[c] + k, t);
+      mpsi_axis_weights(spline, t, (double(*)[MPSI_COLUMN])(out->w[c][0] + k),
+                        (double(*)[MPSI_COLUMN])(out->ws[c][0] + k));
+    }
+    memcpy(out->first + k, &first, sizeof first);
+  }
+}
+
+/* The states of the nodes of the stencil from tile node `first`, all bits together: 0 where none is
+ * outside the domain or in a body. */
+MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int spline,
+                                        int32_t first) {
+  uint32_t any = 0;
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      uint32_t row;
+      memcpy(&row, worker->state + first + mpsi_tile_index(0, j, k), sizeof row);
+      any |= row;
+    }
+  return (any | any >> 8 | any >> 16 | (spline == 3 ? any >> 24 : 0)) & 0xff;
+}
+
+/* What the nodes give to the particles of a chunk: columns. A velocity's derivative of component c
+ * by axis d is number dim c + d, as in the columns L of the set. */
+typedef struct mpsi_gathered {
+  double v[3][MPSI_COLUMN], own[3][MPSI_COLUMN]; /* m/s; FLIP: what a particle keeps of its own */
+  double slope[9][MPSI_COLUMN];                  /* 1/s, of the fit, which the transfer takes */
+  double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
+} mpsi_gathered;
+
+/* ---- least_squares.c: particles whose support is cut -------------------------------------------------
+ */
+
+/* Gives a particle to the tiles; at bodies also what contact needs to those of springs. */
+void MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                            const mpsi_worker *worker, int64_t particle);
+/* What the nodes give to a particle: lanes 1 to 3 of each are components of the velocity. */
+typedef struct mpsi_fitted {
+  double v[4];
+  double slope[3][4];      /* 1/s, of the fit, by x, y, z, which the transfer takes */
+  double derivative[3][4]; /* 1/s, which the laws see: others along axes with a full stencil */
+  double own[3];           /* m/s, FLIP: what the particle keeps of its own */
+} mpsi_fitted;
+void MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                           const mpsi_worker *worker, int64_t particle,
+                                           mpsi_fitted *out);
+
+/* ---- least_squares_batch.c: particles beside bodies that act by impulses -----------------------------------
+ */
+
+typedef enum mpsi_batched {
+  MPSI_BATCHED_NOT,  /* nothing is done: they are for least_squares.c; */
+  MPSI_BATCHED_FULL, /* their supports are full, they are as all others; the laws see the fit */
+  MPSI_BATCHED
+} mpsi_batched;
+/* Give particles [begin, end) of a chunk (that begins with particle `chunk`), all of one stencil,
+ * to the tiles, and keep their fits; then take what the nodes give them, by the fits kept in the
+ * same step. */
+mpsi_batched MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                     const mpsi_worker *worker,
+                                                     const mpsi_places *places, int64_t chunk,
+                                                     int begin, int end);
+mpsi_batched MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                    const mpsi_worker *worker,
+                                                    const mpsi_places *places, int64_t chunk,
+                                                    int begin, int end, mpsi_gathered *out);
+
+/* The fit by itself; the largest speed of a block: see mpsi_kernels. */
+void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                 const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
+                                 mpsi_shape_values *out);
+void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                  const mpsi_worker *worker, int64_t particle, const double *d,
+                                  mpsi_foot_weights *out);
+double MPSI_LEVELLED(mpsi_mpm_fastest)(const mps_mpm *mpm, int64_t begin, int64_t end);
+int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mps_mpm *mpm, const mpsi_far *far, int64_t begin,
+                                          int64_t end);
+int64_t MPSI_LEVELLED(mpsi_mpm_next_in)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                        const int *low, const int *high, int64_t begin);
+void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_touch_block *block);
+void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool back);
+void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v);
+void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
+void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
+
+#endif

@@ -1,0 +1,154 @@
+/* solver.h - the WLS-MPM solver, put together from its parts: each has a header of its own.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_PRIVATE_H
+#define MPSI_MPM_PRIVATE_H
+
+#include "core/particles/particles_internal.h"
+#include "mpm/grid/blocks.h"
+#include "mpm/contact/thin_bodies.h"
+#include "mpm/boundary/boundaries.h"
+#include "columns.h"
+#include "mpm/step/damping.h"
+#include "energy.h"
+#include "mpm/particles/laws.h"
+#include "mpm/particles/loads.h"
+#include "mpm/boundary/mirror.h"
+#include "mpm/contact/pairs.h"
+#include "run.h"
+#include "mpm/ranks/partition.h"
+#include "mpm/step/undo.h"
+
+struct mpsi_kernels;
+
+/* Memory for each particle. */
+typedef struct mpsi_rooms {
+  mpsi_room radix, flags, stencil;
+  mpsi_room strain; /* of the columns D */
+  mpsi_room gone;   /* marks of what leaves at the end of a step; none where nothing can */
+  mpsi_room force;  /* of the columns f; none without loads */
+} mpsi_rooms;
+
+/* The handle of mps/grid.h: lent, a part of the solver. */
+struct mps_grid {
+  mps_mpm *mpm;
+};
+
+struct mps_mpm {
+  struct mps_grid reader;
+  mps_context *context;
+  mps_particles *particles;
+  mpsi_holder holder; /* of the particles */
+  mps_mpm_def def;
+  int32_t dim;
+  /* For comparison (mps/experimental.h): */
+  bool by_weight;     /* velocities go to the nodes by the weights */
+  bool strain_by_fit; /* the laws see the slopes of the fit */
+  bool standard;      /* the original material point method, with `flip`; else that is 0 */
+  double flip;
+  const struct mpsi_kernels *kernels;
+  mps_kernel *weights; /* for the caller to ask */
+  mpsi_columns p;
+  mpsi_rooms rooms;
+  mpsi_grid grid;
+  mpsi_contacts contact;
+  mpsi_boundaries boundaries;
+  mpsi_mirrors mirrors;
+  mpsi_loads loads;
+  mpsi_laws laws;
+  mpsi_run run;
+  mpsi_undo undo;
+  mpsi_energy energy;
+  mpsi_settling settling;
+  mpsi_identity *identity; /* of its snapshots */
+  mpsi_share *share;       /* of several ranks; NULL: there is but one */
+};
+
+/* Whether each node needs its velocity before the forces: all blocks are split then. */
+static inline bool mpsi_forces_apart(const mps_mpm *mpm) {
+  return mpm->energy.counts || mpm->settling.on || mpm->def.local_damping > 0.0;
+}
+
+static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t particle) {
+  return &mpm->laws.law[mpm->p.law ? mpm->p.law[particle] : 0];
+}
+
+/* K + 4G/3 and G (Pa) of a particle's material at zero strain. */
+static inline void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave,
+                                    double *shear) {
+  const mps_material *material = mpsi_law_of(mpm, particle)->material;
+  *wave = mpsi_material_rest_modulus(material);
+  *shear = mpsi_material_shear(material);
+}
+
+/* Coordinate of x in cells from the origin along axis c. */
+static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
+  return (x - mpm->def.origin[c]) * mpm->grid.inverse;
+}
+
+/* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
+static inline int64_t mpsi_own_cell(const mps_mpm *mpm, int c, double X) {
+  const int64_t cell = (int64_t)floor(X);
+  return cell < mpm->grid.high[c] ? cell : mpm->grid.high[c] - 1;
+}
+
+/* Whether X, outside the domain along axis c, lies beyond a side that is open. */
+static inline bool mpsi_mpm_passes(const mps_mpm *mpm, int c, double X) {
+  const bool upper = X > (double)mpm->grid.high[c];
+  return (upper || X < (double)mpm->grid.low[c]) &&
+         (mpm->boundaries.open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
+}
+
+/* Nodes of a stencil beyond its lowest, as the loops take them: rows along x are read and written
+ * four nodes at a time whatever the spline. */
+static inline int32_t mpsi_reach(const mps_mpm *mpm, int c) { return c == 0 ? 3 : mpm->def.spline; }
+
+/* Memory of one worker. */
+static inline size_t mpsi_worker_bytes(const mps_mpm *mpm) {
+  return (size_t)mpm->grid.tile_nodes * (2 * sizeof(mpsi_node) + sizeof(uint32_t) + 1) +
+         sizeof(uint64_t);
+}
+
+static inline int64_t mpsi_first_node(const mps_mpm *mpm, int64_t g) {
+  return g * mpm->grid.block_nodes;
+}
+
+/* Position x[3] of the node `local` of the block at `at`. */
+static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, const double *local,
+                                      double *x) {
+  for (int c = 0; c < 3; c++)
+    x[c] = c < mpm->dim
+               ? mpm->def.origin[c] + mpm->def.cell * ((double)at[c] * MPSI_SIDE + local[c])
+               : 0.0;
+}
+
+/* The same of node k of the block of nodes at `at`. */
+static inline void mpsi_node_place(const mps_mpm *mpm, const int32_t *at, int k, double *x) {
+  int place[3];
+  mpsi_unravel(k, MPSI_SIDE, place);
+  const double local[3] = {place[0], place[1], place[2]};
+  mpsi_node_position(mpm, at, local, x);
+}
+
+/* Block of nodes under the node (i, j, k) of a tile, and the node's number in it. */
+static inline int32_t mpsi_block_under(const mpsi_cell_block *cells, int i, int j, int k) {
+  return cells->to[(i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE)];
+}
+
+static inline int mpsi_local_under(int i, int j, int k) {
+  return ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE + i % MPSI_SIDE;
+}
+
+/* Node of the grid under the node (i, j, k) of a tile. */
+static inline int64_t mpsi_node_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int i,
+                                      int j, int k) {
+  return mpsi_first_node(mpm, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
+}
+
+/* The same of the tile for what thin bodies part from the nodes. */
+static inline int64_t mpsi_node_across(const mps_mpm *mpm, const mpsi_cell_block *cells, int i,
+                                       int j, int k) {
+  const int32_t across = mpm->grid.nodes[mpsi_block_under(cells, i, j, k)].across;
+  return mpsi_first_node(mpm, across) + mpsi_local_under(i, j, k);
+}
+
+#endif

@@ -1,0 +1,186 @@
+/* absorb.c - absorbing walls of the WLS-MPM grid: the dashpots of Lysmer and Kuhlemeyer, traction
+ * R - rho c_p v across the wall and R - rho c_s v along it.
+ *
+ * A dashpot acts on each node of the wall. Its coefficient rho c A is shared out by the particles
+ * in the cells at the wall: each stands for the area V/h and gives rho c V/h = c m/h to the wall's
+ * nodes by the least-squares shape functions of that plane, which are those of the masses there
+ * (Nakamura (5), (6) with one axis less). So a wall covered in part has the right force in sum, and
+ * its nodes the right ratio of damping to mass. The particles of a block are summed by themselves:
+ * on several ranks such sums come from others (dashpots.c).
+ *
+ * R carries the stress at rest. It is the mean of the force that holds the node while the wall
+ * settles, or what balances the first step's forces.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/shape.h"
+
+#include <string.h>
+
+void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
+                   const double *before, double *velocity) {
+  const double per_mass = mpm->run.dt / node[MPSI_MASS];
+  const bool settles = hold->finds && hold->settle > 0.0;
+  for (int c = 0; c < mpm->dim; c++) {
+    const double v = node[MPSI_VECTOR + c], damping = c == hold->axis ? dash->across : dash->along;
+    if (settles) {
+      const double force = (hold->v[c] - v) / per_mass;
+      dash->rest[c] += (force - dash->rest[c]) * (mpm->run.dt / hold->found);
+      velocity[c] = hold->v[c];
+      continue;
+    }
+    if (hold->finds) dash->rest[c] = before ? (before[c] - v) / per_mass : 0.0;
+    /* implicit: stable for every dt */
+    velocity[c] =
+        (v + per_mass * (dash->rest[c] + damping * hold->v[c])) / (1.0 + per_mass * damping);
+  }
+}
+
+bool mpsi_mpm_absorbs(const mps_mpm *mpm) {
+  bool any = false;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    any = any || mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING;
+  return any;
+}
+
+/* ---- coefficients ---------------------------------------------------------------------------- */
+
+/* Shape functions along one axis, fitted over the nodes of the domain. */
+static void fit_along(const mps_mpm *mpm, int c, double X, int64_t *base, double *phi) {
+  double w[4], s[4], m0 = 0.0, m1 = 0.0, m2 = 0.0;
+  const double lowest = mpsi_base(mpm->def.spline, X);
+  *base = (int64_t)lowest;
+  mpsi_weights(mpm->def.spline, X - lowest, w);
+  for (int i = 0; i < 4; i++) {
+    const int64_t n = *base + i;
+    s[i] = (double)i - (X - lowest);
+    if (n < mpm->grid.use_low[c] || n > mpm->grid.use_high[c]) w[i] = 0.0;
+    m0 += w[i], m1 += w[i] * s[i], m2 += w[i] * s[i] * s[i];
+  }
+  for (int i = 0; i < 4; i++) phi[i] = w[i] * (m2 - m1 * s[i]) / (m0 * m2 - m1 * m1);
+  for (int i = 0; i < 4; i++) { /* ghosts of a mirror that meets the wall: to their partners */
+    const int64_t n = *base + i;
+    const int64_t wall = n < mpm->grid.low[c] ? mpm->grid.low[c] : mpm->grid.high[c];
+    if ((n >= mpm->grid.low[c] && n <= mpm->grid.high[c]) || phi[i] == 0.0) continue;
+    phi[2 * wall - n - *base] += phi[i];
+    phi[i] = 0.0;
+  }
+}
+
+static mpsi_dash *dash_of(const mps_mpm *mpm, int32_t number, int64_t node) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
+  int32_t t = nodes->first_held;
+  while (mpm->boundaries.held[t].hold != number) t++;
+  return &mpm->boundaries.dash[mpm->boundaries.held[t].dash +
+                               mpsi_plane_index(mpm->boundaries.hold[number].axis,
+                                                (int)(node % mpm->grid.block_nodes))];
+}
+
+/* Node of the plane across `axis`, of those under the tile. */
+static int tile_plane_index(int axis, const int *at) {
+  return at[axis == 2 ? 1 : 2] * MPSI_TILE_SIDE + at[axis == 0 ? 1 : 0];
+}
+
+/* A particle in a cell at the wall. */
+static void add_particle(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
+                         int64_t k, double (*tile)[2]) {
+  const mpsi_columns *p = &mpm->p;
+  const int axis = mpm->boundaries.hold[number].axis;
+  const double per_area = p->m[k] * mpm->grid.inverse, density = p->m[k] / p->V[k];
+  double wave, shear;
+  mpsi_mpm_elastic(mpm, k, &wave, &shear);
+  const double across = per_area * sqrt(wave / density), along = per_area * sqrt(shear / density);
+  int64_t base[3] = {0};
+  double phi[3][4] = {{1.0}, {1.0}, {1.0}};
+  for (int c = 0; c < mpm->dim; c++)
+    if (c == axis)
+      base[c] = mpm->boundaries.hold[number].first[c];
+    else
+      fit_along(mpm, c, mpsi_grid_coordinate(mpm, c, p->x[c][k]), &base[c], phi[c]);
+  for (int n = 0; n < MPSI_STENCIL; n++) {
+    const int i[3] = {n % 4, n / 4 % 4, n / 16};
+    const double share = phi[0][i[0]] * phi[1][i[1]] * phi[2][i[2]];
+    if (share == 0.0) continue;
+    int at[3];
+    for (int c = 0; c < 3; c++) at[c] = (int)(base[c] + i[c] - (int64_t)cells->at[c] * MPSI_SIDE);
+    double *to = tile[tile_plane_index(axis, at)];
+    to[0] += share * across;
+    to[1] += share * along;
+  }
+}
+
+bool mpsi_mpm_sum_dashes(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
+                         double (*tile)[2]) {
+  const int c = mpm->boundaries.hold[number].axis;
+  const int64_t layer = mpm->boundaries.hold[number].first[c] - number % 2; /* of cells */
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
+  memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
+  for (int64_t k = cells->begin; k < cells->end; k++)
+    if (mpsi_own_cell(mpm, c, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])) == layer)
+      add_particle(mpm, cells, number, k, tile);
+  return true;
+}
+
+static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
+                     const double *tile) {
+  const mpsi_hold *hold = &mpm->boundaries.hold[number];
+  const int axis = hold->axis, planes = mpm->dim == 3 ? MPSI_TILE_SIDE : 1;
+  for (int k = 0; k < planes * MPSI_TILE_SIDE; k++) {
+    const int u = k % MPSI_TILE_SIDE, v = k / MPSI_TILE_SIDE;
+    int at[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 2 ? v : 0, axis == 2 ? 0 : v};
+    at[axis] = (int)(hold->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
+    if (tile[2 * k] == 0.0 && tile[2 * k + 1] == 0.0) continue;
+    mpsi_dash *dash = dash_of(mpm, number, mpsi_node_under(mpm, cells, at[0], at[1], at[2]));
+    dash->across += tile[2 * k];
+    dash->along += tile[2 * k + 1];
+  }
+}
+
+/* What has come of a block for a side, or NULL. */
+static const double *parcel_of(const mpsi_dash_parcels *parcels, const mpsi_cell_block *cells,
+                               int32_t side) {
+  if (!parcels || cells->parcel < 0) return NULL;
+  return (cells->ghost ? parcels->in : parcels->out) +
+         (cells->parcel * MPSI_SIDES + side) * parcels->doubles;
+}
+
+static void add_wall(mps_mpm *mpm, const mpsi_dash_parcels *parcels, int32_t number) {
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    double own[MPSI_DASH_PLANE][2];
+    const double *tile = parcel_of(parcels, cells, number);
+    if (!tile && mpsi_mpm_sum_dashes(mpm, cells, number, own)) tile = own[0];
+    if (tile) add_tile(mpm, cells, number, tile);
+  }
+}
+
+/* ---- forces at rest -------------------------------------------------------------------------- */
+
+/* Order of the list: blocks ascend in z, y, x, then come the holds. */
+int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
+  for (int c = 2; c >= 0; c--)
+    if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;
+  return (a->hold > b->hold) - (a->hold < b->hold);
+}
+
+void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_dash_parcels *parcels, const mpsi_held *old,
+                           int64_t old_count, const mpsi_dash *old_dash) {
+  const int plane = mpm->grid.block_nodes / MPSI_SIDE;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING) add_wall(mpm, parcels, k);
+  int64_t from = 0;
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
+    const mpsi_held *held = &mpm->boundaries.held[t];
+    if (held->dash < 0) continue;
+    mpsi_dash *dash = mpm->boundaries.dash + held->dash;
+    for (int k = 0; k < plane; k++) { /* a fit can give a node less than nothing */
+      dash[k].across = fmax(dash[k].across, 0.0);
+      dash[k].along = fmax(dash[k].along, 0.0);
+    }
+    while (from < old_count && mpsi_mpm_compare_held(&old[from], held) < 0) from++;
+    if (from == old_count || mpsi_mpm_compare_held(&old[from], held) != 0 || old[from].dash < 0 ||
+        !old[from].whole)
+      continue;
+    for (int k = 0; k < plane; k++)
+      memcpy(dash[k].rest, old_dash[old[from].dash + k].rest, sizeof dash[k].rest);
+  }
+}

@@ -1,0 +1,426 @@
+/* boundaries.c - which boundaries the caller has: the sides of the domain, boxes of nodes, lists of
+ * particles; their definitions and reactions. At work: walls.c, absorb.c.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/particles/particles.h"
+
+#include "core/context/retain.h"
+#include "signal/signal_internal.h"
+
+#include <string.h>
+
+#define ON_NODE 1e-6 /* cells: the edge of a box this close to a node holds it */
+#define ROUGHEST 1e3 /* friction */
+
+static const mps_mpm_boundary_def boundary_defaults = {.struct_size = sizeof(mps_mpm_boundary_def),
+                                                       .kind = MPS_MPM_BOUNDARY_PRESCRIBED,
+                                                       .lower = {-INFINITY, -INFINITY, -INFINITY},
+                                                       .upper = {INFINITY, INFINITY, INFINITY},
+                                                       .factor = {1.0, 1.0, 1.0}};
+
+mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_mpm_boundary_def, def, size, &boundary_defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static bool on_axis(const mps_mpm *mpm, int32_t number) {
+  return mpm->def.geometry == MPS_MPM_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
+         mpm->def.lower[0] == 0.0;
+}
+
+static bool has_side(const mps_mpm *mpm, int32_t number) {
+  if (number / 2 >= mpm->dim) return false;
+  const int64_t at = number % 2 ? mpm->grid.high[number / 2] : mpm->grid.low[number / 2];
+  return at > -MPSI_NO_WALL && at < MPSI_NO_WALL;
+}
+
+static mps_status check_motion(mps_mpm *mpm, const char *function, int32_t number,
+                               const mps_mpm_boundary_def *def) {
+  const mpsi_guard outer =
+      mpsi_guard_close(&mpm->run.guard, mpm->context, "a signal of the solver");
+  mps_status status = MPS_OK;
+  for (int c = 0; c < mpm->dim && status == MPS_OK; c++) {
+    const mpsi_signal_use use = {mpm->context, function, "boundary", number, c};
+    mpsi_signal_motion m;
+    const double factor = def->factor[c];
+    status = mpsi_signal_evaluate(def->signal[c], use, mpm->run.time, &m);
+    if (status == MPS_OK && (!isfinite(factor) || !isfinite(factor * m.v)))
+      status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                         "factor[%d] is %g, it and the velocity that it makes must be finite", c,
+                         factor);
+  }
+  mpm->run.guard = outer;
+  return status;
+}
+
+static mps_status check_numbers(mps_mpm *mpm, const char *function, int32_t number,
+                                const mps_mpm_boundary_def *def) {
+  const bool rubs = def->kind == MPS_MPM_BOUNDARY_FRICTIONAL;
+  if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !rubs))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "friction is %g with a boundary of kind %d, must be in 0 to %g, and 0 for "
+                     "other than frictional ones (2)",
+                     def->friction, def->kind, ROUGHEST);
+  if (!isfinite(def->settle) || def->settle < 0.0)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "settle is %g s, must be finite and >= 0", def->settle);
+  return check_motion(mpm, function, number, def);
+}
+
+static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
+                             const mps_mpm_boundary_def *def) {
+  if (!has_side(mpm, number))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the domain has no %s side across %c (boundary %d)",
+                     number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
+  const bool open = def->kind == MPS_MPM_BOUNDARY_OPEN;
+  if (def->kind < MPS_MPM_BOUNDARY_ROLLER || (def->kind > MPS_MPM_BOUNDARY_FREE && !open))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d, allowed on a side are 0 (roller), 1 (fixed), 2 (frictional), 3 "
+                     "(absorbing), 4 (free) and 6 (open)",
+                     def->kind);
+  if (def->ids || def->id_count != 0 || def->dofs != 0)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
+                     (long long)def->id_count, def->dofs);
+  if (mpm->standard && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is 3 (absorbing), which the standard method does not allow: its splines "
+                     "reach over the side");
+  if (on_axis(mpm, number) && (def->kind > MPS_MPM_BOUNDARY_FIXED || def->signal[0]))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d with signal[0] %s on the axis r = 0: allowed are 0 (roller) and 1 "
+                     "(fixed), and the radial velocity is 0",
+                     def->kind, def->signal[0] ? "given" : "NULL");
+  for (int c = 0; c < mpm->dim; c++)
+    if (def->signal[c] && (def->kind == MPS_MPM_BOUNDARY_FREE || open ||
+                           (def->kind == MPS_MPM_BOUNDARY_ROLLER && c != number / 2)))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "signal[%d] is given, and a side of kind %d does not hold that component", c,
+                       def->kind);
+  return check_numbers(mpm, function, number, def);
+}
+
+/* First or last node of a box that begins or ends at x. */
+static int64_t box_node(const mps_mpm *mpm, int c, double x, bool last) {
+  const double X = mpsi_grid_coordinate(mpm, c, x);
+  if (!(X > -(double)MPSI_NO_WALL)) return -MPSI_NO_WALL;
+  if (!(X < (double)MPSI_NO_WALL)) return MPSI_NO_WALL;
+  return (int64_t)(last ? floor(X + ON_NODE) : ceil(X - ON_NODE));
+}
+
+static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def,
+                           mpsi_hold *out) {
+  for (int c = 0; c < mpm->dim; c++) {
+    out->first[c] = box_node(mpm, c, def->lower[c], false);
+    out->last[c] = box_node(mpm, c, def->upper[c], true);
+    if (!(def->lower[c] <= def->upper[c]) || out->first[c] > out->last[c])
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "the box is [%g, %g] m in %c, must hold a node: origin %g m plus a multiple "
+                       "of the cell %g m",
+                       def->lower[c], def->upper[c], "xyz"[c], mpm -> def.origin[c], mpm->def.cell);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def) {
+  const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+  if ((def->id_count > 0) != (def->ids != NULL) || def->id_count < 0 || def->id_count > most)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "id_count is %lld with ids %s, allowed are 1 to %lld particles, or 0 and NULL",
+                     (long long)def->id_count, def->ids ? "given" : "NULL", (long long)most);
+  return MPS_OK;
+}
+
+static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t number,
+                                   const mps_mpm_boundary_def *def, mpsi_hold *out) {
+  const uint32_t all = mpm->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
+  if (def->kind != MPS_MPM_BOUNDARY_PRESCRIBED)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d, boxes of nodes and particles are 5 (prescribed)", def->kind);
+  if (def->dofs & ~all)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
+                     mpm->dim == 3 ? ", MPS_DOF_Z" : "");
+  mps_status status = check_numbers(mpm, function, number, def);
+  if (status == MPS_OK) status = check_ids(mpm, function, def);
+  if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
+  return mpsi_mpm_share_check_ids(mpm, function, status, def->id_count, def->ids);
+}
+
+/* ---- putting in place ------------------------------------------------------------------------ */
+
+static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
+  const int axis = number / 2;
+  hold->axis = axis;
+  /* the standard scheme has nodes beyond the side too */
+  const int64_t beyond = mpm->standard ? MPSI_SIDE : 0;
+  for (int c = 0; c < mpm->dim; c++)
+    hold->first[c] = mpm->grid.low[c] - beyond, hold->last[c] = mpm->grid.high[c] + beyond;
+  if (number % 2)
+    hold->first[axis] = mpm->grid.high[axis];
+  else
+    hold->last[axis] = mpm->grid.low[axis];
+  hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
+  hold->finds = kind == MPS_MPM_BOUNDARY_ABSORBING;
+  hold->found = 0.0;
+  hold->kind = kind == MPS_MPM_BOUNDARY_FREE ? MPSI_HOLD_NONE : kind;
+}
+
+/* Sums of a new boundary, from 0; memory of a number stays. */
+static bool make_sums(mps_mpm *mpm, mpsi_hold *hold) {
+  if (!hold->sums) hold->sums = mpsi_alloc(mpm->context, 1, sizeof *hold->sums);
+  return hold->sums != NULL;
+}
+
+bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
+  bool good = true;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_HOLD_NONE;
+  for (int32_t k = 0; k < MPSI_SIDES && good; k++) {
+    if (!has_side(mpm, k)) continue;
+    place_side(mpm, k, MPS_MPM_BOUNDARY_ROLLER);
+    good = make_sums(mpm, &mpm->boundaries.hold[k]);
+  }
+  return good;
+}
+
+mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function) {
+  mpsi_hold *hold = mpm->boundaries.hold;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "boundary %d is absorbing, which the standard method does not allow", k);
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (hold[k].kind != MPSI_HOLD_NONE) place_side(mpm, k, hold[k].kind);
+  mpm->boundaries.outdated = true;
+  return MPS_OK;
+}
+
+static void take_numbers(mpsi_hold *hold, const mps_mpm_boundary_def *def) {
+  hold->friction = def->friction;
+  hold->settle = def->settle;
+  for (int c = 0; c < 3; c++) {
+    mps_signal *old = hold->signal[c];
+    hold->signal[c] = def->signal[c] ? mpsi_signal_retain(def->signal[c]) : NULL;
+    hold->factor[c] = def->factor[c];
+    mps_signal_destroy(&old);
+  }
+}
+
+static void drop(mps_mpm *mpm, mpsi_hold *hold) {
+  const mps_mpm_boundary_def rest = boundary_defaults;
+  take_numbers(hold, &rest);
+  mpsi_free(mpm->context, hold->ids);
+  hold->ids = NULL;
+  hold->id_count = 0;
+  hold->kind = MPSI_HOLD_NONE;
+}
+
+void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    drop(mpm, &mpm->boundaries.hold[k]);
+    mpsi_free(mpm->context, mpm->boundaries.hold[k].sums);
+  }
+}
+
+/* A box or list, in place of what the boundary was. */
+static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t number,
+                                  const mps_mpm_boundary_def *def) {
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
+  mpsi_hold made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
+                    .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
+  mps_status status = check_prescribed(mpm, function, number, def, &made);
+  if (status == MPS_OK && !make_sums(mpm, hold))
+    status = mpsi_fail_memory(mpm->context, function, sizeof *hold->sums);
+  if (status == MPS_OK && def->ids) {
+    made.ids = mpsi_alloc(mpm->context, def->id_count, sizeof *made.ids);
+    if (!made.ids)
+      status = mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
+  }
+  status = mpsi_mpm_share_settle(mpm, function, status);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, made.ids);
+    return status;
+  }
+  if (def->ids) {
+    memcpy(made.ids, def->ids, (size_t)def->id_count * sizeof *made.ids);
+    made.id_count = def->id_count;
+  }
+  if (hold->kind == MPSI_HOLD_NONE || made.ids || hold->ids ||
+      memcmp(made.first, hold->first, sizeof made.first) != 0 ||
+      memcmp(made.last, hold->last, sizeof made.last) != 0)
+    mpm->boundaries.outdated = true;
+  mpsi_free(mpm->context, hold->ids);
+  hold->kind = made.kind;
+  hold->dofs = made.dofs;
+  hold->ids = made.ids;
+  hold->id_count = made.id_count;
+  memcpy(hold->first, made.first, sizeof made.first);
+  memcpy(hold->last, made.last, sizeof made.last);
+  take_numbers(hold, def);
+  return MPS_OK;
+}
+
+static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *user,
+                           mps_mpm_boundary_def *def) {
+  if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  return MPSI_DEF_READ(mpm->context, function, mps_mpm_boundary_def, user, def);
+}
+
+/* All ranks give the same boundary (`number` -1: a new one). */
+static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
+                                int32_t number, const mps_mpm_boundary_def *def) {
+  if (!mpm->share) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "boundary", number);
+  if (status == MPS_OK) {
+    MPSI_GIVE(&given, def, kind);
+    MPSI_GIVE(&given, def, dofs);
+    MPSI_GIVE(&given, def, friction);
+    MPSI_GIVE(&given, def, settle);
+    MPSI_GIVE_VECTOR(&given, def, lower, mpm->dim);
+    MPSI_GIVE_VECTOR(&given, def, upper, mpm->dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, mpm->dim);
+    for (int c = 0; c < mpm->dim; c++) mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
+    mpsi_give_bytes(&given, "a hash of ids", def->id_count > 0 ? def->ids : NULL,
+                    (size_t)def->id_count * sizeof *def->ids);
+  }
+  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+}
+
+/* ---- the calls ------------------------------------------------------------------------------- */
+
+mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, int32_t *number) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_boundary_def def = boundary_defaults;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, -1, &def);
+  if (status != MPS_OK) return status;
+  int32_t at = MPSI_SIDES;
+  while (at < MPSI_HOLDS && mpm->boundaries.hold[at].kind != MPSI_HOLD_NONE) at++;
+  if (at == MPSI_HOLDS)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the solver has %d boundaries, the most there can be besides the sides",
+                     MPSI_HOLDS - MPSI_SIDES);
+  status = take_prescribed(mpm, __func__, at, &def);
+  if (status != MPS_OK) return status;
+  mpsi_hold *hold = &mpm->boundaries.hold[at];
+  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->all[MPSI_HOLD_WORK]); /* of a former one */
+  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->step[MPSI_HOLD_WORK]);
+  memset(hold->sums, 0, sizeof *hold->sums);
+  hold->count = hold->removed = 0;
+  if (number) *number = at;
+  return MPS_OK;
+}
+
+static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
+  const bool side = number >= 0 && number < MPSI_SIDES;
+  if (side ? has_side(mpm, number)
+           : number >= 0 && number < MPSI_HOLDS &&
+                 mpm->boundaries.hold[number].kind != MPSI_HOLD_NONE)
+    return MPS_OK;
+  if (side)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the domain has no %s side across %c (boundary %d)",
+                     number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
+  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                   "boundary is %d, must be that of a side of the domain (0 to 5) or a number that "
+                   "mps_mpm_add_boundary gave",
+                   number);
+}
+
+mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_boundary_def def = boundary_defaults;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = find(mpm, __func__, number);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, number, &def);
+  if (status != MPS_OK) return status;
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
+  if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, number, &def);
+  status = mpsi_mpm_share_settle(mpm, __func__, check_side(mpm, __func__, number, &def));
+  if (status != MPS_OK) return status;
+  if (hold->kind != def.kind || def.kind == MPS_MPM_BOUNDARY_ABSORBING) {
+    place_side(mpm, number, def.kind);
+    mpm->boundaries.outdated = true;
+  }
+  take_numbers(hold, &def);
+  return MPS_OK;
+}
+
+mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = find(mpm, __func__, number);
+  if (status == MPS_OK && on_axis(mpm, number))
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "boundary is 0, the axis r = 0, which cannot be free");
+  if (mpm->share)
+    status = mpsi_domain_settle_same(mpm->share->domain, __func__, status, "boundary", number);
+  if (status != MPS_OK) return status;
+  drop(mpm, &mpm->boundaries.hold[number]);
+  mpm->boundaries.outdated = true;
+  return MPS_OK;
+}
+
+void mpsi_mpm_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
+                               double work, int64_t count) {
+  for (int c = 0; c < 3; c++) {
+    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_IMPULSE + c], impulse[c]);
+    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_MOMENT + c], moment[c]);
+  }
+  mpsi_exact_add(&hold->sums->step[MPSI_HOLD_WORK], work);
+  hold->count += count;
+}
+
+void mpsi_mpm_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
+  mpsi_exact_merge(sum, &mpm->boundaries.work);
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    const mpsi_hold_sums *sums = mpm->boundaries.hold[k].sums;
+    if (!sums) continue;
+    mpsi_exact_merge(sum, &sums->all[MPSI_HOLD_WORK]);
+    mpsi_exact_merge(sum, &sums->step[MPSI_HOLD_WORK]);
+  }
+}
+
+/* All ranks together: the last step, and since it was made. */
+static mps_status sum_ranks(mps_mpm *mpm, const char *function, const mpsi_hold *hold,
+                            mpsi_hold_sums *out, int64_t *counts) {
+  *out = *hold->sums;
+  for (int k = 0; k < MPSI_HOLD_MASS; k++) mpsi_exact_merge(&out->all[k], &out->step[k]);
+  counts[0] = hold->count, counts[1] = hold->removed;
+  if (!mpm->share) return MPS_OK;
+  const mps_status status = mpsi_domain_sum(mpm->share->domain, function, 2, counts);
+  if (status != MPS_OK) return status;
+  return mpsi_domain_sum_exact(mpm->share->domain, function, 2 * MPSI_HOLD_MASS + 1, out->step);
+}
+
+mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number, mps_reaction *out,
+                                      size_t size) {
+  static const char function[] = "mps_mpm_get_reaction";
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mpsi_hold_sums sums;
+  int64_t counts[2];
+  mps_status status = find(mpm, function, number);
+  if (mpm->share)
+    status = mpsi_domain_settle_same(mpm->share->domain, function, status, "boundary", number);
+  if (status != MPS_OK) return status;
+  status = sum_ranks(mpm, function, &mpm->boundaries.hold[number], &sums, counts);
+  if (status != MPS_OK) return status;
+  const double rate = mpm->boundaries.dt > 0.0 ? 1.0 / mpm->boundaries.dt : 0.0;
+  mps_reaction r = {.count = counts[0],
+                    .removed = counts[1],
+                    .work = mpsi_exact_value(&sums.all[MPSI_HOLD_WORK]),
+                    .removed_mass = mpsi_exact_value(&sums.all[MPSI_HOLD_MASS])};
+  for (int c = 0; c < 3; c++) {
+    r.force[c] = rate * mpsi_exact_value(&sums.step[MPSI_HOLD_IMPULSE + c]);
+    r.moment[c] = rate * mpsi_exact_value(&sums.step[MPSI_HOLD_MOMENT + c]);
+    r.impulse[c] = mpsi_exact_value(&sums.all[MPSI_HOLD_IMPULSE + c]);
+    r.moment_impulse[c] = mpsi_exact_value(&sums.all[MPSI_HOLD_MOMENT + c]);
+  }
+  return mpsi_out_write(mpm->context, function, out, size, &r, sizeof r);
+}

@@ -1,0 +1,333 @@
+/* mirror.c - see mirror.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "body/rotation.h"
+#include "mpm/base/solver.h"
+
+#include <string.h>
+
+enum { LAYERS = 2 }; /* of ghosts: the second only by what arithmetic rounds */
+
+/* ---- which ----------------------------------------------------------------------------------- */
+
+static bool is_mirror(const mps_mpm *mpm, int32_t k) {
+  const int32_t kind = mpm->boundaries.hold[k].kind;
+  return mpm->def.walls == MPS_MPM_WALLS_MIRROR && !mpm->standard &&
+         (kind == MPS_MPM_BOUNDARY_ROLLER || kind == MPS_MPM_BOUNDARY_FIXED);
+}
+
+static void find_sides(mps_mpm *mpm) {
+  mpm->mirrors.sides = 0;
+  for (int32_t k = 0; k < 2 * mpm->dim; k++)
+    if (is_mirror(mpm, k)) mpm->mirrors.sides |= 1u << k;
+  for (int c = 0; c < 3; c++) {
+    const bool lower = mpm->mirrors.sides >> (2 * c) & 1;
+    const bool upper = mpm->mirrors.sides >> (2 * c + 1) & 1;
+    mpm->grid.use_low[c] = lower ? -MPSI_NO_WALL : mpm->grid.low[c];
+    mpm->grid.use_high[c] = upper ? MPSI_NO_WALL : mpm->grid.high[c];
+  }
+}
+
+static void find_of_block(const mps_mpm *mpm, mpsi_cell_block *cells) {
+  const mpsi_grid *grid = &mpm->grid;
+  cells->edge = false;
+  cells->mirrors = 0;
+  for (int c = 0; c < mpm->dim; c++) {
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = first + MPSI_TILE_SIDE - 1;
+    if (first < grid->use_low[c] || last > grid->use_high[c]) cells->edge = true;
+    if (first + cells->low[c] < grid->low[c])
+      cells->mirrors |= (uint8_t)(mpm->mirrors.sides & 1u << (2 * c));
+    if (first + cells->high[c] - 1 > grid->high[c])
+      cells->mirrors |= (uint8_t)(mpm->mirrors.sides & 2u << (2 * c));
+  }
+}
+
+mps_status mpsi_mpm_list_mirrors(mps_mpm *mpm, const char *function) {
+  mpsi_mirrors *all = &mpm->mirrors;
+  find_sides(mpm);
+  int64_t count = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    find_of_block(mpm, cells);
+    cells->first_mirror = (int32_t)count;
+    for (uint32_t rest = cells->mirrors; rest; rest &= rest - 1) count++;
+  }
+  const int64_t plane = mpsi_mirror_plane(mpm->grid.tile_nodes);
+  all->count = 0;
+  if (!mpsi_room_ensure(mpm->context, &all->mirror_room, count, sizeof *all->mirror) ||
+      !mpsi_room_ensure(mpm->context, &all->mass_room, count * plane, sizeof *all->mass))
+    return mpsi_fail_memory(mpm->context, function, (size_t)(count * plane) * sizeof *all->mass);
+  all->mirror = all->mirror_room.item;
+  all->mass = all->mass_room.item;
+  all->count = count;
+  return MPS_OK;
+}
+
+int mpsi_mpm_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  const int64_t low = mpm->grid.low[c] - first, high = mpm->grid.high[c] - first;
+  if (cells->mirrors >> (2 * c) & 1 && node < low) return (int)(2 * low - node);
+  if (cells->mirrors >> (2 * c + 1) & 1 && node > high) return (int)(2 * high - node);
+  return node;
+}
+
+/* ---- one side under a tile ------------------------------------------------------------------- */
+
+typedef struct side {
+  const mpsi_cell_block *cells;
+  int axis;
+  int wall, inwards;  /* tile nodes across: the wall's, and +1 or -1 */
+  double keeps[3];    /* the diagonal of R */
+  double velocity[3]; /* m/s, (I - R) v_w */
+  mpsi_mirror *mirror;
+  double *mass;
+} side;
+
+static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k, bool across) {
+  const mpsi_hold *hold = &mpm->boundaries.hold[k];
+  const int c = k / 2;
+  const int64_t node = k % 2 ? mpm->grid.high[c] : mpm->grid.low[c];
+  side out = {.cells = cells,
+              .axis = c,
+              .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
+              .inwards = k % 2 ? -1 : 1};
+  for (int a = 0; a < 3; a++) {
+    const bool turns = hold->kind == MPS_MPM_BOUNDARY_FIXED || a == c;
+    out.keeps[a] = turns ? -1.0 : 1.0;
+    out.velocity[a] = turns ? 2.0 * hold->v[a] : 0.0;
+  }
+  int64_t number = cells->first_mirror;
+  for (uint32_t lower = cells->mirrors & ((1u << k) - 1); lower; lower &= lower - 1) number++;
+  out.mirror = &mpm->mirrors.mirror[number];
+  if (across) number += mpm->mirrors.count;
+  out.mass = mpm->mirrors.mass + number * mpsi_mirror_plane(mpm->grid.tile_nodes);
+  return out;
+}
+
+/* A ghost and its partner, with places in m. */
+typedef struct couple {
+  int ghost, partner, place; /* tile nodes; in the plane */
+  double x_ghost[3], x_partner[3];
+} couple;
+
+typedef void (*couple_fn)(const mps_mpm *mpm, const side *s, const couple *at, int layer,
+                          void *data);
+
+static bool in_use(const side *s, int node) {
+  return node >= s->cells->low[s->axis] && node < s->cells->high[s->axis];
+}
+
+static void for_couples(const mps_mpm *mpm, const side *s, couple_fn work, void *data) {
+  const int c = s->axis, a = (c + 1) % 3, b = (c + 2) % 3;
+  const int first = a < b ? a : b, second = a < b ? b : a;
+  for (int layer = 1; layer <= LAYERS; layer++) {
+    int at[3];
+    const int ghost = s->wall - layer * s->inwards, partner = s->wall + layer * s->inwards;
+    if (!in_use(s, ghost) || !in_use(s, partner)) continue;
+    for (at[second] = s->cells->low[second]; at[second] < s->cells->high[second]; at[second]++)
+      for (at[first] = s->cells->low[first]; at[first] < s->cells->high[first]; at[first]++) {
+        couple pair = {.place = at[second] * MPSI_TILE_SIDE + at[first]};
+        for (int image = 0; image < 2; image++) {
+          at[c] = image ? ghost : partner;
+          const double local[3] = {at[0], at[1], at[2]};
+          mpsi_node_position(mpm, s->cells->at, local, image ? pair.x_ghost : pair.x_partner);
+          *(image ? &pair.ghost : &pair.partner) = mpsi_tile_index(at[0], at[1], at[2]);
+        }
+        work(mpm, s, &pair, layer, data);
+      }
+  }
+}
+
+/* To the wall's impulse: `after` at x_after in place of `before` at x_before. */
+static void add_change(mpsi_mirror *to, const double *x_after, const double *after,
+                       const double *x_before, const double *before) {
+  for (int c = 0; c < 3; c++) {
+    const int a = (c + 1) % 3, b = (c + 2) % 3;
+    to->impulse[c] += after[c] - before[c];
+    to->moment[c] += (x_after[a] * after[b] - x_after[b] * after[a]) -
+                     (x_before[a] * before[b] - x_before[b] * before[a]);
+  }
+}
+
+/* What is folded and mirrored back: a block's tile, or its second one (thin_bodies.h). */
+typedef struct tiles {
+  mpsi_node *tile, *force;
+  bool across;
+} tiles;
+
+/* ---- folding --------------------------------------------------------------------------------- */
+
+static void fold_node(const mps_mpm *mpm, const side *s, const couple *at, int layer, void *data) {
+  const tiles *of = data;
+  double *ghost = of->tile[at->ghost], *partner = of->tile[at->partner];
+  const bool apart = s->cells->apart;
+  double *force = of->force[at->ghost], *to = of->force[at->partner];
+  double before[3], after[3];
+  const double m = ghost[MPSI_MASS];
+  if (layer == 1) s->mass[at->place] = m;
+  for (int c = 0; c < 3; c++) {
+    const double q = ghost[MPSI_VECTOR + c], f = apart ? force[MPSI_VECTOR + c] : 0.0;
+    const double folded = s->keeps[c] * q + m * s->velocity[c];
+    partner[MPSI_VECTOR + c] += folded;
+    if (apart) to[MPSI_VECTOR + c] += s->keeps[c] * f;
+    before[c] = q + mpm->run.dt * f;
+    after[c] = folded + mpm->run.dt * s->keeps[c] * f;
+    s->mirror->passed += mpm->run.dt * f * s->velocity[c];
+  }
+  add_change(s->mirror, at->x_partner, after, at->x_ghost, before);
+  partner[MPSI_MASS] += m;
+  memset(ghost, 0, sizeof(mpsi_node));
+  if (!apart) return;
+  to[MPSI_EXCESS] += force[MPSI_EXCESS];
+  memset(force, 0, sizeof(mpsi_node));
+}
+
+static void fold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k, of->across);
+    for_couples(mpm, &s, fold_node, of);
+  }
+}
+
+void mpsi_mpm_fold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  tiles own = {worker->tile, worker->force, false};
+  tiles across = {worker->across_tile, worker->across_force, true};
+  fold_tiles(mpm, cells, &own);
+  if (cells->thin) fold_tiles(mpm, cells, &across);
+}
+
+/* ---- mirroring back -------------------------------------------------------------------------- */
+
+static void mirror_node(const mps_mpm *mpm, const side *s, const couple *at, int layer,
+                        void *data) {
+  const tiles *of = data;
+  double *ghost = of->tile[at->ghost], m = layer == 1 ? s->mass[at->place] : 0.0;
+  const double *partner = of->tile[at->partner];
+  double before[3], after[3];
+  (void)mpm;
+  ghost[MPSI_MASS] = partner[MPSI_MASS];
+  for (int c = 0; c < 3; c++) {
+    ghost[MPSI_VECTOR + c] = s->keeps[c] * partner[MPSI_VECTOR + c] + s->velocity[c];
+    before[c] = m * partner[MPSI_VECTOR + c];
+    after[c] = m * ghost[MPSI_VECTOR + c];
+  }
+  if (m != 0.0) add_change(s->mirror, at->x_ghost, after, at->x_partner, before);
+}
+
+static void unfold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
+  for (int32_t k = MPSI_SIDES - 1; k >= 0; k--) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k, of->across);
+    for_couples(mpm, &s, mirror_node, of);
+  }
+}
+
+void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  tiles own = {worker->tile, NULL, false}, across = {worker->across_tile, NULL, true};
+  unfold_tiles(mpm, cells, &own);
+  if (cells->thin) unfold_tiles(mpm, cells, &across);
+}
+
+/* ---- bodies near a mirror -------------------------------------------------------------------- */
+
+static void copy_state(const mps_mpm *mpm, const side *s, const couple *at, int layer, void *data) {
+  mpsi_worker *worker = data;
+  (void)mpm, (void)s, (void)layer;
+  worker->state[at->ghost] = worker->state[at->partner];
+  worker->inside[at->ghost] = worker->inside[at->partner];
+}
+
+void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k, false);
+    for_couples(mpm, &s, copy_state, worker);
+  }
+}
+
+static bool is_folded(const side *s, const int *at) {
+  return (at[s->axis] - s->wall) * s->inwards <= 0;
+}
+
+/* What is left of component c at tile node `at`: a node on the wall is its own image. */
+static double share_of(const side *s, const int *at, int c) {
+  return at[s->axis] == s->wall && s->keeps[c] < 0.0 ? 0.0 : s->keeps[c];
+}
+
+static void reflect_by(const mps_mpm *mpm, const side *s, int *at, double *vector, double impulse) {
+  double x_before[3], x_after[3], before[3], after[3];
+  const double from[3] = {at[0], at[1], at[2]};
+  mpsi_node_position(mpm, s->cells->at, from, x_before);
+  for (int c = 0; c < 3; c++) {
+    before[c] = impulse * vector[c];
+    vector[c] *= share_of(s, at, c);
+    after[c] = impulse * vector[c];
+  }
+  at[s->axis] = 2 * s->wall - at[s->axis];
+  const double to[3] = {at[0], at[1], at[2]};
+  mpsi_node_position(mpm, s->cells->at, to, x_after);
+  if (impulse != 0.0) add_change(s->mirror, x_after, after, x_before, before);
+}
+
+void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *vector,
+                      double impulse) {
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k, false);
+    if (is_folded(&s, at)) reflect_by(mpm, &s, at, vector, impulse);
+  }
+}
+
+void mpsi_mpm_reflect_impulse(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at,
+                              const double *impulse) {
+  double vector[3] = {impulse[0], impulse[1], impulse[2]};
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k, false);
+    if (!is_folded(&s, at)) continue;
+    const double before[3] = {vector[0], vector[1], vector[2]};
+    reflect_by(mpm, &s, at, vector, 1.0);
+    for (int c = 0; c < 3; c++) s.mirror->passed += 0.5 * (before[c] - vector[c]) * s.velocity[c];
+  }
+}
+
+bool mpsi_mpm_find_image(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *keeps,
+                         double *carried) {
+  bool any = false;
+  for (int c = 0; c < 3; c++) keeps[c] = 1.0, carried[c] = 0.0;
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k, false);
+    if (!is_folded(&s, at)) continue;
+    any = true;
+    for (int c = 0; c < 3; c++) {
+      carried[c] += 0.5 * keeps[c] * (1.0 - share_of(&s, at, c)) * s.velocity[c];
+      keeps[c] *= share_of(&s, at, c);
+    }
+    at[s.axis] = 2 * s.wall - at[s.axis];
+  }
+  return any;
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+void mpsi_mpm_begin_mirrors(mps_mpm *mpm, const mpsi_cell_block *cells) {
+  int64_t number = cells->first_mirror;
+  for (uint32_t rest = cells->mirrors; rest; rest &= rest - 1)
+    mpm->mirrors.mirror[number++] = (mpsi_mirror){.passed = 0.0};
+}
+
+void mpsi_mpm_sum_mirrors(mps_mpm *mpm) {
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    int64_t number = cells->first_mirror;
+    for (int32_t k = 0; k < MPSI_SIDES && !cells->ghost; k++) {
+      if (!(cells->mirrors >> k & 1)) continue;
+      const mpsi_mirror *m = &mpm->mirrors.mirror[number++];
+      mpsi_hold *hold = &mpm->boundaries.hold[k];
+      const double work = mpsi_dot3(m->impulse, hold->v);
+      mpsi_mpm_hold_add_impulse(hold, m->impulse, m->moment, work, 0);
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, work + m->passed);
+    }
+  }
+}

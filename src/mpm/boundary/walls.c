@@ -1,0 +1,393 @@
+/* walls.c - boundaries at work: the nodes of the domain's sides, boxes of nodes and lists of
+ * particles with prescribed velocity. What they do to the velocity of a node, after all other
+ * forces, is an impulse; the sums of these are the reactions that mps_mpm_get_reaction tells.
+ *
+ * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse across the wall is
+ * known once the velocity into it has been taken away, so the impulse along it is the smaller of
+ * that times mu and what stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+#include <string.h>
+
+/* ---- which nodes ----------------------------------------------------------------------------- */
+
+/* Lists what holds which block; false where there is no room, `count` says how much is needed. */
+static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
+  mpsi_held *held = mpm->boundaries.held_room.item;
+  *count = *dashes = 0;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    nodes->first_held = (int32_t)*count;
+    for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+      mpsi_range r;
+      const int32_t kind = mpm->boundaries.hold[k].kind;
+      if (kind == MPSI_HOLD_NONE || kind == MPS_MPM_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
+          !mpsi_find_range(mpm->dim, nodes->at, &mpm->boundaries.hold[k], &r))
+        continue;
+      const bool absorbs = kind == MPS_MPM_BOUNDARY_ABSORBING;
+      if (*count < mpm->boundaries.held_room.capacity) {
+        held[*count] = (mpsi_held){.hold = k,
+                                   .dash = absorbs ? *dashes : -1,
+                                   .counted = !mpm->share || mpsi_mpm_share_counts(mpm, g),
+                                   .whole = !mpm->share || mpsi_mpm_share_knows(mpm, g)};
+        memcpy(held[*count].at, nodes->at, sizeof nodes->at);
+      }
+      if (absorbs) *dashes += mpm->grid.block_nodes / MPSI_SIDE;
+      (*count)++;
+    }
+    nodes->holds = (int32_t)*count - nodes->first_held;
+  }
+  return *count <= mpm->boundaries.held_room.capacity;
+}
+
+static void swap_rooms(mpsi_room *a, mpsi_room *b) {
+  const mpsi_room old = *a;
+  *a = *b;
+  *b = old;
+}
+
+/* A new list, in other memory than the old one, which stays where there is none. */
+static mps_status make_list(mps_mpm *mpm, const char *function) {
+  int64_t count, dashes;
+  mpm->boundaries.outdated = true;
+  const mps_status status = mpsi_mpm_list_mirrors(mpm, function);
+  if (status != MPS_OK) return status;
+  swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
+  swap_rooms(&mpm->boundaries.dash_room, &mpm->boundaries.old_dash_room);
+  bool good = list(mpm, &count, &dashes);
+  if (!good) {
+    good = mpsi_room_ensure(mpm->context, &mpm->boundaries.held_room, count,
+                            sizeof *mpm->boundaries.held);
+    if (good) list(mpm, &count, &dashes);
+  }
+  good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dash_room, dashes,
+                                  sizeof *mpm->boundaries.dash);
+  if (!good) {
+    swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
+    swap_rooms(&mpm->boundaries.dash_room, &mpm->boundaries.old_dash_room);
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)count * sizeof *mpm->boundaries.held +
+                                (size_t)dashes * sizeof(mpsi_dash));
+  }
+  mpm->boundaries.held = mpm->boundaries.held_room.item;
+  mpm->boundaries.dash = mpm->boundaries.dash_room.item;
+  mpm->boundaries.outdated = false;
+  mpm->boundaries.held_count = count;
+  mpm->boundaries.dash_count = dashes;
+  if (dashes > 0) memset(mpm->boundaries.dash, 0, (size_t)dashes * sizeof *mpm->boundaries.dash);
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function, mps_status status) {
+  const mpsi_held *old = mpm->boundaries.held;
+  const mpsi_dash *old_dash = mpm->boundaries.dash;
+  const int64_t old_count = mpm->boundaries.held_count;
+  if (status == MPS_OK) status = make_list(mpm, function);
+  if (!mpsi_mpm_absorbs(mpm)) return status;
+  if (!mpm->share) {
+    if (status == MPS_OK) mpsi_mpm_place_dashes(mpm, NULL, old, old_count, old_dash);
+    return status;
+  }
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_share_dashes(mpm, function, old, old_count, old_dash);
+  mpm->boundaries.outdated = status != MPS_OK;
+  return status;
+}
+
+mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function, mps_status status) {
+  return mpm->boundaries.outdated ? mpsi_mpm_list_holds(mpm, function, status) : status;
+}
+
+mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
+                               const mpsi_dash *dash) {
+  const mps_status status = make_list(mpm, function);
+  if (status != MPS_OK) return status;
+  const int64_t plane = mpm->grid.block_nodes / MPSI_SIDE;
+  int64_t expected = 0;
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
+    const mpsi_held *held = &mpm->boundaries.held[t];
+    if (held->dash < 0 || !held->whole) continue;
+    if (expected + plane <= count)
+      memcpy(mpm->boundaries.dash + held->dash, dash + expected, (size_t)plane * sizeof *dash);
+    expected += plane;
+  }
+  if (count == expected) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
+                   "there are %lld dashpots of absorbing walls, must be %lld", (long long)count,
+                   (long long)expected);
+}
+
+void mpsi_mpm_keep_dashes(mps_mpm *mpm, int64_t count, const mpsi_dash *dash) {
+  if (count > 0) memcpy(mpm->boundaries.kept_room.item, dash, (size_t)count * sizeof *dash);
+  mpm->boundaries.kept = count;
+}
+
+mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function) {
+  if (!mpm->share || !mpm->share->outdated) return MPS_OK;
+  const bool stale = mpm->run.stale;
+  mps_status status = mpsi_mpm_share_join(mpm, function);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(
+        mpm->share->domain, function,
+        mpsi_mpm_put_dashes(mpm, function, mpm->boundaries.kept, mpm->boundaries.kept_room.item));
+  mpm->run.stale = mpm->run.stale || stale;
+  mpm->run.broken = mpm->run.broken || status != MPS_OK;
+  return status;
+}
+
+/* ---- a node ---------------------------------------------------------------------------------- */
+
+#define BLOCK (MPSI_SIDE * MPSI_SIDE * MPSI_SIDE) /* nodes at most */
+
+/* A block at work. */
+typedef struct block {
+  mps_mpm *mpm;
+  mpsi_node *node, *side;         /* side: NULL where the block has none */
+  uint8_t *held;                  /* bit c: nothing else moves component c */
+  bool again;                     /* across thin bodies: nodes that have been counted already */
+  double push[MPSI_SIDES][BLOCK]; /* N s, of frictional sides at their nodes */
+} block;
+
+typedef void (*hold_fn)(block *b, const mpsi_hold *hold, mpsi_held *held, int k);
+
+/* Gives component c of node k the velocity v, by an impulse of the boundary that moves with
+ * hold->v. */
+static void set(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int c, double v) {
+  double *at = &b->node[k][MPSI_VECTOR + c];
+  const double impulse = b->node[k][MPSI_MASS] * (v - *at);
+  double x[3];
+  mpsi_node_place(b->mpm, held->at, k, x);
+  held->impulse[c] += impulse;
+  held->moment[(c + 2) % 3] -= x[(c + 1) % 3] * impulse; /* x cross impulse */
+  held->moment[(c + 1) % 3] += x[(c + 2) % 3] * impulse;
+  held->work += impulse * hold->v[c];
+  *at = v;
+}
+
+static void hold_across(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+  set(b, hold, held, k, hold->axis, hold->v[hold->axis]);
+  b->held[k] |= (uint8_t)(1u << hold->axis);
+}
+
+static void absorb(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+  if (!(b->node[k][MPSI_MASS] > 0.0)) return;
+  double v[3];
+  const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
+  mpsi_dash *dash = &b->mpm->boundaries.dash[held->dash + mpsi_plane_index(hold->axis, k)];
+  mpsi_mpm_dash(b->mpm, hold, dash, b->node[k], before, v);
+  for (int c = 0; c < b->mpm->dim; c++)
+    if (!(b->held[k] >> c & 1)) set(b, hold, held, k, c, v[c]);
+}
+
+/* Takes away the velocity into a frictional side. */
+static void stop_inward(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+  const int c = hold->axis, number = held->hold;
+  const double into = (b->node[k][MPSI_VECTOR + c] - hold->v[c]) * (number % 2 ? 1.0 : -1.0);
+  b->push[number][k] = into > 0.0 ? b->node[k][MPSI_MASS] * into : 0.0;
+  if (!(into > 0.0)) return;
+  set(b, hold, held, k, c, hold->v[c]);
+  b->held[k] |= (uint8_t)(1u << c);
+}
+
+static void apply_friction(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+  const double most = hold->friction * b->push[held->hold][k], m = b->node[k][MPSI_MASS];
+  double slip[3] = {0.0}, square = 0.0;
+  if (!(most > 0.0) || !(m > 0.0)) return;
+  for (int c = 0; c < b->mpm->dim; c++) {
+    if (b->held[k] >> c & 1) continue;
+    slip[c] = b->node[k][MPSI_VECTOR + c] - hold->v[c];
+    square += slip[c] * slip[c];
+  }
+  const double speed = sqrt(square);
+  if (!(speed > 0.0)) return;
+  const double left = most < m * speed ? 1.0 - most / (m * speed) : 0.0;
+  for (int c = 0; c < b->mpm->dim; c++)
+    if (slip[c] != 0.0) set(b, hold, held, k, c, hold->v[c] + left * slip[c]);
+}
+
+/* All components of a fixed side, those that a box prescribes. */
+static void prescribe(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+  for (int c = 0; c < b->mpm->dim; c++)
+    if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);
+  b->held[k] |= (uint8_t)hold->dofs;
+}
+
+/* ---- a block --------------------------------------------------------------------------------- */
+
+static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn work) {
+  mpsi_range r;
+  if (!mpsi_find_range(b->mpm->dim, held->at, hold, &r)) return;
+  const int64_t counted = b->again ? held->count : 0;
+  held->count = 0;
+  for (int z = r.low[2]; z <= r.high[2]; z++)
+    for (int y = r.low[1]; y <= r.high[1]; y++)
+      for (int x = r.low[0]; x <= r.high[0]; x++) {
+        const int k = (z * MPSI_SIDE + y) * MPSI_SIDE + x;
+        held->count += b->node[k][MPSI_MASS] > 0.0;
+        work(b, hold, held, k);
+      }
+  if (b->again) held->count = counted;
+}
+
+static void begin_block(mps_mpm *mpm, int64_t g, uint8_t *fixed, block *b) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  b->mpm = mpm; /* push is written before it is read */
+  b->node = mpm->grid.node + mpsi_first_node(mpm, g);
+  b->side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
+  b->held = fixed;
+  b->again = g >= mpm->grid.node_count;
+  memset(fixed, 0, (size_t)mpm->grid.block_nodes);
+}
+
+void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g) {
+  mpsi_held *first = mpm->boundaries.held + mpm->grid.nodes[g].first_held;
+  for (int32_t t = 0; t < mpm->grid.nodes[g].holds; t++) {
+    memset(first[t].impulse, 0, sizeof first[t].impulse);
+    memset(first[t].moment, 0, sizeof first[t].moment);
+    first[t].work = 0.0;
+    first[t].count = 0;
+  }
+}
+
+void mpsi_mpm_hold_mirrors(mps_mpm *mpm, int64_t g) {
+  uint8_t fixed[BLOCK];
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  mpsi_held *first = mpm->boundaries.held + nodes->first_held;
+  if (nodes->holds == 0) return;
+  block b;
+  begin_block(mpm, g, fixed, &b);
+  for (int pass = 0; pass < 2; pass++)
+    for (int32_t t = 0; t < nodes->holds; t++) {
+      const mpsi_hold *hold = &mpm->boundaries.hold[first[t].hold];
+      const bool holds_all = hold->kind == MPS_MPM_BOUNDARY_FIXED;
+      if (mpsi_is_mirror(mpm, first[t].hold) && holds_all == (pass == 1))
+        for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
+    }
+  for (int k = 0; k < mpm->grid.block_nodes && nodes->split; k++)
+    for (int c = 0; c < mpm->dim; c++)
+      if (fixed[k] >> c & 1) b.side[k][MPSI_VECTOR + c] = b.node[k][MPSI_VECTOR + c];
+}
+
+/* What acts across walls comes before friction: where walls meet, that of one must not move a node
+ * into the other. */
+void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
+  static const struct {
+    int32_t kind;
+    hold_fn work;
+  } order[] = {
+      {MPS_MPM_BOUNDARY_ROLLER, hold_across},     {MPS_MPM_BOUNDARY_ABSORBING, absorb},
+      {MPS_MPM_BOUNDARY_FRICTIONAL, stop_inward}, {MPS_MPM_BOUNDARY_FRICTIONAL, apply_friction},
+      {MPS_MPM_BOUNDARY_FIXED, prescribe},        {MPS_MPM_BOUNDARY_PRESCRIBED, prescribe}};
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  if (nodes->holds == 0) return;
+  mpsi_held *first = mpm->boundaries.held + nodes->first_held;
+  block b;
+  begin_block(mpm, g, fixed, &b);
+  for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++)
+    for (int32_t t = 0; t < nodes->holds; t++) {
+      const mpsi_hold *hold = &mpm->boundaries.hold[first[t].hold];
+      if (hold->kind == order[pass].kind) for_range(&b, hold, &first[t], order[pass].work);
+    }
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
+  for (int32_t k = 0; k < MPSI_HOLDS; k++)
+    if (mpm->boundaries.hold[k].finds) mpm->boundaries.hold[k].found += dt;
+}
+
+/* What the step before has added is part of all. */
+static void begin_sums(mpsi_hold *hold) {
+  if (!hold->sums) return;
+  for (int k = 0; k < MPSI_HOLD_MASS; k++)
+    mpsi_exact_merge(&hold->sums->all[k], &hold->sums->step[k]);
+  memset(hold->sums->step, 0, sizeof hold->sums->step);
+  hold->count = 0;
+}
+
+void mpsi_mpm_sum_holds(mps_mpm *mpm) {
+  mpsi_hold *hold = mpm->boundaries.hold;
+  mpm->boundaries.dt = mpm->run.dt;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    begin_sums(&hold[k]);
+    if (hold[k].found >= hold[k].settle) hold[k].finds = false;
+  }
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
+    const mpsi_held *held = &mpm->boundaries.held[t];
+    if (!held->counted) continue;
+    mpsi_mpm_hold_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work,
+                              held->count);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, held->work);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, held->work);
+  }
+  mpsi_mpm_sum_mirrors(mpm);
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+/* The block that particle k is sorted to. */
+static mpsi_cell_block *block_of(const mps_mpm *mpm, int64_t k) {
+  int64_t low = 0, high = mpm->grid.cell_count;
+  while (high - low > 1) {
+    const int64_t middle = low + (high - low) / 2;
+    if (mpm->grid.cells[middle].begin <= k)
+      low = middle;
+    else
+      high = middle;
+  }
+  return &mpm->grid.cells[low];
+}
+
+/* Notes, as G2P does, where the particle has left its block's tile or the domain. */
+static void check_place(mps_mpm *mpm, int64_t k) {
+  mpsi_cell_block *cells = block_of(mpm, k);
+  const double first = mpm->def.spline == 3 ? 1.0 : 0.5;
+  for (int c = 0; c < mpm->dim; c++) {
+    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
+    const double local = X - (double)cells->at[c] * MPSI_SIDE - first;
+    if (!(local >= cells->low[c] && local < cells->high[c] - mpsi_reach(mpm, c)))
+      cells->left = true;
+    if (X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]) continue;
+    if (mpsi_mpm_passes(mpm, c, X))
+      cells->gone = true;
+    else if (cells->bad < 0)
+      cells->bad = k, cells->lost = true;
+  }
+}
+
+/* A particle moves as it is told: what its velocity changes by is an impulse. */
+static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0, kinetic = 0.0;
+  for (int c = 0; c < mpm->dim; c++) x[c] = p->x[c][k];
+  for (int c = 0; c < mpm->dim; c++) {
+    if (!(hold->dofs >> c & 1)) continue;
+    const double change = hold->v[c] - p->v[c][k];
+    impulse[c] = p->m[k] * change;
+    work += impulse[c] * hold->v[c];
+    kinetic += 0.5 * impulse[c] * (hold->v[c] + p->v[c][k]);
+    p->v[c][k] = hold->v[c];
+    p->x[c][k] += mpm->run.dt * change;
+  }
+  double moment[3];
+  for (int c = 0; c < 3; c++) {
+    const int a = (c + 1) % 3, b = (c + 2) % 3;
+    moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
+  }
+  mpsi_mpm_hold_add_impulse(hold, impulse, moment, work, 1);
+  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
+  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, kinetic);
+  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, work - kinetic);
+  check_place(mpm, k);
+}
+
+void mpsi_mpm_drive_particles(mps_mpm *mpm) {
+  for (int32_t b = MPSI_SIDES; b < MPSI_HOLDS; b++) {
+    mpsi_hold *hold = &mpm->boundaries.hold[b];
+    for (int64_t i = 0; hold->ids && i < hold->id_count; i++) {
+      const int64_t k = mps_particles_index(mpm->particles, hold->ids[i]);
+      if (k >= 0) drive_particle(mpm, hold, k);
+    }
+  }
+}

@@ -1,0 +1,231 @@
+/* area.c - how much of a surface each touch stands for, where the shear stress that the surface
+ * bears has a strength or an adhesion in Pa. Particles are no measure: where soil flows along a
+ * body few of those that touch it in one step do. The soil in the layer next to the surface is: a
+ * particle of volume V at the distance D from it stands for the area
+ *
+ *   a = V w(D),   w = 2/d (1 - D/d) up to d = 4 half sizes or a cell, whose integral is 1,
+ *
+ * in axisymmetry brought from its own radius to that of its foot. It goes by bilinear weights to
+ * the corners of the cell of the foot, and from these in equal parts to the touches that are
+ * pressed within two cells, by cubic weights: the sum of their areas is that of the surface that
+ * soil covers. What the particles of a block give is summed apart, and added to the nodes in the
+ * order of the colours; of other ranks it comes with their touches (exchange.h).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+
+#include <string.h>
+
+#define LAYER 4.0 /* half sizes, at most a cell: two layers of particles */
+
+/* ---- nodes ----------------------------------------------------------------------------------- */
+
+/* Nodes around the foot x, under the tile of a block of cells. */
+typedef struct around {
+  int low[3], side;
+  double w[3][4];
+} around;
+
+/* Bilinear weights over the corners of the foot's cell (`side` 2), or cubic ones over four nodes an
+ * axis (4). The foot is hardly a cell off a particle of the block: what would lie beyond the tile
+ * is at its edge. `block`: of the cells. */
+static around find_around(const mps_mpm *mpm, const int32_t *block, const double *x, int side) {
+  around out = {.side = side, .w = {{1.0}, {1.0}, {1.0}}};
+  for (int c = 0; c < mpm->dim; c++) {
+    const double local = mpsi_grid_coordinate(mpm, c, x[c]) - (double)block[c] * MPSI_SIDE;
+    const int low = (int)fmin(MPSI_TILE_SIDE - side, fmax(0.0, floor(local) + 1.0 - side / 2));
+    const double part = fmin(1.0, fmax(0.0, local - low + 1.0 - side / 2));
+    out.low[c] = low;
+    if (side == 4)
+      mpsi_weights(3, 1.0 + part, out.w[c]);
+    else
+      out.w[c][0] = 1.0 - part, out.w[c][1] = part;
+  }
+  return out;
+}
+
+static int nodes_around(const mps_mpm *mpm, int side) {
+  return mpm->dim == 3 ? side * side * side : side * side;
+}
+
+/* Place under the tile and weight of node n of them. */
+static double node_around(const around *a, int n, int *at) {
+  const int i[3] = {n % a->side, n / a->side % a->side, n / a->side / a->side};
+  for (int c = 0; c < 3; c++) at[c] = a->low[c] + i[c];
+  return a->w[0][i[0]] * a->w[1][i[1]] * a->w[2][i[2]];
+}
+
+static mpsi_area *area_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                             int32_t b) {
+  const int64_t node = mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
+  int64_t t = mpm->grid.nodes[node / mpm->grid.block_nodes].first_pair;
+  while (mpm->contact.node_pair[t].body != b) t++;
+  return mpm->contact.impulses.area + t * mpm->grid.block_nodes + node % mpm->grid.block_nodes;
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static double layer_of(const mps_mpm *mpm, const mps_contact *contact) {
+  return fmin(LAYER * contact->def.offset, mpm->def.cell);
+}
+
+static double area_of(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
+                      const mpsi_foot *foot) {
+  const double deep = layer_of(mpm, contact), distance = fmax(0.0, foot->distance);
+  if (!(distance < deep)) return 0.0;
+  const double area = mpm->p.V[k] * 2.0 / deep * (1.0 - distance / deep);
+  return mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k] : area;
+}
+
+/* Distances change no faster than places: see constraints.c. */
+bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
+  const mps_contact *contact = mpm->contact.handle[pair->body];
+  double known[3] = {0.0}, distance = -1.0;
+  bool any = false;
+  if (!mpsi_has_strength(contact)) return false;
+  memset(tile, 0, (size_t)mpm->grid.tile_nodes * sizeof *tile);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    double x[3] = {0.0}, square = 0.0;
+    for (int c = 0; c < mpm->dim; c++) {
+      x[c] = mpm->p.x[c][k];
+      square += (x[c] - known[c]) * (x[c] - known[c]);
+    }
+    const double slack = distance - layer_of(mpm, contact);
+    if (slack > 0.0 && square < slack * slack) continue;
+    const mpsi_foot foot = mpsi_body_foot(contact->body, x);
+    memcpy(known, x, sizeof known);
+    distance = foot.distance;
+    const double area = area_of(mpm, contact, k, &foot);
+    if (!(area > 0.0)) continue;
+    const around corners = find_around(mpm, cells->at, foot.at, 2);
+    for (int n = 0; n < nodes_around(mpm, 2); n++) {
+      int at[3];
+      const double weight = node_around(&corners, n, at);
+      tile[mpsi_tile_index(at[0], at[1], at[2])] += weight * area;
+    }
+    any = true;
+  }
+  return any;
+}
+
+static void add_block(void *data, int64_t unit, int32_t worker) {
+  mps_mpm *mpm = data;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_cell_block *cells = &mpm->grid.cells[mpm->grid.coloured[all->area_first + unit]];
+  double tile[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
+  (void)worker;
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    if (!mpsi_mpm_sum_areas(mpm, pair, tile)) continue;
+    for (int k = 0; k < mpm->grid.tile_nodes; k++) {
+      int at[3];
+      mpsi_unravel(k, MPSI_TILE_SIDE, at);
+      if (tile[k] > 0.0) area_under(mpm, cells, at, pair->body)->area += tile[k];
+    }
+  }
+}
+
+/* ---- touches --------------------------------------------------------------------------------- */
+
+static bool is_pressed(const mpsi_touch *touch) { return touch->impulse.push > 0.0; }
+
+/* The nodes around the feet of a block's touches. */
+static void surround_block(void *data, int64_t unit, int32_t worker) {
+  mps_mpm *mpm = data;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch_block *block = &all->block[unit];
+  (void)worker;
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    mpsi_touch *touch = &all->touch[n];
+    touch->areas = 0;
+    if (!mpsi_has_strength(mpm->contact.handle[touch->body])) continue;
+    const around nodes = find_around(mpm, block->at, touch->impulse.at, 4);
+    for (int k = 0; k < nodes_around(mpm, 4); k++) {
+      int at[3];
+      const double weight = node_around(&nodes, k, at);
+      mpsi_area *area = mpm->share
+                            ? mpsi_mpm_met_area(mpm, block->at, at, touch->body)
+                            : area_under(mpm, &mpm->grid.cells[block->cells], at, touch->body);
+      if (area && area->area > 0.0 && weight > 0.0)
+        all->around[n * nodes_around(mpm, 4) + touch->areas++] = (mpsi_area_share){area, weight};
+    }
+  }
+}
+
+static void count_block(void *data, int64_t unit, int32_t worker) {
+  mps_mpm *mpm = data;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch_block *block = &all->block[all->area_first + unit];
+  (void)worker;
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
+    if (!is_pressed(&all->touch[n])) continue;
+    for (int q = 0; q < all->touch[n].areas; q++) at[q].node->touches += at[q].weight;
+  }
+}
+
+/* One that was not counted takes the share of one that was. */
+static void share_block(void *data, int64_t unit, int32_t worker) {
+  mps_mpm *mpm = data;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch_block *block = &all->block[unit];
+  (void)worker;
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    mpsi_touch *touch = &all->touch[n];
+    const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
+    const mps_contact_def *def = &mpm->contact.handle[touch->body]->def;
+    double area = 0.0;
+    if (!mpsi_has_strength(mpm->contact.handle[touch->body])) continue;
+    for (int q = 0; q < touch->areas; q++)
+      area += at[q].weight * at[q].node->area /
+              fmax(at[q].node->touches, is_pressed(touch) ? 0.0 : 1.0);
+    touch->impulse.adhesion = mpm->run.dt * area * def->adhesion;
+    if (!isnan(def->strength)) touch->impulse.strength = mpm->run.dt * area * def->strength;
+  }
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t touches) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  bool wanted = false;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    wanted = wanted || mpsi_has_strength(mpm->contact.handle[b]);
+  all->areas = false;
+  if (!wanted) return true;
+  const int64_t nodes = mpm->share ? 0 : mpm->contact.node_pair_count * mpm->grid.block_nodes;
+  if (!mpsi_room_ensure(mpm->context, &all->area_room, nodes, sizeof *all->area) ||
+      !mpsi_room_ensure(mpm->context, &all->around_room, touches * nodes_around(mpm, 4),
+                        sizeof *all->around))
+    return false;
+  all->area = all->area_room.item;
+  all->around = all->around_room.item;
+  all->area_count = nodes;
+  all->areas = true;
+  return true;
+}
+
+/* Blocks of one colour share no node. */
+void mpsi_mpm_find_areas(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  if (!all->areas || all->touch_count == 0) return;
+  if (!mpm->share) memset(all->area, 0, (size_t)all->area_count * sizeof *all->area);
+  for (int k = 0; k < MPSI_CORNERS && !mpm->share; k++) {
+    all->area_first = mpm->grid.colour[k];
+    mpsi_parallel_for(mpm->context, mpm->grid.colour[k + 1] - all->area_first, add_block, mpm);
+  }
+  mpsi_parallel_for(mpm->context, all->block_count, surround_block, mpm);
+}
+
+void mpsi_mpm_share_areas(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  if (!all->areas) return;
+  for (int64_t n = 0; n < all->touch_count; n++)
+    for (int32_t q = 0; q < all->touch[n].areas; q++)
+      all->around[n * nodes_around(mpm, 4) + q].node->touches = 0.0;
+  for (int k = 0; k < MPSI_CORNERS; k++) {
+    all->area_first = all->colour[k];
+    mpsi_parallel_for(mpm->context, all->colour[k + 1] - all->area_first, count_block, mpm);
+  }
+  mpsi_parallel_for(mpm->context, all->block_count, share_block, mpm);
+}

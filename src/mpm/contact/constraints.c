@@ -1,0 +1,443 @@
+/* constraints.c - which particles may touch which body in a step, their weights at the foot, and the
+ * impulses of the last step, with which the next begins. A particle counts by its distance from
+ * the surface, not by the nodes inside the body that it sees: so thin bodies are touched too.
+ *
+ * The impulse acts at the foot x_c through psi_i = phi_i(x_p) + grad phi_i . (x_c - x_p): sum psi_i
+ * = 1 and sum psi_i x_i = x_c, so that nodes receive its force and its moment about any point.
+ *
+ * Blocks of cells are listed colour by colour (blocks.h), the touches of a block by place, then by
+ * body: in the order in which impulses.c sweeps, whatever the order of the particles.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "body/rotation.h"
+#include "mpm/base/kernels.h"
+
+#include "core/particles/particles_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the impulses of the last step ----------------------------------------------------------- */
+
+static uint64_t slot_of(const mpsi_impulses *all, int64_t id, int64_t body) {
+  const uint64_t key = ((uint64_t)id * 64u + (uint64_t)body) * UINT64_C(0x9E3779B97F4A7C15);
+  return (key >> 20) & all->lookup_mask;
+}
+
+/* Twice as many slots as impulses at least. */
+bool mpsi_mpm_index_impulses(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t slots = 16;
+  while (slots < 2 * all->kept_count) slots *= 2;
+  if (!mpsi_room_ensure(mpm->context, &all->lookup_room, slots, sizeof *all->lookup)) return false;
+  all->lookup = all->lookup_room.item;
+  all->lookup_mask = (uint64_t)slots - 1;
+  for (int64_t k = 0; k < slots; k++) all->lookup[k] = -1;
+  for (int64_t k = 0; k < all->kept_count; k++) {
+    uint64_t at = slot_of(all, all->kept[k].id, all->kept[k].body);
+    while (all->lookup[at] >= 0) at = (at + 1) & all->lookup_mask;
+    all->lookup[at] = (int32_t)k;
+  }
+  return true;
+}
+
+const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, int32_t body) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
+       at = (at + 1) & all->lookup_mask) {
+    const mpsi_kept_impulse *kept = &all->kept[all->lookup[at]];
+    if (kept->id == id && kept->body == body) return kept;
+  }
+  return NULL;
+}
+
+void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t to = 0;
+  for (int64_t k = 0; k < all->kept_count; k++) {
+    mpsi_kept_impulse kept = all->kept[k];
+    if (kept.body == body) continue;
+    kept.body -= kept.body > body;
+    all->kept[to++] = kept;
+  }
+  all->kept_count = to;
+}
+
+/* ---- who may touch --------------------------------------------------------------------------- */
+
+/* Half the size (m) of a particle along n. */
+static double half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                        const double *n) {
+  double wave, shear, stress[6] = {0.0};
+  mpsi_mpm_elastic(mpm, particle, &wave, &shear);
+  for (int c = 0; c < 2 * mpm->dim; c++) stress[c] = mpm->p.s[c][particle];
+  return mpsi_impulse_half_size(contact->def.offset, wave, shear, stress, n);
+}
+
+mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                              const double *x) {
+  const mpsi_foot own = mpsi_body_foot(contact->body, x);
+  const double half = half_size(mpm, contact, particle, own.normal);
+  return mpsi_corner_bearing(contact->body, contact->def.corner, x, half, &own);
+}
+
+static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
+}
+
+/* No particle of the block touches that is further away than this (m). */
+static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                            const mps_contact *contact) {
+  const double fastest = mpm->kernels->fastest(mpm, cells->begin, cells->end);
+  return (1.4 * contact->def.offset + mpm->run.dt * (mpsi_contact_speed(contact) + fastest)) *
+         (1.0 + 1e-9);
+}
+
+/* What the foot of x tells: distances change no faster than places, and a convex body lies behind
+ * the tangent plane. */
+static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const double *x,
+                       double reach) {
+  const double slack = fmax(foot->distance - reach, 0.0);
+  mpsi_far out = {.square = slack * slack, .before = INFINITY};
+  if (contact->convex && foot->distance > 0.0) out.before = reach * (1.0 + 1e-9);
+  memcpy(out.x, x, sizeof out.x);
+  memcpy(out.at, foot->at, sizeof out.at);
+  memcpy(out.normal, foot->normal, sizeof out.normal);
+  return out;
+}
+
+static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k, const double *x,
+                      const mpsi_foot *foot) {
+  const double half = half_size(mpm, contact, k, foot->normal);
+  double surface[3], closing = 0.0;
+  (void)x;
+  mpsi_body_velocity(&contact->body->pose, foot->at, surface);
+  for (int c = 0; c < mpm->dim; c++) closing += (surface[c] - mpm->p.v[c][k]) * foot->normal[c];
+  return mpsi_impulse_near(foot->distance - half, half, closing, mpm->run.dt);
+}
+
+/* Whether no particle of the block is within `reach` of the body: all are in the box from which
+ * none has left (mpsi_cell_block.left). */
+static bool is_block_far(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mps_contact *contact, double reach) {
+  const double first = mpm->def.spline == 3 ? 1.0 : 0.5;
+  double middle[3] = {0.0}, half[3] = {0.0}, x[3], square = 0.0, before = 0.0;
+  for (int c = 0; c < mpm->dim; c++) {
+    const double low = first + cells->low[c], high = first + (cells->high[c] - mpsi_reach(mpm, c));
+    middle[c] = 0.5 * (low + high);
+    half[c] = 0.5 * mpm->def.cell * (high - low) * (1.0 + 1e-9);
+    square += half[c] * half[c];
+  }
+  mpsi_node_position(mpm, cells->at, middle, x);
+  const mpsi_foot foot = mpsi_body_foot(contact->body, x);
+  if (foot.distance > reach + sqrt(square)) return true;
+  if (!contact->convex || !(foot.distance > 0.0)) return false;
+  for (int c = 0; c < mpm->dim; c++)
+    before += (x[c] - foot.at[c]) * foot.normal[c] - half[c] * fabs(foot.normal[c]);
+  return before > reach * (1.0 + 1e-9);
+}
+
+/* Those of a pair of a block and a body: the last foot that was found tells of most particles that
+ * they are too far. */
+static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
+  const mps_contact *contact = mpm->contact.handle[pair->body];
+  const double reach = longest_reach(mpm, cells, contact);
+  int32_t *out = mpm->contact.impulses.candidate + pair->first_candidate;
+  mpsi_far far = {.before = INFINITY};
+  pair->candidates = 0;
+  if (is_block_far(mpm, cells, contact, reach)) return;
+  for (int64_t k = cells->begin;
+       (k = mpm->kernels->next_near(mpm, &far, k, cells->end)) < cells->end; k++) {
+    double x[3];
+    place_of(mpm, k, x);
+    const mpsi_foot foot = mpsi_body_foot(contact->body, x);
+    far = far_by(contact, &foot, x, reach);
+    if (foot.distance <= reach && may_touch(mpm, contact, k, x, &foot))
+      out[pair->candidates++] = (int32_t)(k - cells->begin);
+  }
+}
+
+static void find_in_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  (void)worker;
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    if (mpsi_by_impulses(mpm->contact.handle[pair->body])) find_candidates(mpm, cells, pair);
+  }
+}
+
+/* Room for as many candidates as there are particles in the blocks near each body. */
+static int64_t share_candidates(mps_mpm *mpm) {
+  int64_t count = 0;
+  for (int64_t t = 0; t < mpm->contact.cell_pair_count; t++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+    const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
+    pair->first_candidate = count;
+    pair->candidates = 0;
+    pair->touched = false; /* also of blocks that give after the bodies are met (step.c) */
+    pair->deepest = 0.0;
+    if (mpsi_by_impulses(mpm->contact.handle[pair->body])) count += cells->end - cells->begin;
+  }
+  return count;
+}
+
+/* The blocks with candidates, colour by colour. */
+static void list_blocks(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  all->touch_count = all->block_count = 0;
+  for (int colour = 0; colour < MPSI_CORNERS; colour++) {
+    all->colour[colour] = all->block_count;
+    for (int64_t i = mpm->grid.colour[colour]; i < mpm->grid.colour[colour + 1]; i++) {
+      const mpsi_cell_block *cells = &mpm->grid.cells[mpm->grid.coloured[i]];
+      int64_t count = 0;
+      for (int32_t q = 0; q < cells->pairs; q++)
+        count += mpm->contact.cell_pair[cells->first_pair + q].candidates;
+      if (count == 0) continue;
+      all->block[all->block_count++] =
+          (mpsi_touch_block){.first = all->touch_count,
+                             .count = count,
+                             .cells = mpm->grid.coloured[i],
+                             .at = {cells->at[0], cells->at[1], cells->at[2]}};
+      all->touch_count += count;
+    }
+  }
+  all->colour[MPSI_CORNERS] = all->block_count;
+}
+
+mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mps_context *context = mpm->context;
+  all->touch_count = all->block_count = 0;
+  if (mpm->contact.bodies == 0) return MPS_OK;
+  const int64_t candidates = share_candidates(mpm);
+  const int32_t side = mpm->def.spline + 1;
+  all->stride = mpm->dim == 3 ? side * side * side : side * side;
+  bool good = mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
+              mpsi_room_ensure(context, &all->block_room, mpm->grid.cell_count, sizeof *all->block);
+  all->candidate = all->candidate_room.item;
+  all->block = all->block_room.item;
+  if (good && candidates > 0) {
+    mpsi_mpm_for_cells(mpm, find_in_block);
+    list_blocks(mpm);
+  }
+  const int64_t n = all->touch_count;
+  good = good && mpsi_room_ensure(context, &all->touch_room, n, sizeof *all->touch) &&
+         mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
+         mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
+         mpsi_room_ensure(context, &all->next_room, n, sizeof *all->kept) &&
+         mpsi_mpm_index_impulses(mpm) && mpsi_mpm_area_room(mpm, n);
+  if (!good) {
+    all->touch_count = all->block_count = 0;
+    return mpsi_fail_memory(context, function,
+                            (size_t)(n + 1) * (sizeof *all->touch + (size_t)all->stride * 40) +
+                                (size_t)candidates * sizeof *all->candidate);
+  }
+  all->touch = all->touch_room.item;
+  all->weight = all->weight_room.item;
+  all->node = all->node_room.item;
+  all->free_bodies = false;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_impulse_begin_body(&all->body[b], mpm->contact.body[b], mpm->run.dt);
+    if (mpm->settling.on) all->body[b].free = false;
+    all->free_bodies = all->free_bodies || all->body[b].free;
+  }
+  return MPS_OK;
+}
+
+/* ---- their weights --------------------------------------------------------------------------- */
+
+static int by_place(const void *a, const void *b) {
+  const mpsi_touch *s = a, *t = b;
+  for (int c = 0; c < 3; c++)
+    if (s->x[c] != t->x[c]) return s->x[c] < t->x[c] ? -1 : 1;
+  if (s->id != t->id) return s->id < t->id ? -1 : 1;
+  return (s->body > t->body) - (s->body < t->body);
+}
+
+static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, mpsi_touch *out) {
+  mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+  const mps_contact *contact = mpm->contact.handle[pair->body];
+  *out = (mpsi_touch){.particle = k, .id = id[k], .pair = t, .body = pair->body};
+  place_of(mpm, k, out->x);
+  const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, out->x);
+  const mpsi_foot foot = bearing.foot;
+  mpsi_impulse *c = &out->impulse;
+  for (int a = 0; a < mpm->dim; a++) c->normal[a] = foot.normal[a];
+  out->part = contact->body->part_of[foot.face];
+  const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
+  for (int a = 0; a < mpm->dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
+  c->aim = mpsi_impulse_aim(foot.distance - bearing.half, mpm->run.dt,
+                            fmax(mpm->run.dt, mps_mpm_dt(mpm)), mpm->run.speed);
+  c->friction = contact->def.friction;
+  c->strength = INFINITY;
+  if (-bearing.outside > pair->deepest) {
+    pair->touched = true;
+    pair->deepest = -bearing.outside, pair->deep = k;
+  }
+}
+
+/* psi at the nodes of the touch's stencil. */
+static void weigh(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                  const mpsi_touch *touch, mpsi_foot_weights *out) {
+  double d[3];
+  for (int a = 0; a < 3; a++) d[a] = touch->impulse.at[a] - touch->x[a];
+  mpm->kernels->foot(mpm, cells, worker, touch->particle, d, out);
+}
+
+/* Tile node of number s of the stencil. */
+static void find_place(const mpsi_foot_weights *f, int s, int *place) {
+  place[0] = f->at[0] + s % 4, place[1] = f->at[1] + s / 4 % 4, place[2] = f->at[2] + s / 16;
+}
+
+/* Adds `weight` to those of a node of the touch, which may be there already, for a ghost. */
+static void add_node(mpsi_touch *touch, double **node, double (*to)[4], double *at,
+                     const double *weight, bool may_be_there) {
+  int32_t i = may_be_there ? 0 : touch->nodes;
+  while (i < touch->nodes && node[i] != at) i++;
+  if (i == touch->nodes) {
+    node[touch->nodes++] = at;
+    to[i][MPSI_MASS] = 1.0 / at[MPSI_MASS];
+    memcpy(to[i] + MPSI_VECTOR, weight, 3 * sizeof *weight);
+    return;
+  }
+  for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
+}
+
+/* psi at the nodes of the touch's stencil that have mass, where these may stand for ghosts or be
+ * other ranks'. */
+static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
+                         int64_t n) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_touch *touch = &all->touch[n];
+  double(*weight)[4] = all->weight + n * all->stride, **node = all->node + n * all->stride;
+  for (uint64_t left = f->active; left != 0; left &= left - 1) {
+    const int s = __builtin_ctzll(left);
+    int place[3];
+    find_place(f, s, place);
+    const double psi = f->psi[s];
+    double psis[3] = {psi, psi, psi}, keeps[3], carried[3];
+    const bool image = cells->mirrors && mpsi_mpm_find_image(mpm, cells, place, keeps, carried);
+    for (int a = 0; a < 3 && image; a++) {
+      psis[a] *= keeps[a];
+      touch->carried[a] += psi * carried[a];
+    }
+    const int64_t g = f->across >> s & 1
+                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
+                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
+    if (mpm->grid.node[g][MPSI_MASS] > 0.0)
+      add_node(touch, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
+  }
+  for (int32_t i = 0; i < touch->nodes; i++)
+    for (int a = 0; a < 3; a++) {
+      const double psi = weight[i][MPSI_VECTOR + a];
+      touch->impulse.mobility[a] += psi * psi * weight[i][MPSI_MASS];
+    }
+}
+
+/* The same where each stands for itself. */
+static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
+                       int64_t n) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_touch *touch = &all->touch[n];
+  double(*weight)[2] = mpsi_even_weights(all, n), **node = all->node + n * all->stride;
+  double mobility = 0.0;
+  int32_t count = 0;
+  for (uint64_t left = f->active; left != 0; left &= left - 1) {
+    const int s = __builtin_ctzll(left);
+    int place[3];
+    find_place(f, s, place);
+    const int64_t g = f->across >> s & 1
+                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
+                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
+    double *at = mpm->grid.node[g];
+    if (!(at[MPSI_MASS] > 0.0)) continue;
+    weight[count][0] = 1.0 / at[MPSI_MASS];
+    weight[count][1] = f->psi[s];
+    mobility += f->psi[s] * f->psi[s] * weight[count][0];
+    node[count++] = at;
+  }
+  touch->nodes = count;
+  for (int a = 0; a < 3; a++) touch->impulse.mobility[a] = mobility;
+}
+
+/* The weights of a touch, and its mobility. */
+static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
+  mpsi_touch *touch = &mpm->contact.impulses.touch[n];
+  mpsi_foot_weights f;
+  weigh(mpm, cells, &mpm->grid.workers[worker], touch, &f);
+  touch->nodes = 0;
+  touch->even = !mpm->share && !cells->mirrors;
+  if (touch->even)
+    fit_evenly(mpm, cells, &f, n);
+  else
+    fit_unevenly(mpm, cells, &f, n);
+}
+
+/* States of nodes for the touches whose fits were not kept. */
+static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                        const mpsi_touch_block *block, mpsi_worker *worker) {
+  const mpsi_touch *touch = mpm->contact.impulses.touch + block->first;
+  bool all = cells->first_fit >= 0;
+  for (int64_t n = 0; n < block->count && all; n++)
+    all = mpm->grid.fitted[cells->first_fit + (touch[n].particle - cells->begin)] != 0;
+  if (!all) mpsi_mpm_find_states(mpm, cells, worker);
+}
+
+static void mirror_block(void *data, int64_t unit, int32_t number) {
+  mps_mpm *mpm = data;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch_block *block = &all->block[unit];
+  if (block->cells < 0) return;
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  if (!cells->mirrors) return;
+  find_states(mpm, cells, block, worker);
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    const mpsi_touch *touch = &all->touch[n];
+    const mpsi_impulse *c = &touch->impulse;
+    mpsi_foot_weights f;
+    if (!(c->push > 0.0)) continue;
+    weigh(mpm, cells, worker, touch, &f);
+    for (uint64_t left = f.active; left != 0; left &= left - 1) {
+      const int s = __builtin_ctzll(left);
+      int place[3];
+      double by[3];
+      find_place(&f, s, place);
+      for (int a = 0; a < 3; a++) by[a] = f.psi[s] * (c->push * c->normal[a] + c->rub[a]);
+      if (f.psi[s] != 0.0) mpsi_mpm_reflect_impulse(mpm, cells, place, by);
+    }
+  }
+}
+
+void mpsi_mpm_mirror_touches(mps_mpm *mpm) {
+  if (mpm->mirrors.sides)
+    mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, mirror_block, mpm);
+}
+
+static void fit_block(void *data, int64_t unit, int32_t worker) {
+  mps_mpm *mpm = data;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch_block *block = &all->block[unit];
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  int64_t n = block->first;
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    const int64_t t = cells->first_pair + q;
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+    const int32_t *candidate = all->candidate + pair->first_candidate;
+    for (int64_t i = 0; i < pair->candidates; i++)
+      begin_touch(mpm, t, cells->begin + candidate[i], id, &all->touch[n++]);
+  }
+  qsort(all->touch + block->first, (size_t)block->count, sizeof *all->touch, by_place);
+  find_states(mpm, cells, block, &mpm->grid.workers[worker]);
+  for (n = block->first; n < block->first + block->count; n++) {
+    fit_touch(mpm, cells, worker, n);
+    mpsi_touch *touch = &all->touch[n];
+    const mpsi_kept_impulse *kept = mpsi_mpm_kept_impulse(mpm, touch->id, touch->body);
+    for (int a = 0; a < 3; a++) touch->impulse.rub[a] = kept ? kept->by[a] : 0.0;
+  }
+}
+
+void mpsi_mpm_fit_touches(mps_mpm *mpm) {
+  mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, fit_block, mpm);
+  if (!mpm->share) mpsi_mpm_find_areas(mpm);
+}

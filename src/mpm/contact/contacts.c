@@ -1,0 +1,292 @@
+/* contacts.c - which bodies the particles touch: contacts made, asked and ended. At work: pairs.c,
+ * inside.c, least_squares.c, friction.c. SPDX-License-Identifier: BSD-3-Clause */
+#include "particle.h"
+#include "mpm/particles/particles.h"
+
+#include "core/particles/particles_internal.h"
+
+#include <string.h>
+
+#define OVERLAP 0.1 /* cells: bodies may by so much */
+#define SHARP 1e-3  /* cells: walls below are the edge where two faces meet */
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static mps_status check_body(mps_mpm *mpm, const char *function, const mps_body *body) {
+  if (!body) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "body is NULL");
+  if (body->context != mpm->context)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the body was made from another context");
+  if (body->dim != mpm->dim)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
+                     body->dim, mpm->dim);
+  if (mpm->contact.bodies == MPS_MPM_MAX_CONTACTS)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the solver has %d contacts, the most there can be", MPS_MPM_MAX_CONTACTS);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    if (mpm->contact.body[b] == body)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                       "the solver is in contact with the body already (contact %d)", b);
+  return MPS_OK;
+}
+
+/* Half spaces are there to be laid one over the other, as floor and wall. */
+static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_body *body) {
+  const double depth = OVERLAP * mpm->def.cell;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const bool halves = body->shape == MPSI_HALF && mpm->contact.body[b]->shape == MPSI_HALF;
+    if (halves || !mpsi_body_overlap(mpm->contact.body[b], body, depth)) continue;
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the body overlaps body %d of the solver by more than %g m (%g cells)", b,
+                     depth, OVERLAP);
+  }
+  return MPS_OK;
+}
+
+/* Impulses keep what is on the sides of a thin wall apart (thin_bodies.h), springs do not. */
+static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contact *contact) {
+  const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
+  contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
+  contact->convex = mpsi_body_is_convex(contact->body);
+  if (!contact->thin || mpsi_by_impulses(contact)) return MPS_OK;
+  if (!contact->def.thin && cells < SHARP)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "two faces of the body meet at less than 20 degrees: momentum passes through "
+                     "such an edge where it is thinner than %g cells; blunt it, or allow it with "
+                     "thin = 1",
+                     MPSI_THIN_CELLS);
+  if (!contact->def.thin)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the body has a wall %.4g m thin, %.3g cells: below %g cells momentum passes "
+                     "through it; use a cell of at most %.4g m, a thicker wall, or allow it with "
+                     "thin = 1",
+                     wall, cells, MPSI_THIN_CELLS, wall / MPSI_THIN_CELLS);
+  mpsi_log(mpm->context, MPS_LOG_WARNING,
+           "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it",
+           mpm->contact.bodies, wall, cells, MPSI_THIN_CELLS);
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact,
+                                 int64_t from) {
+  int64_t count = 0, first = -1;
+  double deepest = 0.0;
+  for (int64_t k = from; k < mpm->p.count; k++) {
+    double x[3] = {0.0};
+    for (int c = 0; c < mpm->dim; c++) x[c] = mpm->p.x[c][k];
+    if (!mpsi_body_reaches(contact->body, x, 0.0)) continue;
+    const double depth = -mpsi_body_foot(contact->body, x).distance;
+    if (!(depth > 0.0)) continue;
+    if (first < 0) first = mpsi_particles_integers(mpm->particles, "id")[k];
+    deepest = fmax(deepest, depth);
+    count++;
+  }
+  if (count == 0 || contact->def.inside == MPS_CONTACT_INSIDE_PUSH) return MPS_OK;
+  const mps_status status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                                      "%lld particles lie inside the body, the first is %lld, the "
+                                      "deepest %.4g m below the surface: "
+                                      "place it outside, or let them be pushed out with inside = 1",
+                                      (long long)count, (long long)first, deepest);
+  mpsi_fail_where(mpm->context, -1, first);
+  return status;
+}
+
+/* All ranks make the same contact with the same body. */
+static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
+                                const mps_contact *contact) {
+  if (!mpm->share) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  if (status == MPS_OK) {
+    const mps_contact_def *d = &contact->def;
+    MPSI_GIVE(&given, d, mover);
+    MPSI_GIVE(&given, d, method);
+    MPSI_GIVE(&given, d, sweeps);
+    MPSI_GIVE(&given, d, friction);
+    MPSI_GIVE(&given, d, penalty);
+    MPSI_GIVE(&given, d, xi);
+    MPSI_GIVE(&given, d, offset);
+    MPSI_GIVE(&given, d, depth);
+    MPSI_GIVE(&given, d, thin);
+    MPSI_GIVE(&given, d, inside);
+    MPSI_GIVE(&given, d, adhesion);
+    MPSI_GIVE(&given, d, strength);
+    MPSI_GIVE(&given, d, corner);
+    MPSI_GIVE(&given, d, tolerance);
+    mpsi_body_give(&given, contact->body);
+  }
+  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+}
+
+/* ---- the handle's questions ------------------------------------------------------------------ */
+
+static mps_status check_owner(void *owner, const char *function) {
+  return mpsi_mpm_between_steps(owner, function);
+}
+
+/* Without bodies the lists of pairs are not made any more: they must be empty. */
+static void forget_pairs(mps_mpm *mpm) {
+  mpm->contact.cell_pair_count = mpm->contact.node_pair_count = mpm->contact.mask_count = 0;
+  mpm->contact.thin = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->grid.cells[b].pairs = 0;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    nodes->near = -1;
+    nodes->inside = nodes->thin = false;
+    nodes->across = -1;
+    nodes->bodies = 0;
+    nodes->pairs = 0;
+  }
+}
+
+static void end(void *owner, mps_contact *contact) {
+  mps_mpm *mpm = owner;
+  mpsi_contacts *all = &mpm->contact;
+  int32_t to = 0, ended = 0;
+  for (int32_t b = 0; b < all->bodies; b++) {
+    if (all->handle[b] == contact) {
+      ended = b;
+      continue;
+    }
+    all->handle[to] = all->handle[b];
+    all->body[to++] = all->body[b];
+  }
+  all->bodies = to;
+  mpsi_mpm_forget_impulses(mpm, ended);
+  mpm->run.warned_about_chatter = 0;
+  forget_pairs(mpm);
+  mpsi_contact_leave(contact);
+}
+
+/* Whether particle k at x touches the body now, by the method of the contact; `c` receives force
+ * and depth, `foot` and `half` where and from which half size (m) its gap counts. By impulses: one
+ * that the body has pushed in the last step. */
+static bool touches(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
+                    int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
+                    double *half) {
+  *half = contact->def.offset;
+  if (!mpsi_by_impulses(contact)) {
+    if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
+        !mpsi_find_contact(mpm, contact, mpm->dim, k, c))
+      return false;
+    *foot = mpsi_body_foot(contact->body, x);
+    return true;
+  }
+  const mpsi_kept_impulse *kept = mpsi_mpm_kept_impulse(mpm, id, body);
+  if (!kept) return false;
+  for (int a = 0; a < 3; a++) c->force[a] = kept->by[a] / mpm->contact.impulses.kept_dt;
+  const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, x);
+  *foot = bearing.foot;
+  *half = bearing.half;
+  return true;
+}
+
+static mps_status list_particles(void *owner, mps_contact *contact, int64_t capacity,
+                                 int64_t *count, int64_t *ids, double *gap, double *normal,
+                                 double *force, double *foot) {
+  mps_mpm *mpm = owner;
+  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  int64_t n = 0;
+  int32_t body = 0;
+  if (!mpsi_mpm_index_impulses(mpm))
+    return mpsi_fail_memory(mpm->context, "mps_contact_get_particles",
+                            (size_t)mpm->contact.impulses.kept_count * 4 * sizeof(int32_t));
+  while (mpm->contact.handle[body] != contact) body++;
+  for (int64_t k = 0; k < mpm->p.count; k++) {
+    mpsi_contact_particle c;
+    double x[3] = {0.0}, half;
+    for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
+    mpsi_foot at;
+    if (!touches(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
+    if (n < capacity) {
+      if (ids) ids[n] = id[k];
+      if (gap) gap[n] = at.distance - half;
+      for (int a = 0; a < 3; a++) {
+        if (normal) normal[3 * n + a] = a < mpm->dim ? at.normal[a] : 0.0;
+        if (force) force[3 * n + a] = a < mpm->dim ? c.force[a] : 0.0;
+        if (foot) foot[3 * n + a] = a < mpm->dim ? at.at[a] : 0.0;
+      }
+    }
+    n++;
+  }
+  *count = n;
+  return MPS_OK;
+}
+
+static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_particles};
+
+/* ---- making and ending ----------------------------------------------------------------------- */
+
+/* Both shares of a contact that is not made. */
+static void give_up(mps_contact *contact) {
+  if (!contact) return;
+  mpsi_contact_release(contact);
+  mpsi_contact_release(contact);
+}
+
+mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_def *def,
+                               mps_contact **out) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_contact *contact = NULL;
+  if (out) *out = NULL;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = mpsi_particles_ready(mpm->particles, __func__);
+  if (status == MPS_OK) status = check_body(mpm, __func__, body);
+  if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
+  if (status == MPS_OK)
+    status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
+  status = compare_ranks(mpm, __func__, status, contact);
+  if (status != MPS_OK) {
+    give_up(contact);
+    return status;
+  }
+  mps_contact_def *d = &contact->def;
+  if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(mpm->particles);
+  if (isnan(d->depth))
+    d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH ? INFINITY
+               : d->inside == MPS_CONTACT_INSIDE_REMOVE
+                   ? 0.5 * mps_particles_spacing(mpm->particles)
+                   : mpm->def.cell;
+  status = check_thickness(mpm, __func__, contact);
+  if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
+    status = mpsi_mpm_clear_body(mpm, __func__, contact);
+  else if (status == MPS_OK)
+    status = mpsi_mpm_share_settle(mpm, __func__, mpsi_mpm_check_inside(mpm, __func__, contact, 0));
+  if (status != MPS_OK) {
+    give_up(contact);
+    return status;
+  }
+  mpsi_contact_join(contact);
+  mpm->contact.handle[mpm->contact.bodies] = contact;
+  mpm->contact.body[mpm->contact.bodies++] = body;
+  if (out)
+    *out = contact;
+  else
+    mpsi_contact_release(contact);
+  return MPS_OK;
+}
+
+void mpsi_mpm_end_contacts(mps_mpm *mpm) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) mpsi_contact_leave(mpm->contact.handle[b]);
+  mpm->contact.bodies = 0;
+}
+
+mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function) {
+  for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
+    const double most = mpm->contact.handle[pair->body]->def.depth;
+    if (!pair->touched || !(pair->deepest > most) ||
+        mpm->contact.handle[pair->body]->def.inside == MPS_CONTACT_INSIDE_REMOVE)
+      continue;
+    const int64_t id = mpsi_particles_integers(mpm->particles, "id")[pair->deep];
+    const mps_status status = mpsi_fail(
+        mpm->context, function, MPS_ERROR_DIVERGED,
+        "step %lld, t = %.6g s: particle %lld is %.4g m below the surface of body %d, at most %.4g "
+        "m is allowed (`depth` of the contact): the body is driven too fast or against what cannot "
+        "yield, or the contact is too soft",
+        (long long)mpm->run.steps, mpm->run.time, (long long)id, pair->deepest, pair->body, most);
+    mpsi_fail_where(mpm->context, mpm->run.steps, id);
+    return status;
+  }
+  return MPS_OK;
+}

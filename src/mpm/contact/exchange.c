@@ -1,0 +1,414 @@
+/* exchange.c - see exchange.h. A message has one entry for each block of cells with touches or areas: its
+ * head, the nodes that the touches use, each once, the touches, each followed by the numbers of its
+ * nodes in that list and by its weights, one or (in blocks at mirrors) three a node, and the areas
+ * that its particles stand for (area.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "exchange.h"
+
+#include "mpm/base/solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define UNDER (2 * MPSI_SIDE)          /* nodes an axis under a tile, in whole blocks */
+#define PLACES (UNDER * UNDER * UNDER) /* from here on those across thin bodies */
+
+typedef struct head {
+  int32_t at[3];  /* of the block of cells */
+  int32_t colour; /* in whose turn it is swept */
+  int64_t cells;  /* its number, on its own rank */
+  int64_t bytes;  /* of the entry */
+  int64_t nodes, touches;
+  int64_t components; /* of a weight: 1, 3 */
+  int64_t areas;
+} head;
+
+typedef struct named_area {
+  int32_t place, body;
+  double area;
+} named_area;
+
+typedef struct named_node {
+  int64_t place; /* under the tile; see PLACES */
+  double value[4];
+} named_node;
+
+/* ---- to the others --------------------------------------------------------------------------- */
+
+static int under_index(int i, int j, int k) { return (k * UNDER + j) * UNDER + i; }
+
+/* The node of the grid, one of those under the tile of `cells`. */
+static int place_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const double *node) {
+  const int64_t number = (node - (const double *)mpm->grid.node) / 4;
+  const int64_t block = number / mpm->grid.block_nodes;
+  const bool across = block >= mpm->grid.node_count;
+  int q = 0, at[3];
+  while ((across ? mpm->grid.nodes[cells->to[q]].across : cells->to[q]) != block) q++;
+  mpsi_unravel((int)(number % mpm->grid.block_nodes), MPSI_SIDE, at);
+  return (across ? PLACES : 0) + under_index(at[0] + MPSI_SIDE * (q & 1),
+                                             at[1] + MPSI_SIDE * (q >> 1 & 1),
+                                             at[2] + MPSI_SIDE * (q >> 2));
+}
+
+static int64_t index_bytes(int64_t nodes) { return (nodes + 1) / 2 * 8; }
+
+/* At most. `block`: NULL where there are areas alone. */
+static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                           const mpsi_touch_block *block) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t bytes = (int64_t)sizeof(head), nodes = 0;
+  for (int32_t q = 0; q < cells->pairs && all->areas; q++)
+    if (mpsi_has_strength(mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + q].body]))
+      bytes += mpm->grid.tile_nodes * (int64_t)sizeof(named_area);
+  if (!block) return bytes;
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    nodes += all->touch[n].nodes;
+    bytes += (int64_t)sizeof(mpsi_touch) + index_bytes(all->touch[n].nodes);
+  }
+  return bytes + nodes * (int64_t)(3 * sizeof(double) + sizeof(named_node));
+}
+
+/* The nodes of the block's touches, each once; `number` of each place in that list. */
+static int64_t name_nodes(const mps_mpm *mpm, const mpsi_touch_block *block, int32_t *number,
+                          named_node *out) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  int64_t count = 0;
+  memset(number, -1, 2 * PLACES * sizeof *number);
+  for (int64_t n = block->first; n < block->first + block->count; n++)
+    for (int32_t i = 0; i < all->touch[n].nodes; i++) {
+      const double *node = all->node[n * all->stride + i];
+      const int place = place_under(mpm, cells, node);
+      if (number[place] >= 0) continue;
+      out[count].place = place;
+      memcpy(out[count].value, node, sizeof out->value);
+      number[place] = (int32_t)count++;
+    }
+  return count;
+}
+
+static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t n,
+                         const int32_t *number, int64_t components, char *to) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch *touch = &all->touch[n];
+  memcpy(to, touch, sizeof *touch);
+  to += sizeof *touch;
+  int32_t *index = (int32_t *)to;
+  for (int32_t i = 0; i < touch->nodes; i++)
+    index[i] = number[place_under(mpm, cells, all->node[n * all->stride + i])];
+  to += index_bytes(touch->nodes);
+  for (int32_t i = 0; i < touch->nodes; i++, to += components * (int64_t)sizeof(double))
+    memcpy(to, all->weight[n * all->stride + i] + MPSI_VECTOR, (size_t)components * sizeof(double));
+  return to;
+}
+
+static char *write_touches(const mps_mpm *mpm, const mpsi_touch_block *block, head *h, char *to) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  int32_t number[2 * PLACES];
+  h->nodes = name_nodes(mpm, block, number, (named_node *)to);
+  h->touches = block->count;
+  to += h->nodes * (int64_t)sizeof(named_node);
+  for (int64_t n = block->first; n < block->first + block->count; n++)
+    to = write_touch(mpm, cells, n, number, h->components, to);
+  return to;
+}
+
+static char *write_areas(const mps_mpm *mpm, const mpsi_cell_block *cells, head *h, char *to) {
+  double tile[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
+  named_area *out = (named_area *)to;
+  for (int32_t q = 0; q < cells->pairs && mpm->contact.impulses.areas; q++) {
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    if (!mpsi_mpm_sum_areas(mpm, pair, tile)) continue;
+    for (int k = 0; k < mpm->grid.tile_nodes; k++) {
+      int at[3];
+      if (!(tile[k] > 0.0)) continue;
+      mpsi_unravel(k, MPSI_TILE_SIDE, at);
+      out[h->areas++] = (named_area){under_index(at[0], at[1], at[2]), pair->body, tile[k]};
+    }
+  }
+  return to + h->areas * (int64_t)sizeof *out;
+}
+
+/* `block`: NULL where there are areas alone. Returns `to` where there are none either. */
+static char *write_block(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_touch_block *block, char *to) {
+  const int32_t *at = cells->at;
+  head h = {.colour = (at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2,
+            .cells = cells - mpm->grid.cells,
+            .components = cells->mirrors ? 3 : 1};
+  memcpy(h.at, at, sizeof h.at);
+  char *end = to + sizeof h;
+  if (block) end = write_touches(mpm, block, &h, end);
+  end = write_areas(mpm, cells, &h, end);
+  if (h.touches == 0 && h.areas == 0) return to;
+  h.bytes = end - to;
+  memcpy(to, &h, sizeof h);
+  return end;
+}
+
+/* ---- from all -------------------------------------------------------------------------------- */
+
+/* An entry of a message. */
+typedef struct entry {
+  head h;
+  const char *data; /* behind the head */
+  bool own;
+} entry;
+
+typedef struct meeting {
+  mps_mpm *mpm;
+  const char *function;
+  mpsi_mailbox box;
+  const char *own;
+  int64_t own_bytes;
+  entry *entry;
+  int64_t entries, touches, nodes; /* nodes: of all entries, and their areas */
+} meeting;
+
+static const char *message_of(const meeting *m, int32_t k, int64_t *bytes) {
+  *bytes = k < m->box.count ? m->box.mail[k].bytes : m->own_bytes;
+  return k < m->box.count ? m->box.mail[k].data : m->own;
+}
+
+/* Counts the entries, or lists them. */
+static void read_entries(meeting *m) {
+  m->entries = m->touches = m->nodes = 0;
+  for (int32_t k = 0; k <= m->box.count; k++) {
+    int64_t bytes;
+    const char *at = message_of(m, k, &bytes), *end = at + bytes;
+    while (at < end) {
+      entry e = {.data = at + sizeof e.h, .own = k == m->box.count};
+      memcpy(&e.h, at, sizeof e.h);
+      if (m->entry) m->entry[m->entries] = e;
+      m->entries++;
+      m->touches += e.h.touches;
+      m->nodes += e.h.nodes + e.h.areas;
+      at += e.h.bytes;
+    }
+  }
+}
+
+/* The order of one rank: colour by colour, as sort_colours. */
+static int by_turn(const void *left, const void *right) {
+  const head *a = &((const entry *)left)->h, *b = &((const entry *)right)->h;
+  if (a->colour != b->colour) return a->colour < b->colour ? -1 : 1;
+  for (int c = 2; c >= 0; c--)
+    if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;
+  return 0;
+}
+
+static bool make_room(meeting *m, int64_t slots) {
+  mps_context *context = m->mpm->context;
+  mpsi_impulses *all = &m->mpm->contact.impulses;
+  mpsi_meeting *r = &m->mpm->share->meeting;
+  return mpsi_room_ensure(context, &r->touch, m->touches, sizeof *all->touch) &&
+         mpsi_room_ensure(context, &r->block, m->entries, sizeof *all->block) &&
+         mpsi_room_ensure(context, &r->weight, m->touches * all->stride, sizeof *all->weight) &&
+         mpsi_room_ensure(context, &r->node, m->touches * all->stride, sizeof *all->node) &&
+         mpsi_room_ensure(context, &r->met, m->nodes, sizeof(mpsi_met_node)) &&
+         mpsi_room_ensure(context, &r->lookup, slots, sizeof(int32_t)) &&
+         mpsi_room_ensure(context, &all->next_room, m->touches, sizeof *all->kept) &&
+         mpsi_mpm_area_room(m->mpm, m->touches);
+}
+
+static void place_of(const int32_t *block, int place, int32_t *at) {
+  at[0] = block[0] * MPSI_SIDE + place % UNDER;
+  at[1] = block[1] * MPSI_SIDE + place / UNDER % UNDER;
+  at[2] = block[2] * MPSI_SIDE + place / UNDER / UNDER;
+}
+
+/* The areas of an entry, to those of others. */
+static void take_areas(meeting *m, const head *h, const char *from) {
+  static const double none[4] = {0.0};
+  for (int64_t k = 0; k < h->areas; k++, from += sizeof(named_area)) {
+    named_area named;
+    int32_t at[3];
+    memcpy(&named, from, sizeof named);
+    place_of(h->at, named.place, at);
+    mpsi_mpm_meet_node(m->mpm, at, MPSI_MET_AREA + named.body, none)->area.area += named.area;
+  }
+}
+
+/* The touches of an entry behind those that are there. */
+static void take_entry(meeting *m, const entry *e, int64_t first) {
+  mpsi_impulses *all = &m->mpm->contact.impulses;
+  const named_node *named = (const named_node *)e->data;
+  const char *from = e->data + e->h.nodes * (int64_t)sizeof *named;
+  const size_t components = (size_t)e->h.components;
+  for (int64_t n = first; n < first + e->h.touches; n++) {
+    mpsi_touch *touch = &all->touch[n];
+    memcpy(touch, from, sizeof *touch);
+    from += sizeof *touch;
+    if (!e->own) touch->pair = touch->particle = -1;
+    const int32_t *index = (const int32_t *)from;
+    from += index_bytes(touch->nodes);
+    for (int32_t i = 0; i < touch->nodes; i++, from += components * sizeof(double)) {
+      const int place = (int)named[index[i]].place % PLACES;
+      const int32_t across = (int32_t)(named[index[i]].place / PLACES);
+      int32_t at[3];
+      place_of(e->h.at, place, at);
+      double *weight = all->weight[n * all->stride + i] + MPSI_VECTOR;
+      all->node[n * all->stride + i] =
+          mpsi_mpm_meet_node(m->mpm, at, across ? MPSI_MET_ACROSS : MPSI_MET_NODE,
+                             named[index[i]].value)
+              ->value;
+      weight[-MPSI_VECTOR] = 1.0 / named[index[i]].value[MPSI_MASS];
+      memcpy(weight, from, components * sizeof(double));
+      for (size_t c = components; c < 3; c++) weight[c] = weight[0];
+    }
+  }
+  take_areas(m, &e->h, from);
+}
+
+static void join_touches(meeting *m, int64_t slots) {
+  mps_mpm *mpm = m->mpm;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_meeting *r = &mpm->share->meeting;
+  memset(r->lookup.item, -1, (size_t)slots * sizeof(int32_t));
+  r->slots = slots;
+  r->nodes = 0;
+  all->touch = r->touch.item;
+  all->block = r->block.item;
+  all->weight = r->weight.item;
+  all->node = r->node.item;
+  all->touch_count = all->block_count = 0;
+  int32_t colour = 0;
+  for (int64_t k = 0; k < m->entries; k++) {
+    const entry *e = &m->entry[k];
+    while (colour <= e->h.colour) all->colour[colour++] = all->block_count;
+    all->block[all->block_count++] = (mpsi_touch_block){.first = all->touch_count,
+                                                        .count = e->h.touches,
+                                                        .cells = e->own ? (int32_t)e->h.cells : -1};
+    memcpy(all->block[all->block_count - 1].at, e->h.at, sizeof e->h.at);
+    take_entry(m, e, all->touch_count);
+    all->touch_count += e->h.touches;
+  }
+  while (colour <= MPSI_CORNERS) all->colour[colour++] = all->block_count;
+  mpsi_mpm_find_areas(mpm);
+}
+
+static mps_status join(meeting *m) {
+  mps_context *context = m->mpm->context;
+  mpsi_meeting *r = &m->mpm->share->meeting;
+  int64_t slots = 16;
+  m->entry = NULL;
+  read_entries(m);
+  while (slots < 2 * m->nodes) slots *= 2;
+  if (!mpsi_room_ensure(context, &r->list, m->entries, sizeof *m->entry) || !make_room(m, slots))
+    return mpsi_fail_memory(context, m->function,
+                            (size_t)(m->touches + 1) * sizeof(mpsi_touch) +
+                                (size_t)m->nodes * sizeof(mpsi_met_node));
+  m->entry = r->list.item;
+  read_entries(m);
+  if (m->entries > 0) qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_turn);
+  join_touches(m, slots);
+  return MPS_OK;
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+/* Blocks of cells in the order of the colours that have touches, which `next` is the first of, or
+ * may have areas. */
+static const mpsi_touch_block *touches_of(const mpsi_impulses *all, int32_t cells, int64_t *next) {
+  if (*next == all->block_count || all->block[*next].cells != cells) return NULL;
+  return &all->block[(*next)++];
+}
+
+static bool has_entry(const mpsi_cell_block *cells, const mpsi_touch_block *block) {
+  return block || (cells->touched && !cells->ghost);
+}
+
+static int64_t message_bytes(const mps_mpm *mpm) {
+  const mpsi_grid *grid = &mpm->grid;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t bytes = 0, next = 0;
+  for (int64_t i = 0; i < grid->cell_count; i++) {
+    const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
+    if (has_entry(cells, block)) bytes += entry_bytes(mpm, cells, block);
+  }
+  return bytes;
+}
+
+/* Those that mates are told of, or the others. */
+static char *write_blocks(const mps_mpm *mpm, bool told, char *to) {
+  const mpsi_grid *grid = &mpm->grid;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t next = 0;
+  for (int64_t i = 0; i < grid->cell_count; i++) {
+    const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
+    if (has_entry(cells, block) && cells->told == told) to = write_block(mpm, cells, block, to);
+  }
+  return to;
+}
+
+/* For this rank's entries, of which those that go lie first, and for whom they go to. */
+static mps_status make_room_for_message(meeting *m, mps_domain_message **list) {
+  mps_mpm *mpm = m->mpm;
+  mps_domain *domain = mpm->share->domain;
+  mpsi_room *mail = &mpm->share->meeting.mail;
+  const int64_t bytes = message_bytes(mpm);
+  if (bytes == 0) return MPS_OK;
+  *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
+  if (!*list || !mpsi_room_ensure(mpm->context, mail, bytes, 1))
+    return mpsi_fail_memory(mpm->context, m->function, (size_t)bytes);
+  return MPS_OK;
+}
+
+/* The same to each mate. */
+static int32_t address(meeting *m, mps_domain_message *list) {
+  const mps_mpm *mpm = m->mpm;
+  const mps_domain *domain = mpm->share->domain;
+  int32_t count = 0;
+  if (!list) return 0;
+  char *own = mpm->share->meeting.mail.item;
+  const int64_t bytes = write_blocks(mpm, true, own) - own;
+  m->own = own;
+  m->own_bytes = write_blocks(mpm, false, own + bytes) - own;
+  for (int32_t r = 0; r < mps_domain_size(domain) && bytes > 0; r++)
+    if (r != mps_domain_rank(domain) && mpsi_mpm_is_mate(mpm, r))
+      list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = own};
+  return count;
+}
+
+mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status) {
+  mps_domain *domain = mpm->share->domain;
+  meeting m = {.mpm = mpm, .function = function, .box.context = mpm->context};
+  mps_domain_message *list = NULL;
+  int64_t touches = 0;
+  if (status == MPS_OK) status = make_room_for_message(&m, &list);
+  status = mpsi_mpm_find_mates(mpm, function, status, &touches);
+  mpm->share->meeting.nodes = 0;
+  mpm->share->meeting.touches = touches;
+  if (status == MPS_OK && touches > 0) {
+    const int32_t count = address(&m, list);
+    if (mpm->share->mates.any) status = mpsi_domain_post(domain, function, count, list, &m.box);
+    if (status == MPS_OK) status = join(&m);
+    status = mpsi_domain_settle(domain, function, status);
+  }
+  mpsi_domain_free_mail(&m.box);
+  mpsi_free(mpm->context, list);
+  return status;
+}
+
+void mpsi_mpm_meet_end(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_meeting *r = &mpm->share->meeting;
+  mpsi_met_node *met = r->met.item;
+  for (int64_t k = 0; k < r->nodes; k++)
+    if (met[k].home)
+      memcpy(met[k].home + MPSI_VECTOR, met[k].value + MPSI_VECTOR, 3 * sizeof(double));
+  for (int64_t n = 0; n < all->touch_count; n++) /* what is read of them later is at home */
+    for (int32_t i = 0; i < all->touch[n].nodes && all->touch[n].pair >= 0; i++) {
+      double **node = &all->node[n * all->stride + i];
+      *node = ((mpsi_met_node *)((char *)*node - offsetof(mpsi_met_node, value)))->home;
+    }
+}
+
+void mpsi_mpm_meet_free(mps_mpm *mpm) {
+  mpsi_meeting *r = &mpm->share->meeting;
+  mpsi_room *const rooms[] = {&r->touch, &r->block,  &r->weight, &r->node,
+                              &r->met,   &r->lookup, &r->mail,   &r->list};
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]->item);
+}

@@ -1,0 +1,184 @@
+/* impulses.c - the impulses of a step, by sweeps of projected Gauss and Seidel over the touches
+ * (constraints.c): each visit satisfies one contact exactly with all others as they are
+ * (contact/impulse.h), and moves its nodes by psi_i J/m_i at once (sweep.c). Sweeps go forward and
+ * backward in turn, begin with the impulses of the last step, and end at their number or, where a
+ * contact asks for it, once one changes the impulses by less than a tolerance.
+ *
+ * Blocks of one colour share no node: where no body moves freely, their sweeps are independent and
+ * shared out among the threads, with the same bits. A free body is in contact with all blocks at
+ * once; then one thread takes them in their order. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+#include "sweeps.h"
+
+#include "domain/domain_internal.h"
+
+#include <string.h>
+
+#define SHARED 512 /* touches: below, sharing the work costs more than it gains */
+
+/* ---- all blocks ------------------------------------------------------------------------------ */
+
+typedef struct sweep {
+  mps_mpm *mpm;
+  int64_t first; /* block */
+  bool warm, back;
+} sweep;
+
+static void one_block(void *data, int64_t unit, int32_t worker) {
+  const sweep *s = data;
+  mpsi_touch_block *block = &s->mpm->contact.impulses.block[s->first + unit];
+  (void)worker;
+  if (s->warm)
+    s->mpm->kernels->warm(s->mpm, block);
+  else
+    s->mpm->kernels->sweep(s->mpm, block, s->back);
+}
+
+static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const bool shared = !all->free_bodies && mpm->grid.worker_count > 1 && all->touch_count > SHARED;
+  sweep s = {mpm, 0, warm, back};
+  if (!shared) {
+    for (int64_t k = 0; k < all->block_count; k++)
+      one_block(&s, back ? all->block_count - 1 - k : k, 0);
+    return;
+  }
+  for (int k = 0; k < MPSI_CORNERS; k++) {
+    const int colour = back ? MPSI_CORNERS - 1 - k : k;
+    s.first = all->colour[colour];
+    mpsi_parallel_for(mpm->context, all->colour[colour + 1] - s.first, one_block, &s);
+  }
+}
+
+/* ---- when sweeps end --------------------------------------------------------------------------
+ */
+
+/* The most sweeps and the least tolerance that a contact asks for. */
+static int32_t most_sweeps(const mps_mpm *mpm, double *tolerance) {
+  int32_t most = 0;
+  *tolerance = INFINITY;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const mps_contact_def *def = &mpm->contact.handle[b]->def;
+    if (!mpsi_by_impulses(mpm->contact.handle[b])) continue;
+    if (def->sweeps > most) most = def->sweeps;
+    *tolerance = fmin(*tolerance, def->tolerance);
+  }
+  return most;
+}
+
+void mpsi_mpm_sweep_sums(const mps_mpm *mpm, double *most) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  most[MPSI_SWEEP_CHANGED] = most[MPSI_SWEEP_IMPULSES] = 0.0;
+  for (int64_t k = 0; k < all->block_count && all->sweeps > 0; k++) {
+    if (all->block[k].cells < 0) continue;
+    most[MPSI_SWEEP_CHANGED] = fmax(most[MPSI_SWEEP_CHANGED], all->block[k].changed);
+    most[MPSI_SWEEP_IMPULSES] = fmax(most[MPSI_SWEEP_IMPULSES], all->block[k].impulses);
+  }
+}
+
+double mpsi_mpm_relative_change(const double *most) {
+  const double changed = most[MPSI_SWEEP_CHANGED];
+  return changed > 0.0 ? sqrt(changed / most[MPSI_SWEEP_IMPULSES]) : 0.0;
+}
+
+/* Of all ranks where sweeps may end by it (`agree`); else they hear of it at the end of the step,
+ * with what they agree on there (block_results.c). */
+static void find_change(mps_mpm *mpm, bool agree) {
+  double most[MPSI_SWEEP_SUMS];
+  mpsi_mpm_sweep_sums(mpm, most);
+  if (agree && mpm->share && mpm->share->lost == MPS_OK)
+    mpm->share->lost =
+        mpsi_domain_settle_max(mpm->share->domain, "mps_mpm_step", MPS_OK, MPSI_SWEEP_SUMS, most);
+  mpm->contact.impulses.left = mpsi_mpm_relative_change(most);
+}
+
+/* Sweeps may end after so many: half of them went backward, and fewer than ten follow what changes
+ * from step to step too slowly. */
+static bool is_checked(int32_t sweeps) { return sweeps >= 10 && sweeps % 4 == 2; }
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+/* The impulse `by` on the particle, to what its block and the body feel. */
+static void add_reaction(mps_mpm *mpm, const mpsi_touch *touch, const double *by) {
+  mpsi_cell_pair *pair = &mpm->contact.cell_pair[touch->pair];
+  const double *x = mpm->contact.body[touch->body]->pose.x;
+  double arm[3], force[3];
+  for (int a = 0; a < 3; a++) {
+    force[a] = -by[a] / mpm->run.dt;
+    arm[a] = touch->impulse.at[a] - x[a];
+  }
+  pair->touched = true;
+  pair->contacts[touch->part]++;
+  mpsi_contact_add_load(&pair->load[touch->part], arm, force);
+}
+
+/* What the bodies feel, and what the next step begins with. */
+static void take_over(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_kept_impulse *next = all->next_room.item;
+  int64_t count = 0;
+  for (int64_t n = 0; n < all->touch_count; n++) {
+    const mpsi_touch *touch = &all->touch[n];
+    const mpsi_impulse *c = &touch->impulse;
+    if (!(c->push > 0.0)) continue;
+    next[count] = (mpsi_kept_impulse){.id = touch->id, .body = touch->body};
+    for (int a = 0; a < 3; a++) next[count].by[a] = c->push * c->normal[a] + c->rub[a];
+    if (touch->pair >= 0) add_reaction(mpm, touch, next[count].by);
+    count++;
+  }
+  const mpsi_room old = all->kept_room;
+  all->kept_room = all->next_room;
+  all->next_room = old;
+  all->kept = all->kept_room.item;
+  all->kept_count = count;
+  all->kept_dt = mpm->run.dt;
+}
+
+void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const bool any = mpm->share ? mpm->share->meeting.touches > 0 : all->touch_count > 0;
+  double tolerance;
+  const int32_t most = most_sweeps(mpm, &tolerance);
+  if (any) sweep_all(mpm, true, false);
+  all->sweeps = 0, all->left = 0.0;
+  for (int32_t s = 1; any && s <= most; s++) {
+    if (s % 2 != 0) mpsi_mpm_share_areas(mpm);
+    sweep_all(mpm, false, s % 2 == 0);
+    all->sweeps = s;
+    if (s < most && (tolerance == 0.0 || !is_checked(s))) continue;
+    find_change(mpm, tolerance > 0.0);
+    if (!(all->left > tolerance)) break;
+  }
+  mpsi_mpm_mirror_touches(mpm);
+  take_over(mpm);
+}
+
+void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  if (!mpm->energy.counts) return;
+  for (int64_t n = 0; n < all->touch_count; n++) {
+    const mpsi_touch *touch = &all->touch[n];
+    const mpsi_impulse *c = &touch->impulse;
+    double v[3], surface[3];
+    if (!(c->push > 0.0) || touch->pair < 0) continue;
+    mpm->kernels->foot_velocity(mpm, n, v);
+    mpsi_body_velocity(&mpm->contact.body[touch->body]->pose, c->at, surface);
+    double work = 0.0, loss = 0.0;
+    for (int a = 0; a < mpm->dim; a++) {
+      const double by = c->push * c->normal[a] + c->rub[a];
+      work += by * surface[a];
+      loss += by * (surface[a] - v[a]);
+    }
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_FRICTION_LOSS, loss);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, -work);
+  }
+}
+
+void mpsi_mpm_free_impulses(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  void *rooms[] = {all->touch_room.item, all->block_room.item,     all->weight_room.item,
+                   all->node_room.item,  all->candidate_room.item, all->kept_room.item,
+                   all->next_room.item,  all->lookup_room.item,    all->area_room.item,
+                   all->around_room.item};
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]);
+}

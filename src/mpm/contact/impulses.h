@@ -1,0 +1,121 @@
+/* impulses.h - contact by impulses on the grid (impulses.c, constraints.c): which particles may touch
+ * which body in a step, the nodes through which they do, and what is kept for the next step.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_IMPULSES_H
+#define MPSI_MPM_IMPULSES_H
+
+#include "contact/corner.h"
+#include "contact/impulse.h"
+#include "core/base/room.h"
+
+#include <mps/mpm.h>
+
+/* A particle that may touch a body in the step being made. Its weights and nodes are
+ * weight[k * stride] and on, node[k * stride] and on, k its number in the list. A weight has 1/m of
+ * the node and then psi for each component of its velocity, in the places that they have in the
+ * node: these differ where ghosts of mirrors (mirror.h) stand for nodes. Where none may, the touch
+ * is `even`, and its weights are pairs of 1/m and psi, from the same place on: half the memory to
+ * read in a sweep. */
+typedef struct mpsi_touch {
+  mpsi_impulse impulse;
+  double x[3];       /* m, of the particle */
+  double carried[3]; /* m/s, velocity at the foot that moving mirrors give besides the nodes */
+  int64_t particle;  /* index, */
+  int64_t id;        /* and what it keeps when the particles are sorted */
+  int64_t pair;      /* of contact.cell_pair; -1: of another rank (exchange.h), as its particle */
+  int32_t body, part, nodes;
+  bool even;
+  int32_t areas; /* nodes whose areas it shares, of around[] (area.c) */
+} mpsi_touch;
+
+/* The touches of a block of cells: neighbours in the list. */
+typedef struct mpsi_touch_block {
+  int64_t first, count;
+  int32_t cells; /* -1: of another rank */
+  int32_t at[3]; /* of the cells */
+  double changed, impulses; /* (N s)2, sums of squares in the last sweep: changes, impulses */
+} mpsi_touch_block;
+
+/* What a body gave to a particle in the last step. */
+typedef struct mpsi_kept_impulse {
+  int64_t id, body;
+  double by[3]; /* N s */
+} mpsi_kept_impulse;
+
+/* At a node, for one body: the surface that soil covers, and the touches that share it (area.c).
+ */
+typedef struct mpsi_area {
+  double area; /* m2, of the measure */
+  double touches;
+} mpsi_area;
+typedef struct mpsi_area_share {
+  mpsi_area *node;
+  double weight;
+} mpsi_area_share;
+
+typedef struct mpsi_impulses {
+  mpsi_touch *touch;
+  mpsi_touch_block *block; /* colour by colour */
+  double (*weight)[4];
+  double **node; /* its four values: see mpsi_node */
+  int32_t *candidate;
+  int64_t touch_count, block_count;
+  int64_t colour[9]; /* first block of each in `block` */
+  int32_t stride;
+  bool free_bodies; /* one of those that may be touched moves freely */
+  mpsi_impulse_body body[MPS_MPM_MAX_CONTACTS];
+  mpsi_kept_impulse *kept; /* of the last step */
+  int64_t kept_count;
+  double kept_dt;  /* s, of that step */
+  int64_t sweeps;  /* of that step, and the relative change of impulses in the last of them */
+  double left;
+  int32_t *lookup; /* by particle and body: index into `kept`, or -1; lookup_mask + 1 of them */
+  uint64_t lookup_mask;
+  bool areas;      /* some contact has a strength or an adhesion */
+  mpsi_area *area; /* as contact.node; on several ranks see exchange.h */
+  int64_t area_count;
+  int64_t area_first; /* block of the colour in work */
+  mpsi_area_share *around;
+  mpsi_room touch_room, block_room, weight_room, node_room, candidate_room, kept_room, next_room,
+      lookup_room, area_room, around_room;
+} mpsi_impulses;
+
+/* constraints.c: before anything moves, what may touch in a step of mpm->run.dt, and room for it; then,
+ * the masses of the nodes known, the touches with their weights, and how deep particles are. */
+mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function);
+void mpsi_mpm_fit_touches(mps_mpm *mpm);
+/* area.c: room for the areas of the step and for those of so many touches; these; and what each
+ * touch may bear in shear by its share of them, touches being pressed as they now are. */
+bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t touches);
+void mpsi_mpm_find_areas(mps_mpm *mpm);
+void mpsi_mpm_share_areas(mps_mpm *mpm);
+/* constraints.c: what mirrors give with the impulses of a step. */
+void mpsi_mpm_mirror_touches(mps_mpm *mpm);
+/* constraints.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of the
+ * last step on a particle, or NULL; where a particle meets the contact's body; a contact has ended:
+ * bodies above it move down by one. */
+bool mpsi_mpm_index_impulses(mps_mpm *mpm);
+const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, int32_t body);
+mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                              const double *x);
+void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body);
+/* impulses.c: the impulses of a step, to nodes and pairs; and, the nodes' last velocities known,
+ * what the contacts have lost. */
+void mpsi_mpm_apply_impulses(mps_mpm *mpm);
+void mpsi_mpm_find_impulse_loss(mps_mpm *mpm);
+void mpsi_mpm_free_impulses(mps_mpm *mpm);
+
+static inline bool mpsi_has_strength(const mps_contact *contact) {
+  return contact->def.adhesion > 0.0 || !isnan(contact->def.strength);
+}
+
+static inline bool mpsi_by_impulses(const mps_contact *contact) {
+  return contact->def.method == MPS_CONTACT_METHOD_IMPULSE;
+}
+
+/* The weights of an even touch. */
+static inline double (*mpsi_even_weights(const mpsi_impulses *all, int64_t touch))[2] {
+  return (double(*)[2])(double *)all->weight[touch * all->stride];
+}
+
+#endif

@@ -1,0 +1,241 @@
+/* inside.c - which nodes lie inside a body or outside the domain, and which are corners of cells
+ * that hold particles, with the surface's normals there. These decide which nodes a particle near a
+ * body may use (Nakamura 5.1, with the same-side test of least_squares.c). SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "mpm/base/kernels.h"
+
+#include <string.h>
+
+/* ---- before a step --------------------------------------------------------------------------- */
+
+/* The node `place` of the block is inside body b. */
+static void note_inside(mpsi_node_block *nodes, const int *place, uint32_t *inside, int32_t b) {
+  *inside |= UINT32_C(1) << b;
+  nodes->inside = true;
+  for (int c = 0; c < 3; c++) {
+    if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
+    if (place[c] >= nodes->high[c]) nodes->high[c] = place[c] + 1;
+  }
+}
+
+/* Distances change no faster than places: where a node is `far` (m) from the surface, the next
+ * nodes of its row are on the same side of it, as many as this. */
+static int same_behind(const mps_mpm *mpm, double far) {
+  const double cells = far * mpm->grid.inverse * (1.0 - 1e-9);
+  return cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
+}
+
+/* How many nodes of the block from the one at `place` on, x, lie before the tangent plane at the
+ * foot of a point outside, where no convex body holds them: itself, its row, its plane, the rest.
+ */
+static int count_before(const mps_mpm *mpm, const mpsi_foot *foot, const int *place,
+                        const double *x) {
+  const double least = 1e-9 * mpm->def.cell;
+  double before = 0.0;
+  int count = 1;
+  for (int c = 0; c < mpm->dim; c++) before += (x[c] - foot->at[c]) * foot->normal[c];
+  if (!(foot->distance > 0.0) || !(before > least)) return 0;
+  for (int c = 0; c < mpm->dim && place[c] == 0; c++, count *= MPSI_SIDE) {
+    before += fmin(0.0, (MPSI_SIDE - 1) * mpm->def.cell * foot->normal[c]);
+    if (!(before > least)) break;
+  }
+  return count;
+}
+
+/* Nodes of a block that lie inside body b. */
+static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b, uint32_t *inside) {
+  const bool convex = mpm->contact.handle[b]->convex;
+  mpsi_foot foot = {.distance = 0.0};
+  for (int k = 0, done; k < mpm->grid.block_nodes; k += done) {
+    int place[3];
+    double x[3];
+    mpsi_unravel(k, MPSI_SIDE, place);
+    mpsi_node_place(mpm, nodes->at, k, x);
+    if (convex && (done = count_before(mpm, &foot, place, x)) > 0) continue;
+    foot = mpsi_body_foot(mpm->contact.body[b], x);
+    done = 1 + same_behind(mpm, fabs(foot.distance));
+    if (done > MPSI_SIDE - place[0]) done = MPSI_SIDE - place[0];
+    for (int i = 0; i < done && foot.distance < 0.0; i++, place[0]++)
+      note_inside(nodes, place, &inside[k + i], b);
+  }
+}
+
+void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
+  (void)worker;
+  const size_t count = (size_t)mpm->grid.block_nodes;
+  mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  nodes->inside = nodes->thin = false;
+  for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
+  if (nodes->near < 0) return;
+  mpsi_mpm_find_sight(mpm, g);
+  uint32_t *inside = mpm->contact.inside + mpsi_first_node(mpm, nodes->near);
+  memset(inside, 0, count * sizeof *inside);
+  memset((void *)(mpm->contact.reached + mpsi_first_node(mpm, nodes->near)), 0, count);
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+    const int32_t b = mpm->contact.node_pair[t].body;
+    if (mpm->contact.springs > 0)
+      memset(mpm->contact.node + (int64_t)t * mpm->grid.block_nodes, 0,
+             count * sizeof *mpm->contact.node);
+    if (mpm->contact.thin >> b & 1) continue; /* cuts no support: thin_bodies.h */
+    if (mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE))
+      find_inside_body(mpm, nodes, b, inside);
+  }
+}
+
+/* Cells low to high - 1 of the block along each axis with corners inside bodies; false where there
+ * are none. */
+static bool cells_near(const mps_mpm *mpm, const mpsi_cell_block *cells, int *low, int *high) {
+  bool any = false;
+  for (int c = 0; c < 3; c++) low[c] = MPSI_TILE_SIDE, high[c] = 0;
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    any = any || nodes->inside;
+    for (int c = 0; c < 3 && nodes->inside; c++) {
+      const int first = q >> c & 1 ? MPSI_SIDE : 0;
+      if (first + nodes->low[c] - 1 < low[c]) low[c] = first + nodes->low[c] - 1;
+      if (first + nodes->high[c] > high[c]) high[c] = first + nodes->high[c];
+    }
+  }
+  return any;
+}
+
+typedef void (*corner_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                          void *data);
+
+/* Corners of the cells that hold particles, some of them more than once. */
+static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner_fn work,
+                        void *data) {
+  int low[3], high[3];
+  if (cells->pairs == 0 || !cells_near(mpm, cells, low, high)) return;
+  bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
+  memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
+  for (int64_t k = cells->begin; (k = mpm->kernels->next_in(mpm, cells, low, high, k)) < cells->end;
+       k++) {
+    int at[3] = {0};
+    bool near = true;
+    for (int c = 0; c < mpm->dim; c++) {
+      /* counted from the block: not negative, so that truncation is floor */
+      const double first = (double)cells->at[c] * MPSI_SIDE;
+      const double last = (double)(mpm->grid.high[c] - 1) - first;
+      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - first;
+      at[c] = (int)(X < last ? X : last);
+      near = near && at[c] >= low[c] && at[c] < high[c];
+    }
+    if (!near) continue;
+    bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
+    if (*here) continue;
+    *here = true;
+    for (int q = 0; q < 1 << mpm->dim; q++) {
+      const int corner[3] = {at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)};
+      work(mpm, cells, corner, data);
+    }
+  }
+}
+
+/* Normals of the bodies that hold the node `local` of a block. */
+static void find_normals(const mps_mpm *mpm, const mpsi_node_block *nodes, int local) {
+  const uint32_t inside = mpm->contact.inside[mpsi_first_node(mpm, nodes->near) + local];
+  double x[3];
+  mpsi_node_place(mpm, nodes->at, local, x);
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+    const int32_t b = mpm->contact.node_pair[t].body;
+    double *normal = mpm->contact.normal[(int64_t)t * mpm->grid.block_nodes + local];
+    if (!(inside >> b & 1)) continue;
+    const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
+    for (int c = 0; c < 3; c++) normal[c] = c < mpm->dim ? foot.normal[c] : 0.0;
+  }
+}
+
+/* Several blocks may mark one node at once: the first finds the normals there. */
+static void mark_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
+  _Atomic uint8_t *reached = data;
+  const int64_t node = mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
+  const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
+  const int local = (int)(node % mpm->grid.block_nodes);
+  reached += mpsi_first_node(mpm, nodes->near) + local;
+  if (atomic_load_explicit(reached, memory_order_relaxed) ||
+      atomic_exchange_explicit(reached, 1, memory_order_relaxed))
+    return;
+  if (nodes->inside) find_normals(mpm, nodes, local);
+}
+
+void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  for_corners(mpm, &mpm->grid.cells[b], mark_node, mpm->contact.reached);
+}
+
+static void list_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
+  const int t = mpsi_tile_index(at[0], at[1], at[2]);
+  (void)mpm, (void)cells;
+  ((uint64_t *)data)[t / 64] |= UINT64_C(1) << t % 64;
+}
+
+void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits) {
+  for_corners(mpm, &mpm->grid.cells[b], list_node, bits);
+}
+
+void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
+  for (int t = 0; t < mpm->grid.tile_nodes; t++) {
+    int at[3];
+    if (!(bits[t / 64] >> t % 64 & 1)) continue;
+    mpsi_unravel(t, MPSI_TILE_SIDE, at);
+    mark_node(mpm, &mpm->grid.cells[b], at, mpm->contact.reached);
+  }
+}
+
+/* ---- states under a tile ----------------------------------------------------------------------
+ */
+
+/* Nodes low to high - 1 of the tile along axis c are in the domain, or beyond a mirror. */
+static void domain_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int *low,
+                         int *high) {
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  *low = mpm->grid.use_low[c] > first ? (int)(mpm->grid.use_low[c] - first) : 0;
+  *high = mpm->grid.use_high[c] < first + MPSI_TILE_SIDE ? (int)(mpm->grid.use_high[c] - first) + 1
+                                                         : MPSI_TILE_SIDE;
+}
+
+static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t *state) {
+  int low[3] = {0}, high[3] = {1, 1, 1};
+  for (int c = 0; c < mpm->dim; c++) domain_under(mpm, cells, c, &low[c], &high[c]);
+  memset(state, MPSI_OUTSIDE, (size_t)mpm->grid.tile_nodes);
+  for (int k = low[2]; k < high[2]; k++)
+    for (int j = low[1]; j < high[1] && low[0] < high[0]; j++)
+      memset(state + mpsi_tile_index(low[0], j, k), mpm->standard ? MPSI_PLAIN : 0,
+             (size_t)(high[0] - low[0]));
+}
+
+/* Of the nodes of a block under the corner q of the tile, in bodies or beside thin ones. */
+static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
+                      mpsi_worker *worker) {
+  int from[3] = {0}, to[3] = {1, 1, 1}, shift[3] = {0};
+  for (int c = 0; c < mpm->dim; c++) {
+    const int size = q >> c & 1 ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+    shift[c] = q >> c & 1 ? MPSI_SIDE : 0;
+    from[c] = nodes->thin ? 0 : nodes->low[c];
+    to[c] = nodes->thin || nodes->high[c] > size ? size : nodes->high[c];
+  }
+  const int64_t first = mpsi_first_node(mpm, nodes->near);
+  for (int k = from[2]; k < to[2]; k++)
+    for (int j = from[1]; j < to[1]; j++)
+      for (int i = from[0]; i < to[0]; i++) {
+        const int64_t at = first + (k * MPSI_SIDE + j) * MPSI_SIDE + i;
+        const int t = mpsi_tile_index(shift[0] + i, shift[1] + j, shift[2] + k);
+        if (nodes->thin && mpm->contact.beside[at]) worker->state[t] |= MPSI_THIN;
+        if (!mpm->contact.inside[at]) continue;
+        worker->inside[t] = mpm->contact.inside[at];
+        const bool reached =
+            atomic_load_explicit(&mpm->contact.reached[at], memory_order_relaxed) != 0;
+        worker->state[t] |= reached ? MPSI_INSIDE | MPSI_REACHED : MPSI_INSIDE;
+      }
+}
+
+void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  mark_outside(mpm, cells, worker->state);
+  memset(worker->inside, 0, (size_t)mpm->grid.tile_nodes * sizeof *worker->inside);
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    if (nodes->inside || nodes->thin) mark_near(mpm, nodes, q, worker);
+  }
+  if (cells->mirrors) mpsi_mpm_mirror_states(mpm, cells, worker);
+}

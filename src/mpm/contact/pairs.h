@@ -1,0 +1,102 @@
+/* pairs.h - contact on the grid. A block and a body that may touch are a pair: the lists of pairs
+ * are found anew before each step, so that only the blocks near a body look at it.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_PAIRS_H
+#define MPSI_MPM_PAIRS_H
+
+#include "thin_bodies.h"
+#include "contact/contact.h"
+#include "impulses.h"
+#include "core/base/room.h"
+
+#include <mps/mpm.h>
+
+#include <stdatomic.h>
+
+/* A block of cells and a body that its particles may touch. */
+typedef struct mpsi_cell_pair {
+  int32_t cells, body;
+  bool touched;   /* some particle is in contact */
+  double deepest; /* m, >= 0, of a particle below the surface */
+  int64_t deep;   /* that particle */
+  mpsi_load load[MPS_BODY_MAX_PARTS];
+  int64_t contacts[MPS_BODY_MAX_PARTS];
+  int64_t first_candidate, candidates; /* for contact by impulses: see constraints.c */
+} mpsi_cell_pair;
+
+/* A block of nodes and a body that may act on it; its nodes are contact.node[k * block_nodes]. */
+typedef struct mpsi_node_pair {
+  int32_t nodes, body;
+  double mass; /* kg, of the nodes in contact */
+} mpsi_node_pair;
+
+/* What particles that touch a body by springs give to a node: as in mpsi_contact_node. */
+typedef struct mpsi_spring_node {
+  double mass, slip[3], force[3];
+} mpsi_spring_node;
+
+typedef struct mpsi_contacts {
+  mps_contact *handle[MPS_MPM_MAX_CONTACTS];
+  mps_body *body[MPS_MPM_MAX_CONTACTS]; /* of each */
+  int32_t bodies, springs;              /* springs: how many of them act by springs */
+  double least_mass;                 /* kg, of a particle; in axisymmetry over its radius, kg/m */
+  double mass[MPS_MPM_MAX_CONTACTS]; /* kg, of the nodes in contact with each body */
+  mpsi_cell_pair *cell_pair;
+  mpsi_node_pair *node_pair;
+  mpsi_contact_node *node;  /* where springs act, of each node of each pair; */
+  double (*normal)[3];      /* of the surface there, where `inside` and `reached` */
+  uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
+  uint32_t thin;            /* bit b: body b parts particles (thin_bodies.h) */
+  mpsi_sight *sight;        /* as node, where there are such bodies; */
+  mpsi_parted *across;      /* of each particle that has been asked: mpsi_mpm_find_parted */
+  uint8_t *beside;          /* as inside: beside or in one of them */
+  _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
+  int64_t cell_pair_count, node_pair_count, mask_count;
+  mpsi_impulses impulses;
+  mpsi_room cell_pair_room, node_pair_room, node_room, normal_room, inside_room, reached_room,
+      sight_room, beside_room, across_room, spring_room, load_room; /* load_room: sums of parts */
+} mpsi_contacts;
+
+/* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and
+ * split. It calls the next ones. `status`: what has become of the step so far here; collective
+ * where there are bodies. */
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status);
+/* pairs.c: lists the pairs; whether a body may have a node inside of the tile or block at `at` of
+ * `side` nodes an axis; the masses that friction with free bodies asks for, when those of the node
+ * pairs are known: of all ranks. */
+mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function);
+bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side);
+void mpsi_mpm_find_contact_mass(mps_mpm *mpm);
+/* penalty.c: room for their tiles; whether a block has one for its pair number `pair`, that of a
+ * body; emptied; added to the nodes; all of that with p2g in between. */
+bool mpsi_mpm_spring_room(mps_mpm *mpm);
+bool mpsi_mpm_has_springs(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair);
+mpsi_spring_node *mpsi_mpm_spring_tile(const mps_mpm *mpm, const mpsi_worker *worker, int32_t body);
+void mpsi_mpm_clear_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                            const mpsi_worker *worker);
+void mpsi_mpm_add_springs(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker);
+void mpsi_mpm_scatter_springs(mps_mpm *mpm, int64_t b, int32_t worker);
+/* inside.c: nodes of a block inside bodies; corners of the cells of a block that hold particles. */
+void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
+/* The same on their way between ranks: to bits of the tile, from which they are marked. */
+void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits);
+void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits);
+/* area.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
+bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
+/* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
+ * their motion, for which there is room. */
+bool mpsi_mpm_load_room(mps_mpm *mpm);
+void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_update_bodies(mps_mpm *mpm);
+/* contacts.c: MPS_ERROR_ARGUMENT where particles from index `from` on lie inside the body, unless
+ * the contact pushes them out. */
+mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact,
+                                 int64_t from);
+/* contacts.c: MPS_ERROR_DIVERGED where a particle is deeper in a body than its contact allows; ends
+ * all contacts. */
+mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function);
+void mpsi_mpm_end_contacts(mps_mpm *mpm);
+
+#endif

@@ -1,0 +1,27 @@
+/* particle.h - one particle of the solver against one body, as src/contact sees it.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_CONTACT_PARTICLE_H
+#define MPSI_MPM_CONTACT_PARTICLE_H
+
+#include "mpm/base/solver.h"
+
+/* False where the particle does not touch the body. The state of the particle is that at the
+ * beginning of the step. */
+MPSI_INLINE bool mpsi_find_contact(const mps_mpm *mpm, const mps_contact *contact, int dim,
+                                   int64_t particle, mpsi_contact_particle *out) {
+  const mpsi_columns *p = &mpm->p;
+  double v[3], L[9];
+  *out = (mpsi_contact_particle){.part = 0};
+  for (int c = 0; c < dim; c++) out->x[c] = p->x[c][particle], v[c] = p->v[c][particle];
+  for (int c = 0; c < dim * dim; c++) L[c] = p->L[c][particle];
+  const mpsi_contact_law law = {.spacing = mps_particles_spacing(mpm->particles),
+                                .modulus = mpsi_law_of(mpm, particle)->modulus,
+                                .cell = mpm->def.cell,
+                                .courant = mpm->def.courant,
+                                .weight = mpm->def.geometry == MPS_MPM_AXISYMMETRIC
+                                              ? mpm->def.measure * out->x[0]
+                                              : mpm->def.measure};
+  return mpsi_contact_find(contact, dim, &law, v, L, out);
+}
+
+#endif

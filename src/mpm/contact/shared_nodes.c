@@ -1,0 +1,70 @@
+/* shared_nodes.c - the nodes that touches of all ranks use, each once, by their place on the grid (exchange.h).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "exchange.h"
+
+#include "mpm/base/solver.h"
+
+#include <string.h>
+
+/* The node here, or NULL. */
+static double *find_home(const mps_mpm *mpm, const int32_t *at, bool across) {
+  const mpsi_grid *grid = &mpm->grid;
+  int32_t block[3], local = 0;
+  for (int c = 2; c >= 0; c--) {
+    block[c] =
+        c < mpm->dim ? at[c] >= 0 ? at[c] / MPSI_SIDE : -((MPSI_SIDE - 1 - at[c]) / MPSI_SIDE) : 0;
+    local = local * MPSI_SIDE + (at[c] - block[c] * MPSI_SIDE);
+  }
+  int64_t low = 0, high = grid->node_count;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    const int32_t *there = grid->nodes[middle].at;
+    int c = 2;
+    while (c > 0 && there[c] == block[c]) c--;
+    if (there[c] < block[c])
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  if (low == grid->node_count || memcmp(grid->nodes[low].at, block, sizeof block) != 0) return NULL;
+  if (across && grid->nodes[low].across < 0) return NULL;
+  return grid->node[mpsi_first_node(mpm, across ? grid->nodes[low].across : low) + local];
+}
+
+/* Where in the lookup the node is, or would be. */
+static int64_t slot_of(const mpsi_meeting *r, const int32_t *at, int32_t kind) {
+  const mpsi_met_node *met = r->met.item;
+  const int32_t *lookup = r->lookup.item;
+  uint64_t key = (uint64_t)kind;
+  for (int c = 0; c < 3; c++) key = (key ^ (uint32_t)at[c]) * UINT64_C(0x9E3779B97F4A7C15);
+  int64_t slot = (int64_t)(key >> 20) & (r->slots - 1);
+  while (lookup[slot] >= 0 &&
+         (memcmp(met[lookup[slot]].at, at, sizeof met->at) != 0 || met[lookup[slot]].kind != kind))
+    slot = (slot + 1) & (r->slots - 1);
+  return slot;
+}
+
+mpsi_met_node *mpsi_mpm_meet_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
+                                  const double *value) {
+  mpsi_meeting *r = &mpm->share->meeting;
+  mpsi_met_node *met = r->met.item;
+  int32_t *lookup = r->lookup.item;
+  const int64_t slot = slot_of(r, at, kind);
+  if (lookup[slot] >= 0) return &met[lookup[slot]];
+  mpsi_met_node *node = &met[r->nodes];
+  memcpy(node->at, at, sizeof node->at);
+  memcpy(node->value, value, sizeof node->value);
+  node->kind = kind;
+  node->home = kind < MPSI_MET_AREA ? find_home(mpm, at, kind == MPSI_MET_ACROSS) : NULL;
+  lookup[slot] = (int32_t)r->nodes++;
+  return node;
+}
+
+mpsi_area *mpsi_mpm_met_area(const mps_mpm *mpm, const int32_t *block, const int *at,
+                             int32_t body) {
+  const mpsi_meeting *r = &mpm->share->meeting;
+  int32_t place[3];
+  for (int c = 0; c < 3; c++) place[c] = block[c] * MPSI_SIDE + at[c];
+  const int32_t found = ((const int32_t *)r->lookup.item)[slot_of(r, place, MPSI_MET_AREA + body)];
+  return found < 0 ? NULL : &((mpsi_met_node *)r->met.item)[found].area;
+}

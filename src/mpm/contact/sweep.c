@@ -1,0 +1,98 @@
+/* sweep.c - a visit of projected Gauss and Seidel to each touch of a block, see impulses.c. Node by
+ * node the four values are one vector, and so are the weights. Compiled once for each instruction
+ * set. SPDX-License-Identifier: BSD-3-Clause */
+#include "contact/visit.h"
+#include "mpm/base/loops.h"
+
+#define WAYS 8 /* sums side by side: none waits for the one before */
+
+/* psi of number i of the weights of a touch. */
+MPSI_INLINE mpsi_quad psi_of(const double *weight, bool even, int32_t i) {
+  if (!even) return mpsi_get(weight + 4 * i); /* its first lane meets a mass, for nothing */
+  const double psi = weight[2 * i + 1];
+  return (mpsi_quad){psi, psi, psi, psi};
+}
+
+MPSI_INLINE void kick_nodes(double *const *node, const double *weight, bool even, int32_t nodes,
+                            mpsi_quad impulse) {
+  for (int32_t i = 0; i < nodes; i++)
+    mpsi_put(node[i],
+             mpsi_get(node[i]) + psi_of(weight, even, i) * (weight[(even ? 2 : 4) * i] * impulse));
+}
+
+/* What the impulse `by` does to the nodes, and to the body. */
+MPSI_INLINE void kick(mpsi_impulses *all, int64_t n, const double *by) {
+  const mpsi_touch *touch = &all->touch[n];
+  const mpsi_quad impulse = {0.0, by[0], by[1], by[2]};
+  double *const *node = all->node + n * all->stride;
+  const double *weight = all->weight[n * all->stride];
+  if (touch->even)
+    kick_nodes(node, weight, true, touch->nodes, impulse);
+  else
+    kick_nodes(node, weight, false, touch->nodes, impulse);
+  if (all->body[touch->body].free)
+    mpsi_impulse_kick(&all->body[touch->body], touch->impulse.at, by);
+}
+
+/* sum psi v, from `first` on. */
+MPSI_INLINE mpsi_quad sum_nodes(double *const *node, const double *weight, bool even, int32_t nodes,
+                                mpsi_quad first) {
+  mpsi_quad sum[WAYS] = {first};
+  int32_t i = 0;
+  for (; i + WAYS <= nodes; i += WAYS)
+    for (int w = 0; w < WAYS; w++) sum[w] += psi_of(weight, even, i + w) * mpsi_get(node[i + w]);
+  for (int w = 0; i < nodes; i++, w++) sum[w] += psi_of(weight, even, i) * mpsi_get(node[i]);
+  for (int half = WAYS / 2; half > 0; half /= 2)
+    for (int w = 0; w < half; w++) sum[w] += sum[w + half];
+  return sum[0];
+}
+
+/* Velocity of the particle's side at the foot. */
+MPSI_INLINE void velocity_at(const mpsi_impulses *all, int64_t n, double *v) {
+  const mpsi_touch *touch = &all->touch[n];
+  double *const *node = all->node + n * all->stride;
+  const double *weight = all->weight[n * all->stride];
+  const mpsi_quad carried = {0.0, touch->carried[0], touch->carried[1], touch->carried[2]};
+  const mpsi_quad sum = touch->even ? sum_nodes(node, weight, true, touch->nodes, carried)
+                                    : sum_nodes(node, weight, false, touch->nodes, carried);
+  for (int a = 0; a < 3; a++) v[a] = sum[MPSI_VECTOR + a];
+}
+
+void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v) {
+  velocity_at(&mpm->contact.impulses, touch, v);
+}
+
+/* `rub` holds the last step's impulse. */
+void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_touch_block *block) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const double share = all->kept_dt > 0.0 ? mpm->run.dt / all->kept_dt : 0.0;
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    mpsi_impulse *c = &all->touch[n].impulse;
+    const double last[3] = {c->rub[0], c->rub[1], c->rub[2]};
+    double by[3];
+    mpsi_impulse_warm(c, &all->body[all->touch[n].body], last, share, by);
+    if (c->push > 0.0) kick(all, n, by);
+  }
+}
+
+/* Counts what it changes, by which the sweeps end. */
+void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool back) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  double changed = 0.0, impulses = 0.0;
+  for (int64_t i = 0; i < block->count; i++) {
+    const int64_t n = back ? block->first + block->count - 1 - i : block->first + i;
+    const mpsi_impulse_body *body = &all->body[all->touch[n].body];
+    mpsi_impulse *c = &all->touch[n].impulse;
+    double u[3], surface[3], by[3];
+    velocity_at(all, n, u);
+    mpsi_impulse_surface(body, c->at, surface);
+    for (int a = 0; a < 3; a++) u[a] = a < mpm->dim ? u[a] - surface[a] : 0.0;
+    if (mpsi_impulse_visit(c, body, u, by)) {
+      kick(all, n, by);
+      changed += mpsi_dot3(by, by);
+    }
+    impulses += c->push * c->push + mpsi_dot3(c->rub, c->rub);
+  }
+  block->changed = changed;
+  block->impulses = impulses;
+}

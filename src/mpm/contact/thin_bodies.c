@@ -1,0 +1,268 @@
+/* thin_bodies.c - see thin_bodies.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "body/rotation.h"
+#include "mpm/base/solver.h"
+
+#include <string.h>
+
+#define CLEAR 0.02   /* cells: what is nearer to the surface looks from that far off it, */
+#define CLOSED 0.002 /* and a way that comes so near leads into it */
+enum { MOST_STEPS = 200 };
+
+/* ---- nodes ----------------------------------------------------------------------------------- */
+
+bool mpsi_mpm_begin_across(mps_mpm *mpm) {
+  mpsi_contacts *contact = &mpm->contact;
+  contact->thin = 0;
+  for (int32_t b = 0; b < contact->bodies; b++)
+    if (contact->handle[b]->thin) contact->thin |= UINT32_C(1) << b;
+  for (int32_t b = 0; b < contact->bodies; b++)
+    if (!mpsi_by_impulses(contact->handle[b]) || mpm->standard) contact->thin = 0;
+  if (!contact->thin) return true;
+  const int64_t block = mpm->grid.block_nodes;
+  const bool good =
+      mpsi_room_ensure(mpm->context, &contact->sight_room, contact->node_pair_count * block,
+                       sizeof *contact->sight) &&
+      mpsi_room_ensure(mpm->context, &contact->beside_room, contact->mask_count * block,
+                       sizeof *contact->beside) &&
+      mpsi_room_ensure(mpm->context, &contact->across_room, mpm->p.count, sizeof *contact->across);
+  contact->sight = contact->sight_room.item;
+  contact->beside = contact->beside_room.item;
+  contact->across = contact->across_room.item;
+  return good;
+}
+
+/* Where x looks from, and how far that is from the surface. */
+static mpsi_sight stand(const mps_mpm *mpm, const mpsi_foot *foot, const double *x) {
+  const double clear = CLEAR * mpm->def.cell;
+  mpsi_sight out = {.distance = fmax(foot->distance, clear)};
+  for (int c = 0; c < mpm->dim; c++)
+    out.at[c] = foot->distance < clear ? foot->at[c] + clear * foot->normal[c] : x[c];
+  memcpy(out.normal, foot->normal, sizeof out.normal);
+  return out;
+}
+
+/* A body between two nodes of a stencil leads through one of its cells, and no point of a cell is
+ * further from all its nodes than half the diagonal. */
+void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g) {
+  mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  nodes->thin = false;
+  if (!(nodes->bodies & mpm->contact.thin)) return;
+  const double half = 0.5 * sqrt((double)mpm->dim) * mpm->def.cell * (1.0 + 1e-9);
+  uint8_t *beside = mpm->contact.beside + mpsi_first_node(mpm, nodes->near);
+  memset(beside, 0, (size_t)mpm->grid.block_nodes);
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+    const int32_t b = mpm->contact.node_pair[t].body;
+    mpsi_sight *sight = mpm->contact.sight + (int64_t)t * mpm->grid.block_nodes;
+    for (int k = 0; k < mpm->grid.block_nodes && mpm->contact.thin >> b & 1; k++) {
+      double x[3];
+      mpsi_node_place(mpm, nodes->at, k, x);
+      const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
+      sight[k] = stand(mpm, &foot, x);
+      if (sight[k].distance > half) continue;
+      beside[k] = 1;
+      nodes->thin = true;
+    }
+  }
+}
+
+/* ---- blocks ---------------------------------------------------------------------------------- */
+
+/* Room for `count` blocks of nodes, of which those that there are stay. */
+static bool keep_and_widen(mps_mpm *mpm, int64_t count) {
+  mpsi_grid *grid = &mpm->grid;
+  if (count > grid->nodes_room.capacity) {
+    mpsi_room wider = {NULL, 0};
+    if (!mpsi_room_ensure(mpm->context, &wider, count + count / 8, sizeof *grid->nodes))
+      return false;
+    memcpy(wider.item, grid->nodes, (size_t)grid->node_count * sizeof *grid->nodes);
+    mpsi_free(mpm->context, grid->nodes_room.item);
+    grid->nodes_room = wider;
+    grid->nodes = wider.item;
+  }
+  const bool good = mpsi_room_ensure(mpm->context, &grid->node_room, count * grid->block_nodes,
+                                     sizeof *grid->node);
+  grid->node = grid->node_room.item;
+  return good;
+}
+
+/* Second tiles for the workers, and a second mass for each ghost of a mirror. */
+static bool ensure_tiles(mps_mpm *mpm) {
+  mpsi_grid *grid = &mpm->grid;
+  const int64_t tile = grid->tile_nodes, plane = mpsi_mirror_plane(grid->tile_nodes);
+  if (!mpsi_room_ensure(mpm->context, &grid->across_room, 2 * tile * grid->worker_count,
+                        sizeof *grid->node) ||
+      !mpsi_room_ensure(mpm->context, &mpm->mirrors.mass_room, 2 * mpm->mirrors.count * plane,
+                        sizeof *mpm->mirrors.mass))
+    return false;
+  mpm->mirrors.mass = mpm->mirrors.mass_room.item;
+  for (int32_t k = 0; k < grid->worker_count; k++) {
+    grid->workers[k].across_tile = (mpsi_node *)grid->across_room.item + 2 * tile * k;
+    grid->workers[k].across_force = grid->workers[k].across_tile + tile;
+  }
+  return true;
+}
+
+/* The block across those nodes: it is held, damped and counted as they are, and no springs act. */
+static void make_across(mps_mpm *mpm, const mpsi_node_block *nodes) {
+  mpsi_node_block *across = &mpm->grid.nodes[nodes->across];
+  *across = *nodes;
+  across->across = across->near = -1;
+  across->bodies = 0;
+  across->pairs = 0;
+  across->inside = across->thin = across->waits = false;
+  if (nodes->side >= 0) across->side = (int32_t)mpm->grid.side_count++;
+}
+
+bool mpsi_mpm_list_across(mps_mpm *mpm) {
+  mpsi_grid *grid = &mpm->grid;
+  int64_t count = grid->node_count;
+  grid->across_count = 0;
+  for (int64_t g = 0; g < grid->node_count; g++) grid->nodes[g].across = -1;
+  for (int64_t b = 0; b < grid->cell_count && mpm->contact.thin; b++)
+    for (int q = 0; q < 1 << mpm->dim && grid->cells[b].thin; q++) {
+      mpsi_node_block *nodes = &grid->nodes[grid->cells[b].to[q]];
+      if (nodes->across < 0) nodes->across = (int32_t)count++;
+    }
+  if (count == grid->node_count) return true;
+  if (!keep_and_widen(mpm, count) || !ensure_tiles(mpm)) return false;
+  for (int64_t g = 0; g < grid->node_count; g++)
+    if (grid->nodes[g].across >= 0) make_across(mpm, &grid->nodes[g]);
+  grid->across_count = count - grid->node_count;
+  return true;
+}
+
+/* ---- sight ----------------------------------------------------------------------------------- */
+
+/* The wall of the mirror at the upper or lower end of axis c, m. */
+static double mirror_at(const mps_mpm *mpm, int c, bool upper) {
+  const int64_t node = upper ? mpm->grid.high[c] : mpm->grid.low[c];
+  return mpm->def.origin[c] + mpm->def.cell * (double)node;
+}
+
+/* A place beyond a mirror to its image. */
+static void fold(const mps_mpm *mpm, const mpsi_cell_block *cells, double *x) {
+  for (int c = 0; c < mpm->dim; c++)
+    for (int upper = 0; upper < 2; upper++) {
+      if (!(cells->mirrors >> (2 * c + upper) & 1)) continue;
+      const double wall = mirror_at(mpm, c, upper);
+      if (upper ? x[c] > wall : x[c] < wall) x[c] = 2.0 * wall - x[c];
+    }
+}
+
+/* How far the way from a along `way` to its end at 1 goes from t before it passes a mirror. */
+static double next_mirror(const mps_mpm *mpm, const mpsi_cell_block *cells, const double *a,
+                          const double *way, double t) {
+  double next = INFINITY;
+  for (int k = 0; k < 2 * mpm->dim; k++) {
+    if (!(cells->mirrors >> k & 1) || way[k / 2] == 0.0) continue;
+    const double at = (mirror_at(mpm, k / 2, k % 2) - a[k / 2]) / way[k / 2];
+    if (at > t && at < next) next = at;
+  }
+  return next;
+}
+
+/* Whether the straight way from `from` to `to` (m), both outside, is free of the body, which is
+ * mirrored as the ground is: in steps of the distance to the surface, which cannot pass it. */
+static bool is_free(const mps_mpm *mpm, const mpsi_cell_block *cells, const mps_body *body,
+                    const mpsi_sight *from, const double *to) {
+  double way[3] = {0.0}, x[3] = {0.0}, distance = from->distance;
+  for (int c = 0; c < mpm->dim; c++) way[c] = to[c] - from->at[c];
+  const double length = sqrt(mpsi_dot3(way, way));
+  double t = 0.0;
+  for (int step = 0; step < MOST_STEPS; step++) {
+    const double next = next_mirror(mpm, cells, from->at, way, t) + 1e-9;
+    t = fmin(t + distance / length, next);
+    if (!(t < 1.0)) return true;
+    for (int c = 0; c < mpm->dim; c++) x[c] = from->at[c] + t * way[c];
+    fold(mpm, cells, x);
+    distance = mpsi_body_foot(body, x).distance;
+    if (distance < CLOSED * mpm->def.cell) return false;
+  }
+  return true;
+}
+
+/* What is known of tile node `at`, or of its partner, for the body; the place is that of the node
+ * itself, `ghost` or not. */
+static mpsi_sight sight_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t body,
+                           const int *at, bool *ghost) {
+  int place[3];
+  *ghost = false;
+  for (int c = 0; c < 3; c++) {
+    place[c] = c < mpm->dim ? mpsi_mpm_mirror_partner(mpm, cells, c, at[c]) : 0;
+    *ghost = *ghost || (c < mpm->dim && place[c] != at[c]);
+  }
+  const int32_t g = mpsi_block_under(cells, place[0], place[1], place[2]);
+  int32_t t = mpm->grid.nodes[g].first_pair;
+  while (mpm->contact.node_pair[t].body != body) t++;
+  mpsi_sight out = mpm->contact.sight[(int64_t)t * mpm->grid.block_nodes +
+                                      mpsi_local_under(place[0], place[1], place[2])];
+  for (int c = 0; c < mpm->dim; c++)
+    if (place[c] != at[c]) out.at[c] = 2.0 * mirror_at(mpm, c, place[c] < at[c]) - out.at[c];
+  return out;
+}
+
+/* Whether the place of tile node `at`, not beyond a mirror, lies before the tangent plane at the
+ * particle's foot: then it is seen past a convex body, as is one in whose own plane's front the
+ * particle lies. */
+static bool is_before(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                      const mpsi_foot *foot) {
+  const double local[3] = {at[0], at[1], at[2]};
+  double x[3], across = 0.0;
+  mpsi_node_position(mpm, cells->at, local, x);
+  for (int c = 0; c < mpm->dim; c++) {
+    if (cells->mirrors && mpsi_mpm_mirror_partner(mpm, cells, c, at[c]) != at[c]) return false;
+    across += (x[c] - foot->at[c]) * foot->normal[c];
+  }
+  return across > 0.0;
+}
+
+/* Whether the place of tile node `at` lies a cell or more below the tangent plane at the particle's
+ * foot, along the axis that is nearest to the normal. */
+static bool is_deep(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                    const mpsi_foot *foot) {
+  const double local[3] = {at[0], at[1], at[2]};
+  double x[3], depth = 0.0, cell = 0.0;
+  mpsi_node_position(mpm, cells->at, local, x);
+  for (int c = 0; c < mpm->dim; c++) {
+    depth -= (x[c] - foot->at[c]) * foot->normal[c];
+    cell = fmax(cell, fabs(foot->normal[c]) * mpm->def.cell);
+  }
+  return depth > (1.0 - 1e-9) * cell;
+}
+
+static void add_parted_by(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t b,
+                          const int *base, const double *x, mpsi_parted *out) {
+  const mps_body *body = mpm->contact.body[b];
+  const bool convex = mpm->contact.handle[b]->convex;
+  const mpsi_foot foot = mpsi_body_foot(body, x);
+  const mpsi_sight own = stand(mpm, &foot, x);
+  const int n = mpm->def.spline;
+  if (own.distance > 2.0 * sqrt((double)mpm->dim) * mpm->def.cell) return;
+  for (int k = 0; k <= (mpm->dim == 3 ? n : 0); k++)
+    for (int j = 0; j <= n; j++)
+      for (int i = 0; i <= n; i++) {
+        const int at[3] = {base[0] + i, base[1] + j, base[2] + k};
+        if (convex && is_before(mpm, cells, at, &foot)) continue;
+        bool ghost;
+        const mpsi_sight node = sight_of(mpm, cells, b, at, &ghost);
+        double way[3];
+        for (int c = 0; c < 3; c++) way[c] = node.at[c] - own.at[c];
+        const double reach = own.distance + (ghost ? 0.0 : node.distance);
+        if (convex && !ghost && mpsi_dot3(way, node.normal) < node.distance) continue;
+        if (mpsi_dot3(way, way) < reach * reach) continue; /* two balls without the body */
+        if (is_free(mpm, cells, body, &own, node.at)) continue;
+        const uint64_t bit = UINT64_C(1) << (16 * k + 4 * j + i);
+        out->across |= bit;
+        if (is_deep(mpm, cells, at, &foot)) out->cut |= bit;
+      }
+}
+
+mpsi_parted mpsi_mpm_find_parted(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *base,
+                                 const double *x) {
+  mpsi_parted out = {0, 0};
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    const int32_t b = mpm->contact.cell_pair[cells->first_pair + q].body;
+    if (mpm->contact.thin >> b & 1) add_parted_by(mpm, cells, b, base, x, &out);
+  }
+  return out;
+}

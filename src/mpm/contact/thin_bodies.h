@@ -1,0 +1,53 @@
+/* thin_bodies.h - thin bodies: those with a wall below two cells. Such a wall has nodes of the grid on
+ * its one side within the stencils of particles on the other, and must not pass momentum on through
+ * them. So a node has two sets of values: its own, of the particles that see it, and those across,
+ * of the particles from which a thin body parts it: the straight way from particle to node leads
+ * through the body. A node in such a body stands where its nearest point of the surface is.
+ *
+ * The nodes in the body take part as all others. Those across do where they lie less than a cell
+ * behind the tangent plane at the particle's foot, much as beside thick bodies: a node further off
+ * would have hardly any mass, and of the pressure at the surface another part than of the impulses
+ * that bear it. What is left is fitted (least_squares.c).
+ *
+ * Which is asked for each particle and node, not for the whole body: so it holds beside the ends
+ * and edges of plates and piles, where the ground is connected, and of meshes. Three sides that
+ * meet within a stencil are not told apart: two thin walls within two cells of each other.
+ *
+ * Values across have blocks of nodes of their own, behind those that the particles reach
+ * (mpsi_all_nodes), and a second tile; they are found anew before each step. By springs
+ * (MPS_CONTACT_METHOD_PENALTY) nothing is parted. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_ACROSS_H
+#define MPSI_MPM_ACROSS_H
+
+#include <mps/mpm.h>
+
+struct mpsi_cell_block;
+struct mpsi_node_block;
+
+#define MPSI_THIN_CELLS 2.0 /* walls below are thin */
+
+/* A node, for a thin body near it. */
+typedef struct mpsi_sight {
+  double at[3];     /* m, where it stands: itself, or in the body the surface nearest to it */
+  double distance;  /* m, from there to the body */
+  double normal[3]; /* of the surface at its foot */
+} mpsi_sight;
+
+/* Nodes of a particle's stencil, bit 16 k + 4 j + i that of node (i, j, k). */
+typedef struct mpsi_parted {
+  uint64_t across; /* of those that take part their values across do */
+  uint64_t cut;    /* do not take part */
+} mpsi_parted;
+
+/* Which bodies part particles in the step being made; room for what is known of nodes. */
+bool mpsi_mpm_begin_across(mps_mpm *mpm);
+/* The nodes of block g for its bodies that do; those beside them are marked. */
+void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g);
+/* The blocks of cells and nodes concerned being known, those across; false: memory refused. */
+bool mpsi_mpm_list_across(mps_mpm *mpm);
+/* Which nodes of the stencil from tile node `base` are across for a particle at x[3] (m), and which
+ * of them lie too deep to take part, unless they are corners of its own cell. */
+mpsi_parted mpsi_mpm_find_parted(const mps_mpm *mpm, const struct mpsi_cell_block *cells,
+                                 const int *base, const double *x);
+
+#endif

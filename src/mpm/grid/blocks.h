@@ -1,0 +1,228 @@
+/* blocks.h - the grid that follows the particles, in blocks.
+ *
+ * The grid is cut into blocks of 8 nodes along each axis; only those that particles reach exist. A
+ * particle is sorted into a block of cells by the lowest node of its stencil, so that the stencils
+ * of a block lie in a tile of 13 nodes along each axis, which begins at the block's first node: 1
+ * node that only a particle which has left to the lower side uses, 8, 1 for one that has left to
+ * the upper side, and the other 3 of a cubic stencil. So the particles are sorted anew only when
+ * one has moved a whole cell beyond its block, or beyond the cells of it that had particles: the
+ * rest of the tile is not worked on. The tile lies over the block's own nodes and its
+ * neighbours at +x, +y, +x+y (and so on at +z).
+ *
+ * Each task sums the particles of one block of cells into a tile of its own and adds that to the
+ * nodes. Blocks of one colour (2 along each axis) share no nodes; blocks that do give one after the
+ * other, in the order of their colours (pass.h). No two tasks write the same memory, and no sum
+ * depends on the number of threads.
+ *
+ * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_BLOCKS_H
+#define MPSI_MPM_BLOCKS_H
+
+#include "pass.h"
+#include "mpm/life/restart.h"
+#include "core/base/room.h"
+
+#define MPSI_SIDE 8
+#define MPSI_TILE_SIDE (MPSI_SIDE + 5)
+#define MPSI_CORNERS 8        /* blocks of nodes under a tile: 4 in 2D */
+#define MPSI_MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
+#define MPSI_NO_WALL (INT64_C(1) << 30)
+
+/* A block of cells with particles. */
+typedef struct mpsi_cell_block {
+  int64_t begin, end;       /* particles */
+  int32_t at[3];            /* block coordinates: its first node is at * MPSI_SIDE */
+  int32_t low[3], high[3];  /* its stencils use tile nodes low to high - 1 of each axis */
+  int32_t to[MPSI_CORNERS]; /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
+  /* What the loops must look after in the block; a block without any of these, which most are, has
+   * full supports only.
+   *   edge    some node of the tile is outside the domain, beyond a side that is no mirror
+   *   inside  some node that its stencils may use is in a body
+   *   cut     edge, inside, thin, or the standard scheme: support may be cut, states are found
+   *   split   some block of nodes under it is split: forces are summed apart from momenta there
+   *   thin    a thin body may part nodes of its stencils from particles (thin_bodies.h)
+   *   apart   cut or split: the tile of forces is in use */
+  bool edge, inside, cut, split, thin, apart;
+  uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
+  int32_t first_mirror; /* of these in the list */
+  bool light; /* some block of nodes under it is: particles get back what its nodes keep */
+  bool gone;  /* a particle has passed an open side */
+  bool left;  /* a particle is more than a cell outside the block */
+  int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
+  int64_t first_fit;          /* of its particles in the list of kept fits; -1: none are kept */
+  int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after
+                                 this one, in the order of colours; -1: this is the last */
+  int32_t waits;              /* number of to[q] that others give to before */
+  uint8_t first;              /* bit q: this is the first that gives to to[q] */
+  int64_t bad;                /* first particle not finite or outside the domain, or -1 */
+  bool lost;                  /* that one, and no other, is outside: all are finite */
+  double speed;               /* largest c + |v|, m/s */
+  /* On several ranks (partition.h): */
+  bool ghost;     /* another rank's: it has no particles here */
+  bool late;      /* it, or one that gives before it, is a ghost */
+  bool touched;   /* it has touches in the step, or areas (area.c) */
+  bool told;      /* these touch what other ranks' do: partners.h */
+  int64_t parcel; /* where its tile is among those that come (ghosts) or go; -1: nowhere */
+} mpsi_cell_block;
+
+/* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
+typedef struct mpsi_node_block {
+  int32_t at[3];
+  int32_t side;   /* slot of its side sums, or -1: only particles with full supports reach it */
+  int32_t near;   /* slot of its inside masks, or -1: no body near */
+  bool split;     /* side has the forces: the velocity before them is needed */
+  int32_t across; /* block of nodes with the sums of particles that a thin body parts from these
+                     nodes, or -1 (thin_bodies.h) */
+  bool thin;      /* some node is beside a thin body */
+  bool light;     /* some node's own mass is less than forces see: MPSI_LEAST_MASS */
+  bool inside;    /* some node is in a body: */
+  int32_t low[3], high[3];    /* they are within low to high - 1 */
+  uint32_t bodies;            /* bit b: a block of cells whose tile covers it may meet body b */
+  int32_t first_pair, pairs;  /* bodies that may touch it: of the list of mpsi_node_pair */
+  int32_t first_held, holds;  /* of the list of mpsi_held */
+  int32_t from[MPSI_CORNERS]; /* blocks of cells whose tiles cover it, as corner q; -1: none */
+  bool late;                  /* a ghost, or one that gives after one, gives to it (partition.h) */
+  bool foreign;               /* only ghosts cover it: it has part of its sums */
+  bool waits;                 /* its friction needs the mass of all nodes in contact with a body */
+} mpsi_node_block;
+
+/* A node, four doubles: particles to nodes sums mass and momentum; then lane 0 is the mass and the
+ * others the velocity. The momentum has dt times the force with it, but in split blocks.
+ * Its side, where the block has one: EXCESS is sum (w - phi) m, mass by weights less mass by shape
+ * functions, then in split blocks the force; later the velocity v_i^n before the forces. */
+typedef double mpsi_node[4];
+enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
+
+/* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
+typedef struct mpsi_worker {
+  void *memory;
+  mpsi_node *tile, *force;               /* force, and excess mass: where they are apart */
+  mpsi_node *across_tile, *across_force; /* the same of what thin bodies part (thin_bodies.h) */
+  struct mpsi_spring_node *springs;      /* of each body: see penalty.c */
+  uint32_t *inside;                      /* bit b: in body b */
+  uint8_t *state;                        /* MPSI_... bits, 0: free */
+} mpsi_worker;
+
+/* The fit of a particle beside bodies, from the scatter of a step to its gather (least_squares_batch.c). */
+typedef struct mpsi_kept_fit {
+  double q[12];    /* the upper half of the inverse of M by rows, q00, q01, q02, ... (shape.h) */
+  uint64_t active; /* bit 16 k + 4 j + i: node of the stencil that takes part */
+} mpsi_kept_fit;
+enum { MPSI_FITTED_CUT = 1, MPSI_FITTED_FULL = 2 };
+
+/* Bits of a state. */
+#define MPSI_OUTSIDE 1u /* not in the domain */
+#define MPSI_INSIDE 2u  /* in a body */
+#define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
+#define MPSI_PLAIN 8u   /* any node with the standard method, whose supports are cut everywhere */
+#define MPSI_THIN 16u   /* beside or in a thin body, which parts particles (thin_bodies.h) */
+
+/* A particle by its key, as it is sorted. */
+typedef struct mpsi_radix {
+  uint64_t key;
+  int64_t index;
+} mpsi_radix;
+
+/* Shape functions of a fit can be negative, so that a node with hardly any particle, between two
+ * bodies above all, could get a tiny or negative mass. Forces accelerate at least this fraction of
+ * its mass by weights, which never is. */
+#define MPSI_LEAST_MASS 0.02
+static inline double mpsi_node_mass(double mass, double weight) {
+  return fmax(mass, MPSI_LEAST_MASS * weight);
+}
+/* What its momentum is divided by: its own mass, unless that is smaller than the fraction. Else a
+ * node of negative mass would move against its particles. */
+static inline double mpsi_carried_mass(double mass, double weight) {
+  return mass < -MPSI_LEAST_MASS * weight ? mass : mpsi_node_mass(mass, weight);
+}
+/* Its own mass, by what it has after the update and the excess. */
+static inline double mpsi_own_mass(double mass, double excess) {
+  return fmin(mass, mass / MPSI_LEAST_MASS - excess);
+}
+
+typedef struct mpsi_grid {
+  bool apart;                      /* a reader wants the forces apart from the momenta everywhere */
+  int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
+  double inverse;                  /* 1/m, 1/h */
+  int64_t low[3], high[3];         /* first and last node of the domain */
+  int64_t use_low[3], use_high[3]; /* and of those that stencils may use: none beyond mirrors */
+  mpsi_cell_block *cells;
+  mpsi_node_block *nodes;
+  mpsi_node *node, *side;
+  int64_t cell_count, node_count, side_count; /* of blocks; of slots of `side` */
+  int64_t across_count; /* blocks of nodes behind the `node_count` that have a place of their own */
+  int32_t *coloured;    /* numbers of blocks of cells, colour by colour */
+  int64_t colour[MPSI_CORNERS + 1]; /* first of each in `coloured` */
+  mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
+  mpsi_radix *radix;  /* 2 items a particle */
+  mpsi_radix *sorted; /* the half of `radix` with the order, while the blocks are made */
+  int32_t own_bits;   /* lower bits of a sorted key: the stencil's place within its block */
+  mpsi_room digits_room, pass_room;
+  mpsi_worker *workers;
+  mpsi_room across_room; /* of their second tiles */
+  int32_t worker_count;
+  mpsi_kept_fit *fit; /* of particles of blocks beside bodies: see mpsi_cell_block.first_fit */
+  uint8_t *fitted;    /* what was kept in the present step: MPSI_FITTED_... or 0 */
+  mpsi_room fit_room, fitted_room;
+} mpsi_grid;
+
+/* Coordinates within a block or tile of `side` nodes an axis. */
+static inline void mpsi_unravel(int k, int side, int *at) {
+  at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
+}
+
+/* All blocks of nodes, with those across thin bodies. */
+static inline int64_t mpsi_all_nodes(const mpsi_grid *grid) {
+  return grid->node_count + grid->across_count;
+}
+
+static inline int mpsi_tile_index(int i, int j, int k) {
+  return (k * MPSI_TILE_SIDE + j) * MPSI_TILE_SIDE + i;
+}
+
+/* Node k of a block within the plane of nodes across `axis`. */
+static inline int mpsi_plane_index(int axis, int k) {
+  const int plane = MPSI_SIDE * MPSI_SIDE;
+  return axis == 0 ? k / MPSI_SIDE : axis == 1 ? k / plane * MPSI_SIDE + k % MPSI_SIDE : k % plane;
+}
+
+/* Lowest node of the stencil of a particle at grid coordinate X. */
+static inline double mpsi_base(int32_t spline, double X) {
+  return spline == 3 ? floor(X) - 1.0 : floor(X - 0.5);
+}
+
+/* The block that a particle is sorted to, by the lowest node of its stencil. */
+static inline int64_t mpsi_block_of(int64_t base) {
+  const int64_t n = base - 1;
+  return n >= 0 ? n / MPSI_SIDE : -((MPSI_SIDE - 1 - n) / MPSI_SIDE);
+}
+
+/* The order of blocks in lists: in z, then y, then x. */
+static inline bool mpsi_block_before(const int32_t *a, const int32_t *b) {
+  for (int c = 2; c > 0; c--)
+    if (a[c] != b[c]) return a[c] < b[c];
+  return a[0] < b[0];
+}
+
+/* order.c: keys and indices of the particles in their order, the block above `own_bits` bits; NULL
+ * when out of memory. */
+mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);
+/* ready.c: sorts the particles by blocks and builds the lists of blocks; layout.c: where there are
+ * no other ranks. */
+mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function);
+/* layout.c: its parts: the particles in order, by blocks of cells; room for such; and, once
+ * they are in grid.cells in their order, what follows from them. */
+mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function);
+bool mpsi_mpm_ensure_cells(mps_mpm *mpm, int64_t cells);
+bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells);
+/* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
+mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+                                 const mpsi_block *block);
+/* node_update.c: one block of nodes: emptied; velocities, normal contact forces; friction and walls. */
+void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+
+#endif

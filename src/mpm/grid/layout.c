@@ -1,0 +1,283 @@
+/* layout.c - the grid that follows the particles: the blocks of cells that hold particles, and the
+ * blocks of nodes that their tiles need. Both lists ascend in z, then y, then x.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+#include "core/particles/particles_internal.h"
+
+#include <string.h>
+
+/* ---- blocks ---------------------------------------------------------------------------------- */
+
+/* Widens the part of the tile in use by a stencil, and by a cell to either side. */
+static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cell_block *cells) {
+  for (int c = 0; c < mpm->dim; c++, within /= MPSI_SIDE) {
+    const int32_t low = (int32_t)(within % MPSI_SIDE);
+    const int32_t high = low + 3 + mpsi_reach(mpm, c);
+    if (low < cells->low[c]) cells->low[c] = low;
+    if (high > cells->high[c]) cells->high[c] = high;
+  }
+}
+
+/* ---- the sorted keys, in chunks -------------------------------------------------------------- */
+
+#define CHUNKS 64
+#define LEAST_CHUNK 4096 /* particles */
+
+typedef struct key_chunks {
+  mps_mpm *mpm;
+  int64_t length;         /* particles in a chunk */
+  int64_t first[CHUNKS];  /* blocks that begin in the chunk; then the number of its first */
+  mpsi_cell_block *cells; /* NULL: they are only counted */
+  int64_t *order;         /* of list_order */
+  bool kept[CHUNKS];      /* its particles are in order already */
+} key_chunks;
+
+static int32_t for_chunks(key_chunks *c, void (*work)(void *data, int64_t chunk, int32_t worker)) {
+  c->length = (c->mpm->p.count + CHUNKS - 1) / CHUNKS;
+  if (c->length < LEAST_CHUNK) c->length = LEAST_CHUNK;
+  const int64_t chunks = (c->mpm->p.count + c->length - 1) / c->length;
+  mpsi_parallel_for(c->mpm->context, chunks, work, c);
+  return (int32_t)chunks;
+}
+
+static int64_t end_of_chunk(const key_chunks *c, int64_t chunk) {
+  const int64_t end = (chunk + 1) * c->length;
+  return end < c->mpm->p.count ? end : c->mpm->p.count;
+}
+
+/* Counts the blocks that begin in a chunk, or notes where. */
+static void find_begins(void *data, int64_t chunk, int32_t worker) {
+  key_chunks *c = data;
+  const mpsi_grid *grid = &c->mpm->grid;
+  const mpsi_radix *key = grid->sorted;
+  const int64_t end = end_of_chunk(c, chunk);
+  int64_t number = c->cells ? c->first[chunk] : 0;
+  (void)worker;
+  for (int64_t k = chunk * c->length; k < end; k++) {
+    if (k > 0 && key[k].key >> grid->own_bits == key[k - 1].key >> grid->own_bits) continue;
+    if (c->cells) c->cells[number] = (mpsi_cell_block){.begin = k, .bad = -1};
+    number++;
+  }
+  if (!c->cells) c->first[chunk] = number;
+}
+
+/* Runs of particles of the sorted keys: how many there are, or the blocks with their particles. */
+static int64_t count_cells(key_chunks *c) {
+  int64_t sum = 0;
+  const int32_t chunks = for_chunks(c, find_begins);
+  for (int32_t k = 0; k < chunks; k++) {
+    const int64_t here = c->first[k];
+    c->first[k] = sum;
+    sum += here;
+  }
+  return sum;
+}
+
+static void make_cells(key_chunks *c, int64_t count, mpsi_cell_block *cells) {
+  c->cells = cells;
+  for_chunks(c, find_begins);
+  for (int64_t b = 0; b < count; b++)
+    cells[b].end = b + 1 < count ? cells[b + 1].begin : c->mpm->p.count;
+}
+
+/* The order, for mpsi_particles_permute_in. */
+static void list_chunk(void *data, int64_t chunk, int32_t worker) {
+  key_chunks *c = data;
+  const int64_t end = end_of_chunk(c, chunk);
+  (void)worker;
+  c->kept[chunk] = true;
+  for (int64_t k = chunk * c->length; k < end; k++) {
+    c->order[k] = c->mpm->grid.sorted[k].index;
+    if (c->order[k] != k) c->kept[chunk] = false;
+  }
+}
+
+/* Whether the particles have it already. */
+static bool list_order(mps_mpm *mpm, int64_t *order) {
+  key_chunks c = {.mpm = mpm, .order = order};
+  bool kept = true;
+  const int32_t chunks = for_chunks(&c, list_chunk);
+  for (int32_t k = 0; k < chunks; k++) kept = kept && c.kept[k];
+  return kept;
+}
+
+/* Particles [begin, end) of one stencil by their ids, so that their order is not that of former
+ * sorts: by insertion at falling distances, few steps where they are nearly in order. */
+static void order_by_id(mpsi_radix *key, const int64_t *id, int64_t begin, int64_t end) {
+  static const int64_t gap[] = {701, 301, 132, 57, 23, 10, 4, 1};
+  for (size_t g = 0; g < sizeof gap / sizeof *gap; g++)
+    for (int64_t k = begin + gap[g]; k < end; k++) {
+      const int64_t index = key[k].index;
+      int64_t at = k;
+      for (; at - gap[g] >= begin && id[key[at - gap[g]].index] > id[index]; at -= gap[g])
+        key[at].index = key[at - gap[g]].index;
+      key[at].index = index;
+    }
+}
+
+/* Where the block is whose particles are in their order but for those of one stencil: `begin` and
+ * `end` are known. */
+static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_radix *key = mpm->grid.sorted;
+  const uint64_t own = (UINT64_C(1) << mpm->grid.own_bits) - 1;
+  for (int c = 0; c < 3; c++) {
+    const double x = c < mpm->dim ? mpm->p.x[c][key[cells->begin].index] : 0.0;
+    const double X = mpsi_grid_coordinate(mpm, c, x);
+    cells->at[c] =
+        c < mpm->dim ? (int32_t)mpsi_block_of((int64_t)mpsi_base(mpm->def.spline, X)) : 0;
+    cells->low[c] = c < mpm->dim ? MPSI_TILE_SIDE : 0, cells->high[c] = 1;
+  }
+  for (int64_t k = cells->begin, end; k < cells->end; k = end) {
+    for (end = k + 1; end < cells->end && key[end].key == key[k].key;) end++;
+    widen_use(mpm, key[k].key & own, cells);
+    order_by_id(key, mpm->laws.ids, k, end);
+  }
+}
+
+/* The sorted list of blocks shifted to each corner of a tile gives sorted lists; merging them gives
+ * the blocks of nodes, and tells which tiles cover which. The count alone where `nodes` is NULL. */
+static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
+  mpsi_cell_block *cells = mpm->grid.cells;
+  const int corners = 1 << mpm->dim;
+  int64_t head[MPSI_CORNERS] = {0}, count = 0;
+  for (;;) {
+    int32_t at[MPSI_CORNERS][3], least[3];
+    bool any = false;
+    for (int q = 0; q < corners; q++) {
+      if (head[q] == mpm->grid.cell_count) continue;
+      for (int c = 0; c < 3; c++) at[q][c] = cells[head[q]].at[c] + (q >> c & 1);
+      if (!any || mpsi_block_before(at[q], least)) memcpy(least, at[q], sizeof least);
+      any = true;
+    }
+    if (!any) return count;
+    if (nodes) {
+      nodes[count] = (mpsi_node_block){.side = -1, .near = -1, .across = -1};
+      for (int q = 0; q < MPSI_CORNERS; q++) nodes[count].from[q] = -1;
+      memcpy(nodes[count].at, least, sizeof least);
+    }
+    for (int q = 0; q < corners; q++) {
+      if (head[q] == mpm->grid.cell_count || mpsi_block_before(least, at[q])) continue;
+      cells[head[q]].to[q] = (int32_t)count;
+      if (nodes) nodes[count].from[q] = (int32_t)head[q];
+      head[q]++;
+    }
+    count++;
+  }
+}
+
+/* Same colour: the same parities of the block coordinates. */
+static void sort_colours(mps_mpm *mpm) {
+  int64_t count = 0;
+  for (int colour = 0; colour < MPSI_CORNERS; colour++) {
+    mpm->grid.colour[colour] = count;
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+      const int32_t *at = mpm->grid.cells[b].at;
+      if (((at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2) == colour)
+        mpm->grid.coloured[count++] = (int32_t)b;
+    }
+  }
+  mpm->grid.colour[MPSI_CORNERS] = count;
+}
+
+bool mpsi_mpm_ensure_cells(mps_mpm *mpm, int64_t cells) {
+  const bool good =
+      mpsi_room_ensure(mpm->context, &mpm->grid.cells_room, cells, sizeof *mpm->grid.cells) &&
+      mpsi_room_ensure(mpm->context, &mpm->grid.coloured_room, cells, sizeof *mpm->grid.coloured);
+  mpm->grid.cell_count = mpm->grid.node_count = mpm->grid.across_count = 0;
+  mpm->grid.cells = mpm->grid.cells_room.item;
+  mpm->grid.coloured = mpm->grid.coloured_room.item;
+  return good;
+}
+
+/* What follows from the blocks of cells. */
+bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells) {
+  mpm->grid.cell_count = cells;
+  sort_colours(mpm);
+  const int64_t nodes = make_nodes(mpm, NULL);
+  if (!mpsi_room_ensure(mpm->context, &mpm->grid.nodes_room, nodes, sizeof *mpm->grid.nodes) ||
+      !mpsi_room_ensure(mpm->context, &mpm->grid.node_room, nodes * mpm->grid.block_nodes,
+                        sizeof *mpm->grid.node)) {
+    mpm->grid.cell_count = 0;
+    return false;
+  }
+  mpm->grid.node_count = nodes;
+  mpm->grid.across_count = 0;
+  mpm->grid.nodes = mpm->grid.nodes_room.item;
+  mpm->grid.node = mpm->grid.node_room.item;
+  make_nodes(mpm, mpm->grid.nodes);
+  mpsi_mpm_link_blocks(mpm);
+  return mpsi_mpm_ensure_pass(mpm);
+}
+
+static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {
+  return mpsi_fail_memory(mpm->context, function,
+                          (size_t)(cells * mpm->grid.block_nodes) * sizeof *mpm->grid.node);
+}
+
+static mps_status find_cells(mps_mpm *mpm, const char *function) {
+  key_chunks chunks = {.mpm = mpm};
+  mpm->grid.sorted = mpsi_mpm_find_order(mpm, &mpm->grid.own_bits);
+  if (!mpm->grid.sorted) return no_room(mpm, function, mpm->p.count / mpm->grid.block_nodes + 1);
+  const int64_t cells = count_cells(&chunks);
+  if (!mpsi_mpm_ensure_cells(mpm, cells)) return no_room(mpm, function, cells);
+  make_cells(&chunks, cells, mpm->grid.cells);
+  mpm->grid.cell_count = cells;
+  mpsi_mpm_for_cells(mpm, place_block);
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+                                 const mpsi_block *block) {
+  if (!mpsi_mpm_ensure_cells(mpm, count)) return no_room(mpm, function, count);
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t end = k + 1 < count ? block[k + 1][0] : mpm->p.count;
+    mpm->grid.cells[k] = (mpsi_cell_block){.begin = block[k][0], .end = end, .bad = -1};
+    for (int c = 0; c < 3; c++) {
+      mpm->grid.cells[k].at[c] = (int32_t)block[k][MPSI_BLOCK_AT + c];
+      mpm->grid.cells[k].low[c] = (int32_t)block[k][MPSI_BLOCK_LOW + c];
+      mpm->grid.cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
+    }
+  }
+  if (mpm->share) { /* its ghosts follow before the next step */
+    mpm->grid.cell_count = count;
+    mpm->share->outdated = true;
+    return MPS_OK;
+  }
+  return mpsi_mpm_build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
+}
+
+/* The particles in the order of the sorted keys. */
+static mps_status put_in_order(mps_mpm *mpm, const char *function) {
+  const int64_t count = mpm->p.count;
+  mpsi_radix *lower = mpm->grid.radix, *upper = lower + count;
+  /* The half that is not sorted is free now for the order, and the other one after that. */
+  int64_t *other = (int64_t *)(mpm->grid.sorted == lower ? upper : lower), *order = other;
+  int64_t *own = (int64_t *)(mpm->grid.sorted == lower ? lower : upper);
+  mpm->run.stale = false;
+  if (list_order(mpm, order)) return MPS_OK;
+  void *const scratch[MPSI_PERMUTE_COLUMNS] = {other + count, own, own + count};
+  return mpsi_particles_permute_in(mpm->particles, function, order, scratch, MPSI_PERMUTE_COLUMNS);
+}
+
+mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function) {
+  mpm->run.stale = false;
+  if (mpm->p.count == 0) return mpsi_mpm_ensure_cells(mpm, 0) ? MPS_OK : no_room(mpm, function, 0);
+  const mps_status status = find_cells(mpm, function);
+  return status == MPS_OK ? put_in_order(mpm, function) : status;
+}
+
+mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function) {
+  if (mpm->p.count == 0) {
+    mpm->run.stale = false;
+    const bool good = mpsi_mpm_ensure_cells(mpm, 0) && mpsi_mpm_build_nodes(mpm, 0);
+    return good ? MPS_OK : no_room(mpm, function, 0);
+  }
+  mps_status status = find_cells(mpm, function);
+  if (status != MPS_OK) return status;
+  const int64_t cells = mpm->grid.cell_count;
+  if (!mpsi_mpm_build_nodes(mpm, cells)) return no_room(mpm, function, cells);
+  return put_in_order(mpm, function);
+}

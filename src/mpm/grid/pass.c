@@ -1,0 +1,375 @@
+/* pass.c - see pass.h. Blocks that are ready stand in a queue, from which the threads claim some at
+ * a time; who does the last that a block waits for puts that block there. Those that became ready
+ * go before those that were so from the start: their particles and nodes are still in the cache. A
+ * thread that finds nothing ready looks again for some microseconds and then sleeps for a moment;
+ * under a caller's executor, which may run the units one after the other, it leaves. All is done
+ * when all have left, since who makes a block ready looks at the queue after that. One thread alone
+ * goes over the blocks in their order and does for each what it waits for. On several ranks the
+ * caller's thread, which alone may call the transport, receives what ghosts give when it finds
+ * nothing else to do, while the others work on.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+#include <stdatomic.h>
+
+#define SMALL_SET 2048 /* particles: below, sharing the work costs more than it gains */
+#define VISITS 4       /* of a thread of a caller's executor: it may leave and come back so often */
+#define MOST_CLAIMED 8
+
+/* Which coordinates of a block of nodes are odd, bit by bit. */
+static int parity_of(const mpsi_node_block *nodes) {
+  return (nodes->at[0] & 1) | (nodes->at[1] & 1) << 1 | (nodes->at[2] & 1) << 2;
+}
+
+/* Whether the nodes, those of cells b, concern this rank: see partition.h. */
+static bool has_nodes(const mps_mpm *mpm, const mpsi_pass *pass, int64_t g) {
+  return pass->ghosts || !mpm->grid.nodes[g].foreign;
+}
+
+static bool has_cells(const mps_mpm *mpm, const mpsi_pass *pass, int64_t b) {
+  return pass->ghosts || !mpm->grid.cells[b].ghost;
+}
+
+/* ---- one thread ------------------------------------------------------------------------------ */
+
+static bool is_first(const mpsi_cell_block *cells, int q) { return cells->first >> q & 1; }
+
+static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int q = 0; q < 1 << mpm->dim; q++)
+    if (is_first(cells, q)) pass->clear(mpm, cells->to[q], worker);
+  pass->scatter(mpm, b, worker);
+}
+
+/* What has been done. */
+typedef struct wave {
+  mps_mpm *mpm;
+  const mpsi_pass *pass;
+  _Atomic int32_t *given, *done; /* by blocks of cells; of nodes: UPDATED or FINISHED */
+} wave;
+enum { UPDATED = 1, FINISHED = 2 };
+
+/* Whether it was not yet so far. */
+static bool mark(_Atomic int32_t *done, int32_t stage) {
+  const bool before = atomic_load_explicit(done, memory_order_relaxed) < stage;
+  if (before) atomic_store_explicit(done, stage, memory_order_relaxed);
+  return before;
+}
+
+/* The block that gives to the block of nodes g just before the one at its corner q, or -1. */
+static int32_t giver_before(const mps_mpm *mpm, int32_t g, int q) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const int parity = parity_of(nodes);
+  for (int colour = (q ^ parity) - 1; colour >= 0; colour--)
+    if (nodes->from[colour ^ parity] >= 0) return nodes->from[colour ^ parity];
+  return -1;
+}
+
+/* Lets block b give, and before it those that have to: it calls itself as often as there are
+ * colours, at most. */
+static void give_in_turn(wave *w, int32_t b) {
+  const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
+  if (!mark(&w->given[b], 1)) return;
+  for (int q = 0; q < 1 << w->mpm->dim; q++) {
+    const int32_t before = giver_before(w->mpm, cells->to[q], q);
+    if (before >= 0) give_in_turn(w, before);
+  }
+  clear_and_scatter(w->mpm, w->pass, b, 0);
+}
+
+static void update_in_turn(wave *w, int32_t g) {
+  const mpsi_node_block *nodes = &w->mpm->grid.nodes[g];
+  if (!mark(&w->done[g], UPDATED)) return;
+  for (int q = 0; q < 1 << w->mpm->dim && w->pass->scatter; q++)
+    if (nodes->from[q] >= 0) give_in_turn(w, nodes->from[q]);
+  if (w->pass->update) w->pass->update(w->mpm, g, 0);
+}
+
+static void finish_in_turn(wave *w, int32_t g) {
+  update_in_turn(w, g);
+  if (mark(&w->done[g], FINISHED) && w->pass->finish) w->pass->finish(w->mpm, g, 0);
+}
+
+/* Whether some node under the block waits for ghosts (partition.h). */
+static bool is_late(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  bool late = false;
+  for (int q = 0; q < 1 << mpm->dim; q++) late = late || mpm->grid.nodes[cells->to[q]].late;
+  return late;
+}
+
+/* The blocks that wait for ghosts, or the others. */
+static void gather_in_turn(wave *w, bool late) {
+  const mpsi_grid *grid = &w->mpm->grid;
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
+    if (!has_cells(w->mpm, w->pass, b) || is_late(w->mpm, cells) != late) continue;
+    for (int q = 0; q < 1 << w->mpm->dim; q++) finish_in_turn(w, cells->to[q]);
+    if (w->pass->gather) w->pass->gather(w->mpm, b, 0);
+  }
+}
+
+/* Each block gathers as soon as its nodes are done, while its particles are in the cache since they
+ * gave: of a large set they would have to come from the memory twice. What waits for ghosts comes
+ * last, but gives what it can while their message is on its way. */
+static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
+  const mpsi_grid *grid = &mpm->grid;
+  _Atomic int32_t *room = grid->pass_room.item;
+  wave w = {mpm, pass, room, room + grid->cell_count};
+  for (int64_t k = 0; k < grid->cell_count + grid->node_count; k++)
+    atomic_store_explicit(&room[k], 0, memory_order_relaxed);
+  for (int32_t g = 0; pass->between && g < grid->node_count; g++)
+    if (grid->nodes[g].waits) update_in_turn(&w, g);
+  if (pass->between && !pass->between(mpm, pass->data)) return;
+  gather_in_turn(&w, false);
+  if (!mpm->share) return;
+  for (int32_t b = 0; pass->scatter && b < grid->cell_count; b++)
+    if (!grid->cells[b].late) give_in_turn(&w, b);
+  if (pass->arrive) pass->arrive(mpm);
+  gather_in_turn(&w, true);
+}
+
+/* ---- several --------------------------------------------------------------------------------- */
+
+/* Entries of the queue: scatter of b is b, gather of b is cells + b, and 2 cells + g is the update
+ * of g where there is no scatter, else its end after `between`. */
+typedef struct flow {
+  mps_mpm *mpm;
+  const mpsi_pass *pass;
+  int32_t cells, nodes;
+  _Atomic int32_t *scatter_waits, *gather_waits; /* of each block of cells: for how many nodes */
+  _Atomic int32_t *queue;     /* first those ready from the start; EMPTY where there is none yet */
+  int64_t starts, entries;    /* ready from the start; that there will be, all in all */
+  _Atomic int64_t begun;      /* of the former, claimed or more */
+  _Atomic int64_t head, tail; /* of the others: next to claim, next to fill */
+  _Atomic int32_t held;       /* blocks of nodes to update before `between` */
+  _Atomic bool arrived;       /* what ghosts give, or none is waited for */
+} flow;
+enum { EMPTY = -1 };
+
+static void put(flow *f, int32_t entry) {
+  const int64_t at = atomic_fetch_add_explicit(&f->tail, 1, memory_order_relaxed);
+  atomic_store_explicit(&f->queue[at], entry, memory_order_release);
+}
+
+/* Whether that was the last. What was done before by all who have counted is then visible. */
+static bool count_down(_Atomic int32_t *count) {
+  return atomic_fetch_sub_explicit(count, 1, memory_order_acq_rel) == 1;
+}
+
+static void finish_nodes(flow *f, int32_t g, int32_t worker) {
+  const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
+  if (f->pass->finish && has_nodes(f->mpm, f->pass, g)) f->pass->finish(f->mpm, g, worker);
+  for (int q = 0; q < 1 << f->mpm->dim; q++) {
+    const int32_t b = nodes->from[q];
+    if (b >= 0 && count_down(&f->gather_waits[b]) && f->pass->gather &&
+        has_cells(f->mpm, f->pass, b))
+      put(f, f->cells + b);
+  }
+}
+
+static void update_nodes(flow *f, int32_t g, int32_t worker) {
+  if (f->pass->update && has_nodes(f->mpm, f->pass, g)) f->pass->update(f->mpm, g, worker);
+  if (!f->pass->between || !f->mpm->grid.nodes[g].waits) {
+    finish_nodes(f, g, worker);
+    return;
+  }
+  if (!count_down(&f->held)) return;
+  f->pass->between(f->mpm, f->pass->data);
+  for (int32_t k = 0; k < f->nodes; k++)
+    if (f->mpm->grid.nodes[k].waits) put(f, 2 * f->cells + k);
+}
+
+static void scatter_cells(flow *f, int32_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &f->mpm->grid.cells[b];
+  clear_and_scatter(f->mpm, f->pass, b, worker);
+  for (int q = 0; q < 1 << f->mpm->dim; q++) {
+    const int32_t next = cells->next[q];
+    if (next < 0)
+      update_nodes(f, cells->to[q], worker);
+    else if (count_down(&f->scatter_waits[next]))
+      put(f, next);
+  }
+}
+
+static void work_on(flow *f, int32_t entry, int32_t worker) {
+  if (entry < f->cells)
+    scatter_cells(f, entry, worker);
+  else if (entry < 2 * f->cells)
+    f->pass->gather(f->mpm, entry - f->cells, worker);
+  else if (f->pass->scatter)
+    finish_nodes(f, entry - 2 * f->cells, worker);
+  else
+    update_nodes(f, entry - 2 * f->cells, worker);
+}
+
+/* How many to claim of so many. */
+static int64_t portion(const flow *f, int64_t waiting) {
+  const int64_t most = waiting / (4 * f->mpm->grid.worker_count);
+  return most < 1 ? 1 : most > MOST_CLAIMED ? MOST_CLAIMED : most;
+}
+
+/* Claims some entries that became ready one behind the other; returns how many. */
+static int32_t claim_next(flow *f, int32_t *entry) {
+  int64_t head = atomic_load_explicit(&f->head, memory_order_relaxed);
+  for (;;) {
+    const int64_t most = portion(f, atomic_load_explicit(&f->tail, memory_order_relaxed) - head);
+    int32_t n = 0;
+    for (; n < most && head + n < f->entries; n++) {
+      entry[n] = atomic_load_explicit(&f->queue[head + n], memory_order_acquire);
+      if (entry[n] == EMPTY) break;
+    }
+    if (n == 0) return 0;
+    if (atomic_compare_exchange_weak_explicit(&f->head, &head, head + n, memory_order_relaxed,
+                                              memory_order_relaxed))
+      return n;
+  }
+}
+
+/* The same of those that were ready from the start. */
+static int32_t claim_start(flow *f, int32_t *entry) {
+  const int64_t left = f->starts - atomic_load_explicit(&f->begun, memory_order_relaxed);
+  if (left <= 0) return 0;
+  const int64_t most = portion(f, left);
+  const int64_t at = atomic_fetch_add_explicit(&f->begun, most, memory_order_relaxed);
+  int32_t n = 0;
+  for (; n < most && at + n < f->starts; n++)
+    entry[n] = atomic_load_explicit(&f->queue[at + n], memory_order_relaxed);
+  return n;
+}
+
+static bool is_all_claimed(flow *f) {
+  return atomic_load_explicit(&f->head, memory_order_relaxed) == f->entries &&
+         atomic_load_explicit(&f->begun, memory_order_relaxed) >= f->starts;
+}
+
+/* On the caller's thread: the messages, and then the ghosts may give. */
+static void receive(flow *f) {
+  f->pass->arrive(f->mpm);
+  for (int32_t b = 0; b < f->cells; b++)
+    if (f->mpm->grid.cells[b].ghost && count_down(&f->scatter_waits[b])) put(f, b);
+  atomic_store_explicit(&f->arrived, true, memory_order_release);
+}
+
+/* Worker 0 of the context's own executors is the caller's thread. */
+static void visit(void *data, int64_t unit, int32_t worker) {
+  flow *f = data;
+  const bool own = mpsi_executor_is_own(f->mpm->context), receives = own && worker == 0;
+  (void)unit;
+  for (int32_t look = 0; !is_all_claimed(f); look++) {
+    int32_t entry[MOST_CLAIMED];
+    int32_t n = claim_next(f, entry);
+    if (n == 0) n = claim_start(f, entry);
+    for (int32_t k = 0; k < n; k++) work_on(f, entry[k], worker);
+    const bool waits = n == 0 && !atomic_load_explicit(&f->arrived, memory_order_relaxed);
+    if (waits && receives) receive(f);
+    if (n > 0 || (waits && receives))
+      look = -1;
+    else if (!mpsi_wait_a_little(look, own))
+      return;
+  }
+}
+
+/* What is ready at once. */
+static void fill(flow *f) {
+  const mpsi_grid *grid = &f->mpm->grid;
+  int32_t held = 0, gathers = 0;
+  for (int64_t k = 0; k < 2 * grid->cell_count + grid->node_count; k++)
+    atomic_store_explicit(&f->queue[k], EMPTY, memory_order_relaxed);
+  for (int32_t b = 0; b < f->cells; b++) {
+    const int32_t message = f->pass->arrive && grid->cells[b].ghost;
+    atomic_store_explicit(&f->scatter_waits[b], grid->cells[b].waits + message,
+                          memory_order_relaxed);
+    gathers += f->pass->gather && has_cells(f->mpm, f->pass, b);
+    atomic_store_explicit(&f->gather_waits[b], 1 << f->mpm->dim, memory_order_relaxed);
+  }
+  for (int32_t g = 0; f->pass->between && g < f->nodes; g++) held += grid->nodes[g].waits;
+  atomic_init(&f->held, held);
+  f->entries = held + (f->pass->scatter ? f->cells : f->nodes) + gathers;
+  for (int32_t k = 0; f->pass->scatter && k < f->cells; k++) {
+    const int32_t b = grid->coloured[k];
+    if (atomic_load_explicit(&f->scatter_waits[b], memory_order_relaxed) == 0) put(f, b);
+  }
+  atomic_init(&f->arrived, f->pass->arrive == NULL);
+  for (int32_t g = 0; !f->pass->scatter && g < f->nodes; g++) put(f, 2 * f->cells + g);
+  f->starts = atomic_load_explicit(&f->tail, memory_order_relaxed);
+  atomic_store_explicit(&f->head, f->starts, memory_order_relaxed);
+}
+
+bool mpsi_mpm_passes_alone(const mps_mpm *mpm) {
+  return mpm->grid.worker_count == 1 || mpm->p.count < SMALL_SET;
+}
+
+void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
+  mpsi_grid *grid = &mpm->grid;
+  if (mpsi_mpm_passes_alone(mpm)) {
+    run_wave(mpm, pass);
+    return;
+  }
+  _Atomic int32_t *room = grid->pass_room.item;
+  flow f = {.mpm = mpm,
+            .pass = pass,
+            .cells = (int32_t)grid->cell_count,
+            .nodes = (int32_t)grid->node_count,
+            .scatter_waits = room,
+            .gather_waits = room + grid->cell_count,
+            .queue = room + 2 * grid->cell_count};
+  const int64_t visits = mpsi_executor_is_own(mpm->context) ? 1 : VISITS;
+  fill(&f);
+  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+  if (atomic_load_explicit(&f.arrived, memory_order_relaxed)) return;
+  receive(&f); /* the caller's executor has done what needs no ghosts */
+  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+}
+
+bool mpsi_mpm_ensure_pass(mps_mpm *mpm) {
+  const int64_t entries = 4 * mpm->grid.cell_count + mpm->grid.node_count;
+  return mpsi_room_ensure(mpm->context, &mpm->grid.pass_room, entries, sizeof(_Atomic int32_t));
+}
+
+/* ---- blocks ---------------------------------------------------------------------------------- */
+
+/* The tile of the block of cells at corner q begins q blocks below the block of nodes, so that
+ * their parities, and the colour of the cells, follow from those of the nodes. */
+void mpsi_mpm_link_blocks(mps_mpm *mpm) {
+  mpsi_cell_block *cells = mpm->grid.cells;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    const int parity = parity_of(nodes);
+    int32_t last = -1;
+    int last_q = 0;
+    for (int colour = 0; colour < 1 << mpm->dim; colour++) {
+      const int q = colour ^ parity;
+      const int32_t b = nodes->from[q];
+      if (b < 0) continue;
+      cells[b].next[q] = -1;
+      if (last < 0)
+        cells[b].first |= (uint8_t)(1u << q);
+      else
+        cells[last].next[last_q] = b, cells[b].waits++;
+      last = b, last_q = q;
+    }
+  }
+}
+
+/* ---- cells by themselves --------------------------------------------------------------------- */
+
+typedef struct cell_loop {
+  mps_mpm *mpm;
+  mpsi_mpm_task task;
+  int64_t grain;
+} cell_loop;
+
+static void some_cells(void *data, int64_t unit, int32_t worker) {
+  const cell_loop *w = data;
+  const int64_t end = (unit + 1) * w->grain;
+  for (int64_t b = unit * w->grain; b < end && b < w->mpm->grid.cell_count; b++)
+    w->task(w->mpm, b, worker);
+}
+
+void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task) {
+  const int64_t most = mpm->p.count < SMALL_SET ? 1 : 8 * (int64_t)mpm->grid.worker_count;
+  const int64_t count = mpm->grid.cell_count, units = count < most ? count : most;
+  if (units == 0) return;
+  cell_loop w = {mpm, task, (count + units - 1) / units};
+  mpsi_parallel_for(mpm->context, units, some_cells, &w);
+}

@@ -1,0 +1,609 @@
+/* create.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+#include "mpm/particles/particles.h"
+
+#include "core/particles/particles_internal.h"
+#include "core/context/retain.h"
+
+#include <mps/experimental.h>
+
+#include <string.h>
+
+#define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
+#define FAR 1e9      /* m, m/s2, s: what has a sane size is within */
+#define LEAST_MEASURE 1e-9
+#define FINEST 0.5 /* spacings: cells that are smaller, or larger than COARSEST, are slips */
+#define COARSEST 100.0
+
+static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
+                                         .spline = 3,
+                                         .lower = {-INFINITY, -INFINITY, -INFINITY},
+                                         .upper = {INFINITY, INFINITY, INFINITY},
+                                         .measure = NAN,
+                                         .dt = NAN,
+                                         .courant = 0.5};
+
+mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_mpm_def, def, size, &mpm_defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static const char create[] = "mps_mpm_create";
+
+static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_MPM_SPACE ? 3 : 2; }
+
+/* Of the weights, m. */
+static double radius_of(const mps_mpm_def *d) { return (d->spline == 2 ? 1.5 : 2.0) * d->cell; }
+
+static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
+  if (d->geometry < MPS_MPM_PLANE_STRAIN || d->geometry > MPS_MPM_SPACE)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "geometry is %d, allowed are 0 (plane strain), 1 (axisymmetric) and 2 (space)",
+                     d->geometry);
+  if (d->spline != 2 && d->spline != 3)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "spline is %d, allowed are 2 and 3",
+                     d->spline);
+  if (d->volumetric < MPS_MPM_VOLUMETRIC_POINT || d->volumetric > MPS_MPM_VOLUMETRIC_NODES)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "volumetric is %d, allowed are 0 (point), 1 (cell) and 2 (nodes)",
+                     d->volumetric);
+  if (d->budget != 0 && d->budget != 1)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "budget is %d, allowed are 0 (no energies) and 1 (the energy budget)",
+                     d->budget);
+  if (d->walls != MPS_MPM_WALLS_MIRROR && d->walls != MPS_MPM_WALLS_FIT)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "walls is %d, allowed are 0 (mirror) and 1 (fit)", d->walls);
+  if (d->step_from != MPS_MPM_STEP_FROM_SPEED && d->step_from != MPS_MPM_STEP_FROM_WAVE)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "step_from is %d, allowed are 0 (speed) and 1 (wave)", d->step_from);
+  return MPS_OK;
+}
+
+static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
+  if (!(d->cell > 0.0 && d->cell <= FAR))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "cell is %g m, must be > 0 and at most %g", d->cell, FAR);
+  if (!isnan(d->dt) && !(d->dt >= MPSI_MPM_LEAST_DT && d->dt <= FAR))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "dt is %g s, must be at least %g s, or NaN for a step that follows the limit",
+                     d->dt, MPSI_MPM_LEAST_DT);
+  if (!(d->courant > 0.0 && d->courant <= 1.0))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
+                     d->courant);
+  if (!(d->local_damping >= 0.0 && d->local_damping < 1.0) ||
+      !(d->viscous_damping >= 0.0 && d->viscous_damping <= FAR))
+    return mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "local_damping is %g and viscous_damping %g 1/s, must be in [0, 1) and 0 to %g",
+        d->local_damping, d->viscous_damping, FAR);
+  for (int c = 0; c < dim_of(d); c++)
+    if (!(fabs(d->origin[c]) <= FAR) || !(fabs(d->gravity[c]) <= FAR))
+      return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "origin[%d] is %g m and gravity[%d] %g m/s2, must be within +-%g", c,
+                       d->origin[c], c, d->gravity[c], FAR);
+  return MPS_OK;
+}
+
+/* The degree of the caller's weights, which must be those of the grid. */
+static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
+  const int32_t kind = mps_kernel_get_kind(d->kernel);
+  if (!d->kernel) return MPS_OK;
+  if (kind != MPS_KERNEL_SPLINE2 && kind != MPS_KERNEL_SPLINE3)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "kernel is of kind %d, allowed are 1 and 2 (quadratic and cubic B-spline)",
+                     kind);
+  d->spline = kind == MPS_KERNEL_SPLINE2 ? 2 : 3;
+  const double wanted = radius_of(d), radius = mps_kernel_radius(d->kernel);
+  if (fabs(radius - wanted) <= ON_NODE * wanted) return MPS_OK;
+  return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                   "kernel has radius %g m, must be %g cells of %g m, %g m", radius,
+                   wanted / d->cell, d->cell, wanted);
+}
+
+/* The thickness, or the angle of the sector. */
+static mps_status read_measure(mps_context *context, mps_mpm_def *d) {
+  const bool ring = d->geometry == MPS_MPM_AXISYMMETRIC, space = d->geometry == MPS_MPM_SPACE;
+  const double whole = 8.0 * atan(1.0), most = ring ? whole * (1.0 + 1e-12) : FAR;
+  if (isnan(d->measure)) d->measure = ring ? whole : 1.0;
+  if (d->measure >= LEAST_MEASURE && d->measure <= most && !(space && d->measure != 1.0))
+    return MPS_OK;
+  return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                   "measure is %g, must be %s, or NaN for the default", d->measure,
+                   space  ? "1 in space"
+                   : ring ? "an angle of 1e-9 to 2 pi rad in axisymmetry"
+                          : "a thickness of 1e-9 to 1e9 m in plane strain");
+}
+
+/* A wall's node, or a far one where there is no wall. */
+static mps_status read_wall(mps_context *context, const mps_mpm_def *d, int c, bool upper,
+                            int64_t *node) {
+  const double x = upper ? d->upper[c] : d->lower[c];
+  const char *name = upper ? "upper" : "lower";
+  *node = upper ? MPSI_NO_WALL : -MPSI_NO_WALL;
+  if (x == (upper ? INFINITY : -INFINITY)) return MPS_OK;
+  const double X = (x - d->origin[c]) / d->cell, nearest = nearbyint(X);
+  if (!(fabs(X) < MPSI_MAX_CELLS))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "%s[%d] is %g m, must be within 2^30 cells of the origin, or %sinfinite", name,
+                     c, x, upper ? "+" : "-");
+  if (fabs(X - nearest) > ON_NODE)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "%s[%d] is %g m, must lie on a node: origin %g m plus a multiple of the cell "
+                     "%g m",
+                     name, c, x, d->origin[c], d->cell);
+  *node = (int64_t)nearest;
+  return MPS_OK;
+}
+
+static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low, int64_t *high) {
+  if (d->geometry == MPS_MPM_AXISYMMETRIC) {
+    if (d->lower[0] == -INFINITY) d->lower[0] = 0.0;
+    if (!(d->lower[0] >= 0.0))
+      return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "lower[0] is %g m, in axisymmetry the radius begins at 0 or more",
+                       d->lower[0]);
+  }
+  low[2] = high[2] = 0;
+  for (int c = 0; c < dim_of(d); c++) {
+    mps_status status = read_wall(context, d, c, false, &low[c]);
+    if (status == MPS_OK) status = read_wall(context, d, c, true, &high[c]);
+    if (status != MPS_OK) return status;
+    if (low[c] >= high[c])
+      return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "the domain in %c is [%g, %g] m, must be at least one cell", "xyz"[c],
+                       d -> lower[c], d -> upper[c]);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_cell(mps_context *context, const mps_mpm_def *d, mps_particles *set) {
+  const double spacing = mps_particles_spacing(set), ratio = d->cell / spacing;
+  if (ratio >= FINEST && ratio <= COARSEST) return MPS_OK;
+  return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                   "cell is %g m with particles %g m apart: must be %g to %g of their spacings, "
+                   "usually 2",
+                   d->cell, spacing, FINEST, COARSEST);
+}
+
+static mps_status check_set(mps_context *context, mps_particles *set) {
+  if (!set) return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "particles is NULL");
+  if (mpsi_particles_context(set) != context)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "the particle set was made from another context");
+  /* a rank may have none of a set in parts */
+  const bool parts = mpsi_particles_deal(set) && mpsi_particles_made(set) > 0;
+  const int64_t count = mps_particles_count(set);
+  if (count < (parts ? 0 : 1) || count > MPSI_MPM_MOST_PARTICLES)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "the set has %lld particles, allowed are 1 to %d", (long long)count,
+                     MPSI_MPM_MOST_PARTICLES);
+  if (!mpsi_particles_column(set, "density", 0))
+    return mpsi_fail(context, create, MPS_ERROR_FIELD,
+                     "the set has no field 'density': mps_particles_set adds it");
+  return MPS_OK;
+}
+
+/* ---- several ranks --------------------------------------------------------------------------- */
+
+static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
+
+/* Each rank has been given a part of the set, not all of it. */
+static bool in_parts(const mps_mpm *mpm) { return mpsi_particles_deal(mpm->particles) != NULL; }
+
+/* What has been found of the particles here becomes what all ranks have found of all. */
+static mps_status join_extremes(mps_mpm *mpm, mps_status status) {
+  double most[2] = {mpm->run.speed,
+                    isnan(mpm->contact.least_mass) ? -INFINITY : -mpm->contact.least_mass};
+  status = mpsi_domain_settle_max(mpm->def.domain, create, status, 2, most);
+  if (status != MPS_OK) return status;
+  mpm->run.speed = most[0];
+  mpm->contact.least_mass = most[1] == -INFINITY ? NAN : -most[1];
+  return status;
+}
+
+/* ---- fields ---------------------------------------------------------------------------------- */
+
+static mps_status add_fields(mps_mpm *mpm) {
+  static const char *const names[] = {"velocity", "velocity_gradient", "stress", "volume", "mass"};
+  mps_status status = MPS_OK;
+  for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
+    status = mpsi_as(mpm->context, create, mps_particles_add_field(mpm->particles, names[k], 0));
+  return status;
+}
+
+/* ---- what an error takes back ---------------------------------------------------------------- */
+
+/* Columns that mpsi_mpm_begin_particles writes: volume, mass, V/V0, F and the law's histories. */
+enum { OWN_COLUMNS = 12 };
+
+static double *written(const mps_mpm *mpm, int32_t number) {
+  const mpsi_columns *p = &mpm->p;
+  if (number == 0) return p->V;
+  if (number == 1) return p->m;
+  if (number == 2) return p->J;
+  return number < OWN_COLUMNS ? p->F[number - 3] : mpm->laws.law[0].history[number - OWN_COLUMNS];
+}
+
+static int32_t written_count(const mps_mpm *mpm) {
+  return OWN_COLUMNS + mps_material_history_count(mpm->laws.law[0].material);
+}
+
+static mps_status save_columns(mps_mpm *mpm, double **copy) {
+  const int32_t columns = written_count(mpm);
+  const int64_t count = mpm->p.count;
+  *copy = mpsi_alloc(mpm->context, columns * count, sizeof **copy);
+  if (!*copy)
+    return mpsi_fail_memory(mpm->context, create, (size_t)(columns * count) * sizeof **copy);
+  for (int32_t c = 0; c < columns; c++)
+    if (written(mpm, c)) memcpy(*copy + c * count, written(mpm, c), (size_t)count * sizeof **copy);
+  return MPS_OK;
+}
+
+static void put_columns_back(mps_mpm *mpm, const double *copy) {
+  const int64_t count = mpm->p.count;
+  for (int32_t c = 0; c < written_count(mpm); c++)
+    if (written(mpm, c)) memcpy(written(mpm, c), copy + c * count, (size_t)count * sizeof *copy);
+}
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+static mps_status make_workers(mps_mpm *mpm) {
+  mpm->grid.worker_count = mps_context_threads(mpm->context);
+  mpm->grid.workers = mpsi_alloc(mpm->context, mpm->grid.worker_count, sizeof *mpm->grid.workers);
+  const size_t bytes = mpsi_worker_bytes(mpm), tile = (size_t)mpm->grid.tile_nodes;
+  for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++) {
+    mpsi_worker *w = &mpm->grid.workers[k];
+    char *memory = w->memory = mpsi_alloc(mpm->context, 1, bytes);
+    if (!memory) return mpsi_fail_memory(mpm->context, create, bytes);
+    w->tile = (mpsi_node *)memory;
+    w->force = w->tile + tile;
+    w->inside = (uint32_t *)(w->force + tile);
+    w->state = (uint8_t *)(w->inside + tile); /* and a little more: rows are read as four */
+  }
+  return mpm->grid.workers ? MPS_OK
+                           : mpsi_fail_memory(mpm->context, create, sizeof *mpm->grid.workers);
+}
+
+/* The greatest speed of the first state; in the set's own order. */
+static mps_status find_speed(mps_mpm *mpm) {
+  const mpsi_columns *p = &mpm->p;
+  double moduli[MPSI_CHUNK];
+  for (int64_t begin = 0; begin < p->count; begin += MPSI_CHUNK) {
+    const int64_t end = begin + MPSI_CHUNK < p->count ? begin + MPSI_CHUNK : p->count;
+    mpsi_mpm_find_moduli(mpm, begin, end, moduli);
+    for (int64_t k = begin; k < end; k++) {
+      double square = 0.0;
+      for (int c = 0; c < mpm->dim && mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED; c++)
+        square += p->v[c][k] * p->v[c][k];
+      const double speed = sqrt(moduli[k - begin] * p->V[k] / p->m[k]) + sqrt(square);
+      if (!(speed > 0.0 && speed <= 1e300))
+        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                         "particle %lld has a wave velocity plus velocity of %g m/s: must be > 0 "
+                         "and finite; check modulus, density and velocity",
+                         (long long)mpsi_particles_integers(mpm->particles, "id")[k], speed);
+      mpm->run.speed = fmax(mpm->run.speed, speed);
+    }
+  }
+  return MPS_OK;
+}
+
+/* The first step's size against what the first state allows. */
+static mps_status check_step(const mps_mpm *mpm) {
+  const double dt = mpm->def.dt, limit = mps_mpm_limit(mpm);
+  if (isnan(dt) || dt <= limit) return MPS_OK;
+  return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                   "dt is %g s, above the Courant limit h/(c + v) of the first state, %g s: choose "
+                   "at most half of that, or NaN for a step that follows the limit",
+                   dt, limit);
+}
+
+static mps_status make_memory(mps_mpm *mpm) {
+  if (!mpsi_mpm_make_room(mpm, mpm->p.count))
+    return mpsi_fail_memory(mpm->context, create, (size_t)mpm->p.count * sizeof *mpm->grid.radix);
+  return make_workers(mpm);
+}
+
+/* The state in which the particles begin, and their order. */
+static mps_status begin(mps_mpm *mpm) {
+  mpsi_mpm_begin_particles(mpm);
+  mps_status status = find_speed(mpm);
+  if (status == MPS_OK) status = check_step(mpm);
+  if (status == MPS_OK) status = make_memory(mpm);
+  if (status != MPS_OK) return status;
+  return is_shared(&mpm->def) ? mpsi_mpm_sort_cells(mpm, create) : mpsi_mpm_sort(mpm, create);
+}
+
+/* All that can fail comes before the sort, whose last act is to order the set. On several ranks the
+ * caller takes back what an error leaves. */
+static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
+                        mpsi_storage **former) {
+  const int32_t fields = mps_particles_field_count(mpm->particles);
+  const bool shared = is_shared(&mpm->def);
+  double *copy = NULL;
+  if (status == MPS_OK) status = add_fields(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
+  if (status == MPS_OK) {
+    mpsi_mpm_bind(mpm);
+    status = mpsi_mpm_check_start(mpm, create);
+    if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
+    if (status == MPS_OK && !shared) status = save_columns(mpm, &copy);
+    if (status == MPS_OK) status = begin(mpm);
+    if (status != MPS_OK && copy) put_columns_back(mpm, copy);
+    mpsi_free(mpm->context, copy);
+  }
+  if (shared) status = mpsi_mpm_share_take(mpm, create, status, former);
+  if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->particles, fields);
+  mpm->boundaries.outdated = true; /* listed with the first step */
+  return status;
+}
+
+/* Of a set in parts: particles go to their ranks with the caller's fields alone, and those of the
+ * solver are added there. Every rank comes to each function that is collective. */
+static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status status,
+                              mpsi_backup *backup) {
+  status = mpsi_mpm_share_deal(mpm, create, status);
+  if (status != MPS_OK) return status;
+  status = mpsi_particles_back_up(mpm->particles, create, backup);
+  if (status == MPS_OK) status = add_fields(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
+  if (status == MPS_OK) {
+    mpsi_mpm_bind(mpm);
+    status = mpsi_mpm_check_start(mpm, create);
+    if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
+  }
+  if (status == MPS_OK) {
+    mpsi_mpm_begin_particles(mpm);
+    status = find_speed(mpm);
+  }
+  status = join_extremes(mpm, status);
+  if (status == MPS_OK) status = check_step(mpm);
+  if (status == MPS_OK) status = make_memory(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_sort_cells(mpm, create);
+  status = mpsi_mpm_share_take_part(mpm, create, status);
+  mpm->boundaries.outdated = true;
+  return status;
+}
+
+/* Checks the definition for the set and fills in what it leaves open: kernel, measure, domain. */
+static mps_status complete(mps_context *context, mps_particles *particles, mps_mpm_def *def,
+                           int64_t *low, int64_t *high) {
+  mps_status status = check_set(context, particles);
+  if (status == MPS_OK) status = check_choices(context, def);
+  if (status == MPS_OK && mps_particles_dim(particles) != dim_of(def))
+    status = mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "geometry is %d, and the set has %d dimensions: it needs %s", def->geometry,
+                       mps_particles_dim(particles),
+                       dim_of(def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
+  if (status == MPS_OK) status = check_numbers(context, def);
+  if (status == MPS_OK) status = read_kernel(context, def);
+  if (status == MPS_OK) status = read_measure(context, def);
+  if (status == MPS_OK) status = check_cell(context, def, particles);
+  if (status == MPS_OK) status = read_domain(context, def, low, high);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, create, def->domain);
+  return status == MPS_OK ? mpsi_particles_check_hold(particles, create, MPSI_USE_MOVE) : status;
+}
+
+static void hold(mps_mpm *mpm, const char *function, bool shared) {
+  mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",
+                              .self = mpm,
+                              .kind = MPSI_USE_MOVE,
+                              .guard = &mpm->run.guard,
+                              .commit = mpsi_mpm_note_edit,
+                              .compares = mpsi_mpm_compares,
+                              .insert = mpsi_mpm_insert,
+                              .remove = mpsi_mpm_remove,
+                              .leaving = mpsi_mpm_thin_out,
+                              .renew = mpsi_mpm_renew};
+  if (shared) {
+    mpm->holder.runs = mpsi_mpm_share_runs;
+    mpm->holder.agree = mpsi_mpm_share_agree_added;
+    mpm->holder.find = mpsi_mpm_share_find;
+  }
+  (void)mpsi_particles_hold(mpm->particles, function, &mpm->holder);
+}
+
+/* What follows from the definition alone. */
+static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
+                     const int64_t *high) {
+  mpm->def = *def;
+  mpm->def.domain = mpsi_domain_retain(def->domain);
+  mpm->dim = dim_of(def);
+  mpm->grid.block_nodes = MPSI_SIDE * MPSI_SIDE * (mpm->dim == 3 ? MPSI_SIDE : 1);
+  mpm->grid.tile_nodes = MPSI_TILE_SIDE * MPSI_TILE_SIDE * (mpm->dim == 3 ? MPSI_TILE_SIDE : 1);
+  mpm->energy.counts = def->budget != 0;
+  mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
+  mpm->p.count = mps_particles_count(mpm->particles);
+  mpm->grid.inverse = 1.0 / def->cell;
+  memcpy(mpm->grid.low, low, sizeof mpm->grid.low);
+  memcpy(mpm->grid.high, high, sizeof mpm->grid.high);
+}
+
+mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
+                          const mps_mpm_def *user_def, mps_mpm **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!material) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "material is NULL");
+  mps_mpm_def def = mpm_defaults;
+  int64_t low[3], high[3];
+  mps_status status = MPS_OK;
+  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_mpm_def, user_def, &def);
+  if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
+  if (status != MPS_OK) return status;
+  status = complete(context, particles, &def, low, high);
+  mpsi_backup backup = {0};
+  mpsi_storage *former = NULL;
+  mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
+  if (status == MPS_OK && !mpm) status = mpsi_fail_memory(context, __func__, sizeof *mpm);
+  if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
+    status = mpsi_particles_back_up(particles, __func__, &backup);
+  status = mpsi_domain_settle(def.domain, __func__, status);
+  if (status != MPS_OK) {
+    if (backup.memory) mpsi_backup_drop(particles, &backup);
+    mpsi_free(context, mpm);
+    return status;
+  }
+  mpm->reader.mpm = mpm;
+  mpm->context = mpsi_context_retain(context);
+  mpm->particles = particles;
+  hold(mpm, __func__, is_shared(&def)); /* checked above */
+  describe(mpm, &def, low, high);
+  if (!mpsi_mpm_begin_sides(mpm))
+    status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_hold_sums));
+  if (def.kernel)
+    mpm->weights = mpsi_kernel_retain(def.kernel);
+  else if (status == MPS_OK)
+    status = mpsi_as(context, __func__,
+                     mps_kernel_create(context,
+                                       def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
+                                       radius_of(&def), &mpm->weights));
+  status = in_parts(mpm) ? build_parts(mpm, material, status, &backup)
+                         : build(mpm, material, status, &former);
+  if (status != MPS_OK) {
+    mpsi_particles_take_back(particles, &former);
+    if (is_shared(&def)) mpsi_particles_go_back(particles, &backup);
+    mps_mpm_destroy(&mpm);
+    return status;
+  }
+  mpsi_backup_drop(particles, &backup);
+  mpsi_storage_drop(particles, &former);
+  *out = mpm;
+  return MPS_OK;
+}
+
+static void free_rooms(mps_mpm *mpm) {
+  for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++)
+    mpsi_free(mpm->context, mpm->grid.workers[k].memory);
+  void *parts[] = {mpm->grid.workers,
+                   mpm->grid.cells_room.item,
+                   mpm->grid.coloured_room.item,
+                   mpm->grid.digits_room.item,
+                   mpm->grid.pass_room.item,
+                   mpm->grid.nodes_room.item,
+                   mpm->grid.node_room.item,
+                   mpm->grid.side_room.item,
+                   mpm->grid.fit_room.item,
+                   mpm->grid.fitted_room.item,
+                   mpm->contact.cell_pair_room.item,
+                   mpm->contact.node_pair_room.item,
+                   mpm->contact.node_room.item,
+                   mpm->contact.normal_room.item,
+                   mpm->contact.inside_room.item,
+                   mpm->contact.reached_room.item,
+                   mpm->contact.sight_room.item,
+                   mpm->contact.across_room.item,
+                   mpm->contact.beside_room.item,
+                   mpm->contact.spring_room.item,
+                   mpm->contact.load_room.item,
+                   mpm->grid.across_room.item,
+                   mpm->mirrors.mirror_room.item,
+                   mpm->mirrors.mass_room.item,
+                   mpm->boundaries.held_room.item,
+                   mpm->boundaries.dash_room.item,
+                   mpm->boundaries.old_held_room.item,
+                   mpm->boundaries.old_dash_room.item,
+                   mpm->boundaries.kept_room.item,
+                   mpm->energy.cells_room.item,
+                   mpm->energy.nodes_room.item,
+                   mpm->settling.nodes_room.item,
+                   mpm->rooms.force.item,
+                   mpm->rooms.radix.item,
+                   mpm->rooms.flags.item,
+                   mpm->rooms.stencil.item,
+                   mpm->rooms.strain.item,
+                   mpm->rooms.gone.item,
+                   mpm->undo.list_room.item,
+                   mpm->undo.room.item,
+                   mpm->undo.dash_room.item,
+                   mpm->undo.sums_room.item};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+}
+
+void mps_mpm_destroy(mps_mpm **pointer) {
+  if (!pointer || !*pointer) return;
+  mps_mpm *mpm = *pointer;
+  mps_context *context = mpm->context;
+  if (mpsi_mpm_between_steps(mpm, __func__) != MPS_OK) return;
+  *pointer = NULL;
+  mpsi_mpm_end_contacts(mpm);
+  free_rooms(mpm);
+  mpsi_mpm_free_impulses(mpm);
+  mpsi_mpm_drop_loads(mpm);
+  mpsi_mpm_drop_boundaries(mpm);
+  for (int32_t k = 0; k < mpm->laws.count; k++) {
+    mps_material_destroy(&mpm->laws.law[k].material);
+    mpsi_free(context, mpm->laws.law[k].history);
+  }
+  mps_kernel_destroy(&mpm->weights);
+  mpsi_mpm_share_free(mpm);
+  mps_domain_destroy(&mpm->def.domain);
+  mpsi_state_forget(&mpm->identity);
+  mpsi_particles_release(mpm->particles, &mpm->holder);
+  mpsi_free(context, mpm);
+  mpsi_context_release(context);
+}
+
+mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  return mpsi_def_write(mpm->context, "mps_mpm_get_def", out, size, &mpm->def, sizeof mpm->def);
+}
+
+mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->particles : NULL; }
+
+mps_kernel *mps_mpm_kernel(const mps_mpm *mpm) { return mpm ? mpm->weights : NULL; }
+
+mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : NULL; }
+
+/* ---- for comparison -------------------------------------------------------------------------- */
+
+/* The variant is chosen before the first step, the same on all ranks. */
+static mps_status check_before_steps(mps_mpm *mpm, const char *function, const char *name,
+                                     double value) {
+  mps_status status = mpsi_mpm_between_steps(mpm, function);
+  if (status != MPS_OK) return status;
+  if (mpm->run.steps > 0)
+    status = mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                       "the solver has taken %lld steps: the variant is chosen before the first",
+                       (long long)mpm->run.steps);
+  return mpsi_domain_settle_same(mpm->def.domain, function, status, name, value);
+}
+
+mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_before_steps(mpm, __func__, "transfer", transfer);
+  if (status != MPS_OK) return status;
+  if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
+  mpm->by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
+  return MPS_OK;
+}
+
+mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_before_steps(mpm, __func__, "strain", strain);
+  if (status != MPS_OK) return status;
+  if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "strain is %d, allowed are 0 (derivative) and 1 (fit)", strain);
+  mpm->strain_by_fit = strain == MPS_EXPERIMENTAL_STRAIN_FIT;
+  return MPS_OK;
+}
+
+mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_before_steps(mpm, __func__, "flip", flip);
+  if (status != MPS_OK) return status;
+  if (!(flip >= 0.0 && flip <= 1.0))
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %g, must be in [0, 1]",
+                     flip);
+  mpm->standard = true;
+  mpm->flip = flip;
+  const mps_status widened =
+      mpsi_domain_settle(mpm->def.domain, __func__, mpsi_mpm_widen_sides(mpm, __func__));
+  if (widened != MPS_OK) mpm->standard = false, mpm->flip = 0.0;
+  return widened;
+}

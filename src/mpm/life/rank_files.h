@@ -1,0 +1,16 @@
+/* rank_files.h - checkpoints of a solver on several ranks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_FILES_H
+#define MPSI_MPM_FILES_H
+
+#include "io/checkpoint.h"
+#include "mpm/base/solver.h"
+
+/* The file of one rank, from all of them; of a whole file what is this rank's (mpsi_state_of).
+ * Collective. */
+mps_status mpsi_mpm_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
+                               const char *path, const mps_checkpoint *info);
+mps_status mpsi_mpm_share_take_values(void *solver, const char *function, mps_status status,
+                                      mps_snapshot *values);
+
+#endif

@@ -1,0 +1,481 @@
+/* restart.c - the state of the WLS-MPM solver (core/state.h): snapshots, rollback, checkpoints.
+ * Sums over particles go block by block in the set's order: a run that goes on bit for bit needs
+ * both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
+#include "restart.h"
+
+#include "rank_files.h"
+#include "mpm/particles/particles.h"
+
+#include <stdio.h>
+#include <string.h>
+
+_Static_assert(sizeof(mpsi_dash) == MPSI_DASH * sizeof(double), "kept as numbers");
+
+/* ---- tables: blocks, their nodes, dashpots --------------------------------------------------- */
+
+/* As mpsi_room_ensure, keeping the contents. */
+static bool keep_room(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
+  if (count <= room->capacity) return true;
+  if (!mpsi_grow(context, &room->item, room->capacity, count, size)) return false;
+  room->capacity = count;
+  return true;
+}
+
+/* On several ranks those of this one: ghosts follow. */
+static int64_t count_blocks(const void *solver) {
+  const mpsi_grid *grid = &((const mps_mpm *)solver)->grid;
+  int64_t count = 0;
+  for (int64_t b = 0; b < grid->cell_count; b++) count += !grid->cells[b].ghost;
+  return count;
+}
+
+static void get_blocks(const void *solver, void *values) {
+  const mps_mpm *mpm = solver;
+  mpsi_block *block = values;
+  for (int64_t b = 0, k = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    if (cells->ghost) continue;
+    block[k][0] = cells->begin;
+    for (int c = 0; c < 3; c++) {
+      block[k][MPSI_BLOCK_AT + c] = cells->at[c];
+      block[k][MPSI_BLOCK_LOW + c] = cells->low[c];
+      block[k][MPSI_BLOCK_HIGH + c] = cells->high[c];
+    }
+    k++;
+  }
+}
+
+static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpsi_grid *grid = &mpm->grid;
+  (void)values;
+  const int64_t entries = 4 * rows + grid->nodes_room.capacity; /* see mpsi_mpm_ensure_pass */
+  const bool good = keep_room(mpm->context, &grid->cells_room, rows, sizeof *grid->cells) &&
+                    keep_room(mpm->context, &grid->coloured_room, rows, sizeof *grid->coloured) &&
+                    keep_room(mpm->context, &grid->pass_room, entries, sizeof(_Atomic int32_t));
+  grid->cells = grid->cells_room.item;
+  grid->coloured = grid->coloured_room.item;
+  return good;
+}
+
+/* The room is there: but where a file lies about it, the solver takes no step. */
+static void set_blocks(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpm->run.lost = false;
+  mpm->run.broken =
+      mpsi_mpm_place_blocks(mpm, "restore", rows, (const mpsi_block *)values) != MPS_OK;
+}
+
+/* How much room the lists that follow from the blocks take: blocks of nodes, held ones, dashpots,
+ * mirrors. */
+enum { SIZES = 4 };
+
+static int64_t one_row(const void *solver) {
+  (void)solver;
+  return 1;
+}
+
+static void get_sizes(const void *solver, void *values) {
+  const mps_mpm *mpm = solver;
+  int64_t *size = values;
+  size[0] = mpm->grid.node_count;
+  size[1] = mpm->boundaries.held_count;
+  size[2] = mpm->boundaries.dash_count;
+  size[3] = mpm->mirrors.count;
+}
+
+static bool reserve_sizes(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpsi_grid *grid = &mpm->grid;
+  mpsi_boundaries *b = &mpm->boundaries;
+  const int64_t *size = values;
+  if (rows != 1) return false;
+  const bool good =
+      keep_room(mpm->context, &grid->nodes_room, size[0], sizeof *grid->nodes) &&
+      keep_room(mpm->context, &grid->node_room, size[0] * grid->block_nodes, sizeof *grid->node) &&
+      keep_room(mpm->context, &b->held_room, size[1], sizeof *b->held) &&
+      keep_room(mpm->context, &b->old_held_room, size[1], sizeof *b->held) &&
+      keep_room(mpm->context, &b->dash_room, size[2], sizeof *b->dash) &&
+      keep_room(mpm->context, &b->old_dash_room, size[2], sizeof *b->dash) &&
+      keep_room(mpm->context, &mpm->mirrors.mirror_room, size[3], sizeof *mpm->mirrors.mirror) &&
+      keep_room(mpm->context, &mpm->mirrors.mass_room,
+                size[3] * mpsi_mirror_plane(grid->tile_nodes), sizeof *mpm->mirrors.mass);
+  grid->nodes = grid->nodes_room.item;
+  grid->node = grid->node_room.item;
+  b->held = b->held_room.item;
+  b->dash = b->dash_room.item;
+  mpm->mirrors.mirror = mpm->mirrors.mirror_room.item;
+  mpm->mirrors.mass = mpm->mirrors.mass_room.item;
+  return good;
+}
+
+static void set_sizes(void *solver, int64_t rows, const void *values) {
+  (void)solver, (void)rows, (void)values;
+}
+
+/* Those of which this rank knows all. */
+static int64_t count_dashes(const void *solver) {
+  const mps_mpm *mpm = solver;
+  int64_t count = 0;
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++)
+    if (mpm->boundaries.held[t].dash >= 0 && mpm->boundaries.held[t].whole)
+      count += mpm->grid.block_nodes / MPSI_SIDE;
+  return count;
+}
+
+static void get_dashes(const void *solver, void *values) {
+  const mps_mpm *mpm = solver;
+  const mpsi_boundaries *b = &mpm->boundaries;
+  const int64_t plane = mpm->grid.block_nodes / MPSI_SIDE;
+  mpsi_dash *to = values;
+  for (int64_t t = 0; t < b->held_count; t++) {
+    if (b->held[t].dash < 0 || !b->held[t].whole) continue;
+    memcpy(to, b->dash + b->held[t].dash, (size_t)plane * sizeof *to);
+    to += plane;
+  }
+}
+
+/* On several ranks they wait for the ghosts: mpsi_mpm_regain_share. */
+static bool reserve_dashes(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  (void)values;
+  return !mpm->share ||
+         mpsi_room_ensure(mpm->context, &mpm->boundaries.kept_room, rows, sizeof(mpsi_dash));
+}
+
+static void set_dashes(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  if (mpm->share)
+    mpsi_mpm_keep_dashes(mpm, rows, values);
+  else if (!mpm->run.broken)
+    mpm->run.broken = mpsi_mpm_put_dashes(mpm, "restore", rows, values) != MPS_OK;
+}
+
+/* ---- impulses of the last step, for contact ---------------------------------------------------
+ */
+
+static int64_t count_kept(const void *solver) {
+  return ((const mps_mpm *)solver)->contact.impulses.kept_count;
+}
+
+static void get_kept_owners(const void *solver, void *values) {
+  const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
+  int64_t *row = values;
+  for (int64_t k = 0; k < all->kept_count; k++)
+    row[2 * k] = all->kept[k].id, row[2 * k + 1] = all->kept[k].body;
+}
+
+static bool reserve_kept(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  (void)values;
+  const bool good = keep_room(mpm->context, &all->kept_room, rows, sizeof *all->kept);
+  all->kept = all->kept_room.item;
+  return good;
+}
+
+static void set_kept_owners(void *solver, int64_t rows, const void *values) {
+  mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
+  const int64_t *row = values;
+  all->kept_count = rows;
+  for (int64_t k = 0; k < rows; k++)
+    all->kept[k].id = row[2 * k], all->kept[k].body = row[2 * k + 1];
+}
+
+static void get_kept(const void *solver, void *values) {
+  const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
+  double *row = values;
+  for (int64_t k = 0; k < all->kept_count; k++)
+    memcpy(row + 3 * k, all->kept[k].by, sizeof all->kept[k].by);
+}
+
+static void set_kept(void *solver, int64_t rows, const void *values) {
+  mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
+  const double *row = values;
+  for (int64_t k = 0; k < rows; k++) memcpy(all->kept[k].by, row + 3 * k, sizeof all->kept[k].by);
+}
+
+/* ---- the list ------------------------------------------------------------------------------- */
+
+static const mpsi_state_table blocks_table = {MPSI_STATE_I64, MPSI_BLOCK,     count_blocks,
+                                              get_blocks,     reserve_blocks, set_blocks};
+static const mpsi_state_table sizes_table = {MPSI_STATE_I64, SIZES,         one_row,
+                                             get_sizes,      reserve_sizes, set_sizes};
+static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH,      count_dashes,
+                                              get_dashes,     reserve_dashes, set_dashes};
+
+static const mpsi_state_table kept_owners_table = {
+    MPSI_STATE_I64, 2, count_kept, get_kept_owners, reserve_kept, set_kept_owners};
+static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_kept,
+                                            get_kept,       NULL, set_kept};
+
+static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
+  int64_t loads = 0;
+  for (int32_t k = 0; k < mpm->loads.count; k++) loads += mpm->loads.traction[k].count > 0;
+  mpsi_state_agree_integer(s, "geometry", mpm->def.geometry);
+  mpsi_state_agree_integer(s, "scheme", mpm->standard);
+  mpsi_state_agree_integer(s, "walls", mpm->def.walls);
+  mpsi_state_agree_integer(s, "spline", mpm->def.spline);
+  mpsi_state_agree_number(s, "cell", mpm->def.cell);
+  for (int c = 0; c < mpm->dim; c++) {
+    mpsi_state_enter(s, "axis%d", c);
+    mpsi_state_agree_number(s, "origin", mpm->def.origin[c]);
+    mpsi_state_agree_integer(s, "lowest_node", mpm->grid.low[c]);
+    mpsi_state_agree_integer(s, "highest_node", mpm->grid.high[c]);
+    mpsi_state_leave(s);
+  }
+  mpsi_state_agree_integer(s, "loads", loads);
+  mpsi_state_agree_number(s, "measure", mpm->def.measure);
+  mpsi_state_agree_integer(s, "bodies", mpm->contact.bodies);
+}
+
+/* A call of mps_mpm_settle that was cut. */
+static void list_settling(mpsi_state *s, mpsi_settling *settling) {
+  mpsi_state_enter(s, "settling");
+  mpsi_state_bool(s, "cut", &settling->cut);
+  mpsi_state_bool(s, "from_rest", &settling->from_rest);
+  mpsi_state_f64(s, "before", &settling->before, 1);
+  mpsi_state_i64(s, "steps", &settling->steps, 1);
+  mpsi_state_i64(s, "peaks", &settling->peaks, 1);
+  mpsi_state_leave(s);
+}
+
+static void list_state(mpsi_state *s, void *solver) {
+  mps_mpm *mpm = solver;
+  list_setting(s, mpm);
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    mpsi_hold *hold = &mpm->boundaries.hold[k];
+    mpsi_state_enter(s, "boundary%d", k);
+    mpsi_state_agree_integer(s, "kind", hold->kind);
+    /* a side that has been set free still shows its last force and what it has done */
+    if (hold->kind != MPSI_HOLD_NONE || (k < MPSI_SIDES && hold->sums)) {
+      mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_HOLD_MASS * MPSI_EXACT_LIMBS);
+      mpsi_state_i64(s, "all", hold->sums->all[0].limb, (MPSI_HOLD_MASS + 1) * MPSI_EXACT_LIMBS);
+      mpsi_state_i64(s, "count", &hold->count, 1);
+      mpsi_state_i64(s, "removed", &hold->removed, 1);
+      mpsi_state_bool(s, "finds", &hold->finds);
+      mpsi_state_f64(s, "found", &hold->found, 1);
+    }
+    mpsi_state_leave(s);
+  }
+  mpsi_state_agree_integer(s, "materials", mpm->laws.count);
+  for (int32_t k = 0; k < mpm->laws.count; k++) {
+    mpsi_state_enter(s, "material%d", k);
+    mpsi_state_agree_text(s, "name", mps_material_name(mpm->laws.law[k].material));
+    mpsi_state_leave(s);
+  }
+  mpsi_state_f64(s, "time", &mpm->run.time, 1);
+  mpsi_state_f64(s, "boundaries_dt", &mpm->boundaries.dt, 1);
+  mpsi_state_i64(s, "boundaries_work", mpm->boundaries.work.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "steps", &mpm->run.steps, 1);
+  mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
+  mpsi_state_bool(s, "stale", &mpm->run.stale);
+  mpsi_state_bool(s, "moments", &mpm->run.moments);
+  list_settling(s, &mpm->settling);
+  mpsi_state_i64(s, "energies", mpm->energy.sum[0].limb, MPSI_ENERGY_SUMS * MPSI_EXACT_LIMBS);
+  mpsi_state_f64(s, "work_bodies", &mpm->energy.work_bodies, 1);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_state_enter(s, "body%d", b);
+    mpsi_body_list_state(s, mpm->contact.body[b]);
+    mpsi_contact_list_state(s, mpm->contact.handle[b]);
+    mpsi_state_leave(s);
+  }
+  mpsi_state_f64(s, "impulses_dt", &mpm->contact.impulses.kept_dt, 1);
+  mpsi_state_i64(s, "sweeps", &mpm->contact.impulses.sweeps, 1);
+  mpsi_state_f64(s, "impulses_left", &mpm->contact.impulses.left, 1);
+  mpsi_state_add_table(s, "impulses_of", &kept_owners_table);
+  mpsi_state_add_table(s, "impulses", &kept_table);
+  mpsi_state_add_table(s, "sizes", &sizes_table);
+  mpsi_state_add_table(s, "blocks", &blocks_table);
+  mpsi_state_add_table(s, "dashpots", &dashes_table);
+}
+
+/* ---- is a file whole? ------------------------------------------------------------------------ */
+
+#define ROUNDED 1e-6 /* cells */
+
+/* The part of the tile in use: within the tile, and wide enough for a stencil. */
+static bool within_tile(const mps_mpm *mpm, const int64_t *b) {
+  for (int c = 0; c < 3; c++) {
+    const int64_t low = b[MPSI_BLOCK_LOW + c], high = b[MPSI_BLOCK_HIGH + c];
+    const int64_t reach = mpsi_reach(mpm, c);
+    if (c >= mpm->dim ? low != 0 || high != 1
+                      : low < 0 || high > MPSI_SIDE + 2 + reach || high - low <= reach)
+      return false;
+  }
+  return true;
+}
+
+static bool orderly(const mps_mpm *mpm, int64_t rows, const mpsi_block *block, int64_t particles) {
+  if (particles == 0) return rows == 0;
+  if (rows < 1 || rows > particles || block[0][0] != 0) return false;
+  for (int64_t k = 0; k < rows; k++) {
+    const int64_t *b = block[k], *next = block[k + 1 < rows ? k + 1 : k];
+    for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
+      if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL || (c >= mpm->dim && b[1 + c] != 0))
+        return false;
+    if (!within_tile(mpm, b)) return false;
+    if (next == b) break;
+    int c = 3;
+    while (c > 1 && b[c] == next[c]) c--;
+    if (b[0] >= next[0] || b[c] >= next[c]) return false;
+  }
+  return block[rows - 1][0] < particles;
+}
+
+/* Where the particle at X[3], in m, of the file is: 1 in its tile, -1 in no place that a run leads
+ * to unless it sorts next, and 0 in between: outside by what the steps' own arithmetic, which has
+ * fused products, may round away. */
+static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const double *x,
+                    int64_t stride) {
+  const double first = mpm->def.spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
+  int place = 1;
+  for (int c = 0; c < mpm->dim; c++) {
+    const double X = mpsi_grid_coordinate(mpm, c, x[c * stride]);
+    const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
+    if (!(fabs(X) < MPSI_MAX_CELLS && X >= low - ROUNDED && X <= high + ROUNDED)) return -1;
+    if (stale) continue;
+    const double local = X - (double)(block[MPSI_BLOCK_AT + c] * MPSI_SIDE) - first;
+    const double begin = (double)block[MPSI_BLOCK_LOW + c];
+    const double end = (double)(block[MPSI_BLOCK_HIGH + c] - mpsi_reach(mpm, c));
+    if (local < begin - ROUNDED || local > end + ROUNDED) return -1;
+    if (!(local >= begin && local < end)) place = 0;
+  }
+  return place;
+}
+
+/* A step relies on it that the blocks hold their particles, and these have laws that there are: a
+ * stencil outside its tile is memory outside. */
+static bool holds_particles(const mps_mpm *mpm, mps_snapshot *from) {
+  const mpsi_value *blocks = mpsi_values_find(&from->state, "blocks");
+  const mpsi_value *x = mpsi_values_find(&from->fields, "position");
+  const mpsi_value *law = mpsi_values_find(&from->fields, "material");
+  int64_t *stale = mpsi_values_find(&from->state, "stale")->data;
+  const mpsi_block *block = blocks->data;
+  const int64_t count = from->particles;
+  if (!x || x->type != MPSI_STATE_F64 || x->columns != mpm->dim) return false;
+  if (mpm->p.law && !(law && law->type == MPSI_STATE_I64)) return false;
+  if (!orderly(mpm, blocks->rows, block, count)) return false;
+  for (int64_t k = 0, b = 0; k < count; k++) {
+    const int64_t number = mpm->p.law ? ((const int64_t *)law->data)[k] : 0;
+    if (number < 0 || number >= mpm->laws.count) return false;
+    if (b + 1 < blocks->rows && k == block[b + 1][0]) b++;
+    const int place = place_of(mpm, block[b], *stale != 0, (const double *)x->data + k, count);
+    if (place < 0) return false;
+    if (place == 0) *stale = 1; /* it needs no block then */
+  }
+  return true;
+}
+
+static bool holds_impulses(const mps_mpm *mpm, const mps_snapshot *from) {
+  const mpsi_value *owners = mpsi_values_find(&from->state, "impulses_of");
+  const mpsi_value *impulses = mpsi_values_find(&from->state, "impulses");
+  const double dt = *(const double *)mpsi_values_find(&from->state, "impulses_dt")->data;
+  if (owners->rows != impulses->rows || owners->rows > MPSI_MPM_MOST_PARTICLES) return false;
+  if (!(dt >= 0.0) || !isfinite(dt)) return false;
+  for (int64_t k = 0; k < owners->rows; k++) {
+    const int64_t body = ((const int64_t *)owners->data)[2 * k + 1];
+    if (body < 0 || body >= mpm->contact.bodies) return false;
+    for (int c = 0; c < 3; c++)
+      if (!isfinite(((const double *)impulses->data)[3 * k + c])) return false;
+  }
+  return true;
+}
+
+static bool fits(void *solver, mps_snapshot *from, const char **what) {
+  const mps_mpm *mpm = solver;
+  const mpsi_value *sizes = mpsi_values_find(&from->state, "sizes");
+  const double speed = *(const double *)mpsi_values_find(&from->state, "speed")->data;
+  *what = "its blocks do not hold its particles";
+  if (!(speed > 0.0 || (speed == 0.0 && from->particles == 0)) || !isfinite(speed) ||
+      sizes->rows != 1 || from->particles > MPSI_MPM_MOST_PARTICLES)
+    return false;
+  for (int k = 0; k < SIZES; k++) {
+    const int64_t size = ((const int64_t *)sizes->data)[k];
+    if (size < 0 || size > MPSI_NO_WALL) return false;
+  }
+  if (!holds_particles(mpm, from)) return false;
+  *what = "its impulses of contact are not one of each particle and body";
+  return holds_impulses(mpm, from);
+}
+
+/* ---- public ---------------------------------------------------------------------------------- */
+
+static void bind(void *solver) { mpsi_mpm_bind(solver); }
+
+/* Snapshots are of a state that has taken up what the caller wrote. */
+static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
+
+static mps_status settle(void *solver, const char *function, mps_status status) {
+  return mpsi_mpm_share_settle(solver, function, status);
+}
+
+static mpsi_state_of state_of(mps_mpm *mpm) {
+  return (mpsi_state_of){.solver = mpm,
+                         .name = "WLS-MPM",
+                         .context = mpm->context,
+                         .particles = mpm->particles,
+                         .identity = &mpm->identity,
+                         .list = list_state,
+                         .fits = fits,
+                         .make_room = mpsi_mpm_make_room,
+                         .take_share = mpsi_mpm_share_take_values,
+                         .settle = settle,
+                         .bind = bind,
+                         .after = forget_edits,
+                         .time = mpm->run.time,
+                         .dt = mps_mpm_dt(mpm),
+                         .steps = mpm->run.steps};
+}
+
+/* The lists that are kept must be of the present boundaries. */
+static mps_status make_whole(mps_mpm *mpm, const char *function) {
+  mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
+  if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_tidy(mpm, function);
+  if (status != MPS_OK) return status;
+  if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function, MPS_OK);
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "step %lld has failed: there is no state to go on from",
+                   (long long)mpm->run.steps);
+}
+
+mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  mps_status status = make_whole(mpm, __func__);
+  const mpsi_state_of of = state_of(mpm);
+  if (status == MPS_OK) status = mpsi_state_snapshot(&of, __func__, snapshot);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  if (status != MPS_OK) mpsi_mpm_put_off(mpm, &before);
+  return status;
+}
+
+mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  const mpsi_state_of of = state_of(mpm);
+  if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
+  return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;
+}
+
+mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  mps_status status = mpsi_mpm_share_settle(mpm, __func__, make_whole(mpm, __func__));
+  const mpsi_state_of of = state_of(mpm);
+  if (status == MPS_OK) {
+    mpsi_mpm_order_kept(mpm);
+    status = mpm->share ? mpsi_mpm_share_save(mpm, &of, __func__, path, info)
+                        : mpsi_checkpoint_save(&of, __func__, path, info);
+  }
+  if (status != MPS_OK) mpsi_mpm_put_off(mpm, &before);
+  return status;
+}
+
+mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  const mpsi_state_of of = state_of(mpm);
+  if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
+  return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;
+}

@@ -1,0 +1,150 @@
+/* laws.c - the materials' laws on the particles of a block, Nakamura (45)-(48): a law sees runs of
+ * particles that obey it.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+
+#include <stdio.h>
+
+void mpsi_mpm_begin_block(mps_material_block *block) {
+  *block = (mps_material_block){.struct_size = sizeof *block};
+}
+
+/* Columns of particles [begin, end) as the law sees them: all members but those of its answers. */
+static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin, int64_t end,
+                         mps_material_block *block) {
+  static const int planar[5] = {0, 1, 3, 4, 8};
+  const mpsi_columns *p = &mpm->p;
+  block->dim = mpm->dim;
+  block->count = end - begin;
+  block->dt = mpm->run.dt;
+  block->time = mpm->run.time + mpm->run.dt;
+  block->ids = mpm->laws.ids + begin;
+  block->volume_ratio = (law->reads_volume ? p->J : p->V) + begin;
+  block->flags = mpm->laws.flags + begin;
+  const int tensors = mpm->dim == 3 ? 9 : 5;
+  for (int c = 0; c < tensors; c++) {
+    const int to = mpm->dim == 3 ? c : planar[c];
+    if (mpm->def.geometry != MPS_MPM_PLANE_STRAIN || c < 4) block->gradient[to] = p->L[c] + begin;
+    block->deformation[to] = law->needs_deformation ? p->F[c] + begin : NULL;
+  }
+  for (int c = 0; c < 2 * mpm->dim; c++) block->stress[c] = p->s[c] + begin;
+  for (int c = 0; c < mpm->dim; c++) block->position[c] = p->x[c] + begin;
+  if (mpm->laws.temperature) block->temperature = mpm->laws.temperature + begin;
+}
+
+/* The end of the particles from `begin` that obey its law, at most `end`. */
+static int64_t end_of_run(const int64_t *law, int64_t begin, int64_t end) {
+  if (!law) return end;
+  int64_t k = begin + 1;
+  while (k < end && law[k] == law[begin]) k++;
+  return k;
+}
+
+/* Refusals are rare: threads wait for one another. */
+static void note_refusal(mps_mpm *mpm, const mpsi_cell_block *cells, const mps_material *material,
+                         mps_status status, int64_t particle, const char *message) {
+  mpsi_refusal *r = &mpm->laws.refusal;
+  while (atomic_flag_test_and_set_explicit(&r->busy, memory_order_acquire)) continue;
+  if (!r->cells || cells < r->cells) {
+    r->cells = cells;
+    r->material = material;
+    r->status = status;
+    r->particle = particle;
+    (void)snprintf(r->message, sizeof r->message, "%s", message);
+  }
+  atomic_flag_clear_explicit(&r->busy, memory_order_release);
+}
+
+static void apply_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+                      mps_material_block *block, int64_t begin) {
+  double *history[MPSI_MATERIAL_COLUMNS];
+  char message[MPSI_MATERIAL_MESSAGE];
+  int64_t refused = -1;
+  message[0] = message[sizeof message - 1] = '\0';
+  for (int32_t h = 0; h < law->columns; h++) history[h] = law->history[h] + begin;
+  block->history = history;
+  block->history_count = law->columns;
+  block->message = message;
+  block->message_size = sizeof message - 1;
+  block->refused = &refused;
+  const mps_status status = mpsi_material_apply(law->material, block);
+  if (status == MPS_OK) return;
+  const bool there = refused >= 0 && refused < block->count;
+  note_refusal(mpm, cells, law->material, status, there ? begin + refused : -1, message);
+}
+
+/* Gives the law the derivatives D of its particles from the `first` on in place of L. */
+static void take_strains(const mps_mpm *mpm, double *const *D, int64_t first,
+                         mps_material_block *block) {
+  for (int a = 0; a < mpm->dim; a++)
+    for (int b = 0; b < mpm->dim; b++) block->gradient[3 * a + b] = D[mpm->dim * a + b] + first;
+}
+
+/* The particles from `begin` on; `first` is its place in the columns D and the means. */
+static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
+                      double *const *D, double (*mean)[MPSI_CHUNK], int64_t first,
+                      mps_material_block *block) {
+  mpsi_columns *p = &mpm->p;
+  const mpsi_law_use *law = mpsi_law_of(mpm, begin);
+  find_columns(mpm, law, begin, end, block);
+  take_strains(mpm, D, first, block);
+  for (int c = 0; mean && c < 3; c++) block->gradient[4 * c] = mean[c] + first;
+  mpsi_before_law before;
+  if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
+  /* Where the law works on J, V stands for V0 meanwhile. */
+  for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
+  apply_law(mpm, cells, law, block, begin);
+  for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
+  if (mpm->energy.counts) mpsi_mpm_energy_law(mpm, cells, law, block, &before, begin);
+}
+
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
+                        double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block) {
+  for (int64_t k = begin, next; k < end; k = next) {
+    next = end_of_run(mpm->p.law, k, end);
+    apply_run(mpm, cells, k, next, D, mean, k - begin, block);
+  }
+}
+
+void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
+                            int64_t end) {
+  static const double rest[MPSI_CHUNK] = {0.0};
+  for (int64_t k = begin, next; k < end; k = next) {
+    next = end_of_run(mpm->p.law, k, end);
+    const mpsi_law_use *law = mpsi_law_of(mpm, k);
+    mps_material_block block;
+    int64_t flags[MPSI_CHUNK];
+    if (!law->opens) continue;
+    mpsi_mpm_begin_block(&block);
+    find_columns(mpm, law, k, next, &block);
+    for (int c = 0; c < 9; c++)
+      if (block.gradient[c]) block.gradient[c] = rest;
+    block.flags = flags;
+    apply_law(mpm, cells, law, &block, k);
+    for (int64_t q = k; q < next; q++) mpm->laws.flags[q] |= flags[q - k];
+  }
+}
+
+/* A viscous law asks for dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
+static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
+                             int64_t end, double *moduli) {
+  const double v = 4.0 * mpm->dim * mpsi_material_viscosity(law->material) * mpm->grid.inverse;
+  for (int64_t k = begin; v > 0.0 && k < end; k++)
+    moduli[k - begin] = fmax(moduli[k - begin], v * v * mpm->p.V[k] / mpm->p.m[k]);
+}
+
+void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
+  for (int64_t k = begin, next; k < end; k = next) {
+    next = end_of_run(mpm->p.law, k, end);
+    const mpsi_law_use *law = mpsi_law_of(mpm, k);
+    if (mpsi_material_stiffens(law->material)) {
+      mps_material_block block;
+      mpsi_mpm_begin_block(&block);
+      find_columns(mpm, law, k, next, &block);
+      mpsi_material_wave_moduli(law->material, &block, moduli + (k - begin));
+    } else {
+      for (int64_t q = k; q < next; q++) moduli[q - begin] = law->modulus;
+    }
+    raise_to_viscous(mpm, law, k, next, moduli + (k - begin));
+  }
+}

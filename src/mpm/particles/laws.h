@@ -1,0 +1,67 @@
+/* laws.h - the materials' laws that the particles obey.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_LAWS_H
+#define MPSI_MPM_LAWS_H
+
+#include "mpm/grid/blocks.h"
+#include "material/material_internal.h"
+
+#include <mps/mpm.h>
+
+#define MPSI_CHUNK 64 /* particles: what is prepared for them stays in the first-level cache */
+
+typedef struct mpsi_law_use {
+  mps_material *material;
+  double modulus; /* K + 4G/3 at zero strain, Pa */
+  bool reads_volume, needs_deformation;
+  bool opens;      /* a frictional law: its history is plastic_strain, opening */
+  bool own_volume; /* it takes each particle's own change of volume, not a mean (volumetric.c) */
+  int32_t columns;
+  double **history; /* columns over all particles; NULL for none */
+} mpsi_law_use;
+
+/* Why a law has refused a block in the step being made: the first block that has one tells. */
+typedef struct mpsi_refusal {
+  atomic_flag busy;
+  const mpsi_cell_block *cells; /* NULL: none has refused */
+  const mps_material *material;
+  mps_status status;
+  int64_t particle; /* index, or -1 */
+  char message[MPSI_MATERIAL_MESSAGE];
+} mpsi_refusal;
+
+typedef struct mpsi_laws {
+  mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
+  int32_t count;
+  bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
+  bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
+  bool some_open;   /* some law is frictional, */
+  bool some_own;    /* takes each particle's own change of volume */
+  int64_t *flags;   /* of the laws, by sorted index */
+  const int64_t *ids;
+  const double *temperature; /* NULL where the set has no such field */
+  mpsi_refusal refusal;
+} mpsi_laws;
+
+/* laws.c: their laws on particles [begin, end) of a block, with the velocity gradients of the
+ * columns `D` of these particles, as mpsi_columns.D; `mean`: their diagonals by volumetric.c, or
+ * NULL. `block` was begun, once for all particles of the block of cells: emptying it takes as long
+ * as telling the law of a chunk. */
+void mpsi_mpm_begin_block(mps_material_block *block);
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
+                        double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block);
+/* laws.c: the returns to the yield surface of the frictional ones among particles [begin, end), at
+ * most a chunk, without strain. Their flags are added to those of the step. */
+void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+/* laws.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
+void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
+/* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
+/* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
+ * changed on an error. Gives the particle (an index) the state in which the law begins. */
+mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
+/* materials.c: where the columns of a law's own fields are now. */
+void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law);
+void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);
+
+#endif

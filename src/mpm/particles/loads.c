@@ -1,0 +1,253 @@
+/* loads.c - forces on particles besides gravity: the fields `body_acceleration` and
+ * `external_force`, and dead loads on lists of particles, which are found by their ids so that
+ * sorting does not matter. SPDX-License-Identifier: BSD-3-Clause */
+#include "particles.h"
+
+#include "core/particles/particles_internal.h"
+#include "core/context/retain.h"
+#include "signal/signal_internal.h"
+
+#include <string.h>
+
+/* ---- forces of a step ------------------------------------------------------------------------ */
+
+mps_status mpsi_mpm_make_forces(mps_mpm *mpm, const char *function) {
+  if (mpm->rooms.force.item || mpsi_mpm_force_room(mpm, mpm->p.count)) return MPS_OK;
+  return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof(double));
+}
+
+static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int c = 0; c < mpm->dim; c++) {
+    const double *a = mpm->loads.body_acceleration[c], *f = mpm->loads.external_force[c];
+    for (int64_t k = cells->begin; k < cells->end; k++)
+      mpm->p.f[c][k] = (a ? mpm->p.m[k] * a[k] : 0.0) + (f ? f[k] : 0.0);
+  }
+}
+
+static double area_by_spacing(const mps_mpm *mpm, int64_t particle) {
+  const double spacing = mps_particles_spacing(mpm->particles);
+  if (mpm->dim == 3) return spacing * spacing;
+  const double radius = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][particle] : 1.0;
+  return spacing * mpm->def.measure * radius;
+}
+
+static void add_traction(mps_mpm *mpm, const mpsi_traction *load) {
+  double traction[3] = {0.0};
+  for (int c = 0; c < mpm->dim; c++) {
+    traction[c] = load->factor[c] * load->now[c] * load->traction[c];
+  }
+  for (int64_t k = 0; k < load->count; k++) {
+    const int64_t particle = mps_particles_index(mpm->particles, load->id[k]);
+    if (particle < 0) continue; /* removed */
+    const double area = load->area ? load->area[k] : area_by_spacing(mpm, particle);
+    for (int c = 0; c < mpm->dim; c++) mpm->p.f[c][particle] += area * traction[c];
+  }
+}
+
+mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
+  mpsi_loads *loads = &mpm->loads;
+  for (int c = 0; c < mpm->dim; c++) { /* may be added, and moved, between steps */
+    loads->body_acceleration[c] = mpsi_particles_column(mpm->particles, "body_acceleration", c);
+    loads->external_force[c] = mpsi_particles_column(mpm->particles, "external_force", c);
+  }
+  if (loads->body_acceleration[0] || loads->external_force[0]) {
+    const mps_status status = mpsi_mpm_make_forces(mpm, function);
+    if (status != MPS_OK) return status;
+  }
+  if (!mpm->rooms.force.item) return MPS_OK;
+  mpsi_mpm_for_cells(mpm, begin_forces);
+  for (int32_t k = 0; k < loads->count; k++) add_traction(mpm, &loads->traction[k]);
+  return MPS_OK;
+}
+
+/* ---- loads ----------------------------------------------------------------------------------- */
+
+static const mps_mpm_load_def load_defaults = {.struct_size = sizeof(mps_mpm_load_def),
+                                               .factor = {1.0, 1.0, 1.0}};
+
+mps_status mps_mpm_load_def_init(mps_mpm_load_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_mpm_load_def, def, size, &load_defaults);
+}
+
+static void drop(mps_mpm *mpm, mpsi_traction *load) {
+  mpsi_free(mpm->context, load->id);
+  mpsi_free(mpm->context, load->area);
+  for (int c = 0; c < 3; c++) mps_signal_destroy(&load->signal[c]);
+  memset(load, 0, sizeof *load);
+}
+
+void mpsi_mpm_drop_loads(mps_mpm *mpm) {
+  for (int32_t k = 0; k < mpm->loads.count; k++) drop(mpm, &mpm->loads.traction[k]);
+  mpsi_free(mpm->context, mpm->loads.traction);
+}
+
+#define STRONGEST 1e150 /* N: impulses are numbers */
+
+static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def) {
+  const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+  if (def->id_count < 1 || def->id_count > most || !def->ids)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "id_count is %lld and ids %s, allowed are 1 to %lld particles",
+                     (long long)def->id_count, def->ids ? "given" : "NULL", (long long)most);
+  for (int64_t k = 0; def->area && k < def->id_count; k++)
+    if (!isfinite(def->area[k]))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "area[%lld] is %g m2, must be finite", (long long)k, def->area[k]);
+    else
+      for (int c = 0; c < mpm->dim; c++) {
+        const double force = def->area[k] * def->traction[c] * def->factor[c];
+        if (!(fabs(force) <= STRONGEST))
+          return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                           "area[%lld] is %g m2 with traction[%d] %g Pa and factor[%d] %g, a force "
+                           "of %g N: allowed is up to %g N",
+                           (long long)k, def->area[k], c, def->traction[c], c, def->factor[c],
+                           force, STRONGEST);
+      }
+  return MPS_OK;
+}
+
+static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
+                             const mps_mpm_load_def *def) {
+  if (status == MPS_OK) status = check_numbers(mpm, function, def);
+  return mpsi_mpm_share_check_ids(mpm, function, status, def->id_count, def->ids);
+}
+
+static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,
+                           mps_mpm_load_def *def) {
+  if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  const mps_status status = MPSI_DEF_READ(mpm->context, function, mps_mpm_load_def, user, def);
+  for (int c = 0; c < mpm->dim && status == MPS_OK; c++)
+    if (!isfinite(def->traction[c]) || !isfinite(def->factor[c]))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "traction[%d] is %g Pa and factor[%d] %g, must be finite", c,
+                       def->traction[c], c, def->factor[c]);
+  return status;
+}
+
+static void take_traction(mpsi_traction *load, const mps_mpm_load_def *def) {
+  for (int c = 0; c < 3; c++) {
+    mps_signal *old = load->signal[c];
+    load->traction[c] = def->traction[c];
+    load->factor[c] = def->factor[c];
+    load->signal[c] = def->signal[c] ? mpsi_signal_retain(def->signal[c]) : NULL;
+    mps_signal_destroy(&old);
+  }
+}
+
+/* Copies of the ids and areas. */
+static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def,
+                            mpsi_traction *out) {
+  const size_t bytes = (size_t)def->id_count * 8;
+  out->id = mpsi_alloc(mpm->context, def->id_count, sizeof *out->id);
+  if (out->id && def->area) out->area = mpsi_alloc(mpm->context, def->id_count, sizeof *out->area);
+  if (!out->id || (def->area && !out->area)) {
+    mpsi_free(mpm->context, out->id);
+    out->id = NULL;
+    return mpsi_fail_memory(mpm->context, function, bytes);
+  }
+  out->count = def->id_count;
+  memcpy(out->id, def->ids, bytes);
+  if (def->area) memcpy(out->area, def->area, bytes);
+  return MPS_OK;
+}
+
+/* All ranks give the same load (`number` -1: a new one). */
+static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
+                                int32_t number, const mps_mpm_load_def *def) {
+  if (!mpm->share) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "load", number);
+  if (status == MPS_OK) {
+    const size_t bytes = def->id_count > 0 ? (size_t)def->id_count * 8 : 0;
+    MPSI_GIVE(&given, def, id_count);
+    MPSI_GIVE_VECTOR(&given, def, traction, mpm->dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, mpm->dim);
+    for (int c = 0; c < mpm->dim; c++) mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
+    mpsi_give_bytes(&given, "a hash of ids", def->ids, bytes);
+    mpsi_give_bytes(&given, "a hash of area", def->area, bytes);
+  }
+  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+}
+
+/* The lowest free number, with a place in the list. */
+static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *number) {
+  int32_t at = 0;
+  while (at < mpm->loads.count && mpm->loads.traction[at].count > 0) at++;
+  if (number) *number = at;
+  if (at < mpm->loads.count) return MPS_OK;
+  void *list = mpm->loads.traction;
+  if (!mpsi_grow(mpm->context, &list, at, at + 1, sizeof *mpm->loads.traction))
+    return mpsi_fail_memory(mpm->context, function, sizeof *mpm->loads.traction);
+  mpm->loads.traction = list;
+  mpm->loads.count++;
+  return MPS_OK;
+}
+
+mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t *number) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_load_def def = load_defaults;
+  mpsi_traction made = {.count = 0};
+  int32_t at = 0;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, -1, &def);
+  status = check_list(mpm, __func__, status, &def);
+  if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
+  if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);
+  if (status == MPS_OK) status = find_number(mpm, __func__, &at);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  if (status != MPS_OK) {
+    drop(mpm, &made);
+    return status;
+  }
+  take_traction(&made, &def);
+  mpm->loads.traction[at] = made;
+  if (number) *number = at;
+  return MPS_OK;
+}
+
+static mps_status find_load(mps_mpm *mpm, const char *function, int32_t number) {
+  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+  if (status != MPS_OK) return status;
+  if (number >= 0 && number < mpm->loads.count && mpm->loads.traction[number].count > 0)
+    return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                   "load is %d, must be a number that mps_mpm_add_load gave", number);
+}
+
+mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def *user) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_load_def def = load_defaults;
+  mps_status status = find_load(mpm, __func__, number);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, number, &def);
+  if (status != MPS_OK) return status;
+  mpsi_traction *load = &mpm->loads.traction[number];
+  if (def.ids || def.id_count != 0 || def.area) {
+    mpsi_traction list = {.count = 0};
+    status = check_list(mpm, __func__, status, &def);
+    if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &list);
+    status = mpsi_mpm_share_settle(mpm, __func__, status);
+    if (status != MPS_OK) {
+      drop(mpm, &list);
+      return status;
+    }
+    mpsi_free(mpm->context, load->id);
+    mpsi_free(mpm->context, load->area);
+    load->count = list.count, load->id = list.id, load->area = list.area;
+  }
+  take_traction(load, &def);
+  return MPS_OK;
+}
+
+mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = find_load(mpm, __func__, number);
+  if (mpm->share)
+    status = mpsi_domain_settle_same(mpm->share->domain, __func__, status, "load", number);
+  if (status == MPS_OK) drop(mpm, &mpm->loads.traction[number]);
+  return status;
+}

@@ -1,0 +1,190 @@
+/* materials.c - which laws there are and which particles obey them: the fields that a law works on,
+ * the state in which it begins, and several materials in one solver.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+
+#include "core/particles/particles_internal.h"
+
+/* ---- one law --------------------------------------------------------------------------------- */
+
+static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
+  mps_status status = MPS_OK;
+  if (law->reads_volume) status = mps_particles_add_field(set, "volume_ratio", 0);
+  if (status == MPS_OK && law->needs_deformation)
+    status = mps_particles_add_field(set, "deformation_gradient", 0);
+  for (int32_t h = 0; h < law->columns && status == MPS_OK; h++)
+    status = mps_particles_add_field(set, mps_material_history_field(law->material, h), 1);
+  return status;
+}
+
+void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law) {
+  mps_particles *set = mpm->particles;
+  if (law->reads_volume) mpm->p.J = mpsi_particles_column(set, "volume_ratio", 0);
+  for (int c = 0; c < 9 && law->needs_deformation; c++)
+    mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
+  for (int32_t h = 0; h < law->columns; h++)
+    law->history[h] = mpsi_particles_column(set, mps_material_history_field(law->material, h), 0);
+  mpm->laws.ids = mpsi_particles_integers(set, "id");
+  mpm->laws.temperature = mpsi_particles_column(set, "temperature", 0);
+}
+
+/* A mean change of volume beside each particle's own pressure does work from nothing where dilation
+ * makes pressures rough: volumetric.c. */
+static bool keeps_own_volume(const mps_mpm *mpm, const mps_material *material) {
+  switch (mpm->def.volumetric) {
+  case MPS_MPM_VOLUMETRIC_CELL:
+    return mpsi_material_dilates(material);
+  case MPS_MPM_VOLUMETRIC_NODES:
+    return mpsi_material_opens(material);
+  default:
+    return true;
+  }
+}
+
+mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
+  if (mpm->laws.count == MPS_MPM_MAX_MATERIALS)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the solver has %d materials, the most there can be", MPS_MPM_MAX_MATERIALS);
+  mps_particles *set = mpm->particles;
+  mpsi_law_use law = {.material = material,
+                      .modulus = mps_material_wave_modulus(material),
+                      .reads_volume = mpsi_material_reads_volume(material),
+                      .needs_deformation = mps_material_needs_deformation(material) != 0,
+                      .opens = mpsi_material_opens(material),
+                      .own_volume = keeps_own_volume(mpm, material),
+                      .columns = mps_material_history_count(material)};
+  law.history = mpsi_alloc(mpm->context, law.columns, sizeof *law.history);
+  if (!law.history)
+    return mpsi_fail_memory(mpm->context, function, (size_t)law.columns * sizeof *law.history);
+  const int32_t fields = mps_particles_field_count(set);
+  const mps_status status = mpsi_as(mpm->context, function, add_fields(set, &law));
+  if (status != MPS_OK) {
+    mpsi_particles_drop_fields(set, fields);
+    mpsi_free(mpm->context, law.history);
+    return status;
+  }
+  mpsi_mpm_bind_law(mpm, &law);
+  mpsi_material_retain(material);
+  if (mpm->laws.count == 0) atomic_flag_clear(&mpm->laws.refusal.busy);
+  mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
+                          mpsi_material_viscosity(material) == 0.0;
+  mpm->laws.at_once = law.own_volume && (mpm->laws.count == 0 || mpm->laws.at_once);
+  mpm->laws.some_own = mpm->laws.some_own || law.own_volume;
+  mpm->laws.some_open = mpm->laws.some_open || law.opens;
+  mpm->laws.law[mpm->laws.count++] = law;
+  return MPS_OK;
+}
+
+void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  if (law->reads_volume && p->J[k] == 0.0) p->J[k] = 1.0;
+  bool deformed = !law->needs_deformation;
+  for (int c = 0; c < 9 && !deformed && p->F[c]; c++) deformed = p->F[c][k] != 0.0;
+  for (int c = 0; c < 9 && !deformed && p->F[c]; c++) {
+    const bool diagonal = mpm->dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
+    p->F[c][k] = diagonal ? 1.0 : 0.0;
+  }
+  mpsi_material_begin(law->material, law->history, k, k + 1);
+}
+
+/* ---- several laws ---------------------------------------------------------------------------- */
+
+/* How many particles a list means, NULL being all, and where the i-th of them is. */
+static int64_t listed(const mps_mpm *mpm, int64_t count, const int64_t *ids) {
+  return ids ? count : mpm->p.count;
+}
+static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
+  return ids ? mps_particles_index(mpm->particles, ids[i]) : i;
+}
+
+/* In the list of laws; as many as there are for a new one. */
+static int32_t number_of(const mps_mpm *mpm, const mps_material *material) {
+  int32_t number = 0;
+  while (number < mpm->laws.count && mpm->laws.law[number].material != material) number++;
+  return number;
+}
+
+/* On several ranks a list is the same on all, or of particles that the rank has. */
+static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
+                             const mps_material *material, int64_t count, const int64_t *ids) {
+  int64_t known = 0, all;
+  if (status == MPS_OK && (!ids || count < 0 || !mpm->share))
+    status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
+  if (!mpm->share) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "having a list of ids", ids != NULL);
+  mpsi_material_give(&given, material);
+  mpsi_give(&given, "the number of the material", number_of(mpm, material));
+  status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+  if (status != MPS_OK || !ids) return status;
+  for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
+  return mpsi_mpm_share_find(mpm, function, status, count, ids, known, &all);
+}
+
+static mps_status check(mps_mpm *mpm, const char *function, const mps_material *material,
+                        int64_t count, const int64_t *ids) {
+  mps_status status = MPS_OK;
+  if (!material) status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
+  status = check_list(mpm, function, status, material, count, ids);
+  if (status != MPS_OK) return status;
+  const double *J = mpsi_material_reads_volume(material)
+                        ? mpsi_particles_column(mpm->particles, "volume_ratio", 0)
+                        : NULL;
+  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
+    const int64_t k = place(mpm, ids, i);
+    if (k >= 0 && J && !(J[k] >= 0.0 && J[k] < INFINITY))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "particle %lld has volume ratio %g, must be > 0, or 0 for 1",
+                       (long long)mpm->laws.ids[k], J[k]);
+  }
+  return MPS_OK;
+}
+
+/* The column of the laws' numbers, which a set of one law does without. */
+static mps_status number_particles(mps_mpm *mpm) {
+  if (mpm->p.law) return MPS_OK;
+  const mps_status status = mps_particles_add_field(mpm->particles, "material", 0);
+  if (status != MPS_OK) return status;
+  mpm->p.law = mpsi_particles_integers(mpm->particles, "material");
+  for (int64_t k = 0; k < mpm->p.count; k++) mpm->p.law[k] = 0;
+  return MPS_OK;
+}
+
+/* Number of the law in the list, where it is put if it is new. */
+static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *material,
+                           int32_t *number) {
+  *number = number_of(mpm, material);
+  if (*number < mpm->laws.count) return MPS_OK;
+  const bool numbered = mpm->p.law != NULL;
+  const int32_t fields = mps_particles_field_count(mpm->particles);
+  mps_status status = mpsi_as(mpm->context, function, number_particles(mpm));
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, function, material);
+  if (status == MPS_OK || numbered) return status;
+  mpsi_particles_drop_fields(mpm->particles, fields);
+  mpm->p.law = NULL;
+  return status;
+}
+
+mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t count,
+                                const int64_t *ids) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  int32_t number = 0;
+  mps_status status = mpsi_mpm_usable(mpm, __func__);
+  if (mpm->share) status = mpsi_mpm_share_agree(mpm, __func__, status);
+  if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  if (status != MPS_OK) return status;
+  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
+    const int64_t k = place(mpm, ids, i);
+    if (k < 0) continue;                    /* another rank's */
+    if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
+    mpsi_mpm_begin_law(mpm, &mpm->laws.law[number], k);
+  }
+  mpm->boundaries.outdated = true; /* the dashpots of absorbing walls follow the laws */
+  if (mpm->run.edited || mpm->run.lost) return MPS_OK; /* waits for what else is new */
+  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  return mpsi_mpm_collect_block_results(mpm, __func__);
+}

@@ -1,0 +1,61 @@
+/* particles.h - the particles of the set as the solver has them (particles.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_PARTICLES_H
+#define MPSI_MPM_PARTICLES_H
+
+#include "mpm/base/solver.h"
+
+#define MPSI_MPM_MOST_PARTICLES INT32_MAX
+
+/* Columns and number as they are in the set now. */
+void mpsi_mpm_bind(mps_mpm *mpm);
+/* Room for what the solver keeps for each particle; false: refused. Of the forces of loads only
+ * where there are such, or by the second. */
+bool mpsi_mpm_make_room(void *mpm, int64_t particles);
+/* The same, giving up what there is. */
+bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles);
+bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles);
+
+/* Places inside the domain, of particles [first, end). */
+mps_status mpsi_mpm_check_places(const mps_mpm *mpm, const char *function, int64_t first,
+                                 int64_t end);
+/* Fields are finite and places inside the domain; density, volume and volume ratio are positive;
+ * every particle has a mass. */
+mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function);
+/* After a step that has lost a particle: MPS_ERROR_STATE as long as one is outside the domain. */
+mps_status mpsi_mpm_check_lost(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_check_amounts(const mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function);
+/* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
+void mpsi_mpm_begin_particles(mps_mpm *mpm);
+/* The volume of a particle that the caller gave none. */
+double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t particle);
+
+/* outflow.c: room for the marks of a step that may take particles out; what bodies take before it,
+ * `cleared` where they do, on whatever rank (`status`: what has become of the step so far); those
+ * that have passed open sides in it; and those inside a body that takes away what it finds, when
+ * its contact is made. */
+mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
+                                 bool *cleared);
+void mpsi_mpm_let_go(mps_mpm *mpm);
+mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact);
+
+/* As the holder of the set: see mpsi_holder; insertion.c from the third on. */
+bool mpsi_mpm_compares(const void *mpm, const char *field);
+mps_status mpsi_mpm_note_edit(void *mpm, const char *function, const char *field,
+                              const double *former);
+mps_status mpsi_mpm_insert(void *mpm, const char *function, int64_t first, int64_t count);
+mps_status mpsi_mpm_remove(void *mpm, const char *function, int64_t count, const int64_t *ids);
+void mpsi_mpm_renew(void *mpm);
+
+/* ready.c: a call that fails after it has taken up what the caller has written (mpsi_mpm_tidy) puts
+ * that off again: the step and its limit are those of before. */
+typedef struct mpsi_untidy {
+  double speed;
+  bool edited;
+} mpsi_untidy;
+mpsi_untidy mpsi_mpm_untidy(const mps_mpm *mpm);
+void mpsi_mpm_put_off(mps_mpm *mpm, const mpsi_untidy *before);
+
+#endif

@@ -1,0 +1,135 @@
+/* deal.c - a set in parts becomes one whose particles lie on the ranks of their blocks of cells,
+ * before the solver adds its own fields: what travels are the caller's fields alone.
+ *
+ * Each rank finds the blocks of its part. All ranks learn of all blocks and their numbers of
+ * particles, from which each finds the same way to lay the curve over them; the curve is cut from
+ * what each has (owners.c). Beyond MOST_BLOCKS the list itself would be large: the curve then lies
+ * over the bounds of all blocks. Owners change no results, so neither does that.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+#include "mpm/particles/particles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_BLOCKS (INT64_C(1) << 20)
+
+static int compare(const void *left, const void *right) {
+  const mpsi_placed *a = left, *b = right;
+  if (mpsi_block_before(a->at, b->at)) return -1;
+  return mpsi_block_before(b->at, a->at) ? 1 : 0;
+}
+
+static mpsi_placed *list_own(const mps_mpm *mpm) {
+  const int64_t blocks = mpm->grid.cell_count;
+  mpsi_placed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
+  for (int64_t b = 0; list && b < blocks; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    list[b].particles = cells->end - cells->begin;
+    memcpy(list[b].at, cells->at, sizeof list[b].at);
+  }
+  return list;
+}
+
+/* The blocks of all ranks in one list, in order, each once. */
+static mpsi_placed *join_lists(mps_mpm *mpm, const mpsi_mailbox *box, int64_t *blocks) {
+  int64_t count = 0, kept = 0;
+  for (int32_t m = 0; m < box->count; m++)
+    count += box->mail[m].bytes / (int64_t)sizeof(mpsi_placed);
+  mpsi_placed *list = mpsi_alloc(mpm->context, count, sizeof *list);
+  if (!list) return NULL;
+  char *to = (char *)list;
+  for (int32_t m = 0; m < box->count; to += box->mail[m++].bytes)
+    memcpy(to, box->mail[m].data, (size_t)box->mail[m].bytes);
+  qsort(list, (size_t)count, sizeof *list, compare);
+  for (int64_t k = 0; k < count; k++)
+    if (kept > 0 && compare(&list[kept - 1], &list[k]) == 0)
+      list[kept - 1].particles += list[k].particles;
+    else
+      list[kept++] = list[k];
+  *blocks = kept;
+  return list;
+}
+
+/* Every rank's list to every rank. */
+static mps_status place_by_list(mps_mpm *mpm, const char *function) {
+  mps_domain *domain = mpm->share->domain;
+  const int32_t ranks = mps_domain_size(domain);
+  mpsi_mailbox box = {.context = mpm->context};
+  int64_t blocks = 0;
+  mpsi_placed *own = list_own(mpm), *all = NULL;
+  mps_domain_message *message = mpsi_alloc(mpm->context, ranks, sizeof *message);
+  mps_status status = MPS_OK;
+  if (!own || !message)
+    status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->grid.cell_count * sizeof *own);
+  for (int32_t r = 0; status == MPS_OK && r < ranks; r++)
+    message[r] = (mps_domain_message){
+        .rank = r, .bytes = mpm->grid.cell_count * (int64_t)sizeof *own, .data = own};
+  status = mpsi_domain_settle(domain, function, status);
+  if (status == MPS_OK) status = mpsi_domain_exchange(domain, function, ranks, message, &box);
+  if (status == MPS_OK &&
+      (!(all = join_lists(mpm, &box, &blocks)) ||
+       !mpsi_mpm_choose_placing(mpm->context, mpm->dim, ranks, blocks, all, &mpm->share->placing)))
+    status = mpsi_fail_memory(mpm->context, function, (size_t)blocks * sizeof *all);
+  mpsi_domain_free_mail(&box);
+  mpsi_free(mpm->context, own);
+  mpsi_free(mpm->context, all);
+  mpsi_free(mpm->context, message);
+  return mpsi_domain_settle(domain, function, status);
+}
+
+/* Over the first and the last block along each axis. */
+static mps_status place_by_bounds(mps_mpm *mpm, const char *function) {
+  double bound[6];
+  for (int k = 0; k < 6; k++) bound[k] = -INFINITY;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+    for (int c = 0; c < 3; c++) {
+      const double at = mpm->grid.cells[b].at[c];
+      bound[c] = fmax(bound[c], -at), bound[3 + c] = fmax(bound[3 + c], at);
+    }
+  mps_status status = mpsi_domain_max(mpm->share->domain, function, 6, bound);
+  if (status != MPS_OK) return status;
+  mpsi_placed corner[2] = {{.particles = 1}, {.particles = 1}};
+  for (int c = 0; c < 3; c++)
+    corner[0].at[c] = (int32_t)-bound[c], corner[1].at[c] = (int32_t)bound[3 + c];
+  if (!mpsi_mpm_choose_placing(mpm->context, mpm->dim, 1, 2, corner, &mpm->share->placing))
+    status = mpsi_fail_memory(mpm->context, function, sizeof corner);
+  return mpsi_domain_settle(mpm->share->domain, function, status);
+}
+
+static mps_status find_blocks(mps_mpm *mpm, const char *function) {
+  mpsi_mpm_bind(mpm);
+  mpm->laws.ids = mpsi_particles_integers(mpm->particles, "id"); /* there is no law yet */
+  mpm->grid.worker_count = mps_context_threads(mpm->context);
+  const mps_status status = mpsi_mpm_check_start(mpm, function);
+  if (status != MPS_OK) return status;
+  if (!mpsi_mpm_make_room(mpm, mpm->p.count))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)mpm->p.count * 2 * sizeof *mpm->grid.radix);
+  return mpsi_mpm_sort_cells(mpm, function);
+}
+
+/* The solver's fields get the room that the caller's have: no more than needed. */
+static mps_status fit(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpsi_particles_fit(mpm->particles, function);
+  mpsi_mpm_bind(mpm);
+  if (status != MPS_OK || mpsi_mpm_shrink_room(mpm, mpm->p.count)) return status;
+  return mpsi_fail_memory(mpm->context, function,
+                          (size_t)mpm->p.count * 2 * sizeof *mpm->grid.radix);
+}
+
+mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status status) {
+  bool moved;
+  int64_t blocks;
+  status = mpsi_mpm_share_begin(mpm, function, status);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle(mpm->share->domain, function, find_blocks(mpm, function));
+  if (status != MPS_OK) return status;
+  blocks = mpm->grid.cell_count;
+  status = mpsi_domain_sum(mpm->share->domain, function, 1, &blocks);
+  if (status == MPS_OK)
+    status = blocks <= MOST_BLOCKS ? place_by_list(mpm, function) : place_by_bounds(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_share_migrate(mpm, function, status, &moved);
+  return status == MPS_OK ? mpsi_domain_settle(mpm->share->domain, function, fit(mpm, function))
+                          : status;
+}

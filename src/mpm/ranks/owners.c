@@ -1,0 +1,240 @@
+/* owners.c - which rank has which block of cells, by Hilbert's curve (domain/curve.h), and
+ * particles that go to the ranks of their blocks. The curve is cut anew where some rank has come to
+ * have more particles than any had after the last cut. Results do not depend on who has what.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "domain/curve.h"
+#include "domain/migrate.h"
+#include "mpm/particles/particles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define GROWTH 1.02 /* of the heaviest rank, from which on it is worth a new cut */
+#ifdef NDEBUG
+#define COUNT_IDS false
+#else
+#define COUNT_IDS true /* that no particle is lost or doubled, each time */
+#endif
+
+/* ---- the curve ------------------------------------------------------------------------------- */
+
+static int64_t key_of(const mps_mpm *mpm, const int32_t *at) {
+  return mpsi_mpm_placing_key(mpm->dim, &mpm->share->placing, at);
+}
+
+int32_t mpsi_mpm_share_owner(const mps_mpm *mpm, const int32_t *at) {
+  return mpsi_curve_owner(mps_domain_size(mpm->share->domain), mpm->share->first, key_of(mpm, at));
+}
+
+typedef struct weighed {
+  int64_t key, weight;
+} weighed;
+
+static int compare(const void *left, const void *right) {
+  const int64_t a = ((const weighed *)left)->key, b = ((const weighed *)right)->key;
+  return a < b ? -1 : a > b;
+}
+
+/* The way that the curve lies over the blocks, all of which are here; false: memory refused. */
+static bool place_curve(mps_mpm *mpm, int32_t ranks) {
+  const int64_t blocks = mpm->grid.cell_count;
+  mpsi_placed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
+  for (int64_t b = 0; list && b < blocks; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    list[b].particles = cells->end - cells->begin;
+    memcpy(list[b].at, cells->at, sizeof list[b].at);
+  }
+  const bool good = list && mpsi_mpm_choose_placing(mpm->context, mpm->dim, ranks, blocks, list,
+                                                    &mpm->share->placing);
+  mpsi_free(mpm->context, list);
+  return good;
+}
+
+mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole) {
+  mpsi_share *share = mpm->share;
+  const int32_t ranks = mps_domain_size(share->domain);
+  const int64_t all = mpm->grid.cell_count,
+                blocks = whole && mps_domain_rank(share->domain) > 0 ? 0 : all;
+  const bool placed = !whole || place_curve(mpm, ranks);
+  weighed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
+  int64_t *key = mpsi_alloc(mpm->context, 2 * blocks, sizeof *key);
+  if (!share->first) share->first = mpsi_alloc(mpm->context, ranks + 1, sizeof *share->first);
+  mps_status status = MPS_OK;
+  if (!placed || !list || !key || !share->first)
+    status = mpsi_fail_memory(mpm->context, function, (size_t)(blocks + ranks) * sizeof *list);
+  status = mpsi_domain_settle(share->domain, function, status);
+  for (int64_t b = 0; status == MPS_OK && b < blocks; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    list[b] = (weighed){key_of(mpm, cells->at), cells->end - cells->begin};
+  }
+  if (status == MPS_OK) {
+    qsort(list, (size_t)blocks, sizeof *list, compare);
+    for (int64_t b = 0; b < blocks; b++) key[b] = list[b].key, key[blocks + b] = list[b].weight;
+    status = mpsi_curve_cut(share->domain, function, blocks, key, key + blocks, share->first);
+  }
+  mpsi_free(mpm->context, list);
+  mpsi_free(mpm->context, key);
+  return status;
+}
+
+/* ---- migration ------------------------------------------------------------------------------- */
+
+/* What leaves this rank, by present index, and all columns of the set. */
+typedef struct departure {
+  mps_mpm *mpm;
+  uint8_t *gone;
+  int64_t *row;
+  int32_t *to;
+  void **column;
+  int64_t count;
+  int32_t columns;
+} departure;
+
+static mps_status list_columns(departure *d) {
+  mps_particles *set = d->mpm->particles;
+  mps_field_info info;
+  mps_status status = MPS_OK;
+  d->columns = 0;
+  for (int32_t f = 0; f < mps_particles_field_count(set) && status == MPS_OK; f++) {
+    status = mps_particles_field(set, f, &info);
+    for (int32_t c = 0; c < info.components && status == MPS_OK; c++) {
+      void *column = info.dtype.code == 0 ? (void *)mpsi_particles_integers(set, info.name)
+                                          : (void *)mpsi_particles_column(set, info.name, c);
+      if (d->column) d->column[d->columns] = column;
+      d->columns++;
+    }
+  }
+  return status;
+}
+
+static mps_status list_leaving(departure *d, const char *function) {
+  mps_mpm *mpm = d->mpm;
+  const int32_t rank = mps_domain_rank(mpm->share->domain);
+  mps_status status = list_columns(d);
+  if (status != MPS_OK) return status;
+  const int64_t count = mpm->p.count;
+  d->column = mpsi_alloc(mpm->context, d->columns, sizeof *d->column);
+  d->gone = mpsi_alloc(mpm->context, count, 1);
+  d->row = mpsi_alloc(mpm->context, count, sizeof *d->row);
+  d->to = mpsi_alloc(mpm->context, count, sizeof *d->to);
+  if (!d->column || !d->gone || !d->row || !d->to)
+    return mpsi_fail_memory(mpm->context, function, (size_t)count * 13);
+  memset(d->gone, 0, (size_t)count);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    const int32_t owner = mpsi_mpm_share_owner(mpm, cells->at);
+    for (int64_t k = cells->begin; owner != rank && k < cells->end; k++) {
+      d->gone[k] = 1;
+      d->row[d->count] = k;
+      d->to[d->count++] = owner;
+    }
+  }
+  return list_columns(d);
+}
+
+/* All that can fail, on whatever rank, comes before anything has changed on any. */
+static mps_status take_in(departure *d, const char *function, const mpsi_mailbox *box,
+                          int64_t arriving) {
+  mps_mpm *mpm = d->mpm;
+  const int64_t count = mpm->p.count - d->count + arriving;
+  mps_status status = MPS_OK;
+  if (count > MPSI_MPM_MOST_PARTICLES)
+    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "%lld particles would lie on one rank, which has at most %d",
+                       (long long)count, MPSI_MPM_MOST_PARTICLES);
+  if (status == MPS_OK && !mpsi_mpm_make_room(mpm, count))
+    status = mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
+  if (status == MPS_OK) status = mpsi_particles_hold_room(mpm->particles, function, count);
+  mpsi_mpm_bind(mpm); /* columns may have moved */
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status != MPS_OK) return status;
+  mpsi_particles_make_way(mpm->particles, d->gone);
+  (void)list_columns(d);
+  mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(mpm->particles));
+  mpsi_particles_admit(mpm->particles, arriving);
+  mpsi_mpm_bind(mpm);
+  return MPS_OK;
+}
+
+static const int64_t *ids_of(const mps_mpm *mpm) {
+  return mpsi_particles_integers(mpm->particles, "id");
+}
+
+static mps_status send(departure *d, const char *function, mps_status status, bool *moved) {
+  mps_mpm *mpm = d->mpm;
+  mps_domain *domain = mpm->share->domain;
+  mpsi_mailbox box = {.context = mpm->context};
+  mpsi_census before;
+  int64_t arriving = 0;
+  if (status == MPS_OK) status = list_leaving(d, function);
+  status = mpsi_domain_settle(domain, function, status);
+  if (COUNT_IDS && status == MPS_OK)
+    status = mpsi_census_take(domain, function, mpm->p.count, ids_of(mpm), &before);
+  if (status != MPS_OK) return status;
+  const mpsi_leaving leaving = {.count = d->count,
+                                .row = d->row,
+                                .to = d->to,
+                                .columns = d->columns,
+                                .column = (const void *const *)d->column};
+  status = mpsi_migrate(domain, function, &leaving, &box, &arriving);
+  if (status == MPS_OK) status = take_in(d, function, &box, arriving);
+  if (COUNT_IDS && status == MPS_OK)
+    status = mpsi_census_check(domain, function, mpm->p.count, ids_of(mpm), &before);
+  *moved = status == MPS_OK && (d->count > 0 || arriving > 0);
+  mpsi_domain_free_mail(&box);
+  return status;
+}
+
+/* Anew where a rank has more than any had. */
+static mps_status rebalance(mps_mpm *mpm, const char *function, mps_status status) {
+  mpsi_share *share = mpm->share;
+  double most = (double)mpm->p.count;
+  status = mpsi_domain_settle_max(share->domain, function, status, 1, &most);
+  if (status != MPS_OK || (share->heaviest > 0.0 && most <= GROWTH * share->heaviest))
+    return status;
+  share->heaviest = 0.0;
+  return mpsi_mpm_share_cut(mpm, function, false);
+}
+
+mps_status mpsi_mpm_share_migrate(mps_mpm *mpm, const char *function, mps_status status,
+                                  bool *moved) {
+  mpsi_share *share = mpm->share;
+  departure d = {.mpm = mpm};
+  status = rebalance(mpm, function, status);
+  if (status == MPS_OK) status = send(&d, function, status, moved);
+  if (status == MPS_OK && share->heaviest == 0.0) {
+    share->heaviest = (double)mpm->p.count;
+    status = mpsi_domain_max(share->domain, function, 1, &share->heaviest);
+  }
+  mpsi_free(mpm->context, d.column);
+  mpsi_free(mpm->context, d.gone);
+  mpsi_free(mpm->context, d.row);
+  mpsi_free(mpm->context, d.to);
+  return status;
+}
+
+/* ---- particles that the caller adds ---------------------------------------------------------- */
+
+static bool is_own(const mps_mpm *mpm, int64_t k) {
+  int32_t block[3] = {0};
+  for (int c = 0; c < mpm->dim; c++)
+    block[c] = (int32_t)mpsi_block_of(
+        (int64_t)mpsi_base(mpm->def.spline, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])));
+  return mpsi_mpm_share_owner(mpm, block) == mps_domain_rank(mpm->share->domain);
+}
+
+mps_status mpsi_mpm_share_keep_added(mps_mpm *mpm, const char *function, mps_status status,
+                                     int64_t first) {
+  uint8_t *gone = NULL;
+  if (status == MPS_OK && !(gone = mpsi_alloc(mpm->context, mpm->p.count, 1)))
+    status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status == MPS_OK) {
+    memset(gone, 0, (size_t)first);
+    for (int64_t k = first; k < mpm->p.count; k++) gone[k] = !is_own(mpm, k);
+    mpsi_particles_make_way(mpm->particles, gone);
+    mpsi_mpm_bind(mpm);
+  }
+  mpsi_free(mpm->context, gone);
+  return status;
+}

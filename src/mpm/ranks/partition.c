@@ -1,0 +1,426 @@
+/* partition.c - which blocks of cells a rank has, and which are its ghosts: see partition.h.
+ *
+ * All ranks begin with the same set, sort it in the same way and keep their blocks of it, or with a
+ * set in parts (deal.c). Ghosts
+ * follow from the blocks that there are: each rank tells those ranks whose blocks may be beside its
+ * own of these. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+#include "mpm/particles/particles.h"
+
+#include <string.h>
+
+/* ---- ghosts ---------------------------------------------------------------------------------- */
+
+/* A block as another rank is told of it. */
+typedef struct notice {
+  int32_t number; /* among its owner's own ones */
+  int32_t at[3], low[3], high[3];
+} notice;
+
+/* While ghosts are looked for. */
+typedef struct search {
+  mps_mpm *mpm;
+  const char *function;
+  mpsi_cell_block *own; /* in their order */
+  int64_t count;
+  int64_t *range; /* of each rank: lower (3) and upper (3) blocks, and how many */
+  notice *told;   /* to each rank one after the other */
+  mps_domain_message *message;
+  mpsi_mailbox box;
+  notice *ghost; /* in order of their owners */
+  int32_t *rank;
+  int64_t *index;
+  int64_t ghosts;
+} search;
+
+enum { RANGE = 7 };
+
+static bool is_own(const search *s, const int32_t *at) {
+  int64_t low = 0, high = s->count;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    if (mpsi_block_before(s->own[middle].at, at))
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < s->count && memcmp(s->own[low].at, at, sizeof s->own[low].at) == 0;
+}
+
+static bool beside_own(const search *s, const int32_t *at) {
+  const int depth = s->mpm->dim == 3;
+  for (int k = -depth; k <= depth; k++)
+    for (int j = -1; j <= 1; j++)
+      for (int i = -1; i <= 1; i++) {
+        const int32_t beside[3] = {at[0] + i, at[1] + j, at[2] + k};
+        if (is_own(s, beside)) return true;
+      }
+  return false;
+}
+
+/* The own blocks without the ghosts among them. */
+static mps_status take_own(search *s) {
+  const mpsi_grid *grid = &s->mpm->grid;
+  mps_context *context = s->mpm->context;
+  const int64_t ranks = mps_domain_size(s->mpm->share->domain);
+  s->own = mpsi_alloc(context, grid->cell_count, sizeof *s->own);
+  s->range = mpsi_alloc(context, RANGE * ranks, sizeof *s->range);
+  if (!s->own || !s->range)
+    return mpsi_fail_memory(context, s->function, (size_t)grid->cell_count * sizeof *s->own);
+  for (int64_t b = 0; b < grid->cell_count; b++)
+    if (!grid->cells[b].ghost) s->own[s->count++] = grid->cells[b];
+  int64_t *mine = s->range + RANGE * mps_domain_rank(s->mpm->share->domain);
+  memset(s->range, 0, (size_t)(RANGE * ranks) * sizeof *s->range);
+  for (int64_t b = 0; b < s->count; b++)
+    for (int c = 0; c < 3; c++) {
+      const int64_t at = s->own[b].at[c];
+      if (b == 0 || at < mine[c]) mine[c] = at;
+      if (b == 0 || at > mine[3 + c]) mine[3 + c] = at;
+    }
+  mine[6] = s->count;
+  return MPS_OK;
+}
+
+/* May the block be beside one of the rank's? */
+static bool near_range(const int64_t *range, const int32_t *at) {
+  if (range[6] == 0) return false;
+  for (int c = 0; c < 3; c++)
+    if (at[c] < range[c] - 1 || at[c] > range[3 + c] + 1) return false;
+  return true;
+}
+
+static mps_status tell(search *s) {
+  mps_context *context = s->mpm->context;
+  mps_domain *domain = s->mpm->share->domain;
+  const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
+  int64_t notices = 0;
+  int32_t messages = 0;
+  for (int32_t r = 0; r < ranks; r++)
+    for (int64_t b = 0; r != rank && b < s->count; b++)
+      notices += near_range(s->range + RANGE * r, s->own[b].at);
+  s->told = mpsi_alloc(context, notices, sizeof *s->told);
+  s->message = mpsi_alloc(context, ranks, sizeof *s->message);
+  mps_status status = MPS_OK;
+  if (!s->told || !s->message)
+    status = mpsi_fail_memory(context, s->function, (size_t)notices * sizeof *s->told);
+  notices = 0;
+  for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
+    const int64_t first = notices;
+    for (int64_t b = 0; r != rank && b < s->count; b++) {
+      if (!near_range(s->range + RANGE * r, s->own[b].at)) continue;
+      notice *n = &s->told[notices++];
+      n->number = (int32_t)b;
+      memcpy(n->at, s->own[b].at, sizeof n->at);
+      memcpy(n->low, s->own[b].low, sizeof n->low);
+      memcpy(n->high, s->own[b].high, sizeof n->high);
+    }
+    if (notices > first)
+      s->message[messages++] =
+          (mps_domain_message){.rank = r,
+                               .bytes = (notices - first) * (int64_t)sizeof *s->told,
+                               .data = s->told + first};
+  }
+  status = mpsi_domain_settle(domain, s->function, status);
+  if (status != MPS_OK) return status;
+  return mpsi_domain_exchange(domain, s->function, messages, s->message, &s->box);
+}
+
+static mps_status choose_ghosts(search *s) {
+  mps_context *context = s->mpm->context;
+  int64_t most = 0;
+  for (int32_t m = 0; m < s->box.count; m++)
+    most += s->box.mail[m].bytes / (int64_t)sizeof *s->ghost;
+  s->ghost = mpsi_alloc(context, most, sizeof *s->ghost);
+  s->rank = mpsi_alloc(context, most, sizeof *s->rank);
+  s->index = mpsi_alloc(context, most, sizeof *s->index);
+  if (!s->ghost || !s->rank || !s->index)
+    return mpsi_fail_memory(context, s->function, (size_t)most * sizeof *s->ghost);
+  for (int32_t m = 0; m < s->box.count; m++) {
+    const notice *from = s->box.mail[m].data;
+    for (int64_t k = 0; k < s->box.mail[m].bytes / (int64_t)sizeof *from; k++) {
+      if (!beside_own(s, from[k].at)) continue;
+      s->ghost[s->ghosts] = from[k];
+      s->rank[s->ghosts] = s->box.mail[m].rank;
+      s->index[s->ghosts++] = from[k].number;
+    }
+  }
+  return MPS_OK;
+}
+
+/* ---- lists ----------------------------------------------------------------------------------- */
+
+/* Numbers of ghosts, in the order of blocks. */
+static void sort_ghosts(const search *s, int64_t *order, int64_t *other) {
+  for (int64_t k = 0; k < s->ghosts; k++) order[k] = k;
+  for (int64_t width = 1; width < s->ghosts; width *= 2) {
+    for (int64_t begin = 0; begin < s->ghosts; begin += 2 * width) {
+      const int64_t middle = begin + width < s->ghosts ? begin + width : s->ghosts;
+      const int64_t end = middle + width < s->ghosts ? middle + width : s->ghosts;
+      int64_t a = begin, b = middle;
+      for (int64_t k = begin; k < end; k++)
+        other[k] = b >= end || (a < middle &&
+                                !mpsi_block_before(s->ghost[order[b]].at, s->ghost[order[a]].at))
+                       ? order[a++]
+                       : order[b++];
+    }
+    memcpy(order, other, (size_t)s->ghosts * sizeof *order);
+  }
+}
+
+/* Own blocks and ghosts in one list; where the own ones are in it. */
+static void merge(const search *s, const int64_t *order, int32_t *place) {
+  mpsi_cell_block *cells = s->mpm->grid.cells;
+  int64_t own = 0, ghost = 0;
+  for (int64_t b = 0; b < s->count + s->ghosts; b++) {
+    const notice *next = ghost < s->ghosts ? &s->ghost[order[ghost]] : NULL;
+    if (own < s->count && (!next || mpsi_block_before(s->own[own].at, next->at))) {
+      cells[b] = s->own[own];
+      cells[b].parcel = -1;
+      cells[b].waits = cells[b].first = 0;
+      place[own++] = (int32_t)b;
+      continue;
+    }
+    const int64_t begin = own < s->count ? s->own[own].begin : s->mpm->p.count;
+    cells[b] = (mpsi_cell_block){
+        .begin = begin, .end = begin, .bad = -1, .ghost = true, .parcel = order[ghost++]};
+    memcpy(cells[b].at, next->at, sizeof next->at);
+    memcpy(cells[b].low, next->low, sizeof next->low);
+    memcpy(cells[b].high, next->high, sizeof next->high);
+  }
+}
+
+static bool put_lists(search *s) {
+  mps_mpm *mpm = s->mpm;
+  mpsi_share *share = mpm->share;
+  const int64_t all = s->count + s->ghosts;
+  int64_t *order = mpsi_alloc(mpm->context, 2 * s->ghosts, sizeof *order);
+  int32_t *place = mpsi_alloc(mpm->context, s->count, sizeof *place);
+  bool good =
+      order && place && mpsi_mpm_ensure_cells(mpm, all) &&
+      mpsi_room_ensure(mpm->context, &share->border_room, s->count, sizeof *share->border) &&
+      mpsi_room_ensure(mpm->context, &share->rank_room, s->ghosts, sizeof *s->rank);
+  if (good) {
+    share->border = share->border_room.item;
+    share->ghost_rank = share->rank_room.item;
+    if (s->ghosts > 0) memcpy(share->ghost_rank, s->rank, (size_t)s->ghosts * sizeof *s->rank);
+    sort_ghosts(s, order, order + s->ghosts);
+    merge(s, order, place);
+    for (int64_t k = 0; k < s->count; k++) share->border[k] = place[k];
+    share->ghosts = s->ghosts;
+    good = mpsi_mpm_build_nodes(mpm, all);
+  }
+  mpsi_free(mpm->context, order);
+  mpsi_free(mpm->context, place);
+  return good;
+}
+
+/* Blocks that no ghost goes before, directly or not, and nodes to which only such blocks give, need
+ * not wait for messages. */
+static void mark_blocks(mps_mpm *mpm) {
+  mpsi_grid *grid = &mpm->grid;
+  for (int64_t b = 0; b < grid->cell_count; b++) grid->cells[b].late = grid->cells[b].ghost;
+  for (int64_t k = 0; k < grid->cell_count; k++) {
+    const mpsi_cell_block *cells = &grid->cells[grid->coloured[k]];
+    for (int q = 0; cells->late && q < 1 << mpm->dim; q++) {
+      grid->nodes[cells->to[q]].late = true;
+      if (cells->next[q] >= 0) grid->cells[cells->next[q]].late = true;
+    }
+  }
+  for (int64_t g = 0; g < grid->node_count; g++)
+    grid->nodes[g].foreign = !mpsi_mpm_share_knows(mpm, g);
+}
+
+/* Which own blocks others have asked for; room for parcels. */
+static mps_status find_border(mps_mpm *mpm, const char *function) {
+  mpsi_share *share = mpm->share;
+  const int64_t *item;
+  share->borders = mpsi_halo_items(share->halo, &item);
+  for (int64_t k = 0; k < share->borders; k++) { /* item[k] >= k: none is overwritten too early */
+    share->border[k] = share->border[item[k]];
+    mpm->grid.cells[share->border[k]].parcel = k;
+  }
+  return mpsi_mpm_share_parcels(mpm, function);
+}
+
+static double widest(const search *s) {
+  double most = 0.0;
+  for (int64_t b = 0; b < s->count; b++) {
+    double nodes = 1.0;
+    for (int c = 0; c < 3; c++) nodes *= s->own[b].high[c] - s->own[b].low[c];
+    most = fmax(most, nodes);
+  }
+  return most;
+}
+
+static mps_status join(search *s) {
+  mps_mpm *mpm = s->mpm;
+  mpsi_share *share = mpm->share;
+  double most = widest(s);
+  mps_status status = choose_ghosts(s);
+  if (status == MPS_OK && !put_lists(s))
+    status = mpsi_fail_memory(mpm->context, s->function,
+                              (size_t)(s->count + s->ghosts) * sizeof *mpm->grid.cells);
+  status = mpsi_domain_settle_max(share->domain, s->function, status, 1, &most);
+  if (status != MPS_OK) return status;
+  share->most = (int32_t)most;
+  mark_blocks(mpm);
+  mpsi_halo_destroy(mpm->context, &share->halo);
+  const mpsi_halo_def def = {.guests = s->ghosts, .rank = s->rank, .index = s->index};
+  status = mpsi_halo_create(share->domain, s->function, &def, &share->halo);
+  if (status != MPS_OK) return status;
+  return mpsi_domain_settle(share->domain, s->function, find_border(mpm, s->function));
+}
+
+mps_status mpsi_mpm_share_join(mps_mpm *mpm, const char *function) {
+  mpsi_share *share = mpm->share;
+  if (!share->outdated) return MPS_OK;
+  search s = {.mpm = mpm, .function = function, .box.context = mpm->context};
+  mps_status status = mpsi_domain_settle(share->domain, function, take_own(&s));
+  if (status == MPS_OK)
+    status =
+        mpsi_domain_sum(share->domain, function, RANGE * mps_domain_size(share->domain), s.range);
+  if (status == MPS_OK) status = tell(&s);
+  if (status == MPS_OK) status = join(&s);
+  mpsi_domain_free_mail(&s.box);
+  void *parts[] = {s.own, s.range, s.told, s.message, s.ghost, s.rank, s.index};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+  share->outdated = status != MPS_OK;
+  if (share->outdated) mpm->run.stale = true; /* the lists may be gone */
+  return status;
+}
+
+mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function) {
+  bool moved = false;
+  mpm->share->outdated = true;
+  mps_status status = mpsi_mpm_sort_cells(mpm, function);
+  status = mpsi_mpm_share_kept(mpm, function, status);
+  status = mpsi_mpm_share_migrate(mpm, function, status, &moved);
+  if (status != MPS_OK) {
+    mpm->run.stale = true;
+    return status;
+  }
+  if (moved) status = mpsi_mpm_sort_cells(mpm, function);
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status != MPS_OK) mpm->run.stale = true;
+  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
+}
+
+/* ---- the first cut --------------------------------------------------------------------------- */
+
+/* The rows of own blocks, which come to lie one behind the other. */
+static int64_t take_blocks(mps_mpm *mpm, int64_t *rows) {
+  mpsi_cell_block *cells = mpm->grid.cells;
+  const int32_t rank = mps_domain_rank(mpm->share->domain);
+  int64_t blocks = 0, count = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    if (mpsi_mpm_share_owner(mpm, cells[b].at) != rank) continue;
+    const int64_t begin = count;
+    for (int64_t k = cells[b].begin; k < cells[b].end; k++) rows[count++] = k;
+    cells[blocks] = cells[b];
+    cells[blocks].begin = begin;
+    cells[blocks++].end = count;
+  }
+  mpm->grid.cell_count = blocks;
+  return count;
+}
+
+static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **former) {
+  int64_t *rows = mpsi_alloc(mpm->context, mpm->p.count, sizeof *rows);
+  if (!rows) return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof *rows);
+  const int64_t count = take_blocks(mpm, rows);
+  const mps_status status =
+      mpsi_particles_keep(mpm->particles, function, count, rows, count, former);
+  mpsi_free(mpm->context, rows);
+  if (status != MPS_OK) return status;
+  mpsi_mpm_bind(mpm);
+  if (mpsi_mpm_shrink_room(mpm, count)) return MPS_OK;
+  return mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
+}
+
+/* Are all ranks given the same? */
+static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status) {
+  const mps_mpm_def *d = &mpm->def;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, d, geometry);
+  MPSI_GIVE(&given, d, spline);
+  MPSI_GIVE(&given, d, volumetric);
+  MPSI_GIVE(&given, d, step_from);
+  MPSI_GIVE(&given, d, budget);
+  MPSI_GIVE(&given, d, walls);
+  MPSI_GIVE(&given, d, measure);
+  MPSI_GIVE(&given, d, local_damping);
+  MPSI_GIVE(&given, d, viscous_damping);
+  MPSI_GIVE(&given, d, cell);
+  MPSI_GIVE(&given, d, dt);
+  MPSI_GIVE(&given, d, courant);
+  mpsi_give(&given, "having a kernel", d->kernel != NULL);
+  MPSI_GIVE_VECTOR(&given, d, origin, mpm->dim);
+  MPSI_GIVE_VECTOR(&given, d, gravity, mpm->dim);
+  MPSI_GIVE_VECTOR(&given, d, lower, mpm->dim);
+  MPSI_GIVE_VECTOR(&given, d, upper, mpm->dim);
+  if (status == MPS_OK) mpsi_material_give(&given, mpm->laws.law[0].material);
+  status = mpsi_domain_settle_given(d->domain, function, status, &given);
+  if (status != MPS_OK || mpsi_particles_deal(mpm->particles)) return status;
+  return mpsi_domain_settle_particles(d->domain, function, status, mpm->particles);
+}
+
+mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
+  mps_domain *domain = mpm->def.domain;
+  if (status == MPS_OK) mpm->share = mpsi_alloc(mpm->context, 1, sizeof *mpm->share);
+  if (status == MPS_OK && !mpm->share)
+    status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->share);
+  status = mpsi_domain_settle_parts(domain, function, status, mpm->particles);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, mpm->share);
+    mpm->share = NULL;
+    return status;
+  }
+  *mpm->share = (mpsi_share){.domain = mpsi_domain_retain(domain), .outdated = true};
+  if (!mpsi_mpm_begin_mates(mpm))
+    status = mpsi_fail_memory(mpm->context, function, (size_t)mps_domain_size(domain));
+  return mpsi_domain_settle(domain, function, status);
+}
+
+mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status status,
+                               mpsi_storage **former) {
+  mps_domain *domain = mpm->def.domain;
+  status = mpsi_mpm_share_begin(mpm, function, status);
+  if (status == MPS_OK) status = compare_ranks(mpm, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_share_cut(mpm, function, true);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(domain, function, keep_own(mpm, function, former));
+  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
+}
+
+mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status) {
+  status = compare_ranks(mpm, function, status);
+  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
+}
+
+void mpsi_mpm_share_free(mps_mpm *mpm) {
+  mpsi_share *share = mpm->share;
+  if (!share) return;
+  mpsi_mpm_meet_free(mpm);
+  mpsi_mpm_free_mates(mpm);
+  mpm->share = NULL;
+  mpsi_halo_destroy(mpm->context, &share->halo);
+  mpsi_free(mpm->context, share->first);
+  mpsi_free(mpm->context, share->border_room.item);
+  mpsi_free(mpm->context, share->rank_room.item);
+  mpsi_free(mpm->context, share->out_room.item);
+  mpsi_free(mpm->context, share->in_room.item);
+  mps_domain_destroy(&share->domain);
+  mpsi_free(mpm->context, share);
+}
+
+/* ---- before a step
+ * ------------------------------------------------------------------------------- */
+
+mps_status mpsi_mpm_share_tidy(mps_mpm *mpm, const char *function, mps_status status) {
+  if (!mpm->run.stale && !mpm->share->outdated) return status;
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status != MPS_OK || mpm->run.stale) return status;
+  mpm->boundaries.outdated = true;
+  return mpsi_mpm_share_join(mpm, function);
+}

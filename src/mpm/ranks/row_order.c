@@ -1,0 +1,44 @@
+/* row_order.c - in which order the rows of all ranks make the whole (partition.h).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+#include <string.h>
+
+/* Rows that no block has are behind the others, by their ids: particles that the caller has added.
+ */
+static int64_t list_added(const mps_mpm *mpm, int64_t first, mpsi_row_run *out) {
+  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  for (int64_t k = first; out && k < mpm->p.count; k++)
+    out[k - first] = (mpsi_row_run){
+        .at = {(int32_t)(id[k] & INT32_MAX), (int32_t)(id[k] >> 31), INT32_MAX}, .rows = 1};
+  return mpm->p.count - first;
+}
+
+int64_t mpsi_mpm_share_runs(const void *self, mpsi_row_run *out) {
+  const mps_mpm *mpm = self;
+  int64_t count = 0, rows = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    if (cells->ghost) continue;
+    if (out) {
+      out[count] = (mpsi_row_run){.rows = cells->end - cells->begin};
+      memcpy(out[count].at, cells->at, sizeof cells->at);
+    }
+    rows += cells->end - cells->begin;
+    count++;
+  }
+  return count + list_added(mpm, rows, out ? out + count : NULL);
+}
+
+void mpsi_mpm_thin_out(void *self, const uint8_t *gone) {
+  mps_mpm *mpm = self;
+  int64_t out = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    const int64_t begin = cells->begin - out;
+    for (int64_t k = cells->begin; k < cells->end; k++) out += gone[k] != 0;
+    cells->begin = begin;
+    cells->end -= out;
+  }
+  mpm->run.edited = mpm->run.stale = true;
+}

@@ -1,0 +1,225 @@
+/* tiles.c - tiles on their way between ranks (partition.h): the border is summed and sent, the interior
+ * is summed meanwhile, and then what has come is added to the nodes.
+ *
+ * A parcel has four numbers, whether its forces are apart, whether they are split, whether thin
+ * bodies part it and whether it has touches, and then the part of the tile that is in use, that of
+ * the forces where some tile of the step has them, both across thin bodies (thin_bodies.h) where some
+ * tile has these, and those of springs, body by body (penalty.c). SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "mpm/base/kernels.h"
+
+#include <string.h>
+
+enum { HEAD = 4 }; /* doubles */
+
+static int64_t parcel_doubles(const mpsi_share *share, bool apart, bool thin, int32_t springs) {
+  const int64_t bytes = (1 + apart) * (1 + thin) * (int64_t)sizeof(mpsi_node) +
+                        springs * (int64_t)sizeof(mpsi_spring_node);
+  return HEAD + (int64_t)share->most * (bytes / (int64_t)sizeof(double));
+}
+
+mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function) {
+  mpsi_share *share = mpm->share;
+  const int64_t parcel = parcel_doubles(share, true, mpm->contact.thin != 0, mpm->contact.springs) *
+                         (int64_t)sizeof(double);
+  const bool good = mpsi_room_ensure(mpm->context, &share->out_room, share->borders * parcel, 1) &&
+                    mpsi_room_ensure(mpm->context, &share->in_room, share->ghosts * parcel, 1);
+  share->out = share->out_room.item;
+  share->in = share->in_room.item;
+  return good ? MPS_OK
+              : mpsi_fail_memory(mpm->context, function,
+                                 (size_t)((share->borders + share->ghosts) * parcel));
+}
+
+/* What a tile has follows from bodies, boundaries and blocks, and so does the room of a step. */
+bool mpsi_mpm_share_goes_on(const mps_mpm *mpm) {
+  return mpm->share->ready && !mpm->run.stale && !mpm->run.edited && !mpm->share->outdated &&
+         !mpm->boundaries.outdated && mpm->contact.bodies == 0 && !mpm->settling.on &&
+         !mpsi_mpm_absorbs(mpm);
+}
+
+mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status status) {
+  mpsi_share *share = mpm->share;
+  enum { APART, THIN, SPRINGS, FOUND };
+  double found[FOUND] = {0.0};
+  if (status == MPS_OK) status = mpsi_mpm_share_parcels(mpm, function);
+  for (int64_t k = 0; status == MPS_OK && k < share->borders; k++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[share->border[k]];
+    if (cells->apart) found[APART] = 1.0;
+    if (cells->thin) found[THIN] = 1.0;
+    double springs = 0.0;
+    for (int32_t q = 0; q < cells->pairs; q++) springs += mpsi_mpm_has_springs(mpm, cells, q);
+    found[SPRINGS] = fmax(found[SPRINGS], springs);
+  }
+  status = mpsi_mpm_share_settle_step(mpm, function, status, FOUND, found);
+  share->ready = status == MPS_OK;
+  share->apart = found[APART] > 0.0;
+  share->thin = found[THIN] > 0.0;
+  share->springs = (int32_t)found[SPRINGS];
+  return status;
+}
+
+/* ---- corners of cells with particles, where bodies are near -----------------------------------
+ */
+
+mps_status mpsi_mpm_share_reached(mps_mpm *mpm, const char *function, bool known) {
+  mpsi_share *share = mpm->share;
+  const int64_t nodes = (mpm->grid.tile_nodes + 63) / 64;
+  const int64_t words = nodes + 1; /* whether thin bodies part it; less than a parcel has */
+  uint64_t *out = (uint64_t *)share->out, *in = (uint64_t *)share->in;
+  if (share->borders > 0) memset(out, 0, (size_t)(share->borders * words) * sizeof *out);
+  for (int64_t k = 0; known && k < share->borders; k++) {
+    mpsi_mpm_list_reached(mpm, share->border[k], out + k * words);
+    out[k * words + nodes] = mpm->grid.cells[share->border[k]].thin;
+  }
+  const int32_t item = (int32_t)(words * (int64_t)sizeof *out);
+  mps_status status = mpsi_halo_begin_bytes(share->halo, function, item, out, in);
+  if (status == MPS_OK) status = mpsi_halo_end_bytes(share->halo, function);
+  for (int64_t b = 0; known && status == MPS_OK && b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    if (!cells->ghost) continue;
+    mpsi_mpm_take_reached(mpm, b, in + cells->parcel * words);
+    cells->thin = in[cells->parcel * words + nodes] != 0;
+  }
+  return status;
+}
+
+/* ---- packing --------------------------------------------------------------------------------- */
+
+/* The part of a tile in use, nodes of `size` bytes, to or from a parcel, which it ends behind. */
+static double *copy_nodes(const mpsi_cell_block *cells, void *tile, size_t size, double *parcel,
+                          bool pack) {
+  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * size;
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++) {
+      char *row = (char *)tile + (size_t)mpsi_tile_index(cells->low[0], j, k) * size;
+      memcpy(pack ? (void *)parcel : (void *)row, pack ? (void *)row : (void *)parcel, bytes);
+      parcel += bytes / sizeof *parcel;
+    }
+  return parcel;
+}
+
+static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *parcel, bool pack) {
+  return copy_nodes(cells, tile, sizeof *tile, parcel, pack);
+}
+
+/* Tiles and those across; those of forces where they are apart. */
+static double *copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
+                          bool pack) {
+  parcel = copy_tile(cells, worker->tile, parcel, pack);
+  if (cells->apart) parcel = copy_tile(cells, worker->force, parcel, pack);
+  if (!cells->thin) return parcel;
+  parcel = copy_tile(cells, worker->across_tile, parcel, pack);
+  if (cells->apart) parcel = copy_tile(cells, worker->across_force, parcel, pack);
+  return parcel;
+}
+
+static void copy_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker, double *parcel, bool pack) {
+  for (int32_t q = 0; q < cells->pairs; q++)
+    if (mpsi_mpm_has_springs(mpm, cells, q))
+      parcel = copy_nodes(
+          cells,
+          mpsi_mpm_spring_tile(mpm, worker, mpm->contact.cell_pair[cells->first_pair + q].body),
+          sizeof(mpsi_spring_node), parcel, pack);
+}
+
+static void pack(void *data, int64_t k, int32_t number) {
+  mps_mpm *mpm = data;
+  mpsi_share *share = mpm->share;
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  const mpsi_cell_block *cells = &mpm->grid.cells[share->border[k]];
+  double *parcel = share->out + k * (share->item / (int64_t)sizeof *share->out);
+  mpsi_mpm_clear_springs(mpm, cells, worker);
+  mpm->kernels->tile[mpm->def.geometry][mpm->def.spline - 2](mpm, share->border[k], number);
+  parcel[0] = cells->apart;
+  parcel[1] = cells->split;
+  parcel[2] = cells->thin;
+  parcel[3] = cells->touched;
+  parcel = copy_tiles(cells, worker, parcel + HEAD, true);
+  copy_springs(mpm, cells, worker, parcel, true);
+}
+
+mps_status mpsi_mpm_share_send(mps_mpm *mpm, const char *function) {
+  mpsi_share *share = mpm->share;
+  share->item = (int32_t)(parcel_doubles(share, share->apart, share->thin, share->springs) *
+                          (int64_t)sizeof(double));
+  mpsi_parallel_for(mpm->context, share->borders, pack, mpm);
+  share->lost = mpsi_halo_begin_bytes(share->halo, function, share->item, share->out, share->in);
+  return share->lost;
+}
+
+/* Sums of another kind, that `sum` puts into the tiles of a worker. */
+typedef struct sums {
+  mps_mpm *mpm;
+  mpsi_mpm_task sum;
+} sums;
+
+static double *parcel_of(const mpsi_share *share, bool ghost, int64_t number) {
+  return (ghost ? share->in : share->out) + number * (share->item / (int64_t)sizeof *share->out);
+}
+
+static void copy_sums(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
+                      bool pack) {
+  parcel = copy_tile(cells, worker->tile, parcel + HEAD, pack);
+  if (cells->thin) copy_tile(cells, worker->across_tile, parcel, pack);
+}
+
+static void pack_sums(void *data, int64_t k, int32_t number) {
+  const sums *s = data;
+  const mpsi_share *share = s->mpm->share;
+  s->sum(s->mpm, share->border[k], number);
+  copy_sums(&s->mpm->grid.cells[share->border[k]], &s->mpm->grid.workers[number],
+            parcel_of(share, false, k), true);
+}
+
+void mpsi_mpm_share_send_sums(mps_mpm *mpm, mpsi_mpm_task sum) {
+  mpsi_share *share = mpm->share;
+  sums s = {mpm, sum};
+  share->item = (int32_t)(parcel_doubles(share, false, share->thin, 0) * (int64_t)sizeof(double));
+  mpsi_parallel_for(mpm->context, share->borders, pack_sums, &s);
+  if (share->lost == MPS_OK)
+    share->lost =
+        mpsi_halo_begin_bytes(share->halo, "mps_mpm_step", share->item, share->out, share->in);
+}
+
+bool mpsi_mpm_share_take_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
+  const mpsi_share *share = mpm->share;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  if (cells->parcel < 0) {
+    sum(mpm, b, number);
+    return true;
+  }
+  if (cells->ghost && share->lost != MPS_OK) return false; /* the step has failed */
+  copy_sums(cells, &mpm->grid.workers[number], parcel_of(share, cells->ghost, cells->parcel),
+            false);
+  return true;
+}
+
+void mpsi_mpm_share_receive(mps_mpm *mpm) {
+  mpsi_share *share = mpm->share;
+  if (share->lost == MPS_OK) share->lost = mpsi_halo_end_bytes(share->halo, "mps_mpm_step");
+}
+
+/* ---- to the nodes ---------------------------------------------------------------------------- */
+
+void mpsi_mpm_share_scatter(mps_mpm *mpm, int64_t b, int32_t number) {
+  mpsi_share *share = mpm->share;
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  if (cells->parcel < 0) {
+    mpsi_mpm_scatter_springs(mpm, b, number);
+    return;
+  }
+  if (cells->ghost && share->lost != MPS_OK) return; /* the step has failed */
+  double *parcel = (cells->ghost ? share->in : share->out) +
+                   cells->parcel * (share->item / (int64_t)sizeof *share->out);
+  cells->apart = parcel[0] != 0.0;
+  cells->split = parcel[1] != 0.0;
+  cells->thin = parcel[2] != 0.0;
+  cells->touched = parcel[3] != 0.0;
+  parcel = copy_tiles(cells, worker, parcel + HEAD, false);
+  copy_springs(mpm, cells, worker, parcel, false);
+  mpm->kernels->flush(mpm, b, number);
+  mpsi_mpm_add_springs(mpm, cells, worker);
+}

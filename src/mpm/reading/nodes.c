@@ -1,0 +1,186 @@
+/* nodes.c - the nodes of the grid for a reader (mps/grid.h): the particles' sums of the present
+ * state, Nakamura (23)-(25), (29), with the forces apart from the momenta. What is changed on the
+ * way is scratch, or what the next step would do first. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+#include "mpm/particles/particles.h"
+
+#include <mps/grid.h>
+
+mps_grid *mps_mpm_grid(mps_mpm *mpm) { return mpm ? &mpm->reader : NULL; }
+
+mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out, size_t size) {
+  if (!grid) return MPS_ERROR_ARGUMENT;
+  const mps_mpm *mpm = grid->mpm;
+  mps_grid_info info = {.cell = mpm->def.cell, .dim = mpm->dim, .spline = mpm->def.spline};
+  for (int c = 0; c < mpm->dim; c++) info.origin[c] = mpm->def.origin[c];
+  return mpsi_out_write(mpm->context, "mps_grid_get_info", out, size, &info, sizeof info);
+}
+
+/* The sums themselves, when all is known. */
+static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
+  mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_springs};
+  if (mpm->share) {
+    pass.scatter = mpsi_mpm_share_scatter;
+    pass.arrive = mpsi_mpm_share_receive;
+    const mps_status status = mpsi_mpm_share_send(mpm, function);
+    if (status != MPS_OK) return status;
+  }
+  mpsi_mpm_run_pass(mpm, &pass);
+  return mpm->share ? mpm->share->lost : MPS_OK;
+}
+
+/* Sums of mass, momentum and force at the nodes. `status`: status of the call so far here;
+ * collective. */
+static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status status) {
+  status = mpsi_mpm_share_settle(mpm, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_tidy(mpm, function);
+  if (status == MPS_OK && mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
+  if (status == MPS_OK && mpm->run.stale) {
+    status = mpsi_mpm_sort(mpm, function);
+    mpm->boundaries.outdated = true;
+  }
+  if (status != MPS_OK) return status; /* on all ranks */
+  mpm->grid.apart = true;
+  status = mpsi_mpm_evaluate_signals(mpm, function, mps_mpm_dt(mpm), false);
+  status = mpsi_mpm_update_holds(mpm, function, status);
+  status = mpsi_mpm_find_near(mpm, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
+  if (mpm->share) status = mpsi_mpm_share_ready(mpm, function, status);
+  if (status == MPS_OK) status = sum_nodes(mpm, function);
+  mpm->grid.apart = false;
+  return status;
+}
+
+typedef struct node {
+  double x[3], v[3], f[3], mass;
+} node;
+
+/* Node k of the block g; false where no particle reaches it. */
+static bool read_node(const mps_mpm *mpm, int64_t g, int k, node *out) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  if (nodes->side < 0) return false; /* the tile's part over it is not in use */
+  const double *sum = mpm->grid.node[mpsi_first_node(mpm, g) + k];
+  const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + k];
+  const double weight = sum[MPSI_MASS] + side[MPSI_EXCESS];
+  if (!(weight > 0.0)) return false;
+  const double carried = mpm->by_weight ? weight : mpsi_carried_mass(sum[MPSI_MASS], weight);
+  mpsi_node_place(mpm, nodes->at, k, out->x);
+  out->mass = sum[MPSI_MASS];
+  for (int c = 0; c < 3; c++) {
+    out->v[c] = c < mpm->dim ? sum[MPSI_VECTOR + c] / carried : 0.0;
+    out->f[c] = c < mpm->dim ? side[MPSI_VECTOR + c] : 0.0;
+  }
+  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
+    const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
+    for (int c = 0; c < mpm->dim && at->mass != 0.0; c++) out->f[c] += at->force[c];
+  }
+  return true;
+}
+
+static void put(double *array, int64_t n, const double *value) {
+  for (int c = 0; array && c < 3; c++) array[3 * n + c] = value[c];
+}
+
+mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity, int64_t *count, double *position,
+                              double *mass, double *velocity, double *force) {
+  if (!grid) return MPS_ERROR_ARGUMENT;
+  mps_mpm *mpm = grid->mpm;
+  mps_status status = MPS_OK;
+  if (capacity < 0 || !count)
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "capacity is %lld and count %s, must be >= 0 and given", (long long)capacity,
+                       count ? "given" : "NULL");
+  status = make_sums(mpm, __func__, status);
+  if (status != MPS_OK) return status;
+  int64_t n = 0;
+  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++)
+    for (int k = 0; k < mpm->grid.block_nodes; k++) {
+      if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) break;
+      node at;
+      if (!read_node(mpm, g, k, &at)) continue;
+      if (n < capacity) {
+        put(position, n, at.x);
+        put(velocity, n, at.v);
+        put(force, n, at.f);
+        if (mass) mass[n] = at.mass;
+      }
+      n++;
+    }
+  *count = n;
+  return MPS_OK;
+}
+
+/* ---- as a set -------------------------------------------------------------------------------- */
+
+static mps_status check_set(const mps_mpm *mpm, const char *function, mps_particles *set) {
+  if (!set || mpsi_particles_context(set) != mpm->context || mps_particles_dim(set) != mpm->dim)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "set is %s, must be one of this context with %d dimensions",
+                     set ? "of another context or dimension" : "NULL", mpm->dim);
+  return mpsi_particles_check_hold(set, function, MPSI_USE_MOVE);
+}
+
+/* As many particles as nodes. */
+static mps_status resize(const mps_mpm *mpm, const char *function, mps_particles *set,
+                         int64_t count, const double *x) {
+  const int64_t have = mps_particles_count(set);
+  if (count < have) {
+    const int64_t *id = mpsi_particles_integers(set, "id");
+    return mpsi_as(mpm->context, function, mps_particles_remove(set, have - count, id + count));
+  }
+  double *places = mpsi_alloc(mpm->context, (count - have) * mpm->dim, sizeof *places);
+  if (!places) return mpsi_fail_memory(mpm->context, function, (size_t)(count - have) * 24);
+  for (int64_t k = have; k < count; k++)
+    for (int c = 0; c < mpm->dim; c++) places[(k - have) * mpm->dim + c] = x[3 * k + c];
+  const mps_status status =
+      mpsi_as(mpm->context, function, mps_particles_append(set, count - have, places));
+  mpsi_free(mpm->context, places);
+  return status;
+}
+
+static void write_columns(mps_particles *set, const char *name, int64_t count, int32_t width,
+                          const double *from) {
+  for (int32_t c = 0; c < 3; c++) {
+    double *column = mpsi_particles_column(set, name, c);
+    for (int64_t k = 0; column && k < count; k++) column[k] = from[width * k + c];
+  }
+}
+
+mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
+  if (!grid) return MPS_ERROR_ARGUMENT;
+  mps_mpm *mpm = grid->mpm;
+  int64_t count = 0;
+  mps_status status = mpsi_mpm_share_settle(mpm, __func__, check_set(mpm, __func__, set));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__,
+                     mps_grid_get_nodes(grid, 0, &count, NULL, NULL, NULL, NULL));
+  if (status != MPS_OK) return status;
+  double *memory = mpsi_alloc(mpm->context, count * 10, sizeof *memory);
+  if (!memory) status = mpsi_fail_memory(mpm->context, __func__, (size_t)count * 80);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, memory);
+    return status;
+  }
+  const int32_t fields = mps_particles_field_count(set);
+  double *x = memory, *v = x + 3 * count, *f = v + 3 * count, *mass = f + 3 * count;
+  status = mpsi_as(mpm->context, __func__, mps_grid_get_nodes(grid, count, &count, x, mass, v, f));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "mass", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "velocity", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "force", mpm->dim));
+  if (status == MPS_OK) status = resize(mpm, __func__, set, count, x);
+  if (status == MPS_OK) {
+    write_columns(set, "position", count, 3, x);
+    write_columns(set, "velocity", count, 3, v);
+    write_columns(set, "force", count, 3, f);
+    write_columns(set, "mass", count, 1, mass);
+  } else {
+    mpsi_particles_drop_fields(set, fields);
+  }
+  mpsi_free(mpm->context, memory);
+  return mpsi_mpm_share_settle(mpm, __func__, status);
+}

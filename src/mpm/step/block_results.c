@@ -1,0 +1,80 @@
+/* block_results.c - what the blocks have found in a step, here and on the other ranks: the largest speed,
+ * and a particle that ends the step. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+#include "mpm/particles/particles.h"
+#include "mpm/contact/sweeps.h"
+
+#include "core/particles/particles_internal.h"
+
+/* The particle that ends the step, of which the message says what is wrong with it. */
+static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k, const char *what) {
+  const mpsi_columns *p = &mpm->p;
+  const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
+  const bool space = mpm->dim == 3;
+  const double z = space ? p->x[2][k] : 0.0, vz = space ? p->v[2][k] : 0.0;
+  const mps_status status = mpsi_fail(
+      mpm->context, function, MPS_ERROR_DIVERGED,
+      "step %lld, t = %.6g s: particle %lld at (%.6g, %.6g, %.6g) m with velocity (%.4g, %.4g, "
+      "%.4g) m/s and volume %.4g m3 %s; dt was %.4g s, %.3g of the Courant limit: check dt, the "
+      "contact stiffness and the initial stress",
+      (long long)mpm->run.steps, mpm->run.time, id, p->x[0][k], p->x[1][k], z, p->v[0][k],
+      p->v[1][k], vz, p->V[k], what, mpm->run.dt, mpm->run.dt * mpm->run.speed * mpm->grid.inverse);
+  mpsi_fail_where(mpm->context, mpm->run.steps, id);
+  return status;
+}
+
+/* On several ranks: what has been found anywhere. An error of one is that of all. */
+static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, int64_t bad,
+                                int64_t lost) {
+  mpsi_share *share = mpm->share;
+  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FOUND };
+  double most[MPSI_SWEEP_SUMS];
+  mpsi_mpm_sweep_sums(mpm, most);
+  mps_status own = MPS_OK, status = share->lost;
+  if (bad >= 0)
+    own = report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
+  else if (lost >= 0)
+    own = report_bad(mpm, function, lost, "has left the domain");
+  if (bad < 0) mpsi_mpm_let_go(mpm);
+  double found[FOUND] = {speed,
+                         mpm->run.stale,
+                         bad >= 0,
+                         lost >= 0,
+                         mpm->run.edited,
+                         mpsi_cancelled(mpm->context),
+                         most[MPSI_SWEEP_CHANGED],
+                         most[MPSI_SWEEP_IMPULSES]};
+  status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
+  mpm->run.broken = status != MPS_OK || found[BAD] > 0.0;
+  if (status != MPS_OK) return status;
+  mpm->run.stale = found[STALE] > 0.0;
+  mpm->run.edited = found[EDITED] > 0.0;
+  share->cancel = found[CANCEL] > 0.0;
+  mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
+  if (!mpm->run.broken) mpm->run.speed = found[SPEED];
+  mpm->run.lost = mpm->run.lost || (!mpm->run.broken && found[LOST] > 0.0);
+  if (mpm->run.lost) mpm->run.stale = true;
+  if (!mpm->run.broken && found[LOST] == 0.0) return MPS_OK;
+  if (mpm->run.broken && bad < 0) own = MPS_OK; /* the others have worse */
+  return mpsi_domain_settle(share->domain, function, own);
+}
+
+mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
+  double speed = 0.0;
+  int64_t bad = -1, lost = -1;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    int64_t *which = cells->lost ? &lost : &bad;
+    if (cells->bad >= 0 && *which < 0) *which = cells->bad;
+    if (cells->left) mpm->run.stale = true;
+    if (cells->speed > speed) speed = cells->speed;
+  }
+  if (mpm->share) return collect_ranks(mpm, function, speed, bad, lost);
+  mpm->run.broken = bad >= 0;
+  if (bad >= 0)
+    return report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
+  mpm->run.speed = speed;
+  if (lost < 0) return MPS_OK;
+  mpm->run.lost = mpm->run.stale = true;
+  return report_bad(mpm, function, lost, "has left the domain");
+}

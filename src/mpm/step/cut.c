@@ -1,0 +1,160 @@
+/* cut.c - before each step: which blocks have particles with cut supports, and which sum the forces
+ * apart from the momenta (see mpsi_cell_block).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+/* Nodes low to high - 1 of a tile. */
+typedef struct box {
+  int low[3], high[3];
+} box;
+
+static bool is_empty(const box *a) {
+  return a->low[0] >= a->high[0] || a->low[1] >= a->high[1] || a->low[2] >= a->high[2];
+}
+
+static box common(const box *a, const box *b) {
+  box out;
+  for (int c = 0; c < 3; c++) {
+    out.low[c] = a->low[c] > b->low[c] ? a->low[c] : b->low[c];
+    out.high[c] = a->high[c] < b->high[c] ? a->high[c] : b->high[c];
+  }
+  return out;
+}
+
+/* Of the nodes that the block's stencils may use, those of the node block at corner q of the tile
+ * from its `low` to its `high`. */
+static box box_under(const mpsi_cell_block *cells, int q, const int32_t *low, const int32_t *high) {
+  box used, out;
+  for (int c = 0; c < 3; c++) {
+    const int first = q >> c & 1 ? MPSI_SIDE : 0;
+    used.low[c] = cells->low[c], used.high[c] = cells->high[c];
+    out.low[c] = first + low[c], out.high[c] = first + high[c];
+  }
+  return common(&used, &out);
+}
+
+/* Where the stencils that have a node in a body may have nodes; empty where none has. */
+static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  const int reach = mpm->def.spline;
+  box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    if (!nodes->inside) continue;
+    const box in = box_under(cells, q, nodes->low, nodes->high);
+    for (int c = 0; c < 3 && !is_empty(&in); c++) {
+      if (in.low[c] - reach < out.low[c]) out.low[c] = in.low[c] - reach;
+      if (in.high[c] + reach > out.high[c]) out.high[c] = in.high[c] + reach;
+    }
+  }
+  return out;
+}
+
+/* Whether the stencils may have nodes beside a thin body. */
+static bool near_thin(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  bool any = false;
+  for (int q = 0; q < 1 << mpm->dim; q++) any = any || mpm->grid.nodes[cells->to[q]].thin;
+  return any && mpm->contact.thin;
+}
+
+/* Forces are wanted apart from the momenta at all nodes. */
+static bool all_apart(const mps_mpm *mpm) { return mpsi_forces_apart(mpm) || mpm->grid.apart; }
+
+/* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
+static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
+  static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
+  const bool all = all_apart(mpm) || mpm->by_weight || mpm->flip > 0.0 || (finds && cells->edge);
+  bool rough = false;
+  for (int32_t k = 0; cells->inside && k < cells->pairs; k++) {
+    const int32_t body = mpm->contact.cell_pair[cells->first_pair + k].body;
+    const mps_contact *contact = mpm->contact.handle[body];
+    rough = rough || (contact->def.friction > 0.0 && !mpsi_by_impulses(contact));
+  }
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    box under = box_under(cells, q, low, high);
+    under = common(&under, near);
+    const bool touched = !is_empty(&under);
+    if (!touched && !cells->edge && !mpm->standard && !all_apart(mpm)) continue;
+    if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
+    nodes->split = nodes->split || all || (touched && (rough || cells->pairs > 1));
+  }
+}
+
+/* Which blocks keep the fits of their particles; false: memory refused. */
+static bool list_fits(mps_mpm *mpm) {
+  mpsi_grid *grid = &mpm->grid;
+  int64_t count = 0;
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    mpsi_cell_block *cells = &grid->cells[b];
+    cells->first_fit = cells->inside ? count : -1;
+    if (cells->inside) count += cells->end - cells->begin;
+  }
+  if (!mpsi_room_ensure(mpm->context, &grid->fit_room, count, sizeof *grid->fit) ||
+      !mpsi_room_ensure(mpm->context, &grid->fitted_room, count, sizeof *grid->fitted))
+    return false;
+  grid->fit = grid->fit_room.item;
+  grid->fitted = grid->fitted_room.item;
+  return true;
+}
+
+/* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
+ * Split: friction at nodes needs the velocity before the forces; so do the energy budget, damping
+ * by forces, FLIP, and the transfer by weights, which divides momentum and force by different
+ * masses, as nodes of small mass between two bodies do (node_update.c). */
+static mps_status find_cut(mps_mpm *mpm, const char *function) {
+  bool finds = false; /* an absorbing wall asks for the forces of its first step */
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    const mpsi_hold *hold = &mpm->boundaries.hold[k];
+    finds = finds || (hold->finds && !(hold->settle > 0.0));
+  }
+  for (int64_t g = 0; g < mpm->grid.node_count; g++)
+    mpm->grid.nodes[g].side = -1, mpm->grid.nodes[g].split = false;
+  mpm->grid.side_count = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    const box near = near_bodies(mpm, cells);
+    cells->inside = !is_empty(&near);
+    cells->thin = cells->ghost ? cells->thin && mpm->contact.thin : near_thin(mpm, cells);
+    cells->cut = cells->edge || cells->inside || cells->thin || mpm->standard;
+    if (cells->cut || all_apart(mpm)) mark_cut(mpm, cells, &near, finds);
+  }
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    cells->split = false;
+    for (int q = 0; q < 1 << mpm->dim; q++)
+      cells->split = cells->split || mpm->grid.nodes[cells->to[q]].split;
+    cells->apart = cells->split || cells->cut;
+  }
+  if (!mpsi_mpm_list_across(mpm) || !list_fits(mpm) ||
+      !mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
+                        mpm->grid.side_count * mpm->grid.block_nodes, sizeof *mpm->grid.side))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)(mpm->grid.side_count * mpm->grid.block_nodes) *
+                                sizeof *mpm->grid.side);
+  mpm->grid.side = mpm->grid.side_room.item;
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
+  if (!mpsi_mpm_spring_room(mpm) && status == MPS_OK)
+    status = mpsi_fail_memory(mpm->context, function,
+                              (size_t)(mpm->contact.bodies * mpm->grid.tile_nodes) *
+                                  sizeof(mpsi_spring_node));
+  static const mpsi_pass pass = {
+      .update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached, .ghosts = true};
+  if (mpm->contact.bodies > 0) {
+    if (status == MPS_OK) status = mpsi_mpm_list_pairs(mpm, function);
+    if (status == MPS_OK && !mpsi_mpm_begin_across(mpm))
+      status = mpsi_fail_memory(mpm->context, function,
+                                (size_t)(mpm->contact.node_pair_count * mpm->grid.block_nodes) *
+                                    sizeof *mpm->contact.sight);
+    if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
+    if (mpm->share) { /* all ranks, whatever has become of this one */
+      for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
+        mpm->grid.cells[b].thin = near_thin(mpm, &mpm->grid.cells[b]);
+      const mps_status lost = mpsi_mpm_share_reached(mpm, function, status == MPS_OK);
+      if (lost != MPS_OK) status = lost;
+    }
+  }
+  return status == MPS_OK ? find_cut(mpm, function) : status;
+}

@@ -1,0 +1,98 @@
+/* damping.c - see damping.h. Local damping opposes the motion by a fraction of the unbalanced force
+ * (Cundall 1987), viscous damping by the momentum times a rate. Neither acts on components that a
+ * boundary prescribes, and both come after all other forces: what boundaries and bodies exert is
+ * then as if there were none. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+#include <string.h>
+
+void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
+  const mpsi_node *side =
+      nodes->side < 0 ? NULL
+                      : (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+  const double local = mpm->def.local_damping;
+  const double keeps = 1.0 / (1.0 + mpm->def.viscous_damping * mpm->run.dt);
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    if (!(node[k][MPSI_MASS] > 0.0)) continue;
+    for (int c = 0; c < mpm->dim; c++) {
+      double *v = &node[k][MPSI_VECTOR + c];
+      if (fixed[k] >> c & 1) continue;
+      if (local > 0.0) { /* at most to a stop */
+        const double change = local * fabs(*v - side[k][MPSI_VECTOR + c]);
+        *v = *v > 0.0 ? fmax(*v - change, 0.0) : fmin(*v + change, 0.0);
+      }
+      *v *= keeps;
+    }
+  }
+}
+
+/* ---- distance from equilibrium --------------------------------------------------------------- */
+
+/* N, the sum of the sizes of gravity and loads on the particles of a block. */
+static double applied_to_particles(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  const mpsi_columns *p = &mpm->p;
+  double sum = 0.0;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    double square = 0.0;
+    for (int c = 0; c < mpm->dim; c++) {
+      const double f = p->m[k] * mpm->def.gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
+      square += f * f;
+    }
+    sum += sqrt(square);
+  }
+  return sum;
+}
+
+mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function) {
+  mpsi_settling *s = &mpm->settling;
+  if (!s->on) return MPS_OK;
+  if (!mpsi_room_ensure(mpm->context, &s->nodes_room, mpsi_all_nodes(&mpm->grid), sizeof *s->nodes))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)mpsi_all_nodes(&mpm->grid) * sizeof *s->nodes);
+  s->nodes = s->nodes_room.item;
+  memset(&s->applied, 0, sizeof s->applied);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+    if (!mpm->grid.cells[b].ghost)
+      mpsi_exact_add(&s->applied, applied_to_particles(mpm, &mpm->grid.cells[b]));
+  return MPS_OK;
+}
+
+static double size_of(const double *v) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/* Of the forces of bodies on node k. */
+static double contact_force(const mps_mpm *mpm, const mpsi_node_block *nodes, int k) {
+  double sum = 0.0;
+  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
+    const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
+    const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
+    sum += size_of(at->force);
+    if (mpm->contact.handle[pair->body]->def.friction > 0.0 && pair->mass != 0.0)
+      sum += fabs(at->mass) * size_of(at->slip);
+  }
+  return sum;
+}
+
+void mpsi_mpm_measure_balance(mps_mpm *mpm, int64_t g, const uint8_t *fixed,
+                              const mpsi_node *held) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
+  const mpsi_node *side = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+  mpsi_node_balance sum = {0};
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    const double m = node[k][MPSI_MASS];
+    double free[3] = {0.0}, by_boundary[3] = {0.0};
+    if (!(m > 0.0)) continue;
+    for (int c = 0; c < mpm->dim; c++) {
+      const double v = node[k][MPSI_VECTOR + c];
+      by_boundary[c] = v - held[k][MPSI_VECTOR + c];
+      if (!(fixed[k] >> c & 1)) free[c] = v - side[k][MPSI_VECTOR + c];
+      sum.kinetic += 0.5 * m * v * v;
+    }
+    sum.unbalanced += m * size_of(free) / mpm->run.dt;
+    sum.applied += m * size_of(by_boundary) / mpm->run.dt + contact_force(mpm, nodes, k);
+  }
+  mpm->settling.nodes[g] = sum;
+}

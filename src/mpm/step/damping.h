@@ -1,0 +1,38 @@
+/* damping.h - damping at the nodes, once all forces and what is held are known; and how far the
+ * nodes are from equilibrium, for mps_mpm_settle. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_DAMPING_H
+#define MPSI_MPM_DAMPING_H
+
+#include "mpm/grid/blocks.h"
+#include "core/base/exact.h"
+
+/* A block of nodes in a step of mps_mpm_settle. */
+typedef struct mpsi_node_balance {
+  double kinetic;    /* J, after the step */
+  double unbalanced; /* N, sum over nodes of the size of the force that nothing holds */
+  double applied;    /* N, likewise of what bodies and boundaries exert */
+} mpsi_node_balance;
+
+typedef struct mpsi_settling {
+  bool on;  /* in mps_mpm_settle: bodies and boundaries are at rest */
+  bool cut; /* a call was cancelled, and no step has been taken since */
+  /* Of the call that was cut, for the one that goes on: */
+  bool from_rest;
+  double before;        /* J, kinetic energy of the last step; 0 from rest */
+  int64_t steps, peaks; /* so far */
+  mpsi_exact applied;   /* N, sum of the sizes of gravity and loads on this rank's particles */
+  mpsi_node_balance *nodes;
+  mpsi_room nodes_room;
+} mpsi_settling;
+
+/* settle.c: before a step of another kind the particles of a cut mps_mpm_settle stop. */
+void mpsi_mpm_leave_settling(mps_mpm *mpm);
+/* Before a step, where settling: room, and what is applied to the particles, of which some may
+ * leave in the step. */
+mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function);
+/* Block g, bit c of `fixed`: component c is prescribed. `held` has the velocities before the
+ * boundaries. */
+void mpsi_mpm_measure_balance(mps_mpm *mpm, int64_t g, const uint8_t *fixed, const mpsi_node *held);
+void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed);
+
+#endif

@@ -1,0 +1,293 @@
+/* settle.c - static equilibrium by dynamic relaxation with kinetic damping: the particles swing
+ * towards equilibrium, and where their kinetic energy has passed a peak they are stopped, since
+ * there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
+#include "settle.h"
+
+#include "mpm/particles/particles.h"
+
+#include <mps/mpm_settle.h>
+
+#include <string.h>
+
+#define TOLERANCE 1e-3
+#define MOST_STEPS 20000
+
+static const mps_mpm_settle_def settle_defaults = {
+    .struct_size = sizeof(mps_mpm_settle_def), .max_steps = MOST_STEPS, .tolerance = NAN};
+
+mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_mpm_settle_def, def, size, &settle_defaults);
+}
+
+/* ---- bodies stand still ---------------------------------------------------------------------- */
+
+typedef struct motions {
+  double v[MPS_MPM_MAX_CONTACTS][3], spin[MPS_MPM_MAX_CONTACTS][3];
+} motions;
+
+static mps_status check_bodies(mps_mpm *mpm, const char *function) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    if (mpm->contact.body[b]->def.motion == MPS_BODY_MOTION_FREE)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
+                       "body %d moves freely: only what is held or driven stands still while the "
+                       "particles settle",
+                       b);
+  return MPS_OK;
+}
+
+static void stop_bodies(mps_mpm *mpm, motions *kept) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_pose *pose = &mpm->contact.body[b]->pose;
+    memcpy(kept->v[b], pose->v, sizeof pose->v);
+    memcpy(kept->spin[b], pose->spin, sizeof pose->spin);
+    memset(pose->v, 0, sizeof pose->v);
+    memset(pose->spin, 0, sizeof pose->spin);
+  }
+}
+
+static void let_bodies_go(mps_mpm *mpm, const motions *kept) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_pose *pose = &mpm->contact.body[b]->pose;
+    memcpy(pose->v, kept->v[b], sizeof pose->v);
+    memcpy(pose->spin, kept->spin[b], sizeof pose->spin);
+  }
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static void stop_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
+  for (int c = 0; c < mpm->dim; c++) memset(mpm->p.v[c] + cells->begin, 0, bytes);
+  for (int c = 0; c < 9; c++)
+    if (mpm->p.L[c]) memset(mpm->p.L[c] + cells->begin, 0, bytes);
+}
+
+/* All particles stop; the budget counts their kinetic energy as damped. */
+static void stop_particles(mps_mpm *mpm) {
+  const mpsi_columns *p = &mpm->p;
+  for (int64_t k = 0; mpm->energy.counts && k < p->count; k++)
+    for (int c = 0; c < mpm->dim; c++) {
+      const double kinetic = 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
+      mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_KINETIC, -kinetic);
+      mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_DAMPING_LOSS, kinetic);
+    }
+  mpsi_mpm_for_cells(mpm, stop_block);
+}
+
+/* ---- settling -------------------------------------------------------------------------------- */
+
+void mpsi_mpm_leave_settling(mps_mpm *mpm) {
+  if (!mpm->settling.cut) return;
+  mpm->settling.cut = false;
+  stop_particles(mpm);
+}
+
+/* What stopping changes, for a first step that cannot be made: ids, velocities and slopes in the
+ * order of the particles. NULL: no memory. */
+static double *keep_motion(mps_mpm *mpm, const char *function) {
+  const int64_t n = mpm->p.count;
+  double *kept = mpsi_alloc(mpm->context, 13 * n, sizeof *kept);
+  if (!kept) {
+    (void)mpsi_fail_memory(mpm->context, function, (size_t)n * 13 * sizeof *kept);
+    return NULL;
+  }
+  const size_t bytes = (size_t)n * sizeof *kept;
+  memcpy(kept, mpsi_particles_integers(mpm->particles, "id"), bytes);
+  for (int c = 0; c < 12; c++) {
+    const double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
+    if (column) memcpy(kept + (c + 1) * n, column, bytes);
+  }
+  return kept;
+}
+
+static void put_motion_back(mps_mpm *mpm, const double *kept) {
+  const int64_t n = mpm->p.count;
+  for (int64_t k = 0; k < n; k++) {
+    int64_t id;
+    memcpy(&id, &kept[k], sizeof id);
+    const int64_t at = mps_particles_index(mpm->particles, id); /* the step may have sorted */
+    for (int c = 0; c < 12 && at >= 0; c++) {
+      double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
+      if (column) column[at] = kept[(c + 1) * n + k];
+    }
+  }
+}
+
+mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, double dt) {
+  if (!mpm->settling.cut) return mpsi_mpm_take_step(mpm, function, dt);
+  const int64_t steps = mpm->run.steps;
+  const mpsi_energy energy = mpm->energy;
+  double *motion = NULL;
+  if (!mpm->share && !(motion = keep_motion(mpm, function))) return MPS_ERROR_MEMORY;
+  mpsi_mpm_leave_settling(mpm);
+  const mps_status status = mpsi_mpm_take_step(mpm, function, dt);
+  if (motion && status != MPS_OK && mpm->run.steps == steps && !mpm->run.broken) {
+    put_motion_back(mpm, motion);
+    memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
+    mpm->settling.cut = true;
+  }
+  mpsi_free(mpm->context, motion);
+  return status;
+}
+
+enum { UNBALANCED, APPLIED, KINETIC, SUMS };
+
+/* The sizes of the forces that bodies give by impulses to the particles here (N). */
+static void add_impulses(const mps_mpm *mpm, mpsi_exact *sum) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  for (int64_t n = 0; n < all->touch_count; n++) {
+    const mpsi_impulse *c = &all->touch[n].impulse;
+    if (!(c->push > 0.0) || all->touch[n].pair < 0) continue;
+    double square = 0.0;
+    for (int a = 0; a < 3; a++) {
+      const double by = c->push * c->normal[a] + c->rub[a];
+      square += by * by;
+    }
+    mpsi_exact_add(sum, sqrt(square) / mpm->run.dt);
+  }
+}
+
+/* Of all blocks, on all ranks: exact, as who has which block must not matter. */
+static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) {
+  mpsi_exact sum[SUMS];
+  mps_status status = MPS_OK;
+  memset(sum, 0, sizeof sum);
+  sum[APPLIED] = mpm->settling.applied;
+  add_impulses(mpm, &sum[APPLIED]);
+  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
+    const mpsi_node_balance *n = &mpm->settling.nodes[g];
+    if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) continue;
+    mpsi_exact_add(&sum[UNBALANCED], n->unbalanced);
+    mpsi_exact_add(&sum[APPLIED], n->applied);
+    mpsi_exact_add(&sum[KINETIC], n->kinetic);
+  }
+  if (mpm->share) status = mpsi_domain_sum_exact(mpm->share->domain, function, SUMS, sum);
+  for (int k = 0; k < SUMS; k++) sums[k] = mpsi_exact_value(&sum[k]);
+  return status;
+}
+
+/* One step; the time of the run stands still. */
+static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now) {
+  const double time = mpm->run.time;
+  mps_status status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
+  mpm->run.time = time;
+  double sums[SUMS];
+  if (status == MPS_OK) status = sum_balance(mpm, function, sums);
+  if (status != MPS_OK) return status;
+  now->kinetic = sums[KINETIC];
+  now->applied = sums[APPLIED];
+  now->unbalanced = sums[UNBALANCED] > 0.0 ? sums[UNBALANCED] / now->applied : 0.0;
+  now->steps = ++mpm->settling.steps;
+  return MPS_OK;
+}
+
+static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_settle_def *def,
+                              mps_mpm_settled *now) {
+  mpsi_settling *settling = &mpm->settling;
+  while (settling->steps < def->max_steps) {
+    const mps_status status = relax(mpm, function, now);
+    if (status != MPS_OK) return status;
+    const bool balanced = now->unbalanced <= def->tolerance;
+    if (balanced && settling->from_rest) return MPS_OK;
+    settling->from_rest = balanced || now->kinetic < settling->before;
+    settling->before = settling->from_rest ? 0.0 : now->kinetic;
+    now->peaks = settling->peaks += settling->from_rest;
+    if (settling->from_rest) stop_particles(mpm);
+    if (now->steps % 100 == 0)
+      mpsi_progress(mpm->context, "mpm settle", mpm->run.steps, (double)now->steps,
+                    (double)def->max_steps);
+    if (mpm->share ? !mpm->share->cancel : !mpsi_cancelled(mpm->context)) continue;
+    settling->cut = true;
+    return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
+                     "stopped by the cancel hook after %lld steps, the unbalanced force being "
+                     "%.3g of the applied",
+                     (long long)now->steps, now->unbalanced);
+  }
+  return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
+                   "no equilibrium after %lld steps: the unbalanced force is %.3g of the applied "
+                   "%.4g N, above the tolerance %.3g; more steps, or there is none (the ground "
+                   "flows)",
+                   (long long)now->steps, now->unbalanced, now->applied, def->tolerance);
+}
+
+static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_settle_def *user,
+                           mps_mpm_settle_def *def) {
+  *def = settle_defaults;
+  mps_status status = MPS_OK;
+  if (user) status = MPSI_DEF_READ(mpm->context, function, mps_mpm_settle_def, user, def);
+  if (status != MPS_OK) return status;
+  if (isnan(def->tolerance)) def->tolerance = TOLERANCE;
+  if (!(def->tolerance > 0.0 && def->tolerance < 1.0))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "tolerance is %g, must be in (0, 1), or NaN for %g", def->tolerance,
+                     TOLERANCE);
+  if (def->max_steps < 1)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "max_steps is %lld, must be at least 1", (long long)def->max_steps);
+  return MPS_OK;
+}
+
+mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mps_mpm_settled *out,
+                                size_t size) {
+  static const char function[] = "mps_mpm_settle";
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_settle_def def = settle_defaults;
+  mps_mpm_settled now = {0};
+  motions kept;
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  if (out && (size == 0 || size > MPSI_STRUCT_MOST)) /* refused before anything moves */
+    return mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
+  mps_status status = mpsi_mpm_ready(mpm, function);
+  if (status == MPS_OK) status = read_def(mpm, function, user, &def);
+  if (status == MPS_OK) status = check_bodies(mpm, function);
+  if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
+  if (mpm->share) {
+    mpsi_given given;
+    mpsi_given_begin(&given);
+    MPSI_GIVE(&given, &def, tolerance);
+    MPSI_GIVE(&given, &def, max_steps);
+    status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+  }
+  double *motion = status == MPS_OK ? keep_motion(mpm, function) : NULL;
+  if (status == MPS_OK && !motion) status = MPS_ERROR_MEMORY;
+  status = mpsi_mpm_share_settle(mpm, function, status);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, motion);
+    mpsi_mpm_put_off(mpm, &before);
+    return status;
+  }
+  mpsi_settling *settling = &mpm->settling;
+  const mpsi_settling former = *settling;
+  const mpsi_energy energy = mpm->energy;
+  stop_bodies(mpm, &kept);
+  if (!settling->cut) { /* else all goes on from where it was cut */
+    stop_particles(mpm);
+    settling->from_rest = true;
+    settling->before = 0.0;
+    settling->steps = settling->peaks = 0;
+  }
+  now.peaks = settling->peaks;
+  settling->on = true;
+  settling->cut = false;
+  mpsi_guard_enter(&mpm->run.guard, mpm->context, function);
+  status = relax_until(mpm, function, &def, &now);
+  mpsi_guard_end(&mpm->run.guard);
+  if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
+  let_bodies_go(mpm, &kept);
+  settling->on = false;
+  if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->share &&
+      !mpm->run.broken) { /* no step was made */
+    put_motion_back(mpm, motion);
+    memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
+    settling->cut = former.cut, settling->from_rest = former.from_rest;
+    settling->before = former.before;
+    settling->steps = former.steps, settling->peaks = former.peaks;
+    mpsi_mpm_put_off(mpm, &before);
+  }
+  mpsi_free(mpm->context, motion);
+  if (!out) return status;
+  const mps_status written = mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
+  return status == MPS_OK ? written : status;
+}

@@ -1,0 +1,69 @@
+/* signals.c - what the caller's signals say of a step: factors of loads at its beginning,
+ * velocities of boundaries at its middle, places of bodies at its end. All are evaluated before
+ * anything of the step is done, so that one that refuses leaves the state as it was.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+#include "signal/signal_internal.h"
+
+static mps_status evaluate_loads(mps_mpm *mpm, const char *function) {
+  for (int32_t k = 0; k < mpm->loads.count; k++) {
+    mpsi_traction *load = &mpm->loads.traction[k];
+    for (int c = 0; load->count > 0 && c < mpm->dim; c++) {
+      const mpsi_signal_use use = {mpm->context, function, "load", k, c};
+      mpsi_signal_motion m = {.u = 1.0};
+      const mps_status status =
+          load->signal[c] ? mpsi_signal_evaluate(load->signal[c], use, mpm->run.time, &m) : MPS_OK;
+      if (status != MPS_OK) return status;
+      load->now[c] = m.u;
+    }
+  }
+  return MPS_OK;
+}
+
+static mps_status evaluate_boundaries(mps_mpm *mpm, const char *function, double dt) {
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    mpsi_hold *hold = &mpm->boundaries.hold[k];
+    for (int c = 0; c < mpm->dim; c++) {
+      const mpsi_signal_use use = {mpm->context, function, "boundary", k, c};
+      mpsi_signal_motion m = {0};
+      hold->v[c] = 0.0;
+      if (!hold->signal[c] || mpm->settling.on) continue;
+      const mps_status status =
+          mpsi_signal_evaluate(hold->signal[c], use, mpm->run.time + 0.5 * dt, &m);
+      if (status != MPS_OK) return status;
+      hold->v[c] = hold->factor[c] * m.v;
+    }
+  }
+  return MPS_OK;
+}
+
+static mps_status evaluate_bodies(mps_mpm *mpm, const char *function, double dt) {
+  for (int32_t b = 0; b < mpm->contact.bodies && !mpm->settling.on; b++) {
+    if (!mpm->contact.handle[b]->source.moves) continue;
+    const mps_status status = mpsi_body_look_ahead(mpm->contact.body[b], function, b, dt);
+    if (status != MPS_OK) return status;
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double dt, bool moves) {
+  const mpsi_guard outer =
+      mpsi_guard_close(&mpm->run.guard, mpm->context, "a signal of the solver");
+  mps_status status = evaluate_loads(mpm, function);
+  if (status == MPS_OK) status = evaluate_boundaries(mpm, function, dt);
+  if (status == MPS_OK && moves) status = evaluate_bodies(mpm, function, dt);
+  mpm->run.guard = outer;
+  return status;
+}
+
+bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm) {
+  bool may = false;
+  for (int c = 0; c < mpm->dim; c++) {
+    for (int32_t k = 0; k < mpm->loads.count; k++)
+      may = may || mpsi_signal_may_fail(mpm->loads.traction[k].signal[c]);
+    for (int32_t k = 0; k < MPSI_HOLDS; k++)
+      may = may || mpsi_signal_may_fail(mpm->boundaries.hold[k].signal[c]);
+  }
+  return may;
+}

@@ -1,0 +1,118 @@
+/* undo.c - see undo.h. What a step has written when a law refuses: the particles' columns, where
+ * boundaries are and what they have counted, the forces at rest of absorbing sides, the impulses of
+ * contacts from which the next ones begin. Time, bodies and the account of energy come after the
+ * laws. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/solver.h"
+
+#include <string.h>
+
+static bool some_law_may_refuse(const mps_mpm *mpm) {
+  for (int32_t k = 0; k < mpm->laws.count; k++)
+    if (mpsi_material_may_refuse(mpm->laws.law[k].material)) return true;
+  return false;
+}
+
+static void add(mpsi_undo *u, double *column) {
+  if (column) u->column[u->columns++] = column;
+}
+
+static void list_columns(mps_mpm *mpm) {
+  const mpsi_columns *p = &mpm->p;
+  mpsi_undo *u = &mpm->undo;
+  u->columns = 0;
+  for (int c = 0; c < mpm->dim; c++) add(u, p->x[c]), add(u, p->v[c]);
+  for (int c = 0; c < 2 * mpm->dim; c++) add(u, p->s[c]);
+  for (int c = 0; c < 9; c++) add(u, p->L[c]), add(u, p->F[c]);
+  add(u, p->V), add(u, p->J);
+  for (int32_t k = 0; k < mpm->laws.count; k++)
+    for (int32_t h = 0; h < mpm->laws.law[k].columns; h++) add(u, mpm->laws.law[k].history[h]);
+}
+
+static double *kept(const mpsi_undo *u, int32_t c, int64_t count) {
+  return (double *)u->room.item + c * count;
+}
+
+/* A step exchanges the memory of the impulses of contacts with that of the step before. */
+static void keep_impulses(mps_mpm *mpm) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  mpm->undo.kept_impulses = all->kept_room.item;
+  mpm->undo.kept_count = all->kept_count;
+  mpm->undo.kept_dt = all->kept_dt;
+}
+
+static void put_impulses_back(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  if (all->kept_room.item != mpm->undo.kept_impulses) {
+    const mpsi_room next = all->kept_room;
+    all->kept_room = all->next_room;
+    all->next_room = next;
+  }
+  all->kept = all->kept_room.item;
+  all->kept_count = mpm->undo.kept_count;
+  all->kept_dt = mpm->undo.kept_dt;
+}
+
+/* The sums of boundaries, to their copies or back. */
+static void copy_sums(mps_mpm *mpm, bool back) {
+  mpsi_hold_sums *kept = mpm->undo.sums_room.item;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    mpsi_hold_sums *sums = mpm->boundaries.hold[k].sums;
+    if (!sums) continue;
+    if (back)
+      *sums = *kept++;
+    else
+      *kept++ = *sums;
+  }
+}
+
+mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
+  mpsi_undo *u = &mpm->undo;
+  const mpsi_boundaries *b = &mpm->boundaries;
+  u->on = some_law_may_refuse(mpm);
+  if (!u->on) return MPS_OK;
+  int64_t most = MPSI_UNDO_COLUMNS, holds = 0;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) holds += b->hold[k].sums != NULL;
+  for (int32_t k = 0; k < mpm->laws.count; k++) most += mpm->laws.law[k].columns;
+  bool good = mpsi_room_ensure(mpm->context, &u->list_room, most, sizeof *u->column) &&
+              mpsi_room_ensure(mpm->context, &u->sums_room, holds, sizeof(mpsi_hold_sums)) &&
+              mpsi_room_ensure(mpm->context, &u->dash_room, b->dash_count, sizeof *b->dash);
+  u->column = u->list_room.item;
+  if (good) list_columns(mpm);
+  good =
+      good && mpsi_room_ensure(mpm->context, &u->room, u->columns * mpm->p.count, sizeof(double));
+  if (!good)
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)(u->columns * mpm->p.count) * sizeof(double));
+  memcpy(u->hold, b->hold, sizeof u->hold);
+  u->holds_dt = b->dt;
+  copy_sums(mpm, false);
+  keep_impulses(mpm);
+  if (b->dash_count > 0)
+    memcpy(u->dash_room.item, b->dash, (size_t)b->dash_count * sizeof *b->dash);
+  return MPS_OK;
+}
+
+void mpsi_mpm_keep_block(mps_mpm *mpm, int64_t block) {
+  const mpsi_undo *u = &mpm->undo;
+  const mpsi_cell_block *cells = &mpm->grid.cells[block];
+  const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
+  for (int32_t c = 0; c < u->columns; c++)
+    memcpy(kept(u, c, mpm->p.count) + cells->begin, u->column[c] + cells->begin, bytes);
+}
+
+void mpsi_mpm_undo(mps_mpm *mpm) {
+  const mpsi_undo *u = &mpm->undo;
+  mpsi_boundaries *b = &mpm->boundaries;
+  for (int32_t c = 0; c < u->columns; c++)
+    memcpy(u->column[c], kept(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
+  memcpy(b->hold, u->hold, sizeof u->hold);
+  b->dt = u->holds_dt;
+  copy_sums(mpm, true);
+  put_impulses_back(mpm);
+  if (b->dash_count > 0)
+    memcpy(b->dash, u->dash_room.item, (size_t)b->dash_count * sizeof *b->dash);
+  for (int64_t c = 0; c < mpm->grid.cell_count; c++) { /* nobody has moved */
+    mpm->grid.cells[c].left = mpm->grid.cells[c].gone = mpm->grid.cells[c].lost = false;
+    mpm->grid.cells[c].bad = -1;
+  }
+}

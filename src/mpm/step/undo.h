@@ -1,0 +1,31 @@
+/* undo.h - the way back to the beginning of a step that the law of a caller refuses half way: some
+ * particles have moved then. Where no law can refuse, nothing is kept.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_UNDO_H
+#define MPSI_MPM_UNDO_H
+
+#include "mpm/boundary/boundaries.h"
+
+#define MPSI_UNDO_COLUMNS 64 /* but histories */
+
+typedef struct mpsi_undo {
+  bool on;         /* some law can refuse */
+  double **column; /* that the step writes; room for MPSI_UNDO_COLUMNS and all histories */
+  int32_t columns;
+  mpsi_room list_room, room, dash_room;
+  mpsi_hold hold[MPSI_HOLDS];
+  double holds_dt;
+  mpsi_room sums_room; /* mpsi_hold_sums, of each boundary that has some */
+  void *kept_impulses; /* of contacts, in the step before */
+  int64_t kept_count;
+  double kept_dt;
+} mpsi_undo;
+
+/* Before a step: room, and what belongs to no particle. MPS_ERROR_MEMORY. */
+mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function);
+/* Keeps the particles of a block of cells, before G2P writes them. */
+void mpsi_mpm_keep_block(mps_mpm *mpm, int64_t b);
+/* All as it was. */
+void mpsi_mpm_undo(mps_mpm *mpm);
+
+#endif

@@ -1,0 +1,432 @@
+/* volumetric.c - means of the change of volume, by cell or by node.
+ *
+ * F-bar by cell: the laws see the mean change of volume of the cell in place of the
+ * particle's own. A cell with many particles then has one condition of constant volume, as the
+ * nodes can satisfy, instead of one for each particle.
+ *
+ * The particles of a cell are those with the same stencil at the beginning of the step, whichever
+ * block they are sorted to. When G2P has read the nodes, these have done their work: the lowest
+ * node of each stencil then holds {sum V, sum V tr(d)} of its cell. In plane strain a deviation
+ * from the mean changes the strain out of the plane too, by its third, as in space: else the part
+ * without trace would change.
+ *
+ * By node, with the B-spline weights w of the step's beginning: t_i = sum w V tr(d)/sum w V, and
+ * the particle's is sum w t_i. A rate that is smooth leaves differences of pressures that are there
+ * already; so, after the laws, p_i = sum w V p/sum w V and p~ = sum w p_i, which takes the place of
+ * the mean stress of a fluid (its state J stays as it is, so nothing is smoothed twice), and to
+ * which that of other laws tends by beta c dt/h. Ghosts of mirrors fold as mass does (mirror.h).
+ *
+ * At a wall or a surface all particles of a node lie on one side of it, and the mean of a pressure
+ * that grows with depth is off by its slope times their distance. So a fluid's pressure goes to the
+ * node and back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V
+ * and p~ = sum w (p_i - rho g.(x_i - x)): at rest it is kept as it is.
+ *
+ * By node frictional laws, by cell those with dilation see each particle's own tr(d) instead. Means
+ * of the rate under forces by own pressures let rough pressures do work from nothing, and dilation
+ * makes them rough: a dilatant sand blew up. What is smoothed by node, every eighth step, is e = p
+ * + K gap, the mean stress that an open particle would have if its grains still held together:
+ * below 0 they are closed. With the operator S of the means, r = e - S e and e' = e - a (r - S r),
+ * so that sum V e is kept, a smooth field to the fourth order too, and what S does not see decays.
+ * p' is e' where that is closed, else what is left of p, the gap the rest; then the law's own
+ * return, without strain. V follows the elastic volume strain of p' - p. SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "mpm/base/kernels.h"
+
+#include <string.h>
+
+#define BETA 0.03 /* larger ones spread pressure at free surfaces */
+#define GRAINS_BETA 0.01
+#define GRAINS_EVERY 8 /* steps */
+
+enum { SUM_VOLUME = 0, SUM_TRACE = 1 };
+
+/* A particle whose law takes its own tr(d). */
+static bool keeps_own(const mps_mpm *mpm, int64_t k) {
+  return mpm->laws.some_own && mpsi_law_of(mpm, k)->own_volume;
+}
+
+/* Columns of the velocity gradient's diagonal; that of zz is NULL in plane strain. */
+static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
+  const mpsi_columns *p = &mpm->p;
+  const bool space = mpm->dim == 3;
+  diagonal[0] = p->D[0];
+  diagonal[1] = p->D[space ? 4 : 3];
+  diagonal[2] = space ? p->D[8] : mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->L[4] : NULL;
+}
+
+/* Place of a particle when G2P found its stencil. */
+static void former_place(const mps_mpm *mpm, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++)
+    x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
+}
+
+/* The sums of tile node (i, j, k): those that a block gives, in the tile of a worker, or (NULL)
+ * those of all blocks, at the node. */
+static double *sums_at(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                       bool across, int i, int j, int k) {
+  if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];
+  return mpm->grid
+      .node[across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k)];
+}
+
+/* Those of a cell that a thin body parts (thin_bodies.h) are two cells. */
+static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                       int64_t particle) {
+  bool across = false;
+  int at[3];
+  mpsi_unravel(mpm->p.stencil[particle], MPSI_TILE_SIDE, at);
+  if (cells->thin) {
+    double x[3];
+    former_place(mpm, particle, x);
+    across = mpsi_mpm_find_parted(mpm, cells, at, x).across & 1;
+  }
+  return sums_at(mpm, cells, worker, across, at[0], at[1], at[2]);
+}
+
+static const double level[3] = {0.0, 0.0, 0.0}; /* no slope */
+
+static void clear_tile(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
+  for (int across = 0; across < (cells->thin ? 2 : 1); across++)
+    for (int k = cells->low[2]; k < cells->high[2]; k++)
+      for (int j = cells->low[1]; j < cells->high[1]; j++)
+        memset(sums_at(mpm, cells, &mpm->grid.workers[number], across != 0, cells->low[0], j, k), 0,
+               bytes);
+}
+
+/* ---- by node --------------------------------------------------------------------------------- */
+
+static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES; }
+
+/* A particle whose law is frictional. */
+static bool is_grains(const mps_mpm *mpm, int64_t k) {
+  return mpm->laws.some_open && mpsi_law_of(mpm, k)->opens;
+}
+
+/* Nodes of a tile along each axis, ghosts of mirrors by their partners, and weights. */
+typedef struct support {
+  int at[3][4];
+  double w[3][4];
+  double x[3];     /* place of the particle in the tile, in cells */
+  uint64_t across; /* see thin_bodies.h */
+} support;
+
+/* The particle has moved by dt v since G2P found its stencil, or was put back on a wall. */
+static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
+  const double least = mpm->def.spline == 3 ? 1.0 : 0.5;
+  support out = {.w = {{1.0}, {1.0}, {1.0}}};
+  int base[3];
+  double x[3];
+  mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
+  former_place(mpm, k, x);
+  if (cells->thin) out.across = mpsi_mpm_find_parted(mpm, cells, base, x).across;
+  for (int c = 0; c < mpm->dim; c++) {
+    const double t =
+        mpsi_grid_coordinate(mpm, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
+    out.x[c] = (double)base[c] + t;
+    mpsi_weights(mpm->def.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
+    for (int i = 0; i <= mpm->def.spline; i++)
+      out.at[c][i] = mpsi_mpm_mirror_partner(mpm, cells, c, base[c] + i);
+  }
+  return out;
+}
+
+/* What a value with the slope (3, per cell) at the particle is further on at a node of its support.
+ */
+static double further(const support *s, const double *slope, int i, int j, int k) {
+  return slope[0] * (s->at[0][i] - s->x[0]) + slope[1] * (s->at[1][j] - s->x[1]) +
+         slope[2] * (s->at[2][k] - s->x[2]);
+}
+
+/* The sums of node (i, j, k) of a support. */
+static double *node_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                       const support *s, int i, int j, int k) {
+  const bool across = s->across >> (16 * k + 4 * j + i) & 1;
+  return sums_at(mpm, cells, worker, across, s->at[0][i], s->at[1][j], s->at[2][k]);
+}
+
+/* Adds {V, V value} by the weights; or the mean of the nodes' means. */
+static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                 const support *s, double V, double value, const double *slope) {
+  const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
+  for (int k = 0; k <= depth; k++)
+    for (int j = 0; j <= n; j++)
+      for (int i = 0; i <= n; i++) {
+        const double w = s->w[0][i] * s->w[1][j] * s->w[2][k] * V;
+        double *to = node_of(mpm, cells, worker, s, i, j, k);
+        to[SUM_VOLUME] += w;
+        to[SUM_TRACE] += w * (value + further(s, slope, i, j, k));
+      }
+}
+
+static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s,
+                   const double *slope) {
+  const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
+  double sum = 0.0, weight = 0.0;
+  for (int k = 0; k <= depth; k++)
+    for (int j = 0; j <= n; j++)
+      for (int i = 0; i <= n; i++) {
+        const double w = s->w[0][i] * s->w[1][j] * s->w[2][k];
+        const double *from = node_of(mpm, cells, NULL, s, i, j, k);
+        if (!(from[SUM_VOLUME] > 0.0) || w == 0.0) continue;
+        sum += w * (from[SUM_TRACE] / from[SUM_VOLUME] - further(s, slope, i, j, k));
+        weight += w;
+      }
+  return sum / weight;
+}
+
+static double mean_stress(const mps_mpm *mpm, int64_t k) {
+  return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) / 3.0;
+}
+
+/* How the mean stress of a fluid at rest grows along each axis, in a cell: means over the nodes
+ * near then leave it as it is, at walls and surfaces too, where the nodes lie on one side. */
+static void slope_at_rest(const mps_mpm *mpm, int64_t k, double *slope) {
+  const bool fluid = mpsi_material_kept(mpsi_law_of(mpm, k)->material) == MPSI_KEPT_PRESSURE;
+  const double weight = fluid ? mpm->p.m[k] / (mpm->p.V[k] * mpm->grid.inverse) : 0.0;
+  for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
+}
+
+static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_worker *worker = &mpm->grid.workers[number];
+  clear_tile(mpm, b, number);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    double slope[3];
+    slope_at_rest(mpm, k, slope);
+    give(mpm, cells, worker, &s, mpm->p.V[k], mean_stress(mpm, k), slope);
+  }
+}
+
+static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_columns *p = &mpm->p;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    double share = 1.0, wave, shear, slope[3];
+    slope_at_rest(mpm, k, slope);
+    if (mpsi_material_kept(mpsi_law_of(mpm, k)->material) != MPSI_KEPT_PRESSURE) {
+      mpsi_mpm_elastic(mpm, k, &wave, &shear);
+      share = fmin(1.0, BETA * sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse);
+    }
+    const double change = share * (take(mpm, cells, &s, slope) - mean_stress(mpm, k));
+    for (int c = 0; c < 3; c++) p->s[c][k] += change;
+  }
+  mpm->kernels->speed(mpm, b, worker);
+}
+
+/* ---- by node: frictional laws ---------------------------------------------------------------- */
+
+static double bulk_of(const mps_mpm *mpm, int64_t k) {
+  double wave, shear;
+  mpsi_mpm_elastic(mpm, k, &wave, &shear);
+  return wave - 4.0 / 3.0 * shear;
+}
+
+static double *gap_of(const mps_mpm *mpm, int64_t k) { return mpsi_law_of(mpm, k)->history[1] + k; }
+
+/* r of each particle, in a column that the laws have read. */
+static double *deviation(const mps_mpm *mpm) { return mpm->p.D[0]; }
+
+static void sum_closed(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  clear_tile(mpm, b, number);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (!is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    const double closed = mean_stress(mpm, k) + bulk_of(mpm, k) * *gap_of(mpm, k);
+    give(mpm, cells, &mpm->grid.workers[number], &s, mpm->p.V[k], closed, level);
+  }
+}
+
+static void sum_deviations(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  clear_tile(mpm, b, number);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (!is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    give(mpm, cells, &mpm->grid.workers[number], &s, mpm->p.V[k], deviation(mpm)[k], level);
+  }
+}
+
+static void find_deviations(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (!is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    const double closed = mean_stress(mpm, k) + bulk_of(mpm, k) * *gap_of(mpm, k);
+    deviation(mpm)[k] = closed - take(mpm, cells, &s, level);
+  }
+}
+
+/* A volume after a volume strain, to the third order: strains to and fro leave it as it was. */
+static double grown(double V, double strain) {
+  return V * ((1.0 + 0.5 * strain) / (1.0 - 0.5 * strain));
+}
+
+static void smooth_one(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  const support s = support_of(mpm, cells, k);
+  const double r = deviation(mpm)[k], bulk = bulk_of(mpm, k), was = mean_stress(mpm, k);
+  double *gap = gap_of(mpm, k), wave, shear;
+  mpsi_mpm_elastic(mpm, k, &wave, &shear);
+  const double cells_a_step = sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse;
+  const double share = fmin(1.0, GRAINS_EVERY * GRAINS_BETA * cells_a_step);
+  const double closed = was + bulk * *gap - share * (r - take(mpm, cells, &s, level));
+  const double now =
+      *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
+  *gap = fmax(0.0, (closed - now) / bulk);
+  for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
+  p->V[k] = grown(p->V[k], (now - was) / bulk);
+}
+
+static void smooth_grains(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int64_t begin = cells->begin, end; begin < cells->end; begin = end) {
+    end = begin + MPSI_CHUNK < cells->end ? begin + MPSI_CHUNK : cells->end;
+    mpsi_before_law before;
+    if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
+    for (int64_t k = begin; k < end; k++)
+      if (is_grains(mpm, k)) smooth_one(mpm, cells, k);
+    mpsi_mpm_return_stress(mpm, cells, begin, end);
+    if (mpm->energy.counts) mpsi_mpm_energy_smoothed(mpm, cells, &before, begin, end);
+  }
+  mpm->kernels->speed(mpm, b, worker);
+}
+
+/* ---- both ------------------------------------------------------------------------------------ */
+
+static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_worker *worker = &mpm->grid.workers[number];
+  const double *L[3], *V = mpm->p.V;
+  clear_tile(mpm, b, number);
+  find_diagonal(mpm, L);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
+    if (keeps_own(mpm, k)) continue;
+    if (by_nodes(mpm)) {
+      const support s = support_of(mpm, cells, k);
+      give(mpm, cells, worker, &s, V[k], trace, level);
+      continue;
+    }
+    double *sums = sums_of(mpm, cells, worker, k);
+    sums[SUM_VOLUME] += V[k];
+    sums[SUM_TRACE] += V[k] * trace;
+  }
+}
+
+static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
+                           int64_t end, double (*diagonal)[MPSI_CHUNK]) {
+  const double *L[3];
+  find_diagonal(mpm, L);
+  for (int64_t k = begin; k < end; k++) {
+    const double own = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
+    double mean;
+    if (keeps_own(mpm, k)) {
+      mean = own;
+    } else if (by_nodes(mpm)) {
+      const support s = support_of(mpm, cells, k);
+      mean = take(mpm, cells, &s, level);
+    } else {
+      const double *sums = sums_of(mpm, cells, NULL, k);
+      mean = sums[SUM_TRACE] / sums[SUM_VOLUME];
+    }
+    const double change = (mean - own) / 3.0;
+    for (int c = 0; c < 3; c++) diagonal[c][k - begin] = (L[c] ? L[c][k] : 0.0) + change;
+  }
+}
+
+static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mps_material_block law;
+  mpsi_mpm_begin_block(&law);
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
+    double *D[9], mean[3][MPSI_CHUNK];
+    for (int c = 0; c < mpm->dim * mpm->dim; c++) D[c] = mpm->p.D[c] + k;
+    mean_diagonals(mpm, cells, k, end, mean);
+    mpsi_mpm_apply_law(mpm, cells, k, end, D, mean, &law);
+  }
+  if (!by_nodes(mpm)) mpm->kernels->speed(mpm, b, worker);
+}
+
+/* A tile to the nodes; blocks of one colour have none in common. */
+static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                     bool across) {
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++)
+      for (int i = cells->low[0]; i < cells->high[0]; i++) {
+        const double *from = sums_at(mpm, cells, worker, across, i, j, k);
+        if (from[SUM_VOLUME] == 0.0) continue;
+        double *to = sums_at(mpm, cells, NULL, across, i, j, k);
+        to[SUM_VOLUME] += from[SUM_VOLUME];
+        to[SUM_TRACE] += from[SUM_TRACE];
+      }
+}
+
+/* What a block gives, summed here or by its own rank. */
+static void add_block(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  if (!mpm->share)
+    sum(mpm, b, number);
+  else if (!mpsi_mpm_share_take_sums(mpm, b, number, sum))
+    return;
+  for (int across = 0; across < (cells->thin ? 2 : 1); across++)
+    add_tile(mpm, cells, &mpm->grid.workers[number], across != 0);
+}
+
+static void add_rates(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_rates);
+}
+
+static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_pressures);
+}
+
+static void add_closed(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_closed);
+}
+
+static void add_deviations(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_deviations);
+}
+
+static void run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather) {
+  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
+                          .scatter = add,
+                          .gather = gather,
+                          .arrive = mpm->share ? mpsi_mpm_share_receive : NULL};
+  if (mpm->share) mpsi_mpm_share_send_sums(mpm, sum);
+  mpsi_mpm_run_pass(mpm, &pass);
+}
+
+/* The step has failed; its places may be no places. */
+static bool has_failed(const mps_mpm *mpm) {
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+    if (mpm->grid.cells[b].bad >= 0 && !mpm->grid.cells[b].lost) return true;
+  return false;
+}
+
+/* Whether some rank, or the only one, has. */
+static bool on_any(mps_mpm *mpm, bool failed) {
+  if (!mpm->share || mpm->share->lost != MPS_OK) return failed;
+  mpm->share->lost = mpsi_mpm_share_any(mpm, "mps_mpm_step", &failed);
+  return failed || mpm->share->lost != MPS_OK;
+}
+
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
+  const bool others = !mpm->laws.at_once; /* than frictional ones, or by cell */
+  if (on_any(mpm, has_failed(mpm))) return;
+  if (others) run_sums(mpm, sum_rates, add_rates, apply_laws);
+  if (!by_nodes(mpm) || on_any(mpm, mpm->laws.refusal.cells != NULL)) return;
+  if (others) run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
+  if (!mpm->laws.some_open || mpm->run.steps % GRAINS_EVERY != 0) return;
+  run_sums(mpm, sum_closed, add_closed, find_deviations);
+  run_sums(mpm, sum_deviations, add_deviations, smooth_grains);
+}

@@ -1,0 +1,415 @@
+/* g2p.c - nodes to particles, Nakamura (41)-(43), (48), one block of cells at a time, and then,
+ * while its particles are in the cache, their law and the speeds that bound the time step, (49),
+ * (50). Particles with a cut support: least_squares.c. Compiled once for each instruction set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "wall_support.h"
+
+MPSI_INLINE int64_t find_node(const mps_mpm *mpm, const mpsi_cell_block *cells, bool across, int i,
+                              int j, int k) {
+  return across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k);
+}
+
+/* Copies the nodes under a tile, or those across thin bodies under the second one. */
+MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, bool across,
+                             mpsi_node *tile) {
+  const int low = cells->low[0], high = cells->high[0];
+  const int middle = high < MPSI_SIDE ? high : low > MPSI_SIDE ? low : MPSI_SIDE;
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++) {
+      mpsi_node *own = mpm->grid.node + find_node(mpm, cells, across, 0, j, k);
+      mpsi_node *next = mpm->grid.node + find_node(mpm, cells, across, MPSI_SIDE, j, k);
+      mpsi_node *to = tile + mpsi_tile_index(0, j, k);
+      for (int i = low; i < middle; i++) mpsi_put(to[i], mpsi_get(own[i]));
+      for (int i = middle; i < high; i++) mpsi_put(to[i], mpsi_get(next[i - MPSI_SIDE]));
+    }
+}
+
+/* Differences along y of a stencil, node by node along x, in each of its planes across z. */
+typedef struct differences {
+  int32_t first; /* lowest node of the stencil */
+  mpsi_node along_y[4][4];
+} differences;
+
+MPSI_INLINE void find_differences(int dim, int spline, int32_t first, const mpsi_node *tile,
+                                  differences *out) {
+  out->first = first;
+  for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++)
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+      mpsi_quad sum = {0.0};
+      MPSI_UNROLL for (int j = 0; j <= spline; j++) sum +=
+          mpsi_difference(spline, j) * mpsi_get(tile[first + mpsi_tile_index(i, j, plane)]);
+      mpsi_put(out->along_y[plane][i], sum);
+    }
+}
+
+/* Sums over the nodes across x, for one component at one place along x: by w of y and z, by w s of
+ * y, of z, and by the differences of y, of z. */
+typedef struct across {
+  mpsi_lanes value, slope[2], rise[2];
+} across;
+
+MPSI_INLINE across sum_across(int dim, int spline, const mpsi_places *places, int k,
+                              const mpsi_node *node, int lane, const differences *difference,
+                              int i) {
+  across out = {{0.0}, {{0.0}}, {{0.0}}};
+  for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
+    const double rise = difference->along_y[plane][i][lane];
+    mpsi_lanes value = {0.0}, slope = {0.0};
+    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      const double v = node[mpsi_tile_index(i, j, plane)][lane];
+      value += mpsi_get_lanes(places->w[1][j] + k) * v;
+      slope += mpsi_get_lanes(places->ws[1][j] + k) * v;
+    }
+    if (dim == 2) {
+      out = (across){value, {slope}, {rise + out.rise[0]}};
+      continue;
+    }
+    const mpsi_lanes w = mpsi_get_lanes(places->w[2][plane] + k);
+    out.value += w * value;
+    out.slope[0] += w * slope;
+    out.slope[1] += mpsi_get_lanes(places->ws[2][plane] + k) * value;
+    out.rise[0] += w * rise;
+    out.rise[1] += mpsi_difference(spline, plane) * value;
+  }
+  return out;
+}
+
+#define EVERY_AXIS 3
+
+/* Particles from `k` of `places`, all of one stencil (what is behind them comes to nothing),
+ * to `out` from `to` on: sums of the rows by their weights across, w and w s, and at last along x.
+ * The derivative along `plain` (-1: none) is the slope. */
+MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mpsi_places *places,
+                              int k, const mpsi_node *tile, const differences *difference,
+                              int plain, mpsi_gathered *out, int to) {
+  const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
+  const mpsi_node *node = tile + difference->first;
+  mpsi_lanes excess[3] = {{0.0}}; /* see mpsi_excess */
+  MPSI_UNROLL for (int d = 0; d < dim; d++) {
+    if (d != plain && plain != EVERY_AXIS)
+      excess[d] = mpm->grid.inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
+  }
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    mpsi_lanes v = {0.0}, slope[3] = {{0.0}}, rise[3] = {{0.0}};
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+      const across sum = sum_across(dim, spline, places, k, node, MPSI_VECTOR + c, difference, i);
+      const mpsi_lanes w = mpsi_get_lanes(places->w[0][i] + k);
+      v += w * sum.value;
+      slope[0] += mpsi_get_lanes(places->ws[0][i] + k) * sum.value;
+      rise[0] += mpsi_difference(spline, i) * sum.value;
+      MPSI_UNROLL for (int d = 1; d < dim; d++) {
+        slope[d] += w * sum.slope[d - 1];
+        rise[d] += w * sum.rise[d - 1];
+      }
+    }
+    mpsi_put_lanes(out->v[c] + to, v);
+    MPSI_UNROLL for (int d = 0; d < dim; d++) {
+      slope[d] *= scale;
+      mpsi_put_lanes(out->slope[dim * c + d] + to, slope[d]);
+      mpsi_put_lanes(out->derivative[dim * c + d] + to, slope[d] + excess[d] * rise[d]);
+    }
+  }
+}
+
+/* The same at the wall across `axis`, where the laws see the slope across it; `n` particles. */
+MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                int spline, const mpsi_places *places, int axis, int k, int n,
+                                const mpsi_node *tile, const differences *difference,
+                                mpsi_gathered *out) {
+  mpsi_wall wall;
+  mpsi_gathered along;
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_ALONG, &wall);
+  gather_lanes(mpm, dim, spline, &wall.places, 0, tile, difference, axis, &along, 0);
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_SLOPE, &wall);
+  gather_lanes(mpm, dim, spline, &wall.places, 0, tile, difference, axis, out, k);
+  for (int c = 0; c < dim; c++)
+    for (int d = 0; d < dim; d++) {
+      const size_t bytes = (size_t)n * sizeof(double);
+      if (d == axis) continue;
+      memcpy(out->slope[dim * c + d] + k, along.slope[dim * c + d], bytes);
+      memcpy(out->derivative[dim * c + d] + k, along.derivative[dim * c + d], bytes);
+    }
+}
+
+/* One particle near bodies or corners. */
+static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                          int64_t particle, mpsi_gathered *out, int to) {
+  const int dim = mpm->dim;
+  mpsi_fitted one = {.own = {0.0}};
+  MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mpm, cells, worker, particle, &one);
+  for (int c = 0; c < dim; c++) {
+    out->v[c][to] = one.v[MPSI_VECTOR + c];
+    out->own[c][to] = one.own[c];
+    for (int d = 0; d < dim; d++) {
+      out->slope[dim * c + d][to] = one.slope[d][MPSI_VECTOR + c];
+      out->derivative[dim * c + d][to] = one.derivative[d][MPSI_VECTOR + c];
+    }
+  }
+}
+
+/* Particles [k, end) of a chunk, all of one stencil, beside bodies. */
+MPSI_INLINE void gather_beside(mps_mpm *mpm, const mpsi_cell_block *cells,
+                               const mpsi_worker *worker, int dim, int spline,
+                               const mpsi_places *places, int64_t chunk, int k, int end,
+                               const differences *difference, mpsi_gathered *out) {
+  const mpsi_node *tile = (const mpsi_node *)worker->tile;
+  const mpsi_batched done =
+      mpm->flip > 0.0
+          ? MPSI_BATCHED_NOT
+          : MPSI_LEVELLED(mpsi_mpm_gather_batches)(mpm, cells, worker, places, chunk, k, end, out);
+  if (done == MPSI_BATCHED_NOT)
+    for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, chunk + q, out, q);
+  else if (done == MPSI_BATCHED_FULL)
+    for (int q = k; q < end; q += MPSI_LANES)
+      gather_lanes(mpm, dim, spline, places, q, tile, difference, EVERY_AXIS, out, q);
+}
+
+/* The first `n` (at most 4) values of a vector. */
+MPSI_INLINE void store_some(double *to, mpsi_quad v, int n) {
+  if (n >= 4) {
+    mpsi_put(to, v);
+    return;
+  }
+  for (int i = 0; i < n; i++) to[i] = v[i];
+}
+
+/* Velocities and gradients to the particles' columns; the particles move. Tells whether one is then
+ * `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils would
+ * leave the tile. */
+typedef struct moved {
+  bool outside, left;
+} moved;
+
+/* Four particles from `at`, of which `n` are there; `from` number k on. */
+MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
+                           int64_t at, int n, const mpsi_gathered *from, int k, mpsi_mask *outside,
+                           mpsi_mask *left) {
+  const int dim = mpsi_dim_of(geometry);
+  const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
+  const mpsi_columns *p = &mpm->p;
+  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
+    const mpsi_quad v = mpsi_get(from->v[c] + k), x = mpsi_get_some(p->x[c] + at, n);
+    const mpsi_quad to = x + mpm->run.dt * v, X = mpsi_from_block(mpm, cells, c, to);
+    const double corner = (double)cells->at[c] * MPSI_SIDE;
+    const mpsi_mask good =
+        (X >= (double)mpm->grid.low[c] - corner) & (X <= (double)mpm->grid.high[c] - corner);
+    const mpsi_mask here = (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
+    *outside |= there & ~good;
+    *left |= there & ~here;
+    store_some(p->v[c] + at, v, n);
+    if (geometry == MPS_MPM_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, v / x, n);
+    store_some(p->x[c] + at, to, n);
+  }
+  MPSI_UNROLL for (int a = 0; a < dim * dim; a++)
+      store_some(p->L[a] + at, mpsi_get(from->slope[a] + k), n);
+}
+
+MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
+                       int64_t begin, int n, const mpsi_gathered *from) {
+  mpsi_mask outside = {0}, left = {0};
+  for (int k = 0; k < n; k += 4) {
+    if (n - k >= 4) /* apart: without questions */
+      move_four(mpm, cells, geometry, spline, begin + k, 4, from, k, &outside, &left);
+    else
+      move_four(mpm, cells, geometry, spline, begin + k, n - k, from, k, &outside, &left);
+  }
+  return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
+                 (left[0] | left[1] | left[2] | left[3]) != 0};
+}
+
+/* FLIP: what the particles keep of their own velocities. */
+static void add_own(mps_mpm *mpm, int64_t begin, int n, const mpsi_gathered *from) {
+  for (int c = 0; c < mpm->dim; c++)
+    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += from->own[c][k];
+}
+
+/* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
+ * particle that is pressed on it passes it by a little in time. At a mirror it does not. */
+#define BEYOND 0.1 /* cells: a particle so far behind a wall is put back on it */
+
+/* Looks after particles [begin, end), one of which is outside the domain: the first that is too far
+ * beyond a wall, or not a number; -1 where there is none. Those beyond an open side leave after the
+ * step. Nothing is put back on the axis: there
+ * the hoop strain has no end. */
+static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  int64_t bad = -1;
+  for (int64_t k = begin; k < end; k++)
+    for (int c = 0; c < mpm->dim; c++) {
+      double *x = &mpm->p.x[c][k];
+      const double X = mpsi_grid_coordinate(mpm, c, *x);
+      const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
+      if (X >= low && X <= high) continue;
+      if (mpsi_mpm_passes(mpm, c, X)) {
+        cells->gone = true;
+        continue;
+      }
+      const bool axis = mpm->def.geometry == MPS_MPM_AXISYMMETRIC && c == 0 && !(*x > 0.0);
+      if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) {
+        if (bad < 0) bad = k;
+        break;
+      }
+      const double wall = X < low ? low : high, inwards = X < low ? INFINITY : -INFINITY;
+      *x = mpm->def.origin[c] + mpm->def.cell * wall;
+      while ((mpsi_grid_coordinate(mpm, c, *x) - wall) * inwards < 0.0) *x = nextafter(*x, inwards);
+    }
+  return bad;
+}
+
+/* The largest (c + |v|)^2 of some, at most a chunk, with room for three more; false where one is
+ * not a number or infinite. */
+MPSI_INLINE bool find_largest(int n, double *square, double *out) {
+  mpsi_quad largest = {0.0};
+  mpsi_mask good = {-1, -1, -1, -1};
+  for (int i = 0; i < 3; i++) square[n + i] = 0.0;
+  for (int k = 0; k < n; k += 4) {
+    const mpsi_quad own = mpsi_get(square + k);
+    const mpsi_mask larger = own > largest;
+    largest = (mpsi_quad)(((mpsi_mask)own & larger) | ((mpsi_mask)largest & ~larger));
+    good &= own <= 1.7e308; /* not of a NaN */
+  }
+  *out = fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+  return (good[0] & good[1] & good[2] & good[3]) != 0;
+}
+
+#define FASTEST 1e100 /* m/s: kinetic energies are numbers */
+
+/* c + |v| of particles [begin, begin + n), at most a chunk, as c^2 + v^2 + 2 c |v|: a root less. A
+ * NaN, infinity or speed beyond FASTEST, and a negative volume, is a bad particle. */
+MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
+                            int n, const double *moduli) {
+  const mpsi_columns *p = &mpm->p;
+  const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
+  const double *V = p->V + begin, *m = p->m + begin;
+  const double moving = mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED ? 1.0 : 0.0;
+  double square[MPSI_COLUMN], largest;
+  MPSI_SIMD for (int k = 0; k < n; k++) {
+    double v = v0[k] * v0[k] + v1[k] * v1[k];
+    if (dim == 3) v += v2[k] * v2[k];
+    const double c = (moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k];
+    square[k] = (c < 0.0) | !(v <= FASTEST * FASTEST) ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
+  }
+  const bool good = find_largest(n, square, &largest);
+  if (largest > cells->speed * cells->speed) cells->speed = sqrt(largest);
+  for (int k = 0; k < n && !good && (cells->bad < 0 || cells->lost); k++)
+    if (!isfinite(square[k])) cells->bad = begin + k, cells->lost = false;
+}
+
+MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
+                             int n) {
+  if (mpm->laws.one_modulus) {
+    find_speed(mpm, cells, dim, begin, n, NULL);
+    return;
+  }
+  double moduli[MPSI_CHUNK];
+  mpsi_mpm_find_moduli(mpm, begin, begin + n, moduli);
+  find_speed(mpm, cells, dim, begin, n, moduli);
+}
+
+/* What the nodes give to particles [begin, begin + n). Those of a stencil are neighbours. */
+MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                              int dim, int spline, int64_t begin, int n, mpsi_gathered *out) {
+  const mpsi_node *tile = (const mpsi_node *)worker->tile;
+  mpsi_places places;
+  differences difference;
+  mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  if (mpm->p.stencil)
+    memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
+  for (int k = 0, end; k < n; k = end) {
+    const int32_t first = places.first[k];
+    for (end = k + 1; end < n && places.first[end] == first;) end++;
+    find_differences(dim, spline, first, tile, &difference);
+    const uint32_t state = cells->cut ? mpsi_support_state(worker, dim, spline, first) : 0;
+    const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
+    if (cells->light)
+      for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
+    else if (!state)
+      for (int q = k; q < end; q += MPSI_LANES)
+        gather_lanes(mpm, dim, spline, &places, q, tile, &difference, -1, out, q);
+    else if (axis >= 0)
+      for (int q = k; q < end; q += MPSI_LANES)
+        gather_at_wall(mpm, cells, dim, spline, &places, axis, q,
+                       end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &difference, out);
+    else
+      gather_beside(mpm, cells, worker, dim, spline, &places, begin, k, end, &difference, out);
+  }
+  if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
+}
+
+MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
+                           int geometry, int spline, int64_t begin, int n,
+                           mps_material_block *law) {
+  const int dim = mpsi_dim_of(geometry);
+  mpsi_gathered from;
+  double *D[9];
+  gather_chunk(mpm, cells, worker, dim, spline, begin, n, &from);
+  for (int a = 0; a < dim * dim; a++) {
+    D[a] = from.derivative[a];
+    if (mpm->p.D[a]) memcpy(mpm->p.D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
+  }
+  if (mpm->energy.counts) mpsi_mpm_energy_before(mpm, cells, begin, begin + n);
+  const moved m = move(mpm, cells, geometry, spline, begin, n, &from);
+  if (mpm->energy.counts) mpsi_mpm_energy_moved(mpm, cells, begin, begin + n);
+  if (mpm->flip > 0.0) add_own(mpm, begin, n, &from);
+  if (m.left) cells->left = true;
+  if (m.outside) {
+    const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
+    if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
+  }
+  if (mpm->energy.counts) mpsi_mpm_energy_after(mpm, cells, begin, begin + n);
+  if (!mpm->laws.at_once) return; /* the laws wait for the means */
+  mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL, law);
+  speed_chunk(mpm, cells, dim, begin, n);
+}
+
+/* Whether some node under the block keeps momentum that its particles are to have: blocks.h. */
+static bool is_light(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  bool any = false;
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    any = any || nodes->light || (nodes->across >= 0 && mpm->grid.nodes[nodes->across].light);
+  }
+  return any;
+}
+
+MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  mps_material_block law;
+  mpsi_mpm_begin_block(&law);
+  cells->left = cells->gone = cells->lost = false;
+  cells->light = is_light(mpm, cells);
+  cells->bad = -1;
+  cells->speed = 0.0;
+  gather_tile(mpm, cells, false, worker->tile);
+  if (cells->thin) gather_tile(mpm, cells, true, worker->across_tile);
+  if (cells->mirrors) mpsi_mpm_unfold(mpm, cells, worker);
+  if (cells->cut || cells->light) mpsi_mpm_find_states(mpm, cells, worker);
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
+    g2p_chunk(mpm, cells, worker, geometry, spline, k, n, &law);
+  }
+}
+
+/* ---- variants -------------------------------------------------------------------------------- */
+
+#define DEFINE(g, s, geometry, spline)                                                             \
+  static void g2p_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                             \
+    g2p_body(mpm, b, worker, geometry, spline);                                                    \
+  }
+MPSI_VARIANTS(DEFINE)
+
+#define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = g2p_##g##_##s,
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
+
+void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  if (!cells->lost) cells->bad = -1;
+  cells->speed = 0.0;
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
+    speed_chunk(mpm, cells, mpm->dim, k, n);
+  }
+}

@@ -1,0 +1,375 @@
+/* p2g.c - particles to nodes, Nakamura (23)-(25), (39), one block of cells at a time, for particles
+ * with a full support or at one wall; the others go to least_squares.c. Compiled once for each
+ * instruction set.
+ *
+ * Consecutive particles with the same stencil, a segment, are summed in registers before they are
+ * added to the tile: particles are sorted by their stencils, and nearly sorted ones do as well.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "wall_support.h"
+
+/* What particles give to their nodes, w (part 0 + part 1 s_x + part 2 s_y + part 3 s_z): columns
+ * of the four values of a node. */
+typedef double columns[4][4][MPSI_CHUNK]; /* part, value, particle */
+typedef struct parts {
+  columns sum;   /* mass, momentum */
+  columns force; /* 0, force: of split blocks */
+} parts;
+
+/* With dt > 0 `sum` has dt times the force with the momentum; else (split) they are apart. */
+MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
+                            int n, parts *out) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const int dim = mpsi_dim_of(geometry);
+  const mpsi_columns *p = &mpm->p;
+  const double h = mpm->def.cell, stiff = -mpsi_inverse_moment(spline) * mpm->grid.inverse;
+  const double dt = split ? 1.0 : mpm->run.dt;
+  const mpsi_quad zero = {0.0};
+  for (int k = 0; k < n; k += 4) {
+    const int64_t at = begin + k;
+    const mpsi_quad m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
+    const mpsi_quad mh = m * h, Vs = V * stiff;
+    mpsi_put(out->sum[0][MPSI_MASS] + k, m + zero); /* of a mere copy gcc makes a slow `rep movs` */
+    if (split) mpsi_put(out->force[0][MPSI_EXCESS] + k, zero);
+    MPSI_UNROLL for (int c = 0; c < dim; c++) {
+      const int to = MPSI_VECTOR + c;
+      mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
+      if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
+      if (geometry == MPS_MPM_AXISYMMETRIC && c == 0)
+        force -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
+      mpsi_put(out->sum[0][to] + k, split ? momentum : momentum + force);
+      if (split) mpsi_put(out->force[0][to] + k, force);
+      MPSI_UNROLL for (int d = 0; d < dim; d++) {
+        momentum = mh * mpsi_get(p->L[dim * c + d] + at);
+        force = Vs * mpsi_get(p->s[symmetric[c][d]] + at);
+        mpsi_put(out->sum[1 + d][to] + k, split ? momentum : momentum + force);
+        if (split) mpsi_put(out->force[1 + d][to] + k, force);
+      }
+    }
+  }
+}
+
+/* The weights along x, the four nodes of a row side by side. */
+MPSI_INLINE void find_rows(int spline, const mpsi_places *places, int n, mpsi_rows *out) {
+  for (int k = 0; k < n; k += 4) {
+    mpsi_quad w[4] = {{0.0}}, ws[4] = {{0.0}};
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+      w[i] = mpsi_get(places->w[0][i] + k);
+      ws[i] = mpsi_get(places->ws[0][i] + k);
+    }
+    mpsi_transpose(w);
+    mpsi_transpose(ws);
+    MPSI_UNROLL for (int i = 0; i < 4; i++) {
+      mpsi_put(out->w[k + i], w[i]);
+      mpsi_put(out->ws[k + i], ws[i]);
+    }
+  }
+}
+
+/* Particles in the plane: what each gives to its rows along x, w (value + slope s_x). */
+typedef struct row_parts {
+  double mass[4][MPSI_CHUNK]; /* by row; it has no slope */
+  double value[4][2][MPSI_CHUNK], slope[4][2][MPSI_CHUNK];
+} row_parts;
+
+MPSI_INLINE void find_row_parts(int spline, const mpsi_places *places, int n, columns part,
+                                row_parts *out) {
+  for (int k = 0; k < n; k += 4) MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      const mpsi_quad w = mpsi_get(places->w[1][j] + k), ws = mpsi_get(places->ws[1][j] + k);
+      mpsi_put(out->mass[j] + k, w * mpsi_get(part[0][MPSI_MASS] + k));
+      MPSI_UNROLL for (int c = 0; c < 2; c++) {
+        const int from = MPSI_VECTOR + c;
+        mpsi_put(out->value[j][c] + k,
+                 w * mpsi_get(part[0][from] + k) + ws * mpsi_get(part[2][from] + k));
+        mpsi_put(out->slope[j][c] + k, w * mpsi_get(part[1][from] + k));
+      }
+    }
+}
+
+/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
+MPSI_INLINE void add_in_plane(int spline, const mpsi_places *places, const mpsi_rows *rows,
+                              int begin, int end, const row_parts *part, mpsi_node *tile) {
+  mpsi_quad sum[4][4] = {{{0.0}}}; /* row, value of a node: the four nodes */
+  for (int k = begin; k < end; k++) {
+    const mpsi_quad w = mpsi_get(rows->w[k]), ws = mpsi_get(rows->ws[k]);
+    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      sum[j][MPSI_MASS] += part->mass[j][k] * w;
+      MPSI_UNROLL for (int c = 0; c < 2; c++) {
+        sum[j][MPSI_VECTOR + c] += part->value[j][c][k] * w;
+        sum[j][MPSI_VECTOR + c] += part->slope[j][c][k] * ws;
+      }
+    }
+  }
+  MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+    mpsi_node *to = tile + places->first[begin] + mpsi_tile_index(0, j, 0);
+    mpsi_transpose(sum[j]);
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) mpsi_put(to[i], mpsi_get(to[i]) + sum[j][i]);
+  }
+}
+
+/* Particles in space: the four values of a node side by side. */
+typedef struct node_parts {
+  double of[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
+} node_parts;
+
+MPSI_INLINE void find_node_parts(int n, columns part, node_parts *out) {
+  for (int k = 0; k < n; k += 4) MPSI_UNROLL for (int d = 0; d < 4; d++) {
+      mpsi_quad a[4];
+      MPSI_UNROLL for (int c = 0; c < 4; c++) a[c] =
+          d > 0 && c == MPSI_MASS ? (mpsi_quad){0.0} : mpsi_get(part[d][c] + k);
+      mpsi_transpose(a);
+      MPSI_UNROLL for (int i = 0; i < 4; i++) mpsi_put(out->of[k + i][d], a[i]);
+    }
+}
+
+/* The same. What they give is spread along x once, and from there to each row by that row's
+ * weights alone. */
+MPSI_INLINE void add_in_space(int spline, const mpsi_places *places, const mpsi_rows *rows,
+                              int begin, int end, const node_parts *part, mpsi_node *tile) {
+  mpsi_vec along[MPSI_SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
+  for (int k = begin; k < end; k++) {
+    mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], a[4];
+    for (int v = 0; v < MPSI_ROW; v++) {
+      w[v] = mpsi_by_node(rows->w[k], v * MPSI_WIDE);
+      ws[v] = mpsi_by_node(rows->ws[k], v * MPSI_WIDE);
+    }
+    for (int d = 0; d < 4; d++) a[d] = mpsi_spread(mpsi_get(part->of[k][d]));
+    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+      along[k - begin][0][v] = w[v] * a[0] + ws[v] * a[1];
+      for (int d = 2; d < 4; d++) along[k - begin][d - 1][v] = w[v] * a[d];
+    }
+  }
+  tile += places->first[begin];
+  for (int plane = 0; plane <= spline; plane++) {
+    mpsi_vec sum[4][MPSI_ROW] = {{{0.0}}};
+    for (int k = begin; k < end; k++) {
+      const double wz = places->w[2][plane][k], wzs = places->ws[2][plane][k];
+      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+        const mpsi_vec value = wz * along[k - begin][0][v] + wzs * along[k - begin][2][v];
+        const mpsi_vec slope = wz * along[k - begin][1][v];
+        MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+          sum[j][v] += places->w[1][j][k] * value; /* apart: each is one fused operation */
+          sum[j][v] += places->ws[1][j][k] * slope;
+        }
+      }
+    }
+    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      double *to = tile[mpsi_tile_index(0, j, plane)];
+      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+        double *at = to + 4 * MPSI_WIDE * v;
+        mpsi_put_row(at, mpsi_get_row(at) + sum[j][v]);
+      }
+    }
+  }
+}
+
+/* The parts as they are added: of either kind. */
+typedef union added_parts {
+  row_parts row;
+  node_parts node;
+} added_parts;
+
+MPSI_INLINE void find_added(int dim, int spline, const mpsi_places *places, int n, columns part,
+                            added_parts *out) {
+  if (dim == 2)
+    find_row_parts(spline, places, n, part, &out->row);
+  else
+    find_node_parts(n, part, &out->node);
+}
+
+MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, const mpsi_rows *rows,
+                             int begin, int end, const added_parts *part, mpsi_node *tile) {
+  if (dim == 2)
+    add_in_plane(spline, places, rows, begin, end, &part->row, tile);
+  else
+    add_in_space(spline, places, rows, begin, end, &part->node, tile);
+}
+
+/* The same where a wall across `axis` cuts the stencil: momentum to the tile, force and excess mass
+ * (see mpsi_node) to the tile of forces. Weights of the derivatives differ across and along it. */
+MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int geometry, int spline,
+                             const mpsi_places *places, int axis, int64_t chunk, int begin,
+                             int end) {
+  const int dim = mpsi_dim_of(geometry), n = end - begin;
+  const size_t bytes = sizeof(double[4][MPSI_CHUNK]);
+  mpsi_wall wall;
+  parts part;
+  columns other = {{{0.0}}};
+  added_parts added;
+  find_parts(mpm, geometry, spline, true, chunk + begin, n, &part);
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_VALUE, &wall);
+  find_added(dim, spline, &wall.places, n, part.sum, &added);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->tile);
+  for (int k = 0; k < n; k++) {
+    other[0][MPSI_EXCESS][k] = part.sum[0][MPSI_MASS][k] * wall.mass[k];
+    part.force[0][MPSI_EXCESS][k] = -part.sum[0][MPSI_MASS][k];
+  }
+  for (int d = 0; d < dim; d++) {
+    if (d == axis) continue;
+    memcpy(other[1 + d], part.force[1 + d], bytes);
+    memset(part.force[1 + d], 0, bytes);
+  }
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_SLOPE, &wall);
+  find_added(dim, spline, &wall.places, n, part.force, &added);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_ALONG, &wall);
+  find_added(dim, spline, &wall.places, n, other, &added);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
+}
+
+MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++)
+      for (int i = cells->low[0]; i < cells->high[0]; i++)
+        mpsi_put(tile[mpsi_tile_index(i, j, k)], (mpsi_quad){0.0});
+}
+
+/* Adds a tile, and that of forces, to the block of nodes g under its corner q. */
+MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q, int32_t g,
+                       const mpsi_node *tile, const mpsi_node *forces) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
+  mpsi_node *side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
+  int low[3], high[3];
+  for (int c = 0; c < 3; c++) { /* of the tile */
+    const int first = q >> c & 1 ? MPSI_SIDE : 0;
+    low[c] = cells->low[c] > first ? cells->low[c] : first;
+    high[c] = first || cells->high[c] < MPSI_SIDE ? cells->high[c] : MPSI_SIDE;
+  }
+  for (int k = low[2]; k < high[2]; k++)
+    for (int j = low[1]; j < high[1]; j++) {
+      const int t = mpsi_tile_index(0, j, k);
+      const int to =
+          ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE - (q & 1) * MPSI_SIDE;
+      for (int i = low[0]; i < high[0]; i++) {
+        mpsi_quad sum = mpsi_get(tile[t + i]);
+        if (cells->apart) {
+          mpsi_quad force = mpsi_get(forces[t + i]);
+          if (nodes->split) {
+            mpsi_put(side[to + i], mpsi_get(side[to + i]) + force);
+          } else {
+            if (side) side[to + i][MPSI_EXCESS] += force[MPSI_EXCESS];
+            force[MPSI_EXCESS] = 0.0;
+            sum += mpm->run.dt * force;
+          }
+        }
+        mpsi_put(node[to + i], mpsi_get(node[to + i]) + sum);
+      }
+    }
+}
+
+MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                           int geometry, int spline, int64_t begin, int n) {
+  const int dim = mpsi_dim_of(geometry);
+  mpsi_places places;
+  mpsi_rows rows;
+  parts part;
+  added_parts sum, force;
+  mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  find_rows(spline, &places, n, &rows);
+  if (cells->split)
+    find_parts(mpm, geometry, spline, true, begin, n, &part);
+  else
+    find_parts(mpm, geometry, spline, false, begin, n, &part);
+  find_added(dim, spline, &places, n, part.sum, &sum);
+  if (cells->split) find_added(dim, spline, &places, n, part.force, &force);
+  for (int k = 0, end; k < n; k = end) {
+    for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
+      end++;
+    const uint32_t state =
+        cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
+    if (state != 0) {
+      const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
+      if (axis >= 0)
+        add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
+      const mpsi_batched done =
+          axis >= 0
+              ? MPSI_BATCHED
+              : MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mpm, cells, worker, &places, begin, k, end);
+      for (int f = k; f < end && done == MPSI_BATCHED_NOT; f++)
+        MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mpm, cells, worker, begin + f);
+      if (done != MPSI_BATCHED_FULL) continue;
+    }
+    add_segment(dim, spline, &places, &rows, k, end, &sum, worker->tile);
+    if (cells->split) add_segment(dim, spline, &places, &rows, k, end, &force, worker->force);
+  }
+}
+
+/* Asks the memory for the columns of a chunk. In the plane the few particles of a block end before
+ * the processor has seen that it reads on, and the next block of the colour is elsewhere. */
+MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t end) {
+  for (int64_t k = begin; k < end && k < begin + MPSI_CHUNK; k += 8) {
+    for (int c = 0; c < 2; c++) __builtin_prefetch(p->x[c] + k), __builtin_prefetch(p->v[c] + k);
+    for (int c = 0; c < 4; c++) __builtin_prefetch(p->L[c] + k), __builtin_prefetch(p->s[c] + k);
+    __builtin_prefetch(p->V + k);
+    __builtin_prefetch(p->m + k);
+  }
+}
+
+/* What lies across thin bodies. Particles whose supports these do not cut write nothing of it, but
+ * are asked for it on the way back where some node keeps momentum (give_back of least_squares.c). */
+static void begin_across(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  const size_t count = (size_t)(cells->end - cells->begin);
+  clear(cells, worker->across_tile);
+  clear(cells, worker->across_force);
+  memset(mpm->contact.across + cells->begin, 0, count * sizeof *mpm->contact.across);
+}
+
+/* What the particles of a block give, into the tile. */
+MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  const int dim = mpsi_dim_of(geometry);
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    pair->touched = false;
+    pair->deepest = 0.0;
+    memset(pair->load, 0, sizeof pair->load);
+    memset(pair->contacts, 0, sizeof pair->contacts);
+  }
+  if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
+  if (cells->first_fit >= 0)
+    memset(mpm->grid.fitted + cells->first_fit, 0, (size_t)(cells->end - cells->begin));
+  if (cells->mirrors) mpsi_mpm_begin_mirrors(mpm, cells);
+  clear(cells, worker->tile);
+  if (cells->apart) clear(cells, worker->force);
+  if (cells->thin) begin_across(mpm, cells, worker);
+  const mpsi_cell_block *next = dim == 2 && b + 2 < mpm->grid.cell_count ? cells + 2 : NULL;
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int64_t rest = cells->end - k;
+    if (next) prefetch_chunk(&mpm->p, next->begin + (k - cells->begin), next->end);
+    p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
+  }
+  if (cells->mirrors) mpsi_mpm_fold(mpm, cells, worker);
+}
+
+MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_worker *from = &mpm->grid.workers[number];
+  for (int q = 0; q < 1 << dim; q++)
+    flush(mpm, cells, q, cells->to[q], (const mpsi_node *)from->tile,
+          (const mpsi_node *)from->force);
+  for (int q = 0; q < 1 << dim && cells->thin; q++)
+    flush(mpm, cells, q, mpm->grid.nodes[cells->to[q]].across, (const mpsi_node *)from->across_tile,
+          (const mpsi_node *)from->across_force);
+}
+
+void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {
+  flush_body(mpm, b, worker, mpm->dim);
+}
+
+#define DEFINE(g, s, geometry, spline)                                                             \
+  static void tile_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                            \
+    tile_body(mpm, b, worker, geometry, spline);                                                   \
+  }                                                                                                \
+  static void p2g_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                             \
+    tile_##g##_##s(mpm, b, worker);                                                                \
+    flush_body(mpm, b, worker, mpsi_dim_of(geometry));                                             \
+  }
+MPSI_VARIANTS(DEFINE)
+
+#define TILE_ENTRY(g, s, geometry, spline) [geometry][spline - 2] = tile_##g##_##s,
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_tile)[3][2] = {MPSI_VARIANTS(TILE_ENTRY)};
+
+#define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = p2g_##g##_##s,
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_p2g)[3][2] = {MPSI_VARIANTS(ENTRY)};
