@@ -79,13 +79,14 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) 
 /* ---- a contact ------------------------------------------------------------------------------- */
 
 void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
-                       double share, double *by) {
+                       double fraction, double *by) {
   const double across = mpsi_dot3(last, c->normal);
   c->inertia = 1.0 / mpsi_impulse_mobility_along(c, b, c->normal, 1.0);
   c->even = !b->free && c->mobility[0] == c->mobility[1] && c->mobility[1] == c->mobility[2];
-  c->push = mpsi_larger(0.0, share * across);
+  c->normal_impulse = mpsi_larger(0.0, fraction * across);
   for (int a = 0; a < 3; a++)
-    c->rub[a] = c->push > 0.0 ? share * (last[a] - across * c->normal[a]) : 0.0;
-  mpsi_impulse_into_cone(c, c->rub);
-  for (int a = 0; a < 3; a++) by[a] = c->push * c->normal[a] + c->rub[a];
+    c->tangent_impulse[a] =
+        c->normal_impulse > 0.0 ? fraction * (last[a] - across * c->normal[a]) : 0.0;
+  mpsi_impulse_into_cone(c, c->tangent_impulse);
+  for (int a = 0; a < 3; a++) by[a] = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
 }

@@ -68,20 +68,20 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by);
 /* ---- a contact ------------------------------------------------------------------------------- */
 
 typedef struct mpsi_impulse {
-  double at[3], normal[3]; /* m, where it acts; n */
-  double aim;              /* m/s, w */
-  double mobility[3];      /* 1/kg, 1/m_c of the solver's side along x, y, z */
-  double friction;         /* mu */
-  double adhesion;         /* N s, what |T| may be besides mu P where P > 0, */
-  double strength;         /* and at all; INFINITY: no bound */
-  double push, rub[3];     /* N s: P; T */
-  double inertia;          /* kg: 1 over the mobility of both sides along n; mpsi_impulse_warm */
-  bool even;               /* that mobility is the same in all directions; likewise */
+  double at[3], normal[3];                   /* m, where it acts; n */
+  double aim;                                /* m/s, w */
+  double mobility[3];                        /* 1/kg, 1/m_c of the solver's side along x, y, z */
+  double friction;                           /* mu */
+  double adhesion;                           /* N s, what |T| may be besides mu P where P > 0, */
+  double strength;                           /* and at all; INFINITY: no bound */
+  double normal_impulse, tangent_impulse[3]; /* N s: P; T */
+  double inertia; /* kg: 1 over the mobility of both sides along n; mpsi_impulse_warm */
+  bool even;      /* that mobility is the same in all directions; likewise */
 } mpsi_impulse;
 
 /* Begins with `share` of the last step's impulse `last` (N s), split on the present normal, or with
  * none where that pulled; `by` (N s) is what acts on the particle. Before all visits of a step. */
 void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
-                       double share, double *by);
+                       double fraction, double *by);
 
 #endif

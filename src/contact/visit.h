@@ -14,12 +14,13 @@ static inline double mpsi_larger(double a, double b) { return b > a ? b : a; }
 
 /* Takes T back to what the surface bears: the cone |T| <= mu P, with adhesion and up to a strength.
  */
-static inline void mpsi_impulse_into_cone(const mpsi_impulse *c, double *rub) {
-  const double cone = c->push > 0.0 ? c->friction * c->push + c->adhesion : 0.0;
-  const double square = mpsi_dot3(rub, rub), most = cone < c->strength ? cone : c->strength;
+static inline void mpsi_impulse_into_cone(const mpsi_impulse *c, double *tangent_impulse) {
+  const double cone = c->normal_impulse > 0.0 ? c->friction * c->normal_impulse + c->adhesion : 0.0;
+  const double square = mpsi_dot3(tangent_impulse, tangent_impulse),
+               most = cone < c->strength ? cone : c->strength;
   if (!(square > most * most)) return; /* most contacts stick: no root */
-  const double share = most / sqrt(square);
-  for (int a = 0; a < 3; a++) rub[a] *= share;
+  const double fraction = most / sqrt(square);
+  for (int a = 0; a < 3; a++) tangent_impulse[a] *= fraction;
 }
 
 /* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
@@ -40,23 +41,24 @@ static inline double mpsi_impulse_mobility_along(const mpsi_impulse *c, const mp
  * every operation in a row counts. */
 static inline bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
                                       double *by) {
-  const double across = mpsi_dot3(u, c->normal), before = c->push;
-  c->push = mpsi_larger(0.0, before + (c->aim - across) * c->inertia);
-  if (before == 0.0 && c->push == 0.0) return false; /* nor was there a T, nor may there be */
-  for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
+  const double across = mpsi_dot3(u, c->normal), before = c->normal_impulse;
+  c->normal_impulse = mpsi_larger(0.0, before + (c->aim - across) * c->inertia);
+  if (before == 0.0 && c->normal_impulse == 0.0)
+    return false; /* nor was there a T, nor may there be */
+  for (int a = 0; a < 3; a++) by[a] = (c->normal_impulse - before) * c->normal[a];
   if (c->friction > 0.0 || c->adhesion > 0.0) {
-    double slip[3], rub[3];
+    double slip[3], tangent_impulse[3];
     for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
     double stop = c->inertia;
     if (!c->even) {
       const double square = mpsi_dot3(slip, slip);
       stop = square > 0.0 ? square / mpsi_impulse_mobility_along(c, b, slip, square) : 0.0;
     }
-    for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - stop * slip[a];
-    mpsi_impulse_into_cone(c, rub);
+    for (int a = 0; a < 3; a++) tangent_impulse[a] = c->tangent_impulse[a] - stop * slip[a];
+    mpsi_impulse_into_cone(c, tangent_impulse);
     for (int a = 0; a < 3; a++) {
-      by[a] += rub[a] - c->rub[a];
-      c->rub[a] = rub[a];
+      by[a] += tangent_impulse[a] - c->tangent_impulse[a];
+      c->tangent_impulse[a] = tangent_impulse[a];
     }
   }
   return by[0] != 0.0 || by[1] != 0.0 || by[2] != 0.0;

@@ -167,7 +167,7 @@ static mps_status measure(curve_cut *c, mps_status status) {
   double bits = 0.0;
   if (status == MPS_OK && c->count > 0)
     for (int64_t key = c->key[c->count - 1]; key > 0; key >>= 1) bits += 1.0;
-  status = mpsi_domain_settle_max(c->domain, c->function, status, 1, &bits);
+  status = mpsi_domain_agree_max(c->domain, c->function, status, 1, &bits);
   if (status != MPS_OK) return status;
   for (int32_t k = 0; k < c->ranks - 1; k++) c->least[k] = -1, c->most[k] = INT64_C(1) << (int)bits;
   c->all = c->below[c->count];

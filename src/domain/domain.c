@@ -16,7 +16,7 @@ mps_status mps_domain_def_init(mps_domain_def *def, size_t size) {
 
 mps_status mps_domain_agree(mps_domain *domain, mps_status status) {
   if (!domain) return MPS_ERROR_ARGUMENT;
-  return mpsi_domain_settle(domain, __func__, status);
+  return mpsi_domain_agree(domain, __func__, status);
 }
 
 mps_status mps_domain_max(mps_domain *domain, int32_t count, double *values) {
@@ -30,7 +30,7 @@ mps_status mps_domain_max(mps_domain *domain, int32_t count, double *values) {
     if (isnan(values[k]))
       status = mpsi_fail(domain->context, __func__, MPS_ERROR_ARGUMENT,
                          "values[%d] is NaN, must be a number", k);
-  status = mpsi_domain_settle_same(domain, __func__, status, "count", count);
+  status = mpsi_domain_agree_same(domain, __func__, status, "count", count);
   return status == MPS_OK ? mpsi_domain_max(domain, __func__, count, values) : status;
 }
 
@@ -74,11 +74,11 @@ static mps_status try_transport(mps_domain *domain) {
                        "expected of %lld ranks are %lld and %lld",
                        (long long)ranks[0], (long long)ranks[1], (long long)n, (long long)n,
                        (long long)(n * (n - 1) / 2));
-  status = mpsi_domain_settle_same(domain, function, status, "the library's version",
-                                   mps_version_number());
+  status = mpsi_domain_agree_same(domain, function, status, "the library's version",
+                                  mps_version_number());
   if (status == MPS_OK)
-    status = mpsi_domain_settle_same(domain, function, status, "instruction_level",
-                                     mpsi_context_level(domain->context));
+    status = mpsi_domain_agree_same(domain, function, status, "instruction_level",
+                                    mpsi_context_level(domain->context));
   return status;
 }
 

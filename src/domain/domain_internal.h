@@ -25,13 +25,13 @@ static inline bool mpsi_domain_many(const mps_domain *domain) {
 
 /* Status of all ranks: MPS_OK where all are well, else the worst status, with the record
  * of the lowest rank that has it. `status` is this rank's, its record the last of the context. */
-mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status);
+mps_status mpsi_domain_agree(mps_domain *domain, const char *function, mps_status status);
 /* The same, and in the same message the greatest of each value: at most MPSI_DOMAIN_ALONG. Where
  * ranks are not well the values are not to be used. */
 #define MPSI_DOMAIN_ALONG 8
-mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
-                                  int32_t count, double *values);
-/* mpsi_domain_settle_max in two parts, between which ranks may compute and bring halos, but neither
+mps_status mpsi_domain_agree_max(mps_domain *domain, const char *function, mps_status status,
+                                 int32_t count, double *values);
+/* mpsi_domain_agree_max in two parts, between which ranks may compute and bring halos, but neither
  * agree nor reduce: no rank waits for one that is a little behind. One is under way at a time. The
  * first part returns `status` in one process, and of several an error where the transport fails. */
 mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_status status,
@@ -39,16 +39,16 @@ mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_
 mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_t count,
                                 double *values);
 /* The same, and MPS_ERROR_ARGUMENT where ranks give different values of `name`. */
-mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps_status status,
-                                   const char *name, double value);
+mps_status mpsi_domain_agree_same(mps_domain *domain, const char *function, mps_status status,
+                                  const char *name, double value);
 
 /* same.c: the same for a list, with the name of the first number that differs, and for the fields
  * of a set. */
-mps_status mpsi_domain_settle_given(mps_domain *domain, const char *function, mps_status status,
-                                    const mpsi_given *list);
+mps_status mpsi_domain_agree_given(mps_domain *domain, const char *function, mps_status status,
+                                   const mpsi_given *list);
 /* The same, and the greatest of each value: at most MPSI_DOMAIN_ALONG - 2. */
-mps_status mpsi_domain_settle_given_max(mps_domain *domain, const char *function, mps_status status,
-                                        const mpsi_given *list, int32_t count, double *values);
+mps_status mpsi_domain_agree_given_max(mps_domain *domain, const char *function, mps_status status,
+                                       const mpsi_given *list, int32_t count, double *values);
 mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
                                         mps_particles *particles);
 

@@ -305,12 +305,12 @@ static mps_status gather(mps_domain *domain, const char *function, mps_particles
                        "the particle set was made from another context than the domain");
   else
     status = pack(domain, function, particles, chosen, &data, &bytes);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) status = send_to_first(domain, function, data, bytes, &box);
   mpsi_free(context, data);
   if (status == MPS_OK && domain->def.rank == 0) status = make_whole(domain, function, &box, whole);
   mpsi_domain_free_mail(&box);
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }
 
 mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles, mps_particles **whole) {
@@ -344,5 +344,5 @@ mps_status mpsi_domain_gather_rows(mps_domain *domain, const char *function, int
     if (status == MPS_OK) value->rows = all;
   }
   mpsi_domain_free_mail(&box);
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }

@@ -33,7 +33,7 @@ static mps_status ask_owners(mpsi_halo *halo, const char *function, const int32_
         (mps_domain_message){.rank = rank[k], .bytes = 8 * (end - k), .data = value + k};
   }
   mps_status status = message ? MPS_OK : mpsi_fail_memory(context, function, 24);
-  status = mpsi_domain_settle(halo->domain, function, status);
+  status = mpsi_domain_agree(halo->domain, function, status);
   if (status == MPS_OK) status = mpsi_domain_exchange(halo->domain, function, count, message, box);
   mpsi_free(context, message);
   return status;
@@ -73,7 +73,7 @@ static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *as
     message[k] = (mps_domain_message){
         .rank = asked->mail[k].rank, .bytes = asked->mail[k].bytes, .data = index};
   }
-  status = mpsi_domain_settle(halo->domain, function, status);
+  status = mpsi_domain_agree(halo->domain, function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(halo->domain, function, asked->count, message, answers);
   mpsi_free(context, message);
@@ -90,7 +90,7 @@ static mps_status make_star(mpsi_halo *halo, const char *function, const int32_t
   mps_status status = MPS_OK;
   if (!index || !halo->out || !halo->in)
     status = mpsi_fail_memory(context, function, (size_t)(halo->guests * columns) * 8);
-  status = mpsi_domain_settle(halo->domain, function, status);
+  status = mpsi_domain_agree(halo->domain, function, status);
   for (int32_t k = 0; status == MPS_OK && k < answers->count; k++) {
     memcpy(index + count, answers->mail[k].data, (size_t)answers->mail[k].bytes);
     count += answers->mail[k].bytes / 8;
@@ -111,13 +111,13 @@ mps_status mpsi_halo_create(mps_domain *domain, const char *function, const mpsi
   mpsi_mailbox asked = {.context = context}, answers = {.context = context};
   mpsi_halo *halo = *out = mpsi_alloc(context, 1, sizeof *halo);
   mps_status status = halo ? MPS_OK : mpsi_fail_memory(context, function, sizeof *halo);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) {
     *halo = (mpsi_halo){.domain = domain, .guests = def->guests, .first = def->first};
     status = ask_owners(halo, function, def->rank, def->index, &asked);
   }
   if (status == MPS_OK)
-    status = mpsi_domain_settle(domain, function, list_items(halo, function, &asked));
+    status = mpsi_domain_agree(domain, function, list_items(halo, function, &asked));
   if (status == MPS_OK) status = answer(halo, function, &asked, &answers);
   if (status == MPS_OK) status = make_star(halo, function, def->rank, &answers, def->columns);
   mpsi_domain_free_mail(&asked);

@@ -43,7 +43,7 @@ mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t co
 mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
                                 const mps_domain_message *messages, mpsi_mailbox *box) {
   mps_status status = mpsi_domain_post(domain, function, count, messages, box);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   if (status != MPS_OK) mpsi_domain_free_mail(box);
   return status;
 }

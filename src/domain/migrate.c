@@ -76,8 +76,8 @@ mps_status mpsi_migrate(mps_domain *domain, const char *function, const mpsi_lea
   mps_context *context = box->context = domain->context;
   mps_status status = check_leaving(domain, function, leaving);
   if (status == MPS_OK) status = pack(domain, function, leaving, &p);
-  status = mpsi_domain_settle_same(domain, function, status, "the number of columns of a particle",
-                                   leaving->columns);
+  status = mpsi_domain_agree_same(domain, function, status, "the number of columns of a particle",
+                                  leaving->columns);
   if (status == MPS_OK) status = mpsi_domain_exchange(domain, function, p.messages, p.message, box);
   for (int32_t k = 0; k < box->count; k++) *arriving += box->mail[k].bytes / (8 * leaving->columns);
   free_parcel(context, &p);

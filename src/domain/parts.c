@@ -13,11 +13,11 @@ static mps_status agree_added(void *self, const char *function, mps_status statu
   mpsi_given_begin(&given);
   mpsi_give(&given, "the number of particles that are added", (double)count);
   mpsi_give(&given, "a hash of the places of what is added", mpsi_hash_short(hash));
-  return mpsi_domain_settle_given(self, function, status, &given);
+  return mpsi_domain_agree_given(self, function, status, &given);
 }
 
 static mps_status settle(void *self, const char *function, mps_status status) {
-  return mpsi_domain_settle(self, function, status);
+  return mpsi_domain_agree(self, function, status);
 }
 
 static void release(void *self) {
@@ -60,7 +60,7 @@ mps_status mps_domain_create_particles(mps_domain *domain, const mps_particles_d
   MPSI_GIVE(&given, &known, dim);
   MPSI_GIVE(&given, &known, spacing);
   MPSI_GIVE_VECTOR(&given, &known, origin, 3);
-  status = mpsi_domain_settle_given(domain, __func__, status, &given);
+  status = mpsi_domain_agree_given(domain, __func__, status, &given);
   if (status != MPS_OK)
     mps_particles_destroy(&made);
   else
@@ -87,7 +87,7 @@ mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mp
     mpsi_give(&given, "a hash of the constants given by mps_particles_set",
               mpsi_hash_short(deal->constants));
   }
-  return mpsi_domain_settle_given(domain, function, status, &given);
+  return mpsi_domain_agree_given(domain, function, status, &given);
 }
 
 /* ---- moving ---------------------------------------------------------------------------------- */
@@ -146,7 +146,7 @@ mps_status mpsi_domain_move(mps_domain *domain, const char *function, mps_status
   mpsi_mailbox box = {.context = context};
   int64_t arriving = 0;
   if (status == MPS_OK) status = list_leaving(&d, domain, function, to);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   const mpsi_leaving leaving = {.count = d.count,
                                 .row = d.row,
                                 .to = d.to,
@@ -154,7 +154,7 @@ mps_status mpsi_domain_move(mps_domain *domain, const char *function, mps_status
                                 .column = (const void *const *)d.column};
   if (status == MPS_OK) status = mpsi_migrate(domain, function, &leaving, &box, &arriving);
   if (status == MPS_OK)
-    status = mpsi_domain_settle(
+    status = mpsi_domain_agree(
         domain, function,
         mpsi_particles_hold_room(particles, function,
                                  mps_particles_count(particles) - d.count + arriving));

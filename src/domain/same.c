@@ -20,19 +20,19 @@ static mps_status find_other(mps_domain *domain, const char *function, const mps
   return status;
 }
 
-mps_status mpsi_domain_settle_given(mps_domain *domain, const char *function, mps_status status,
-                                    const mpsi_given *list) {
-  return mpsi_domain_settle_given_max(domain, function, status, list, 0, NULL);
+mps_status mpsi_domain_agree_given(mps_domain *domain, const char *function, mps_status status,
+                                   const mpsi_given *list) {
+  return mpsi_domain_agree_given_max(domain, function, status, list, 0, NULL);
 }
 
-mps_status mpsi_domain_settle_given_max(mps_domain *domain, const char *function, mps_status status,
-                                        const mpsi_given *list, int32_t count, double *values) {
+mps_status mpsi_domain_agree_given_max(mps_domain *domain, const char *function, mps_status status,
+                                       const mpsi_given *list, int32_t count, double *values) {
   if (!mpsi_domain_many(domain)) return status;
   const double hash = mpsi_hash_short(mpsi_given_hash(list));
   double range[MPSI_DOMAIN_ALONG] = {hash, -hash};
   int32_t k = 0;
   for (int32_t v = 0; v < count; v++) range[2 + v] = values[v];
-  status = mpsi_domain_settle_max(domain, function, status, 2 + count, range);
+  status = mpsi_domain_agree_max(domain, function, status, 2 + count, range);
   for (int32_t v = 0; v < count; v++) values[v] = range[2 + v];
   if (status != MPS_OK || range[0] == -range[1]) return status;
   status = find_other(domain, function, list, &k);
@@ -43,7 +43,7 @@ mps_status mpsi_domain_settle_given_max(mps_domain *domain, const char *function
                      "same",
                      found ? list->name[k] : "a hash of the last numbers given",
                      found ? list->value[k] : hash, mps_domain_rank(domain));
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }
 
 mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
@@ -60,6 +60,6 @@ mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function
       hash = mpsi_hash(hash, (const char *)view.data + 8 * c * view.stride[1],
                        (size_t)view.shape[0] * 8);
   }
-  return mpsi_domain_settle_same(domain, function, status, "a hash of the set's particles",
-                                 mpsi_hash_short(hash));
+  return mpsi_domain_agree_same(domain, function, status, "a hash of the set's particles",
+                                mpsi_hash_short(hash));
 }

@@ -29,8 +29,8 @@ static mps_status check(mps_domain *domain, const char *function, mps_particles 
     hash = mpsi_hash(hash, ids, (size_t)count * sizeof *ids);
     hash = mpsi_hash(hash, name, strlen(name));
   }
-  return mpsi_domain_settle_same(domain, function, status, "a hash of the field's name and the ids",
-                                 mpsi_hash_short(hash));
+  return mpsi_domain_agree_same(domain, function, status, "a hash of the field's name and the ids",
+                                mpsi_hash_short(hash));
 }
 
 /* The highest rank that has each particle; it alone tells of it. */
@@ -90,7 +90,7 @@ mps_status mps_domain_get_field(mps_domain *domain, mps_particles *particles, co
   if (status != MPS_OK) return status;
   teller = mpsi_alloc(domain->context, count, sizeof *teller);
   if (!teller) status = mpsi_fail_memory(domain->context, __func__, (size_t)count * sizeof *teller);
-  status = mpsi_domain_settle(domain, __func__, status);
+  status = mpsi_domain_agree(domain, __func__, status);
   if (status == MPS_OK) status = find_tellers(domain, __func__, particles, count, ids, teller);
   if (status == MPS_OK)
     status = share_values(domain, __func__, particles, &view, count, ids, teller, values);

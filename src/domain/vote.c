@@ -204,8 +204,8 @@ static mps_status settle_max(mps_domain *domain, const char *function, mps_statu
   return status == MPS_OK ? mpsi_domain_vote_end(domain, function, count, values) : status;
 }
 
-mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
-                                  int32_t count, double *values) {
+mps_status mpsi_domain_agree_max(mps_domain *domain, const char *function, mps_status status,
+                                 int32_t count, double *values) {
   if (!mpsi_domain_many(domain)) return status;
   if (status == MPS_OK || domain->lost != MPS_OK ||
       mps_context_error(domain->context)->status != status)
@@ -216,21 +216,21 @@ mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_
   return domain->lost != MPS_OK && !left ? report_both(domain, &own) : status;
 }
 
-mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status) {
-  return mpsi_domain_settle_max(domain, function, status, 0, NULL);
+mps_status mpsi_domain_agree(mps_domain *domain, const char *function, mps_status status) {
+  return mpsi_domain_agree_max(domain, function, status, 0, NULL);
 }
 
-mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps_status status,
-                                   const char *name, double value) {
+mps_status mpsi_domain_agree_same(mps_domain *domain, const char *function, mps_status status,
+                                  const char *name, double value) {
   const bool none = isnan(value); /* unset, which all may have */
   double range[4] = {none ? -INFINITY : value, none ? -INFINITY : -value, none, !none};
   if (!mpsi_domain_many(domain)) return status;
-  status = mpsi_domain_settle_max(domain, function, status, 4, range);
+  status = mpsi_domain_agree_max(domain, function, status, 4, range);
   const bool same = range[2] != range[3] && (range[2] == 1.0 || range[0] == -range[1]);
   if (status != MPS_OK || same) return status;
   status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
                      "%s is %.17g on rank %d and another value on others: all ranks must give the "
                      "same",
                      name, value, domain->def.rank);
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }

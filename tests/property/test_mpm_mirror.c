@@ -149,9 +149,9 @@ static void bodies_cross_a_mirror(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
     for (int rough = 0; rough < 2; rough++) {
-      const ball_of springs = {0.08, 0.3 * rough, MPS_CONTACT_METHOD_PENALTY, 1};
-      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &springs, test_steps(150), 0.0);
-      compare_part(MPS_MPM_SPACE, spline, 5, &springs, test_steps(150), 0.0);
+      const ball_of penalty_bodies = {0.08, 0.3 * rough, MPS_CONTACT_METHOD_PENALTY, 1};
+      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &penalty_bodies, test_steps(150), 0.0);
+      compare_part(MPS_MPM_SPACE, spline, 5, &penalty_bodies, test_steps(150), 0.0);
     }
     const ball_of smooth = {0.08, 0.0, MPS_CONTACT_METHOD_IMPULSE, 400};
     compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &smooth, test_steps(150), 1e-4);

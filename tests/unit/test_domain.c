@@ -167,13 +167,13 @@ static void run_errors(void *user, team *t, int32_t rank) {
     mpsi_fail_where(own, 17, 33);
     mpsi_fail_object(own, "body 3");
   }
-  f->status[1] = mpsi_domain_settle(domain, "outer", mpsi_domain_settle(domain, "test", status));
+  f->status[1] = mpsi_domain_agree(domain, "outer", mpsi_domain_agree(domain, "test", status));
   const mps_error *error = mps_context_error(own);
   f->good = error->step == 17 && error->particle == 33 && strcmp(error->object, "body 3") == 0 &&
             strcmp(error->function, "mps_three") == 0;
   snprintf(f->message, sizeof f->message, "%s", error->message);
-  f->status[2] = mpsi_domain_settle_same(domain, "test", MPS_OK, "dt", rank == 1 ? NAN : 1e-3);
-  f->status[3] = mpsi_domain_settle_same(domain, "test", MPS_OK, "dt", NAN);
+  f->status[2] = mpsi_domain_agree_same(domain, "test", MPS_OK, "dt", rank == 1 ? NAN : 1e-3);
+  f->status[3] = mpsi_domain_agree_same(domain, "test", MPS_OK, "dt", NAN);
   f->status[4] = mps_domain_agree(domain, rank == 0 ? MPS_ERROR_IO : MPS_OK); /* no record */
   mps_domain_destroy(&domain);
   mps_context_destroy(&own);

@@ -117,7 +117,7 @@ static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
   def.walls = walls;
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0, def.upper[c] = CELLS * CELL;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mpsi_mpm_update_holds(s.mpm, "test", MPS_OK));
+  mps_assert_ok(context, mpsi_mpm_update_boundaries(s.mpm, "test", MPS_OK));
   add_bodies(s.mpm, dim);
   const int64_t n = s.mpm->p.count;
   for (int64_t k = 0; k < n; k++) {
@@ -305,8 +305,8 @@ static void tangent_planes_leave_out_nothing_near(void **state) {
     mpm_scene s = pressed(dim, true), other = pressed(dim, false);
     mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
     mps_assert_ok(context, mps_mpm_step(other.mpm, 60));
-    assert_true(s.mpm->contact.impulses.kept_count > 3);
-    assert_int_equal(s.mpm->contact.impulses.kept_count, other.mpm->contact.impulses.kept_count);
+    assert_true(s.mpm->contact.impulses.warm_count > 3);
+    assert_int_equal(s.mpm->contact.impulses.warm_count, other.mpm->contact.impulses.warm_count);
     for (int c = 0; c < dim; c++)
       assert_memory_equal(s.mpm->p.v[c], other.mpm->p.v[c], (size_t)s.mpm->p.count * 8);
     mpm_scene_end(&s);

@@ -80,12 +80,12 @@ static void linear_velocity_returns(void **state) {
 
 /* ---- rotating disc --------------------------------------------------------------------------- */
 
-typedef struct kept {
+typedef struct warm {
   double linear, angular, energy; /* linear: relative error; the others: share that is left */
-} kept;
+} warm;
 
 /* A free disc, ten cells across, turns `turns` times and flies on. */
-static kept rotating_disc(int scheme, int32_t spline, double turns) {
+static warm rotating_disc(int scheme, int32_t spline, double turns) {
   const double w = 5.0, v0[] = {0.4, -0.3}, L[] = {0.0, -w, w, 0.0};
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, -0.001, 1e5);
   mpm_scene_ball(&s, 0.0, 0.0, 0.1);
@@ -98,7 +98,7 @@ static kept rotating_disc(int scheme, int32_t spline, double turns) {
   const mps_totals b = mpm_scene_totals(&s);
   const double away = 0.5 * (v0[0] * v0[0] + v0[1] * v0[1]); /* J/kg of the flight */
   mpm_scene_end(&s);
-  return (kept){
+  return (warm){
       hypot(b.linear[0] - a.linear[0], b.linear[1] - a.linear[1]) / hypot(a.linear[0], a.linear[1]),
       b.angular[2] / a.angular[2], (b.kinetic - away * b.mass) / (a.kinetic - away * a.mass)};
 }
@@ -107,7 +107,7 @@ static void disc_keeps(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++)
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
-      const kept k = rotating_disc(scheme, spline, 1.0);
+      const warm k = rotating_disc(scheme, spline, 1.0);
       print_message(
           "disc, one turn, spline %d, %s: linear %.1e, angular left %.9f, energy left %.4f\n",
           spline, name[scheme], k.linear, k.angular, k.energy);

@@ -20,7 +20,7 @@ mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *f
                     (size_t)s->id_count * sizeof *s->ids);
     for (int c = 0; c < 3; c++) mpsi_signal_give(list, "a hash of signal", s->signal[c]);
   }
-  return mpsi_domain_settle_given(dynamics->domain, function, status, list);
+  return mpsi_domain_agree_given(dynamics->domain, function, status, list);
 }
 
 static int compare_indices(const void *left, const void *right) {
@@ -134,7 +134,7 @@ mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mp
     out->factor[c] = s.factor[c];
     if (status == MPS_OK && s.signal[c]) out->signal[c] = mpsi_signal_retain(s.signal[c]);
   }
-  status = mpsi_domain_settle(dynamics->domain, function, status);
+  status = mpsi_domain_agree(dynamics->domain, function, status);
   if (status == MPS_OK) status = count_selected(dynamics, function, &s, out);
   if (status != MPS_OK) mpsi_dynamics_release_part(dynamics, out);
   return status;

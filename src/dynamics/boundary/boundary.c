@@ -344,7 +344,7 @@ static mps_status exchange(mps_dynamics *dynamics, const char *function, int32_t
   dynamics->boundary[number] = *boundary;
   if (status == MPS_OK) status = make_lists(dynamics, function, number, &l);
   double other = status == MPS_OK && other_freedoms(dynamics, &l);
-  status = mpsi_domain_settle_max(dynamics->domain, function, status, 1, &other);
+  status = mpsi_domain_agree_max(dynamics->domain, function, status, 1, &other);
   if (status != MPS_OK) {
     dynamics->boundary[number] = former;
     mpsi_dynamics_free_lists(dynamics, &l);
@@ -409,8 +409,8 @@ mps_status mps_dynamics_remove_boundary(mps_dynamics *dynamics, int32_t number) 
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle_same(dynamics->domain, __func__,
-                                   check_number(dynamics, __func__, number), "number", number);
+  status = mpsi_domain_agree_same(dynamics->domain, __func__,
+                                  check_number(dynamics, __func__, number), "number", number);
   mpsi_dynamics_boundary *boundary = NULL;
   if (status == MPS_OK) status = exchange(dynamics, __func__, number, &boundary);
   release(dynamics, &boundary);
@@ -425,8 +425,8 @@ mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics, int32_t
   if (!there)
     status = mpsi_fail(dynamics->context, "mps_dynamics_get_reaction", MPS_ERROR_ARGUMENT,
                        "there is no boundary number %d", number);
-  status = mpsi_domain_settle_same(dynamics->domain, "mps_dynamics_get_reaction", status, "number",
-                                   number);
+  status = mpsi_domain_agree_same(dynamics->domain, "mps_dynamics_get_reaction", status, "number",
+                                  number);
   if (status != MPS_OK) return status;
   const mpsi_dynamics_boundary *b = dynamics->boundary[number];
   const double rate = b->kick > 0.0 ? 1.0 / b->kick : 0.0;

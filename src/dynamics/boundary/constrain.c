@@ -64,7 +64,7 @@ mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *func
   for (int32_t k = 0; status == MPS_OK && k < dynamics->load_room; k++)
     if (dynamics->load[k])
       mpsi_give_vector(&list, "the present factor on a load", 2, dynamics->load[k]->now);
-  return mpsi_domain_settle_given_max(dynamics->domain, function, status, &list, count, values);
+  return mpsi_domain_agree_given_max(dynamics->domain, function, status, &list, count, values);
 }
 
 /* ---- dashpots -----------------------------------------------------------------------------------

@@ -156,8 +156,8 @@ mps_status mps_dynamics_remove_load(mps_dynamics *dynamics, int32_t number) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle_same(dynamics->domain, __func__,
-                                   check_number(dynamics, __func__, number), "number", number);
+  status = mpsi_domain_agree_same(dynamics->domain, __func__,
+                                  check_number(dynamics, __func__, number), "number", number);
   if (status != MPS_OK) return status;
   release(dynamics, &dynamics->load[number]);
   dynamics->forces_stale = true;

@@ -213,7 +213,7 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
   status = mpsi_dynamics_join_coefficients(dynamics, function, MPS_OK);
   if (status == MPS_OK) status = mpsi_dynamics_reserve_watch(dynamics, function);
   if (status == MPS_OK) status = mpsi_dynamics_list_boundaries(dynamics, function);
-  status = mpsi_domain_settle(dynamics->domain, function, status);
+  status = mpsi_domain_agree(dynamics->domain, function, status);
   if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
   return status;
 }
@@ -271,7 +271,7 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   if (status == MPS_OK && !parts) status = mpsi_particles_back_up(particles, __func__, &backup);
   if (status == MPS_OK && !(dynamics = mpsi_alloc(context, 1, sizeof *dynamics)))
     status = mpsi_fail_memory(context, __func__, sizeof *dynamics);
-  status = mpsi_domain_settle(def.domain, __func__, status);
+  status = mpsi_domain_agree(def.domain, __func__, status);
   if (status != MPS_OK) {
     mpsi_backup_drop(particles, &backup);
     mpsi_free(context, dynamics);
@@ -320,7 +320,7 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
 mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
-  if (status == MPS_OK) status = mpsi_domain_settle(dynamics->domain, __func__, status);
+  if (status == MPS_OK) status = mpsi_domain_agree(dynamics->domain, __func__, status);
   if (status != MPS_OK) return status;
   if (!dynamics->fresh)
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_STATE,

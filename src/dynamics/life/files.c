@@ -84,7 +84,7 @@ mps_status mpsi_dynamics_save_shares(mps_dynamics *dynamics, const mpsi_state_of
   mps_snapshot state = {.context = dynamics->context};
   mps_particles *whole = NULL;
   mps_status status =
-      mpsi_domain_settle(dynamics->domain, function, mpsi_state_get(of, function, &state));
+      mpsi_domain_agree(dynamics->domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(dynamics, function, &state.state);
   if (status == MPS_OK)
     status = mpsi_as(dynamics->context, function,
@@ -92,7 +92,7 @@ mps_status mpsi_dynamics_save_shares(mps_dynamics *dynamics, const mpsi_state_of
   if (status == MPS_OK) {
     if (mps_domain_rank(dynamics->domain) == 0)
       status = mpsi_checkpoint_save_values(of, function, path, info, whole, &state.state);
-    status = mpsi_domain_settle(dynamics->domain, function, status);
+    status = mpsi_domain_agree(dynamics->domain, function, status);
   }
   mps_particles_destroy(&whole);
   mpsi_values_free(dynamics->context, &state.state);
@@ -164,7 +164,7 @@ mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_sta
   if (status == MPS_OK && !(rows = mpsi_alloc(dynamics->context, ranks, sizeof *rows)))
     status = mpsi_fail_memory(dynamics->context, function, (size_t)ranks * 8);
   if (status == MPS_OK) status = take_fields(dynamics, function, values);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   for (int32_t k = 0; status == MPS_OK && k < values->state.count; k++) {
     mpsi_value *value = &values->state.item[k];
     const merging how = merging_of(value);
@@ -181,7 +181,7 @@ mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_sta
     int64_t before[2] = {0, 0};
     for (int32_t r = 0; r < ranks; r++) before[0] += r < rank ? rows[r] : 0, before[1] += rows[r];
     if (status == MPS_OK) status = take_rows(dynamics, function, value, before);
-    status = mpsi_domain_settle(domain, function, status);
+    status = mpsi_domain_agree(domain, function, status);
   }
   mpsi_free(dynamics->context, rows);
   return status;

@@ -70,8 +70,8 @@ mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *func
 mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function) {
   mps_domain *domain = dynamics->domain;
   double before = 0.0, after = 0.0;
-  mps_status status = mpsi_domain_settle(domain, function,
-                                         mpsi_dynamics_check_ground(dynamics->particles, function));
+  mps_status status = mpsi_domain_agree(domain, function,
+                                        mpsi_dynamics_check_ground(dynamics->particles, function));
   if (status == MPS_OK) status = mpsi_dynamics_present_energy(dynamics, function, &before);
   if (status != MPS_OK) return status;
   double other = mpsi_dynamics_set_coefficients(dynamics);
@@ -85,7 +85,7 @@ mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *functio
     dynamics->no_rate = dynamics->forces_stale = true;
   }
   if (status != MPS_OK) return status;
-  return mpsi_domain_settle(domain, function, mpsi_dynamics_reserve_watch(dynamics, function));
+  return mpsi_domain_agree(domain, function, mpsi_dynamics_reserve_watch(dynamics, function));
 }
 
 /* ---- a material ------------------------------------------------------------------------------ */
@@ -152,7 +152,7 @@ static mps_status write_own(mps_dynamics *dynamics, const char *function, mps_st
     own[here++] = ids[k];
     known += i < dynamics->body || dynamics->lead;
   }
-  status = mpsi_domain_settle(dynamics->domain, function, status);
+  status = mpsi_domain_agree(dynamics->domain, function, status);
   if (status == MPS_OK) status = mpsi_domain_sum(dynamics->domain, function, 1, &known);
   if (status == MPS_OK && known != count)
     status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -161,7 +161,7 @@ static mps_status write_own(mps_dynamics *dynamics, const char *function, mps_st
   if (status == MPS_OK && here > 0)
     status = mpsi_dynamics_write_material(dynamics->particles, function, material, here, own);
   mpsi_free(context, own);
-  return mpsi_domain_settle(dynamics->domain, function, status);
+  return mpsi_domain_agree(dynamics->domain, function, status);
 }
 
 mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material *material,
@@ -175,13 +175,13 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
   mpsi_material_give(&given, material);
-  status = mpsi_domain_settle_given(dynamics->domain, __func__, status, &given);
+  status = mpsi_domain_agree_given(dynamics->domain, __func__, status, &given);
   if (mpsi_domain_many(dynamics->domain) && ids) {
     status = write_own(dynamics, __func__, status, material, count, ids);
   } else {
     if (status == MPS_OK)
       status = mpsi_dynamics_write_material(dynamics->particles, __func__, material, count, ids);
-    status = mpsi_domain_settle(dynamics->domain, __func__, status);
+    status = mpsi_domain_agree(dynamics->domain, __func__, status);
   }
   return status == MPS_OK ? mpsi_dynamics_read_ground(dynamics, __func__) : status;
 }
@@ -267,7 +267,7 @@ mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *functio
                        "field '%s' has been written: mps_dynamics_restart begins a motion from "
                        "it, mps_dynamics_rollback leads back",
                        dynamics->rewritten);
-  status = mpsi_domain_settle_max(dynamics->domain, function, status, 3, edited);
+  status = mpsi_domain_agree_max(dynamics->domain, function, status, 3, edited);
   if (status == MPS_OK) dynamics->cautious = edited[2] != 0.0;
   if (status == MPS_OK && edited[0] != 0.0) status = mpsi_dynamics_read_ground(dynamics, function);
   if (status != MPS_OK) return status;

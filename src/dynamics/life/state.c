@@ -171,7 +171,7 @@ static void after(void *solver) {
 }
 
 static mps_status agree_to_go_back(void *solver, const char *function, mps_status status) {
-  return mpsi_domain_settle(((mps_dynamics *)solver)->domain, function, status);
+  return mpsi_domain_agree(((mps_dynamics *)solver)->domain, function, status);
 }
 
 static mpsi_state_of state_of(mps_dynamics *dynamics) {
@@ -206,8 +206,8 @@ mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot
   const mps_status status = check_whole(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
-  return mpsi_domain_settle(dynamics->domain, __func__,
-                            mpsi_state_snapshot(&of, __func__, snapshot));
+  return mpsi_domain_agree(dynamics->domain, __func__,
+                           mpsi_state_snapshot(&of, __func__, snapshot));
 }
 
 /* What follows from a state and lies on other ranks. */
@@ -255,8 +255,8 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   const mpsi_state_of of = state_of(dynamics);
   const double limit = dynamics->def.divergence;
   mpsi_state_prepared back;
-  mps_status status = mpsi_domain_settle(dynamics->domain, function,
-                                         mpsi_state_snapshot(&of, function, &dynamics->present));
+  mps_status status = mpsi_domain_agree(dynamics->domain, function,
+                                        mpsi_state_snapshot(&of, function, &dynamics->present));
   if (status == MPS_OK) /* what going back needs; agreed upon by all ranks */
     status = mpsi_state_ready_back(&of, function, dynamics->present, &back);
   if (status != MPS_OK) return status;
@@ -283,7 +283,7 @@ mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {
   if (status == MPS_OK && !kept)
     status =
         mpsi_fail_memory(dynamics->context, __func__, (size_t)dynamics->count * 3 * sizeof *kept);
-  status = mpsi_domain_settle(dynamics->domain, __func__, status);
+  status = mpsi_domain_agree(dynamics->domain, __func__, status);
   if (status == MPS_OK) status = look_ahead(dynamics, __func__, kept);
   const size_t bytes = (size_t)dynamics->count * sizeof(double);
   if (status == MPS_OK) {

@@ -56,7 +56,7 @@ mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
   if (!(dt >= MPSI_DYN_LEAST_DT && dt <= MPSI_DYN_MOST_DT))
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
                      "dt is %g s, must be in %g..%g", dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT);
-  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "dt", dt);
+  status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "dt", dt);
   if (status == MPS_OK) status = compare_dt(dynamics, __func__, dt);
   if (status != MPS_OK) return status;
   dynamics->dt = dynamics->def.dt = dt; /* as if the definition had given it */

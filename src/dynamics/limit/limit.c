@@ -109,7 +109,7 @@ static mps_status highest(const mps_dynamics *dynamics, int m, const double *dia
       status = mpsi_fail(dynamics->context, FUNCTION, MPS_ERROR_NUMERIC,
                          "LAPACK could not solve the tridiagonal eigenproblem");
   }
-  status = mpsi_domain_settle_max(dynamics->domain, FUNCTION, status, 2, found);
+  status = mpsi_domain_agree_max(dynamics->domain, FUNCTION, status, 2, found);
   *value = found[0], *last = found[1];
   return status;
 }
@@ -275,7 +275,7 @@ mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics, double duration
     mps_status status = memory ? MPS_OK
                                : mpsi_fail_memory(context, function,
                                                   (size_t)memory_size(dynamics) * sizeof *memory);
-    status = mpsi_domain_settle(dynamics->domain, function, status);
+    status = mpsi_domain_agree(dynamics->domain, function, status);
     if (status == MPS_OK) status = find_limit(dynamics, duration, memory, &limit);
     mpsi_free(context, memory);
     if (status != MPS_OK) return status;

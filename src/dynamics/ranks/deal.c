@@ -82,7 +82,7 @@ static mps_status measure(dealing *d, mps_status status) {
     }
     d->whole = g.count;
   }
-  status = mpsi_domain_settle_max(d->domain, d->function, status, 4, most);
+  status = mpsi_domain_agree_max(d->domain, d->function, status, 4, most);
   if (status == MPS_OK) status = mpsi_domain_sum(d->domain, d->function, 1, &d->whole);
   for (int c = 0; c < 2; c++) d->lo[c] = -most[c], d->hi[c] = most[2 + c];
   d->rows = mpsi_dynamics_layout_rows(d->lo, d->hi, d->dynamics->spacing);
@@ -148,7 +148,7 @@ static mps_status find_cuts(dealing *d) {
   int64_t *least = mpsi_alloc(context, 2 * cuts, sizeof *least);
   d->key = mpsi_alloc(context, 2 * cuts, sizeof *d->key);
   mps_status status = least && d->key ? MPS_OK : refused(d, 4 * cuts * 8);
-  status = mpsi_domain_settle(d->domain, d->function, status);
+  status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK) {
     d->id = d->key + cuts;
     for (int64_t c = 0; c < cuts; c++) least[c] = 0, d->key[c] = places;
@@ -255,7 +255,7 @@ static mps_status tell_pieces(dealing *d) {
   for (int32_t r = 0; status == MPS_OK && r < d->ranks; r++)
     message[r] =
         (mps_domain_message){.rank = r, .bytes = pieces * (int64_t)sizeof *own, .data = own};
-  status = mpsi_domain_settle(d->domain, d->function, status);
+  status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, d->ranks, message, &d->box);
   mpsi_free(context, own);
@@ -329,7 +329,7 @@ static mps_status ask(dealing *d, mpsi_mailbox *box) {
                                                    .data = list + first};
     }
   }
-  status = mpsi_domain_settle(d->domain, d->function, status);
+  status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, messages, message, box);
   mpsi_free(context, list);
@@ -387,7 +387,7 @@ static mps_status bring_near(dealing *d, mpsi_mailbox *out) {
           .rank = asks.mail[m].rank, .bytes = n * (int64_t)sizeof *found, .data = found + used};
     used += n;
   }
-  status = mpsi_domain_settle(d->domain, d->function, status);
+  status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, messages, message, out);
   mpsi_domain_free_mail(&asks);
@@ -491,12 +491,12 @@ mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
   mpsi_mailbox near = {.context = context};
   *out = (mpsi_dynamics_window){0};
   mps_status status = measure(&d, mpsi_dynamics_add_reference(dynamics, function));
-  if (status == MPS_OK) status = mpsi_domain_settle(d.domain, function, list_items(&d));
+  if (status == MPS_OK) status = mpsi_domain_agree(d.domain, function, list_items(&d));
   if (status == MPS_OK) status = find_cuts(&d);
   if (status == MPS_OK) status = travel(&d);
-  if (status == MPS_OK) status = mpsi_domain_settle(d.domain, function, sort_own(&d));
+  if (status == MPS_OK) status = mpsi_domain_agree(d.domain, function, sort_own(&d));
   if (status == MPS_OK) status = tell_pieces(&d);
-  if (status == MPS_OK) status = mpsi_domain_settle(d.domain, function, list_asked(&d));
+  if (status == MPS_OK) status = mpsi_domain_agree(d.domain, function, list_asked(&d));
   if (status == MPS_OK) status = bring_near(&d, &near);
   if (status == MPS_OK) status = number(&d, &near, out); /* settled by the caller */
   mpsi_domain_free_mail(&near);

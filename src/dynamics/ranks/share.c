@@ -351,7 +351,7 @@ static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mp
   MPSI_GIVE(&given, d, watch_damping);
   mpsi_give(&given, "the kind of the kernel", mps_kernel_get_kind(dynamics->kernel));
   mpsi_material_give(&given, d->material);
-  status = mpsi_domain_settle_given(dynamics->domain, function, status, &given);
+  status = mpsi_domain_agree_given(dynamics->domain, function, status, &given);
   if (status != MPS_OK || mpsi_particles_deal(dynamics->particles)) return status;
   return mpsi_domain_settle_particles(dynamics->domain, function, status, dynamics->particles);
 }
@@ -427,7 +427,7 @@ mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function
   if (status == MPS_OK) status = make_structure(&p, out);
   if (status == MPS_OK) status = keep_own(&p, out, former);
   if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics, function);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) status = join(&p, out);
   dynamics->whole = parts ? p.whole : p.count, dynamics->whole_body = p.whole;
   dynamics->lead = mps_domain_rank(domain) == mps_domain_size(domain) - 1;
@@ -457,7 +457,7 @@ mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *f
   double *const column[3] = {s->mu, s->lambda, s->beta};
   double most[7] = {e->mu,        e->lambda,  -e->lightest, e->alpha[1],
                     -e->alpha[0], e->beta[1], -e->beta[0]};
-  status = mpsi_domain_settle_max(dynamics->domain, function, status, 7, most);
+  status = mpsi_domain_agree_max(dynamics->domain, function, status, 7, most);
   if (status != MPS_OK || !dynamics->halo) return status;
   *e = (mpsi_dynamics_extremes){.mu = most[0],
                                 .lambda = most[1],

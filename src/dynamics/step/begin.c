@@ -55,7 +55,7 @@ mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
                            "the initial state of particle %lld is not finite (%g)",
                            (long long)mpsi_particles_integers(dynamics->particles, "id")[k],
                            column[c][k]);
-  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "time", time);
+  status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "time", time);
   if (status != MPS_OK) return status;
   return mpsi_dynamics_begin(dynamics, __func__, time);
 }

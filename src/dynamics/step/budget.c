@@ -209,7 +209,7 @@ static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_
   double *own = mpsi_alloc(dynamics->context, room, sizeof *own);
   mps_status status =
       own ? MPS_OK : mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *own);
-  status = mpsi_domain_settle(dynamics->domain, function, status);
+  status = mpsi_domain_agree(dynamics->domain, function, status);
   if (status == MPS_OK) status = mpsi_dynamics_settle_dt(dynamics, function);
   if (status == MPS_OK && dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
   if (status == MPS_OK) status = sum_up(dynamics, function, t);

@@ -62,9 +62,9 @@ static mps_status begin_steps(mps_dynamics *dynamics, const char *function, int6
   if (count < 0)
     status = mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                        "count is %lld, must be >= 0", (long long)count);
-  status = mpsi_domain_settle_max(dynamics->domain, function, status, 3, all);
+  status = mpsi_domain_agree_max(dynamics->domain, function, status, 3, all);
   if (status == MPS_OK && all[0] != -all[1])
-    status = mpsi_domain_settle_same(dynamics->domain, function, status, "count", (double)count);
+    status = mpsi_domain_agree_same(dynamics->domain, function, status, "count", (double)count);
   return status == MPS_OK && all[2] != 0.0 ? stop(dynamics, function) : status;
 }
 
@@ -93,7 +93,7 @@ static mps_status ask(mps_dynamics *dynamics, const char *function, mps_dynamics
   mpsi_guard_enter(&dynamics->guard, dynamics->context, "the callback of mps_dynamics_run");
   const mps_status own =
       mpsi_guard_leave(&dynamics->guard, dynamics->context, function, callback(user, dynamics));
-  const mps_status status = mpsi_domain_settle(dynamics->domain, function, own);
+  const mps_status status = mpsi_domain_agree(dynamics->domain, function, own);
   if (status != MPS_OK) mpsi_fail_where(dynamics->context, dynamics->steps, -1);
   return status;
 }
@@ -181,12 +181,12 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
            .callback = callback,
            .user = user};
   status = check_run(&r, __func__);
-  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "t_end", t_end);
+  status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "t_end", t_end);
   if (status == MPS_OK)
-    status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "every", (double)every);
+    status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "every", (double)every);
   if (status == MPS_OK)
-    status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "having a callback",
-                                     callback != NULL);
+    status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "having a callback",
+                                    callback != NULL);
   if (status != MPS_OK) return status;
   r.length = divide(dynamics, r.start, t_end, &r.total);
   r.report = r.total / 100 > 0 ? r.total / 100 : 1;

@@ -116,7 +116,7 @@ static mps_status report_divergence(mps_dynamics *dynamics, const char *function
             : "");
     mpsi_fail_where(dynamics->context, dynamics->steps, id);
   }
-  return mpsi_domain_settle(dynamics->domain, function, status);
+  return mpsi_domain_agree(dynamics->domain, function, status);
 }
 
 /* ---- speeds ------------------------------------------------------------------------------------
@@ -185,7 +185,7 @@ static mps_status report_speed(mps_dynamics *dynamics, const char *function) {
                        mpsi_dynamics_velocity(dynamics, 2, found), FASTEST);
     mpsi_fail_where(dynamics->context, dynamics->steps, id);
   }
-  return mpsi_domain_settle(dynamics->domain, function, status);
+  return mpsi_domain_agree(dynamics->domain, function, status);
 }
 
 /* Before a step of `length`: the displacements of a step before it, if the last was another. */
@@ -251,7 +251,7 @@ static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_
                               bool *diverged) {
   double any = *diverged;
   status = dynamics->cautious ? mpsi_dynamics_settle_signals(dynamics, function, status, 1, &any)
-                              : mpsi_domain_settle_max(dynamics->domain, function, status, 1, &any);
+                              : mpsi_domain_agree_max(dynamics->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
   return report_divergence(dynamics, function);
 }
@@ -260,7 +260,7 @@ static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_
 static mps_status settle_last(mps_dynamics *dynamics, const char *function, bool diverged) {
   const bool looks = isinf(dynamics->def.divergence);
   double any[2] = {diverged, !diverged && !looks && too_fast(dynamics)};
-  const mps_status status = mpsi_domain_settle_max(dynamics->domain, function, MPS_OK, 2, any);
+  const mps_status status = mpsi_domain_agree_max(dynamics->domain, function, MPS_OK, 2, any);
   if (status != MPS_OK) return status;
   if (any[0] != 0.0) return report_divergence(dynamics, function);
   return any[1] != 0.0 ? report_speed(dynamics, function) : MPS_OK;

@@ -272,7 +272,7 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
   mpsi_give(&given, "number", number);
   mpsi_give(&given, "kind", kind);
   if (status == MPS_OK) mpsi_body_give(&given, body);
-  return mpsi_domain_settle_given(f->def.domain, function, status, &given);
+  return mpsi_domain_agree_given(f->def.domain, function, status, &given);
 }
 
 /* The walls from `first` on that the faces of body number `b` become. */
@@ -332,8 +332,8 @@ mps_status mps_fluid_remove_body(mps_fluid *f, int32_t number) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle_same(f->def.domain, __func__, check_number(f, __func__, number),
-                                   "number", number);
+  status = mpsi_domain_agree_same(f->def.domain, __func__, check_number(f, __func__, number),
+                                  "number", number);
   if (status != MPS_OK) return status;
   mpsi_fluid_drop_body(f, &f->body[number]);
   f->stale = true, f->unknown = 1;

@@ -148,7 +148,7 @@ static mps_status make_alike(mps_fluid *f, const char *function, mps_status stat
     mpsi_give(&given, "node_count", (double)w->nodes);
     mpsi_give_bytes(&given, "a hash of nodes", w->node, (size_t)w->nodes * 8);
     mpsi_signal_give(&given, "a hash of signal", w->signal);
-    status = mpsi_domain_settle_given(f->def.domain, function, status, &given);
+    status = mpsi_domain_agree_given(f->def.domain, function, status, &given);
   }
   if (status != MPS_OK) mpsi_fluid_drop_wall(f, w);
   return status;
@@ -206,8 +206,8 @@ mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle_same(f->def.domain, __func__, check_number(f, __func__, number),
-                                   "number", number);
+  status = mpsi_domain_agree_same(f->def.domain, __func__, check_number(f, __func__, number),
+                                  "number", number);
   if (status != MPS_OK) return status;
   mpsi_fluid_drop_wall(f, &f->wall[number]);
   f->stale = true, f->unknown = 1;

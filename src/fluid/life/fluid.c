@@ -186,7 +186,7 @@ static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, m
   MPSI_GIVE(&given, d, dt);
   MPSI_GIVE(&given, d, radius_ratio);
   MPSI_GIVE(&given, d, tolerance);
-  status = mpsi_domain_settle_given(d->domain, function, status, &given);
+  status = mpsi_domain_agree_given(d->domain, function, status, &given);
   return status == MPS_OK ? mpsi_domain_settle_particles(d->domain, function, status, particles)
                           : status;
 }
@@ -261,8 +261,8 @@ mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle_same(f->def.domain, __func__, mpsi_fluid_check_dt(f, __func__, dt),
-                                   "dt", dt);
+  status = mpsi_domain_agree_same(f->def.domain, __func__, mpsi_fluid_check_dt(f, __func__, dt),
+                                  "dt", dt);
   if (status == MPS_OK) f->def.dt = dt;
   return status;
 }

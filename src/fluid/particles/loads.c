@@ -126,7 +126,7 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
     mpsi_give_bytes(&given, "a hash of ids", g->ids, (size_t)g->count * sizeof *g->ids);
     for (int c = 0; c < 2; c++) mpsi_signal_give(&given, "a hash of signal", g->signal[c]);
   }
-  return mpsi_domain_settle_given(f->def.domain, function, status, &given);
+  return mpsi_domain_agree_given(f->def.domain, function, status, &given);
 }
 
 void mpsi_fluid_give_loads(const mps_fluid *f, mpsi_given *list) {
@@ -190,8 +190,8 @@ mps_status mps_fluid_remove_load(mps_fluid *f, int32_t number) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle_same(f->def.domain, __func__, check_number(f, __func__, number),
-                                   "number", number);
+  status = mpsi_domain_agree_same(f->def.domain, __func__, check_number(f, __func__, number),
+                                  "number", number);
   if (status != MPS_OK) return status;
   drop(f, f->given[number]);
   f->given[number] = NULL;

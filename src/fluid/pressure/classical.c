@@ -20,7 +20,7 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle_same(f->def.domain, __func__, status, "gamma", gamma);
+  status = mpsi_domain_agree_same(f->def.domain, __func__, status, "gamma", gamma);
   if (status != MPS_OK) return status;
   if (!(gamma > 0.0 && gamma <= 1.0))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "gamma is %g, must be in (0, 1]",

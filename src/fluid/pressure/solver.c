@@ -33,7 +33,7 @@ static mps_status settle_solver(mps_fluid *f, const char *function, mps_status s
   mpsi_give(&list, "having rows", def->rows != NULL);
   mpsi_give(&list, "having forget", def->forget != NULL);
   MPSI_GIVE(&list, def, least);
-  return mpsi_domain_settle_given(f->def.domain, function, status, &list);
+  return mpsi_domain_agree_given(f->def.domain, function, status, &list);
 }
 
 mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_def) {

@@ -71,12 +71,12 @@ void mpsi_fluid_share_destroy(mps_fluid *f) {
 /* ---- errors ---------------------------------------------------------------------------------- */
 
 mps_status mpsi_fluid_settle(mps_fluid *f, const char *function, mps_status status) {
-  return mpsi_domain_settle(f->def.domain, function, status);
+  return mpsi_domain_agree(f->def.domain, function, status);
 }
 
 mps_status mpsi_fluid_settle_max(mps_fluid *f, const char *function, mps_status status,
                                  int32_t count, double *values) {
-  return mpsi_domain_settle_max(f->def.domain, function, status, count, values);
+  return mpsi_domain_agree_max(f->def.domain, function, status, count, values);
 }
 
 /* What all ranks have: how walls, bodies and loads move in the step, or have moved. */
@@ -103,7 +103,7 @@ mps_status mpsi_fluid_settle_alike(mps_fluid *f, const char *function, mps_statu
   double edited = f->edited;
   if (!f->share) return status;
   give_state(f, &list);
-  status = mpsi_domain_settle_given_max(f->share->domain, function, status, &list, 1, &edited);
+  status = mpsi_domain_agree_given_max(f->share->domain, function, status, &list, 1, &edited);
   if (status == MPS_OK && edited > 0.0)
     status = mpsi_domain_settle_particles(f->share->domain, function, status, f->particles);
   if (status == MPS_OK) f->edited = false;

@@ -23,7 +23,7 @@
 mps_status mpsi_fluid_share_create(mps_fluid *fluid, const char *function);
 void mpsi_fluid_share_destroy(mps_fluid *fluid);
 
-/* Status of all ranks, as mpsi_domain_settle. Collective, as what follows. */
+/* Status of all ranks, as mpsi_domain_agree. Collective, as what follows. */
 mps_status mpsi_fluid_settle(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_settle_max(mps_fluid *fluid, const char *function, mps_status status,
                                  int32_t count, double *values);

@@ -30,7 +30,7 @@ mps_status mps_fluid_float_body(mps_fluid *f, int32_t number, int32_t floats) {
   mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);
   mpsi_give(&given, "floats", floats);
-  status = mpsi_domain_settle_given(f->def.domain, __func__, status, &given);
+  status = mpsi_domain_agree_given(f->def.domain, __func__, status, &given);
   if (status != MPS_OK) return status;
   if (number < 0 || number >= MPSI_FLUID_BODIES || !f->body[number].body || floats < 0 ||
       floats > 1)

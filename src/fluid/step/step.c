@@ -226,7 +226,7 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
   if (status == MPS_OK && count < 0)
     status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                        (long long)count);
-  status = mpsi_domain_settle_same(f->def.domain, __func__, status, "count", (double)count);
+  status = mpsi_domain_agree_same(f->def.domain, __func__, status, "count", (double)count);
   if (status != MPS_OK) return status;
   mpsi_guard_enter(&f->guard, f->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
@@ -366,12 +366,12 @@ mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn
                   "t_end is %g s and every %lld: allowed are times from now, %g s, on, and >= 1",
                   t_end, (long long)every, f->time);
   mps_domain *domain = f->def.domain;
-  status = mpsi_domain_settle_same(domain, __func__, status, "t_end", t_end);
+  status = mpsi_domain_agree_same(domain, __func__, status, "t_end", t_end);
   if (status == MPS_OK)
-    status = mpsi_domain_settle_same(domain, __func__, status, "every", (double)every);
+    status = mpsi_domain_agree_same(domain, __func__, status, "every", (double)every);
   if (status == MPS_OK)
     status =
-        mpsi_domain_settle_same(domain, __func__, status, "having a callback", callback != NULL);
+        mpsi_domain_agree_same(domain, __func__, status, "having a callback", callback != NULL);
   if (status != MPS_OK) return status;
   const run r = {f->time, t_end, every, callback, user};
   mpsi_guard_enter(&f->guard, f->context, __func__);

@@ -19,7 +19,7 @@ mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
 
 mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status) {
   if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
-  status = mpsi_domain_settle(e->def.domain, function, status);
+  status = mpsi_domain_agree(e->def.domain, function, status);
   e->agreed = status != MPS_OK;
   return status;
 }
@@ -27,7 +27,7 @@ mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status 
 mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
                                     const char *name, double value) {
   if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
-  status = mpsi_domain_settle_same(e->def.domain, function, status, name, value);
+  status = mpsi_domain_agree_same(e->def.domain, function, status, name, value);
   e->agreed = status != MPS_OK;
   return status;
 }
@@ -35,7 +35,7 @@ mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_st
 mps_status mpsi_elastic_settle_given(mps_elastic *e, const char *function, mps_status status,
                                      const mpsi_given *list) {
   if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
-  status = mpsi_domain_settle_given(e->def.domain, function, status, list);
+  status = mpsi_domain_agree_given(e->def.domain, function, status, list);
   e->agreed = status != MPS_OK;
   return status;
 }

@@ -169,7 +169,7 @@ static mps_status agree_on_body(const mps_elastic_def *def, const char *function
   MPSI_GIVE(&given, def, refinements);
   mpsi_give(&given, "having a kernel", def->kernel != NULL);
   if (status == MPS_OK) mpsi_material_give(&given, def->material);
-  status = mpsi_domain_settle_given(def->domain, function, status, &given);
+  status = mpsi_domain_agree_given(def->domain, function, status, &given);
   return status == MPS_OK ? mpsi_domain_settle_particles(def->domain, function, status, particles)
                           : status;
 }
@@ -223,7 +223,7 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   e->modes = e->dim == 2 ? 3 : 6;
   e->n = mps_particles_count(particles);
   e->spacing = mps_particles_spacing(particles);
-  status = mpsi_domain_settle(def.domain, function, build(e, function));
+  status = mpsi_domain_agree(def.domain, function, build(e, function));
   if (status != MPS_OK) {
     mpsi_particles_go_back(particles, &backup);
     mps_elastic_destroy(&e);

@@ -111,7 +111,7 @@ static void list_state(mpsi_state *s, void *solver) {
 }
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
-  return mpsi_domain_settle(((mps_elastic *)solver)->def.domain, function, status);
+  return mpsi_domain_agree(((mps_elastic *)solver)->def.domain, function, status);
 }
 
 static mps_status have_read(void *solver, const char *function, mps_status status,

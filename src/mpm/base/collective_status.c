@@ -2,14 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
-bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g) {
+bool mpsi_mpm_counts_node_block(const mps_mpm *mpm, int64_t g) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   int q = 0;
   while (nodes->from[q] < 0) q++;
   return !mpm->grid.cells[nodes->from[q]].ghost;
 }
 
-bool mpsi_mpm_share_knows(const mps_mpm *mpm, int64_t g) {
+bool mpsi_mpm_node_block_complete(const mps_mpm *mpm, int64_t g) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   bool own = false;
   for (int q = 0; q < 1 << mpm->dim; q++)
@@ -17,17 +17,17 @@ bool mpsi_mpm_share_knows(const mps_mpm *mpm, int64_t g) {
   return own;
 }
 
-mps_status mpsi_mpm_share_any(mps_mpm *mpm, const char *function, bool *any) {
+mps_status mpsi_mpm_any_rank(mps_mpm *mpm, const char *function, bool *any) {
   double one = *any;
-  const mps_status status = mpsi_domain_max(mpm->share->domain, function, 1, &one);
+  const mps_status status = mpsi_domain_max(mpm->partition->domain, function, 1, &one);
   *any = one > 0.0;
   return status;
 }
 
-mps_status mpsi_mpm_share_agree(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_compare_edits(mps_mpm *mpm, const char *function, mps_status status) {
   double found[3] = {mpm->run.edited, mpm->run.stale, mpm->run.lost};
-  mpm->share->ready = false;
-  status = mpsi_mpm_share_settle_alike(mpm, function, status, 3, found);
+  mpm->partition->ready = false;
+  status = mpsi_mpm_agree_alike(mpm, function, status, 3, found);
   if (status != MPS_OK) return status;
   mpm->run.edited = found[0] > 0.0;
   mpm->run.stale = found[1] > 0.0;
@@ -48,7 +48,7 @@ static void give_state(const mps_mpm *mpm, mpsi_given *list) {
 /* What signals say of the step to be made. */
 static void give_signals(const mps_mpm *mpm, mpsi_given *list) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++)
-    if (mpm->boundaries.hold[k].kind != MPSI_HOLD_NONE)
+    if (mpm->boundaries.hold[k].kind != MPSI_BOUNDARY_NONE)
       mpsi_give_vector(list, "the velocity of a boundary", mpm->dim, mpm->boundaries.hold[k].v);
   for (int32_t k = 0; k < mpm->loads.count; k++)
     if (mpm->loads.traction[k].count > 0)
@@ -57,33 +57,35 @@ static void give_signals(const mps_mpm *mpm, mpsi_given *list) {
     if (mpm->contact.handle[b]->source.moves) mpsi_body_give_ahead(list, mpm->contact.body[b]);
 }
 
-mps_status mpsi_mpm_share_settle_alike(mps_mpm *mpm, const char *function, mps_status status,
-                                       int32_t count, double *values) {
+mps_status mpsi_mpm_agree_alike(mps_mpm *mpm, const char *function, mps_status status,
+                                int32_t count, double *values) {
   mpsi_given list;
   give_state(mpm, &list);
-  return mpsi_domain_settle_given_max(mpm->share->domain, function, status, &list, count, values);
+  return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
+                                     values);
 }
 
-mps_status mpsi_mpm_share_settle_step(mps_mpm *mpm, const char *function, mps_status status,
-                                      int32_t count, double *values) {
+mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
+                                  int32_t count, double *values) {
   mpsi_given list;
   give_state(mpm, &list);
   if (status == MPS_OK) give_signals(mpm, &list);
-  return mpsi_domain_settle_given_max(mpm->share->domain, function, status, &list, count, values);
+  return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
+                                     values);
 }
 
-mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status status) {
-  return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
+mps_status mpsi_mpm_agree(mps_mpm *mpm, const char *function, mps_status status) {
+  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
 }
 
-mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
-                                    int64_t count, const int64_t *ids) {
+mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
+                              const int64_t *ids) {
   int64_t found[2] = {0, mpm->p.count}; /* of the list; particles */
-  status = mpsi_mpm_share_settle(mpm, function, status);
+  status = mpsi_mpm_agree(mpm, function, status);
   if (status != MPS_OK) return status;
-  if (!mpm->share) return mpsi_particles_check_ids(mpm->particles, function, count, ids);
+  if (!mpm->partition) return mpsi_particles_check_ids(mpm->particles, function, count, ids);
   for (int64_t k = 0; k < count; k++) found[0] += mps_particles_index(mpm->particles, ids[k]) >= 0;
-  status = mpsi_domain_sum(mpm->share->domain, function, 2, found);
+  status = mpsi_domain_sum(mpm->partition->domain, function, 2, found);
   if (status != MPS_OK || (found[0] == count && count <= found[1])) return status;
   if (count > found[1])
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -97,23 +99,23 @@ mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_stat
 /* ---- particles that the caller adds and removes ----------------------------------------------
  */
 
-mps_status mpsi_mpm_share_agree_added(void *self, const char *function, mps_status status,
-                                      int64_t first) {
+mps_status mpsi_mpm_agree_on_insertion(void *self, const char *function, mps_status status,
+                                       int64_t first) {
   mps_mpm *mpm = self;
   const int64_t count = mps_particles_count(mpm->particles) - first;
   uint64_t hash = mpsi_hash(MPSI_HASH, &count, sizeof count);
   for (int c = 0; c < mpm->dim; c++) /* columns may have moved */
     hash = mpsi_hash(hash, mpsi_particles_column(mpm->particles, "position", c) + first,
                      (size_t)count * sizeof(double));
-  return mpsi_domain_settle_same(mpm->share->domain, function, status,
-                                 "a hash of the particles to add", mpsi_hash_short(hash));
+  return mpsi_domain_agree_same(mpm->partition->domain, function, status,
+                                "a hash of the particles to add", mpsi_hash_short(hash));
 }
 
 /* Each rank lists particles that it has itself, or all of them list the same. */
-mps_status mpsi_mpm_share_find(void *self, const char *function, mps_status status, int64_t count,
-                               const int64_t *ids, int64_t known, int64_t *all) {
+mps_status mpsi_mpm_find_removed(void *self, const char *function, mps_status status, int64_t count,
+                                 const int64_t *ids, int64_t known, int64_t *all) {
   mps_mpm *mpm = self;
-  mps_domain *domain = mpm->share->domain;
+  mps_domain *domain = mpm->partition->domain;
   double found[4] = {0.0};
   if (status == MPS_OK) {
     found[0] = mpsi_hash_short(mpsi_hash(MPSI_HASH, ids, (size_t)count * sizeof *ids));
@@ -121,7 +123,7 @@ mps_status mpsi_mpm_share_find(void *self, const char *function, mps_status stat
     found[2] = (double)(count - known);
     found[3] = (double)count;
   }
-  status = mpsi_domain_settle_max(domain, function, status, 4, found);
+  status = mpsi_domain_agree_max(domain, function, status, 4, found);
   *all = (int64_t)found[3];
   if (status != MPS_OK || found[2] == 0.0) return status;
   status = mpsi_domain_sum(domain, function, 1, &known);
@@ -136,5 +138,5 @@ mps_status mpsi_mpm_share_find(void *self, const char *function, mps_status stat
     status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "of %lld ids %lld are of particles of the set on any rank", (long long)count,
                        (long long)known);
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }

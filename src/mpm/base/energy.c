@@ -107,7 +107,7 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
                          const mps_material_block *block, const mpsi_before_law *before,
                          int64_t begin) {
   const mpsi_columns *p = &mpm->p;
-  const mpsi_kept kept = mpsi_material_kept(law->material);
+  const mpsi_kept warm = mpsi_material_kept(law->material);
   const double shear = mpsi_material_shear(law->material), bulk = law->modulus - 4.0 / 3.0 * shear;
   mpsi_cell_energy *sum = of_cells(mpm, cells);
   for (int64_t k = 0; k < block->count; k++) {
@@ -117,11 +117,11 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
     sum->seen += stress_work(block, k, s0, s0, V0, V0, &trace);
     const double work = stress_work(block, k, s0, s1, V0, V1, &trace);
     double stays = work;
-    if (kept == MPSI_KEPT_PRESSURE)
+    if (warm == MPSI_KEPT_PRESSURE)
       stays = trace;
-    else if (kept == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
+    else if (warm == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
       stays = 0.5 * (V0 + V1) * (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear));
-    sum->kept += stays;
+    sum->warm += stays;
     sum->spent += work - stays;
   }
 }
@@ -146,7 +146,7 @@ void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
 /* Work of all bodies on node k with the velocity v. */
 static void count_contact(const mps_mpm *mpm, const mpsi_node_block *nodes, int k, const double *v,
                           mpsi_node_energy *out) {
-  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  const int32_t pairs = mpm->contact.penalty_bodies > 0 ? nodes->pairs : 0;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
     const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
     const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
@@ -233,10 +233,10 @@ static void add_cells(mps_mpm *mpm) {
     if (mpm->grid.cells[b].ghost) continue;
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic + e->returned);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->kept - e->smoothed);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->warm - e->smoothed);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPENT, e->spent + e->smoothed);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_LOADS, e->loads);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->seen - e->kept - e->spent);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->seen - e->warm - e->spent);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STRAIN, e->stresses - e->seen);
   }
 }
@@ -245,7 +245,7 @@ static void add_cells(mps_mpm *mpm) {
 static void add_nodes(mps_mpm *mpm) {
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_energy *e = &mpm->energy.nodes[g];
-    if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) continue;
+    if (mpm->partition && !mpsi_mpm_counts_node_block(mpm, g)) continue;
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic - e->kinetic_before);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->jump - e->surface - e->normal);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, -e->holds);
@@ -263,7 +263,7 @@ void mpsi_mpm_energy_end(mps_mpm *mpm) {
   add_cells(mpm);
   add_nodes(mpm);
   add_springs(mpm, 1.0);
-  if (!mpm->share || mps_domain_rank(mpm->share->domain) == 0)
+  if (!mpm->partition || mps_domain_rank(mpm->partition->domain) == 0)
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, bodies);
   for (int k = 0; k < MPSI_ENERGY_SUMS; k++) mpsi_exact_merge(&e->sum[k], &e->step[k]);
 }

@@ -28,7 +28,7 @@ typedef struct mpsi_cell_energy {
   double returned; /* its part by the velocities that light nodes give back (least_squares.c) */
   double stresses; /* work of the nodes against the stresses at the beginning of the step */
   double seen;     /* the same by the gradient that the laws see */
-  double kept;     /* work against the mean stresses of the step that the laws keep */
+  double warm;     /* work against the mean stresses of the step that the laws keep */
   double spent;    /* the rest of that: plasticity, viscosity */
   double smoothed; /* elastic energy that the smoothing of frictional stresses takes */
 } mpsi_cell_energy;

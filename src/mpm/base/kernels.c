@@ -20,9 +20,9 @@
                                       int64_t end);                                                \
   int64_t mpsi_mpm_next_in_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,              \
                                     const int *low, const int *high, int64_t begin);               \
-  void mpsi_mpm_warm_v##level(mps_mpm *mpm, const mpsi_touch_block *block);                        \
-  void mpsi_mpm_sweep_v##level(mps_mpm *mpm, mpsi_touch_block *block, bool back);            \
-  void mpsi_mpm_foot_velocity_v##level(const mps_mpm *mpm, int64_t touch, double *v);
+  void mpsi_mpm_warm_v##level(mps_mpm *mpm, const mpsi_constraint_block *block);                   \
+  void mpsi_mpm_sweep_v##level(mps_mpm *mpm, mpsi_constraint_block *block, bool back);             \
+  void mpsi_mpm_foot_velocity_v##level(const mps_mpm *mpm, int64_t constraint, double *v);
 #define KERNELS(level)                                                                             \
   {                                                                                                \
     mpsi_mpm_p2g_v##level, mpsi_mpm_tile_v##level, mpsi_mpm_flush_v##level, mpsi_mpm_g2p_v##level, \

@@ -41,9 +41,9 @@ typedef struct mpsi_kernels {
                      const int *high, int64_t begin);
   /* sweep.c: the first impulses of a block's touches; a visit to each; velocity of the particle's
    * side at the foot of one (m/s). */
-  void (*warm)(mps_mpm *mpm, const mpsi_touch_block *block);
-  void (*sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool back);
-  void (*foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v);
+  void (*warm)(mps_mpm *mpm, const mpsi_constraint_block *block);
+  void (*sweep)(mps_mpm *mpm, mpsi_constraint_block *block, bool back);
+  void (*foot_velocity)(const mps_mpm *mpm, int64_t constraint, double *v);
 } mpsi_kernels;
 
 /* kernels.c: the kernels of an x86-64 level; 0: the best that processor and build have. */

@@ -289,9 +289,9 @@ int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mps_mpm *mpm, const mpsi_far *fa
                                           int64_t end);
 int64_t MPSI_LEVELLED(mpsi_mpm_next_in)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                         const int *low, const int *high, int64_t begin);
-void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_touch_block *block);
-void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool back);
-void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v);
+void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_constraint_block *block);
+void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_constraint_block *block, bool back);
+void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t constraint, double *v);
 void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
 void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
 

@@ -40,7 +40,7 @@ mps_status mpsi_mpm_check_whole(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function);
 /* ready.c: what the caller has written, added or removed is taken up: masses, blocks of the present
  * positions, the Courant limit of the present velocities. */
-mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function);
 /* ready.c: that, but not in a callback of the solver. */
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
 /* block_results.c: what the blocks have found: the largest speed, or the error of a bad particle. */

@@ -59,8 +59,8 @@ struct mps_mpm {
   mpsi_undo undo;
   mpsi_energy energy;
   mpsi_settling settling;
-  mpsi_identity *identity; /* of its snapshots */
-  mpsi_share *share;       /* of several ranks; NULL: there is but one */
+  mpsi_identity *identity;   /* of its snapshots */
+  mpsi_partition *partition; /* of several ranks; NULL: there is but one */
 };
 
 /* Whether each node needs its velocity before the forces: all blocks are split then. */

@@ -15,22 +15,23 @@
 
 #include <string.h>
 
-void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
-                   const double *before, double *velocity) {
+void mpsi_mpm_apply_dashpot(const mps_mpm *mpm, const mpsi_boundary *hold, mpsi_dashpot *dashpot,
+                            const double *node, const double *before, double *velocity) {
   const double per_mass = mpm->run.dt / node[MPSI_MASS];
   const bool settles = hold->finds && hold->settle > 0.0;
   for (int c = 0; c < mpm->dim; c++) {
-    const double v = node[MPSI_VECTOR + c], damping = c == hold->axis ? dash->across : dash->along;
+    const double v = node[MPSI_VECTOR + c],
+                 damping = c == hold->axis ? dashpot->across : dashpot->along;
     if (settles) {
       const double force = (hold->v[c] - v) / per_mass;
-      dash->rest[c] += (force - dash->rest[c]) * (mpm->run.dt / hold->found);
+      dashpot->rest[c] += (force - dashpot->rest[c]) * (mpm->run.dt / hold->found);
       velocity[c] = hold->v[c];
       continue;
     }
-    if (hold->finds) dash->rest[c] = before ? (before[c] - v) / per_mass : 0.0;
+    if (hold->finds) dashpot->rest[c] = before ? (before[c] - v) / per_mass : 0.0;
     /* implicit: stable for every dt */
     velocity[c] =
-        (v + per_mass * (dash->rest[c] + damping * hold->v[c])) / (1.0 + per_mass * damping);
+        (v + per_mass * (dashpot->rest[c] + damping * hold->v[c])) / (1.0 + per_mass * damping);
   }
 }
 
@@ -65,13 +66,13 @@ static void fit_along(const mps_mpm *mpm, int c, double X, int64_t *base, double
   }
 }
 
-static mpsi_dash *dash_of(const mps_mpm *mpm, int32_t number, int64_t node) {
+static mpsi_dashpot *dash_of(const mps_mpm *mpm, int32_t number, int64_t node) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
   int32_t t = nodes->first_held;
   while (mpm->boundaries.held[t].hold != number) t++;
-  return &mpm->boundaries.dash[mpm->boundaries.held[t].dash +
-                               mpsi_plane_index(mpm->boundaries.hold[number].axis,
-                                                (int)(node % mpm->grid.block_nodes))];
+  return &mpm->boundaries.dashpot[mpm->boundaries.held[t].dashpot +
+                                  mpsi_plane_index(mpm->boundaries.hold[number].axis,
+                                                   (int)(node % mpm->grid.block_nodes))];
 }
 
 /* Node of the plane across `axis`, of those under the tile. */
@@ -97,18 +98,18 @@ static void add_particle(const mps_mpm *mpm, const mpsi_cell_block *cells, int32
       fit_along(mpm, c, mpsi_grid_coordinate(mpm, c, p->x[c][k]), &base[c], phi[c]);
   for (int n = 0; n < MPSI_STENCIL; n++) {
     const int i[3] = {n % 4, n / 4 % 4, n / 16};
-    const double share = phi[0][i[0]] * phi[1][i[1]] * phi[2][i[2]];
-    if (share == 0.0) continue;
+    const double fraction = phi[0][i[0]] * phi[1][i[1]] * phi[2][i[2]];
+    if (fraction == 0.0) continue;
     int at[3];
     for (int c = 0; c < 3; c++) at[c] = (int)(base[c] + i[c] - (int64_t)cells->at[c] * MPSI_SIDE);
     double *to = tile[tile_plane_index(axis, at)];
-    to[0] += share * across;
-    to[1] += share * along;
+    to[0] += fraction * across;
+    to[1] += fraction * along;
   }
 }
 
-bool mpsi_mpm_sum_dashes(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
-                         double (*tile)[2]) {
+bool mpsi_mpm_sum_dashpots(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
+                           double (*tile)[2]) {
   const int c = mpm->boundaries.hold[number].axis;
   const int64_t layer = mpm->boundaries.hold[number].first[c] - number % 2; /* of cells */
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
@@ -122,33 +123,33 @@ bool mpsi_mpm_sum_dashes(const mps_mpm *mpm, const mpsi_cell_block *cells, int32
 
 static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
                      const double *tile) {
-  const mpsi_hold *hold = &mpm->boundaries.hold[number];
+  const mpsi_boundary *hold = &mpm->boundaries.hold[number];
   const int axis = hold->axis, planes = mpm->dim == 3 ? MPSI_TILE_SIDE : 1;
   for (int k = 0; k < planes * MPSI_TILE_SIDE; k++) {
     const int u = k % MPSI_TILE_SIDE, v = k / MPSI_TILE_SIDE;
     int at[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 2 ? v : 0, axis == 2 ? 0 : v};
     at[axis] = (int)(hold->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
     if (tile[2 * k] == 0.0 && tile[2 * k + 1] == 0.0) continue;
-    mpsi_dash *dash = dash_of(mpm, number, mpsi_node_under(mpm, cells, at[0], at[1], at[2]));
-    dash->across += tile[2 * k];
-    dash->along += tile[2 * k + 1];
+    mpsi_dashpot *dashpot = dash_of(mpm, number, mpsi_node_under(mpm, cells, at[0], at[1], at[2]));
+    dashpot->across += tile[2 * k];
+    dashpot->along += tile[2 * k + 1];
   }
 }
 
 /* What has come of a block for a side, or NULL. */
-static const double *parcel_of(const mpsi_dash_parcels *parcels, const mpsi_cell_block *cells,
+static const double *parcel_of(const mpsi_dashpot_parcels *parcels, const mpsi_cell_block *cells,
                                int32_t side) {
   if (!parcels || cells->parcel < 0) return NULL;
   return (cells->ghost ? parcels->in : parcels->out) +
          (cells->parcel * MPSI_SIDES + side) * parcels->doubles;
 }
 
-static void add_wall(mps_mpm *mpm, const mpsi_dash_parcels *parcels, int32_t number) {
+static void add_wall(mps_mpm *mpm, const mpsi_dashpot_parcels *parcels, int32_t number) {
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
     double own[MPSI_DASH_PLANE][2];
     const double *tile = parcel_of(parcels, cells, number);
-    if (!tile && mpsi_mpm_sum_dashes(mpm, cells, number, own)) tile = own[0];
+    if (!tile && mpsi_mpm_sum_dashpots(mpm, cells, number, own)) tile = own[0];
     if (tile) add_tile(mpm, cells, number, tile);
   }
 }
@@ -162,25 +163,26 @@ int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
   return (a->hold > b->hold) - (a->hold < b->hold);
 }
 
-void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_dash_parcels *parcels, const mpsi_held *old,
-                           int64_t old_count, const mpsi_dash *old_dash) {
+void mpsi_mpm_place_dashpots(mps_mpm *mpm, const mpsi_dashpot_parcels *parcels,
+                             const mpsi_held *old, int64_t old_count,
+                             const mpsi_dashpot *old_dashpot) {
   const int plane = mpm->grid.block_nodes / MPSI_SIDE;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING) add_wall(mpm, parcels, k);
   int64_t from = 0;
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];
-    if (held->dash < 0) continue;
-    mpsi_dash *dash = mpm->boundaries.dash + held->dash;
+    if (held->dashpot < 0) continue;
+    mpsi_dashpot *dashpot = mpm->boundaries.dashpot + held->dashpot;
     for (int k = 0; k < plane; k++) { /* a fit can give a node less than nothing */
-      dash[k].across = fmax(dash[k].across, 0.0);
-      dash[k].along = fmax(dash[k].along, 0.0);
+      dashpot[k].across = fmax(dashpot[k].across, 0.0);
+      dashpot[k].along = fmax(dashpot[k].along, 0.0);
     }
     while (from < old_count && mpsi_mpm_compare_held(&old[from], held) < 0) from++;
-    if (from == old_count || mpsi_mpm_compare_held(&old[from], held) != 0 || old[from].dash < 0 ||
-        !old[from].whole)
+    if (from == old_count || mpsi_mpm_compare_held(&old[from], held) != 0 ||
+        old[from].dashpot < 0 || !old[from].whole)
       continue;
     for (int k = 0; k < plane; k++)
-      memcpy(dash[k].rest, old_dash[old[from].dash + k].rest, sizeof dash[k].rest);
+      memcpy(dashpot[k].rest, old_dashpot[old[from].dashpot + k].rest, sizeof dashpot[k].rest);
   }
 }

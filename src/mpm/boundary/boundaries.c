@@ -55,8 +55,8 @@ static mps_status check_motion(mps_mpm *mpm, const char *function, int32_t numbe
 
 static mps_status check_numbers(mps_mpm *mpm, const char *function, int32_t number,
                                 const mps_mpm_boundary_def *def) {
-  const bool rubs = def->kind == MPS_MPM_BOUNDARY_FRICTIONAL;
-  if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !rubs))
+  const bool frictional = def->kind == MPS_MPM_BOUNDARY_FRICTIONAL;
+  if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !frictional))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "friction is %g with a boundary of kind %d, must be in 0 to %g, and 0 for "
                      "other than frictional ones (2)",
@@ -110,7 +110,7 @@ static int64_t box_node(const mps_mpm *mpm, int c, double x, bool last) {
 }
 
 static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def,
-                           mpsi_hold *out) {
+                           mpsi_boundary *out) {
   for (int c = 0; c < mpm->dim; c++) {
     out->first[c] = box_node(mpm, c, def->lower[c], false);
     out->last[c] = box_node(mpm, c, def->upper[c], true);
@@ -124,7 +124,7 @@ static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_bou
 }
 
 static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def) {
-  const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+  const int64_t most = mpm->partition ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
   if ((def->id_count > 0) != (def->ids != NULL) || def->id_count < 0 || def->id_count > most)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld with ids %s, allowed are 1 to %lld particles, or 0 and NULL",
@@ -133,7 +133,7 @@ static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_bo
 }
 
 static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t number,
-                                   const mps_mpm_boundary_def *def, mpsi_hold *out) {
+                                   const mps_mpm_boundary_def *def, mpsi_boundary *out) {
   const uint32_t all = mpm->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
   if (def->kind != MPS_MPM_BOUNDARY_PRESCRIBED)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -145,13 +145,13 @@ static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t n
   mps_status status = check_numbers(mpm, function, number, def);
   if (status == MPS_OK) status = check_ids(mpm, function, def);
   if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
-  return mpsi_mpm_share_check_ids(mpm, function, status, def->id_count, def->ids);
+  return mpsi_mpm_check_ids(mpm, function, status, def->id_count, def->ids);
 }
 
 /* ---- putting in place ------------------------------------------------------------------------ */
 
 static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
-  mpsi_hold *hold = &mpm->boundaries.hold[number];
+  mpsi_boundary *hold = &mpm->boundaries.hold[number];
   const int axis = number / 2;
   hold->axis = axis;
   /* the standard scheme has nodes beyond the side too */
@@ -165,18 +165,18 @@ static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
   hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
   hold->finds = kind == MPS_MPM_BOUNDARY_ABSORBING;
   hold->found = 0.0;
-  hold->kind = kind == MPS_MPM_BOUNDARY_FREE ? MPSI_HOLD_NONE : kind;
+  hold->kind = kind == MPS_MPM_BOUNDARY_FREE ? MPSI_BOUNDARY_NONE : kind;
 }
 
 /* Sums of a new boundary, from 0; memory of a number stays. */
-static bool make_sums(mps_mpm *mpm, mpsi_hold *hold) {
+static bool make_sums(mps_mpm *mpm, mpsi_boundary *hold) {
   if (!hold->sums) hold->sums = mpsi_alloc(mpm->context, 1, sizeof *hold->sums);
   return hold->sums != NULL;
 }
 
 bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
   bool good = true;
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_HOLD_NONE;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_BOUNDARY_NONE;
   for (int32_t k = 0; k < MPSI_SIDES && good; k++) {
     if (!has_side(mpm, k)) continue;
     place_side(mpm, k, MPS_MPM_BOUNDARY_ROLLER);
@@ -186,18 +186,18 @@ bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
 }
 
 mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function) {
-  mpsi_hold *hold = mpm->boundaries.hold;
+  mpsi_boundary *hold = mpm->boundaries.hold;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING)
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "boundary %d is absorbing, which the standard method does not allow", k);
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (hold[k].kind != MPSI_HOLD_NONE) place_side(mpm, k, hold[k].kind);
+    if (hold[k].kind != MPSI_BOUNDARY_NONE) place_side(mpm, k, hold[k].kind);
   mpm->boundaries.outdated = true;
   return MPS_OK;
 }
 
-static void take_numbers(mpsi_hold *hold, const mps_mpm_boundary_def *def) {
+static void take_numbers(mpsi_boundary *hold, const mps_mpm_boundary_def *def) {
   hold->friction = def->friction;
   hold->settle = def->settle;
   for (int c = 0; c < 3; c++) {
@@ -208,13 +208,13 @@ static void take_numbers(mpsi_hold *hold, const mps_mpm_boundary_def *def) {
   }
 }
 
-static void drop(mps_mpm *mpm, mpsi_hold *hold) {
+static void drop(mps_mpm *mpm, mpsi_boundary *hold) {
   const mps_mpm_boundary_def rest = boundary_defaults;
   take_numbers(hold, &rest);
   mpsi_free(mpm->context, hold->ids);
   hold->ids = NULL;
   hold->id_count = 0;
-  hold->kind = MPSI_HOLD_NONE;
+  hold->kind = MPSI_BOUNDARY_NONE;
 }
 
 void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
@@ -227,9 +227,9 @@ void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
 /* A box or list, in place of what the boundary was. */
 static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t number,
                                   const mps_mpm_boundary_def *def) {
-  mpsi_hold *hold = &mpm->boundaries.hold[number];
-  mpsi_hold made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
-                    .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
+  mpsi_boundary *hold = &mpm->boundaries.hold[number];
+  mpsi_boundary made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
+                        .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
   mps_status status = check_prescribed(mpm, function, number, def, &made);
   if (status == MPS_OK && !make_sums(mpm, hold))
     status = mpsi_fail_memory(mpm->context, function, sizeof *hold->sums);
@@ -238,7 +238,7 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t nu
     if (!made.ids)
       status = mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
   }
-  status = mpsi_mpm_share_settle(mpm, function, status);
+  status = mpsi_mpm_agree(mpm, function, status);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, made.ids);
     return status;
@@ -247,7 +247,7 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t nu
     memcpy(made.ids, def->ids, (size_t)def->id_count * sizeof *made.ids);
     made.id_count = def->id_count;
   }
-  if (hold->kind == MPSI_HOLD_NONE || made.ids || hold->ids ||
+  if (hold->kind == MPSI_BOUNDARY_NONE || made.ids || hold->ids ||
       memcmp(made.first, hold->first, sizeof made.first) != 0 ||
       memcmp(made.last, hold->last, sizeof made.last) != 0)
     mpm->boundaries.outdated = true;
@@ -271,7 +271,7 @@ static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_bou
 /* All ranks give the same boundary (`number` -1: a new one). */
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 int32_t number, const mps_mpm_boundary_def *def) {
-  if (!mpm->share) return status;
+  if (!mpm->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "boundary", number);
@@ -287,7 +287,7 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     mpsi_give_bytes(&given, "a hash of ids", def->id_count > 0 ? def->ids : NULL,
                     (size_t)def->id_count * sizeof *def->ids);
   }
-  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
 }
 
 /* ---- the calls ------------------------------------------------------------------------------- */
@@ -300,16 +300,17 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
   status = compare_ranks(mpm, __func__, status, -1, &def);
   if (status != MPS_OK) return status;
   int32_t at = MPSI_SIDES;
-  while (at < MPSI_HOLDS && mpm->boundaries.hold[at].kind != MPSI_HOLD_NONE) at++;
+  while (at < MPSI_HOLDS && mpm->boundaries.hold[at].kind != MPSI_BOUNDARY_NONE) at++;
   if (at == MPSI_HOLDS)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d boundaries, the most there can be besides the sides",
                      MPSI_HOLDS - MPSI_SIDES);
   status = take_prescribed(mpm, __func__, at, &def);
   if (status != MPS_OK) return status;
-  mpsi_hold *hold = &mpm->boundaries.hold[at];
-  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->all[MPSI_HOLD_WORK]); /* of a former one */
-  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->step[MPSI_HOLD_WORK]);
+  mpsi_boundary *hold = &mpm->boundaries.hold[at];
+  mpsi_exact_merge(&mpm->boundaries.work,
+                   &hold->sums->all[MPSI_BOUNDARY_WORK]); /* of a former one */
+  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->step[MPSI_BOUNDARY_WORK]);
   memset(hold->sums, 0, sizeof *hold->sums);
   hold->count = hold->removed = 0;
   if (number) *number = at;
@@ -320,7 +321,7 @@ static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
   const bool side = number >= 0 && number < MPSI_SIDES;
   if (side ? has_side(mpm, number)
            : number >= 0 && number < MPSI_HOLDS &&
-                 mpm->boundaries.hold[number].kind != MPSI_HOLD_NONE)
+                 mpm->boundaries.hold[number].kind != MPSI_BOUNDARY_NONE)
     return MPS_OK;
   if (side)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -340,9 +341,9 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
   status = compare_ranks(mpm, __func__, status, number, &def);
   if (status != MPS_OK) return status;
-  mpsi_hold *hold = &mpm->boundaries.hold[number];
+  mpsi_boundary *hold = &mpm->boundaries.hold[number];
   if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, number, &def);
-  status = mpsi_mpm_share_settle(mpm, __func__, check_side(mpm, __func__, number, &def));
+  status = mpsi_mpm_agree(mpm, __func__, check_side(mpm, __func__, number, &def));
   if (status != MPS_OK) return status;
   if (hold->kind != def.kind || def.kind == MPS_MPM_BOUNDARY_ABSORBING) {
     place_side(mpm, number, def.kind);
@@ -359,68 +360,69 @@ mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
   if (status == MPS_OK && on_axis(mpm, number))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "boundary is 0, the axis r = 0, which cannot be free");
-  if (mpm->share)
-    status = mpsi_domain_settle_same(mpm->share->domain, __func__, status, "boundary", number);
+  if (mpm->partition)
+    status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "boundary", number);
   if (status != MPS_OK) return status;
   drop(mpm, &mpm->boundaries.hold[number]);
   mpm->boundaries.outdated = true;
   return MPS_OK;
 }
 
-void mpsi_mpm_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
-                               double work, int64_t count) {
+void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, const double *moment,
+                                   double work, int64_t count) {
   for (int c = 0; c < 3; c++) {
-    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_IMPULSE + c], impulse[c]);
-    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_MOMENT + c], moment[c]);
+    mpsi_exact_add(&hold->sums->step[MPSI_BOUNDARY_IMPULSE + c], impulse[c]);
+    mpsi_exact_add(&hold->sums->step[MPSI_BOUNDARY_MOMENT + c], moment[c]);
   }
-  mpsi_exact_add(&hold->sums->step[MPSI_HOLD_WORK], work);
+  mpsi_exact_add(&hold->sums->step[MPSI_BOUNDARY_WORK], work);
   hold->count += count;
 }
 
-void mpsi_mpm_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
+void mpsi_mpm_boundary_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
   mpsi_exact_merge(sum, &mpm->boundaries.work);
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    const mpsi_hold_sums *sums = mpm->boundaries.hold[k].sums;
+    const mpsi_boundary_sums *sums = mpm->boundaries.hold[k].sums;
     if (!sums) continue;
-    mpsi_exact_merge(sum, &sums->all[MPSI_HOLD_WORK]);
-    mpsi_exact_merge(sum, &sums->step[MPSI_HOLD_WORK]);
+    mpsi_exact_merge(sum, &sums->all[MPSI_BOUNDARY_WORK]);
+    mpsi_exact_merge(sum, &sums->step[MPSI_BOUNDARY_WORK]);
   }
 }
 
 /* All ranks together: the last step, and since it was made. */
-static mps_status sum_ranks(mps_mpm *mpm, const char *function, const mpsi_hold *hold,
-                            mpsi_hold_sums *out, int64_t *counts) {
+static mps_status sum_ranks(mps_mpm *mpm, const char *function, const mpsi_boundary *hold,
+                            mpsi_boundary_sums *out, int64_t *counts) {
   *out = *hold->sums;
-  for (int k = 0; k < MPSI_HOLD_MASS; k++) mpsi_exact_merge(&out->all[k], &out->step[k]);
+  for (int k = 0; k < MPSI_BOUNDARY_MASS; k++) mpsi_exact_merge(&out->all[k], &out->step[k]);
   counts[0] = hold->count, counts[1] = hold->removed;
-  if (!mpm->share) return MPS_OK;
-  const mps_status status = mpsi_domain_sum(mpm->share->domain, function, 2, counts);
+  if (!mpm->partition) return MPS_OK;
+  const mps_status status = mpsi_domain_sum(mpm->partition->domain, function, 2, counts);
   if (status != MPS_OK) return status;
-  return mpsi_domain_sum_exact(mpm->share->domain, function, 2 * MPSI_HOLD_MASS + 1, out->step);
+  return mpsi_domain_sum_exact(mpm->partition->domain, function, 2 * MPSI_BOUNDARY_MASS + 1,
+                               out->step);
 }
 
 mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number, mps_reaction *out,
                                       size_t size) {
   static const char function[] = "mps_mpm_get_reaction";
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mpsi_hold_sums sums;
+  mpsi_boundary_sums sums;
   int64_t counts[2];
   mps_status status = find(mpm, function, number);
-  if (mpm->share)
-    status = mpsi_domain_settle_same(mpm->share->domain, function, status, "boundary", number);
+  if (mpm->partition)
+    status = mpsi_domain_agree_same(mpm->partition->domain, function, status, "boundary", number);
   if (status != MPS_OK) return status;
   status = sum_ranks(mpm, function, &mpm->boundaries.hold[number], &sums, counts);
   if (status != MPS_OK) return status;
   const double rate = mpm->boundaries.dt > 0.0 ? 1.0 / mpm->boundaries.dt : 0.0;
   mps_reaction r = {.count = counts[0],
                     .removed = counts[1],
-                    .work = mpsi_exact_value(&sums.all[MPSI_HOLD_WORK]),
-                    .removed_mass = mpsi_exact_value(&sums.all[MPSI_HOLD_MASS])};
+                    .work = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_WORK]),
+                    .removed_mass = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_MASS])};
   for (int c = 0; c < 3; c++) {
-    r.force[c] = rate * mpsi_exact_value(&sums.step[MPSI_HOLD_IMPULSE + c]);
-    r.moment[c] = rate * mpsi_exact_value(&sums.step[MPSI_HOLD_MOMENT + c]);
-    r.impulse[c] = mpsi_exact_value(&sums.all[MPSI_HOLD_IMPULSE + c]);
-    r.moment_impulse[c] = mpsi_exact_value(&sums.all[MPSI_HOLD_MOMENT + c]);
+    r.force[c] = rate * mpsi_exact_value(&sums.step[MPSI_BOUNDARY_IMPULSE + c]);
+    r.moment[c] = rate * mpsi_exact_value(&sums.step[MPSI_BOUNDARY_MOMENT + c]);
+    r.impulse[c] = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_IMPULSE + c]);
+    r.moment_impulse[c] = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_MOMENT + c]);
   }
   return mpsi_out_write(mpm->context, function, out, size, &r, sizeof r);
 }

@@ -15,31 +15,33 @@ static int64_t plane_doubles(const mps_mpm *mpm) {
 
 static void sum_border(mps_mpm *mpm, double *out) {
   const size_t bytes = (size_t)plane_doubles(mpm) * sizeof *out;
-  for (int64_t k = 0; k < mpm->share->borders; k++)
+  for (int64_t k = 0; k < mpm->partition->borders; k++)
     for (int32_t side = 0; side < MPSI_SIDES; side++, out += plane_doubles(mpm)) {
       double tile[MPSI_DASH_PLANE][2];
       memset(out, 0, bytes);
       if (mpm->boundaries.hold[side].kind == MPS_MPM_BOUNDARY_ABSORBING &&
-          mpsi_mpm_sum_dashes(mpm, &mpm->grid.cells[mpm->share->border[k]], side, tile))
+          mpsi_mpm_sum_dashpots(mpm, &mpm->grid.cells[mpm->partition->border[k]], side, tile))
         memcpy(out, tile, bytes);
     }
 }
 
-static mps_status swap_sums(mps_mpm *mpm, const char *function, mpsi_dash_parcels *parcels) {
-  mpsi_share *share = mpm->share;
+static mps_status swap_sums(mps_mpm *mpm, const char *function, mpsi_dashpot_parcels *parcels) {
+  mpsi_partition *partition = mpm->partition;
   const int64_t item = MPSI_SIDES * plane_doubles(mpm);
-  parcels->out = mpsi_alloc(mpm->context, share->borders * item, sizeof *parcels->out);
-  parcels->in = mpsi_alloc(mpm->context, share->ghosts * item, sizeof *parcels->in);
+  parcels->out = mpsi_alloc(mpm->context, partition->borders * item, sizeof *parcels->out);
+  parcels->in = mpsi_alloc(mpm->context, partition->ghosts * item, sizeof *parcels->in);
   mps_status status = MPS_OK;
   if (!parcels->out || !parcels->in)
     status = mpsi_fail_memory(mpm->context, function,
-                              (size_t)((share->borders + share->ghosts) * item) * sizeof(double));
-  status = mpsi_domain_settle(share->domain, function, status);
+                              (size_t)((partition->borders + partition->ghosts) * item) *
+                                  sizeof(double));
+  status = mpsi_domain_agree(partition->domain, function, status);
   if (status != MPS_OK) return status;
   sum_border(mpm, parcels->out);
-  status = mpsi_halo_begin_bytes(share->halo, function, (int32_t)(item * (int64_t)sizeof(double)),
-                                 parcels->out, parcels->in);
-  return status == MPS_OK ? mpsi_halo_end_bytes(share->halo, function) : status;
+  status =
+      mpsi_halo_begin_bytes(partition->halo, function, (int32_t)(item * (int64_t)sizeof(double)),
+                            parcels->out, parcels->in);
+  return status == MPS_OK ? mpsi_halo_end_bytes(partition->halo, function) : status;
 }
 
 /* ---- forces at rest ---------------------------------------------------------------------------
@@ -70,15 +72,15 @@ static int by_rank(const void *left, const void *right) {
 /* Whom the forces are for: the other ranks that may have blocks of cells over these nodes. */
 static int64_t list_partings(const mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
                              parting *out) {
-  const int32_t rank = mps_domain_rank(mpm->share->domain);
+  const int32_t rank = mps_domain_rank(mpm->partition->domain);
   int64_t count = 0;
   for (int64_t t = 0; t < old_count; t++) {
-    if (old[t].dash < 0 || !old[t].counted) continue;
+    if (old[t].dashpot < 0 || !old[t].counted) continue;
     const int64_t first = count;
     for (int q = 0; q < 1 << mpm->dim; q++) {
       const int32_t at[3] = {old[t].at[0] - (q & 1), old[t].at[1] - (q >> 1 & 1),
                              old[t].at[2] - (q >> 2)};
-      const int32_t owner = mpsi_mpm_share_owner(mpm, at);
+      const int32_t owner = mpsi_mpm_block_owner(mpm, at);
       int64_t k = first;
       while (k < count && out[k].rank != owner) k++;
       if (owner != rank && k == count) out[count++] = (parting){t, owner};
@@ -88,13 +90,13 @@ static int64_t list_partings(const mps_mpm *mpm, const mpsi_held *old, int64_t o
   return count;
 }
 
-static void write_record(const mps_mpm *mpm, const mpsi_held *held, const mpsi_dash *dash,
+static void write_record(const mps_mpm *mpm, const mpsi_held *held, const mpsi_dashpot *dashpot,
                          char *to) {
   const place at = {{held->at[0], held->at[1], held->at[2]}, held->hold};
   memcpy(to, &at, sizeof at);
   to += sizeof at;
-  for (int64_t k = 0; k < plane_nodes(mpm); k++, to += sizeof dash->rest)
-    memcpy(to, dash[held->dash + k].rest, sizeof dash->rest);
+  for (int64_t k = 0; k < plane_nodes(mpm); k++, to += sizeof dashpot->rest)
+    memcpy(to, dashpot[held->dashpot + k].rest, sizeof dashpot->rest);
 }
 
 static void read_record(mps_mpm *mpm, const char *from) {
@@ -113,8 +115,8 @@ static void read_record(mps_mpm *mpm, const char *from) {
       high = middle;
   }
   if (low == b->held_count || mpsi_mpm_compare_held(&b->held[low], &key) != 0) return;
-  for (int64_t k = 0; k < plane_nodes(mpm); k++, from += sizeof b->dash->rest)
-    memcpy(b->dash[b->held[low].dash + k].rest, from, sizeof b->dash->rest);
+  for (int64_t k = 0; k < plane_nodes(mpm); k++, from += sizeof b->dashpot->rest)
+    memcpy(b->dashpot[b->held[low].dashpot + k].rest, from, sizeof b->dashpot->rest);
 }
 
 typedef struct rests {
@@ -125,12 +127,12 @@ typedef struct rests {
 } rests;
 
 static mps_status write_rests(const mps_mpm *mpm, const char *function, const mpsi_held *old,
-                              int64_t old_count, const mpsi_dash *old_dash, rests *r,
+                              int64_t old_count, const mpsi_dashpot *old_dashpot, rests *r,
                               int32_t *messages) {
   mps_context *context = mpm->context;
   const int64_t record = record_bytes(mpm);
   r->parting = mpsi_alloc(context, old_count << mpm->dim, sizeof *r->parting);
-  r->message = mpsi_alloc(context, mps_domain_size(mpm->share->domain), sizeof *r->message);
+  r->message = mpsi_alloc(context, mps_domain_size(mpm->partition->domain), sizeof *r->message);
   const int64_t count =
       r->parting && r->message ? list_partings(mpm, old, old_count, r->parting) : 0;
   r->mail = mpsi_alloc(context, count, (size_t)record);
@@ -138,7 +140,7 @@ static mps_status write_rests(const mps_mpm *mpm, const char *function, const mp
     return mpsi_fail_memory(context, function, (size_t)(count * record));
   for (int64_t k = 0; k < count; k++) {
     char *to = r->mail + k * record;
-    write_record(mpm, &old[r->parting[k].held], old_dash, to);
+    write_record(mpm, &old[r->parting[k].held], old_dashpot, to);
     if (k == 0 || r->parting[k].rank != r->parting[k - 1].rank)
       r->message[(*messages)++] = (mps_domain_message){.rank = r->parting[k].rank, .data = to};
     r->message[*messages - 1].bytes += record;
@@ -148,12 +150,12 @@ static mps_status write_rests(const mps_mpm *mpm, const char *function, const mp
 
 /* Into the new list. */
 static mps_status send_rests(mps_mpm *mpm, const char *function, const mpsi_held *old,
-                             int64_t old_count, const mpsi_dash *old_dash) {
-  mps_domain *domain = mpm->share->domain;
+                             int64_t old_count, const mpsi_dashpot *old_dashpot) {
+  mps_domain *domain = mpm->partition->domain;
   rests r = {.box.context = mpm->context};
   int32_t messages = 0;
-  mps_status status = write_rests(mpm, function, old, old_count, old_dash, &r, &messages);
-  status = mpsi_domain_settle(domain, function, status);
+  mps_status status = write_rests(mpm, function, old, old_count, old_dashpot, &r, &messages);
+  status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(domain, function, messages, r.message, &r.box);
   for (int32_t m = 0; status == MPS_OK && m < r.box.count; m++)
@@ -166,14 +168,14 @@ static mps_status send_rests(mps_mpm *mpm, const char *function, const mpsi_held
   return status;
 }
 
-mps_status mpsi_mpm_share_dashes(mps_mpm *mpm, const char *function, const mpsi_held *old,
-                                 int64_t old_count, const mpsi_dash *old_dash) {
-  mpsi_dash_parcels parcels = {.doubles = plane_doubles(mpm)};
+mps_status mpsi_mpm_exchange_dashpots(mps_mpm *mpm, const char *function, const mpsi_held *old,
+                                      int64_t old_count, const mpsi_dashpot *old_dashpot) {
+  mpsi_dashpot_parcels parcels = {.doubles = plane_doubles(mpm)};
   mps_status status = swap_sums(mpm, function, &parcels);
-  if (status == MPS_OK) mpsi_mpm_place_dashes(mpm, &parcels, old, old_count, old_dash);
+  if (status == MPS_OK) mpsi_mpm_place_dashpots(mpm, &parcels, old, old_count, old_dashpot);
   mpsi_free(mpm->context, parcels.out);
   mpsi_free(mpm->context, parcels.in);
-  return status == MPS_OK ? send_rests(mpm, function, old, old_count, old_dash) : status;
+  return status == MPS_OK ? send_rests(mpm, function, old, old_count, old_dashpot) : status;
 }
 
 /* ---- files ------------------------------------------------------------------------------------
@@ -195,19 +197,19 @@ static int64_t fill_rows(const mps_mpm *mpm, int64_t row, char *to) {
   int64_t rows = 0;
   for (int64_t t = 0; t < b->held_count; t++) {
     const mpsi_held *held = &b->held[t];
-    if (held->dash < 0 || !held->counted) continue;
+    if (held->dashpot < 0 || !held->counted) continue;
     if (to) {
       const place at = {{held->at[0], held->at[1], held->at[2]}, held->hold};
       memcpy(to + rows * row, &at, sizeof at);
-      memcpy(to + rows * row + sizeof at, b->dash + held->dash, (size_t)row - sizeof at);
+      memcpy(to + rows * row + sizeof at, b->dashpot + held->dashpot, (size_t)row - sizeof at);
     }
     rows++;
   }
   return rows;
 }
 
-mps_status mpsi_mpm_gather_dashes(mps_mpm *mpm, const char *function, mpsi_value *dashes) {
-  mps_domain *domain = mpm->share->domain;
+mps_status mpsi_mpm_gather_dashpots(mps_mpm *mpm, const char *function, mpsi_value *dashpots) {
+  mps_domain *domain = mpm->partition->domain;
   const int64_t plane = plane_nodes(mpm), each = plane * MPSI_DASH;
   const int64_t row = (int64_t)sizeof(place) + each * (int64_t)sizeof(double);
   mpsi_value wide = {.type = MPSI_STATE_F64, .columns = (int32_t)(row / 8)};
@@ -216,22 +218,22 @@ mps_status mpsi_mpm_gather_dashes(mps_mpm *mpm, const char *function, mpsi_value
   mps_status status = MPS_OK;
   if (!mpsi_value_reserve(mpm->context, &wide, wide.type, rows, wide.columns))
     status = mpsi_fail_memory(mpm->context, function, (size_t)(rows * row));
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) {
     fill_rows(mpm, row, wide.data);
     status = mpsi_domain_gather_rows(domain, function, rows, &wide);
   }
   if (status == MPS_OK && mps_domain_rank(domain) == 0) {
     qsort(wide.data, (size_t)wide.rows, (size_t)row, by_place);
-    if (!mpsi_value_reserve(mpm->context, dashes, MPSI_STATE_F64, wide.rows * plane, MPSI_DASH))
+    if (!mpsi_value_reserve(mpm->context, dashpots, MPSI_STATE_F64, wide.rows * plane, MPSI_DASH))
       status = mpsi_fail_memory(mpm->context, function, (size_t)(wide.rows * row));
-    if (status == MPS_OK) dashes->rows = wide.rows * plane;
+    if (status == MPS_OK) dashpots->rows = wide.rows * plane;
     for (int64_t k = 0; status == MPS_OK && k < wide.rows; k++)
-      memcpy((double *)dashes->data + k * each, (char *)wide.data + k * row + sizeof(place),
+      memcpy((double *)dashpots->data + k * each, (char *)wide.data + k * row + sizeof(place),
              (size_t)each * sizeof(double));
   }
   mpsi_free(mpm->context, wide.data);
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }
 
 /* A block of nodes under a block of cells of the file. */
@@ -249,30 +251,30 @@ static int by_block(const void *left, const void *right) {
 
 static int64_t list_under(const mps_mpm *mpm, const mpsi_value *blocks, under *out) {
   const mpsi_block *block = blocks->data;
-  const int32_t rank = mps_domain_rank(mpm->share->domain);
-  int64_t count = 0, kept = 0;
+  const int32_t rank = mps_domain_rank(mpm->partition->domain);
+  int64_t count = 0, warm = 0;
   for (int64_t b = 0; b < blocks->rows; b++) {
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
-    const bool own = mpsi_mpm_share_owner(mpm, at) == rank;
+    const bool own = mpsi_mpm_block_owner(mpm, at) == rank;
     for (int q = 0; q < 1 << mpm->dim; q++)
       out[count++] = (under){{at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)}, own};
   }
   qsort(out, (size_t)count, sizeof *out, by_block);
   for (int64_t k = 0; k < count; k++) {
-    if (kept > 0 && by_block(&out[kept - 1], &out[k]) == 0)
-      out[kept - 1].own = out[kept - 1].own || out[k].own;
+    if (warm > 0 && by_block(&out[warm - 1], &out[k]) == 0)
+      out[warm - 1].own = out[warm - 1].own || out[k].own;
     else
-      out[kept++] = out[k];
+      out[warm++] = out[k];
   }
-  return kept;
+  return warm;
 }
 
-mps_status mpsi_mpm_take_dashes(mps_mpm *mpm, const char *function, const mpsi_value *blocks,
-                                mpsi_value *dashes) {
+mps_status mpsi_mpm_take_dashpots(mps_mpm *mpm, const char *function, const mpsi_value *blocks,
+                                  mpsi_value *dashpots) {
   const int64_t plane = plane_nodes(mpm);
-  const size_t bytes = (size_t)plane * sizeof(mpsi_dash);
-  mpsi_dash *dash = dashes->data;
+  const size_t bytes = (size_t)plane * sizeof(mpsi_dashpot);
+  mpsi_dashpot *dashpot = dashpots->data;
   int64_t from = 0, to = 0;
   if (!mpsi_mpm_absorbs(mpm)) return MPS_OK;
   under *nodes = mpsi_alloc(mpm->context, blocks->rows << mpm->dim, sizeof *nodes);
@@ -281,22 +283,22 @@ mps_status mpsi_mpm_take_dashes(mps_mpm *mpm, const char *function, const mpsi_v
   const int64_t count = list_under(mpm, blocks, nodes);
   for (int64_t g = 0; g < count; g++)
     for (int32_t side = 0; side < MPSI_SIDES; side++) {
-      const mpsi_hold *hold = &mpm->boundaries.hold[side];
+      const mpsi_boundary *hold = &mpm->boundaries.hold[side];
       mpsi_range r;
       if (hold->kind != MPS_MPM_BOUNDARY_ABSORBING ||
           !mpsi_find_range(mpm->dim, nodes[g].at, hold, &r))
         continue;
-      if (nodes[g].own && from + plane <= dashes->rows) {
-        memmove(dash + to, dash + from, bytes);
+      if (nodes[g].own && from + plane <= dashpots->rows) {
+        memmove(dashpot + to, dashpot + from, bytes);
         to += plane;
       }
       from += plane;
     }
   mpsi_free(mpm->context, nodes);
-  if (from != dashes->rows)
+  if (from != dashpots->rows)
     return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
                      "there are %lld dashpots of absorbing walls, must be %lld",
-                     (long long)dashes->rows, (long long)from);
-  dashes->rows = to;
+                     (long long)dashpots->rows, (long long)from);
+  dashpots->rows = to;
   return MPS_OK;
 }

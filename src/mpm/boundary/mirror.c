@@ -82,7 +82,7 @@ typedef struct side {
 } side;
 
 static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k, bool across) {
-  const mpsi_hold *hold = &mpm->boundaries.hold[k];
+  const mpsi_boundary *hold = &mpm->boundaries.hold[k];
   const int c = k / 2;
   const int64_t node = k % 2 ? mpm->grid.high[c] : mpm->grid.low[c];
   side out = {.cells = cells,
@@ -323,9 +323,9 @@ void mpsi_mpm_sum_mirrors(mps_mpm *mpm) {
     for (int32_t k = 0; k < MPSI_SIDES && !cells->ghost; k++) {
       if (!(cells->mirrors >> k & 1)) continue;
       const mpsi_mirror *m = &mpm->mirrors.mirror[number++];
-      mpsi_hold *hold = &mpm->boundaries.hold[k];
+      mpsi_boundary *hold = &mpm->boundaries.hold[k];
       const double work = mpsi_dot3(m->impulse, hold->v);
-      mpsi_mpm_hold_add_impulse(hold, m->impulse, m->moment, work, 0);
+      mpsi_mpm_boundary_add_impulse(hold, m->impulse, m->moment, work, 0);
       mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
       mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, work + m->passed);
     }

@@ -12,27 +12,29 @@
 /* ---- which nodes ----------------------------------------------------------------------------- */
 
 /* Lists what holds which block; false where there is no room, `count` says how much is needed. */
-static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
+static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashpots) {
   mpsi_held *held = mpm->boundaries.held_room.item;
-  *count = *dashes = 0;
+  *count = *dashpots = 0;
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[g];
     nodes->first_held = (int32_t)*count;
     for (int32_t k = 0; k < MPSI_HOLDS; k++) {
       mpsi_range r;
       const int32_t kind = mpm->boundaries.hold[k].kind;
-      if (kind == MPSI_HOLD_NONE || kind == MPS_MPM_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
+      if (kind == MPSI_BOUNDARY_NONE || kind == MPS_MPM_BOUNDARY_OPEN ||
+          mpm->boundaries.hold[k].ids ||
           !mpsi_find_range(mpm->dim, nodes->at, &mpm->boundaries.hold[k], &r))
         continue;
       const bool absorbs = kind == MPS_MPM_BOUNDARY_ABSORBING;
       if (*count < mpm->boundaries.held_room.capacity) {
-        held[*count] = (mpsi_held){.hold = k,
-                                   .dash = absorbs ? *dashes : -1,
-                                   .counted = !mpm->share || mpsi_mpm_share_counts(mpm, g),
-                                   .whole = !mpm->share || mpsi_mpm_share_knows(mpm, g)};
+        held[*count] =
+            (mpsi_held){.hold = k,
+                        .dashpot = absorbs ? *dashpots : -1,
+                        .counted = !mpm->partition || mpsi_mpm_counts_node_block(mpm, g),
+                        .whole = !mpm->partition || mpsi_mpm_node_block_complete(mpm, g)};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
-      if (absorbs) *dashes += mpm->grid.block_nodes / MPSI_SIDE;
+      if (absorbs) *dashpots += mpm->grid.block_nodes / MPSI_SIDE;
       (*count)++;
     }
     nodes->holds = (int32_t)*count - nodes->first_held;
@@ -48,67 +50,70 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
 
 /* A new list, in other memory than the old one, which stays where there is none. */
 static mps_status make_list(mps_mpm *mpm, const char *function) {
-  int64_t count, dashes;
+  int64_t count, dashpots;
   mpm->boundaries.outdated = true;
   const mps_status status = mpsi_mpm_list_mirrors(mpm, function);
   if (status != MPS_OK) return status;
   swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
-  swap_rooms(&mpm->boundaries.dash_room, &mpm->boundaries.old_dash_room);
-  bool good = list(mpm, &count, &dashes);
+  swap_rooms(&mpm->boundaries.dashpot_room, &mpm->boundaries.old_dashpot_room);
+  bool good = list(mpm, &count, &dashpots);
   if (!good) {
     good = mpsi_room_ensure(mpm->context, &mpm->boundaries.held_room, count,
                             sizeof *mpm->boundaries.held);
-    if (good) list(mpm, &count, &dashes);
+    if (good) list(mpm, &count, &dashpots);
   }
-  good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dash_room, dashes,
-                                  sizeof *mpm->boundaries.dash);
+  good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dashpot_room, dashpots,
+                                  sizeof *mpm->boundaries.dashpot);
   if (!good) {
     swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
-    swap_rooms(&mpm->boundaries.dash_room, &mpm->boundaries.old_dash_room);
+    swap_rooms(&mpm->boundaries.dashpot_room, &mpm->boundaries.old_dashpot_room);
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)count * sizeof *mpm->boundaries.held +
-                                (size_t)dashes * sizeof(mpsi_dash));
+                                (size_t)dashpots * sizeof(mpsi_dashpot));
   }
   mpm->boundaries.held = mpm->boundaries.held_room.item;
-  mpm->boundaries.dash = mpm->boundaries.dash_room.item;
+  mpm->boundaries.dashpot = mpm->boundaries.dashpot_room.item;
   mpm->boundaries.outdated = false;
   mpm->boundaries.held_count = count;
-  mpm->boundaries.dash_count = dashes;
-  if (dashes > 0) memset(mpm->boundaries.dash, 0, (size_t)dashes * sizeof *mpm->boundaries.dash);
+  mpm->boundaries.dashpot_count = dashpots;
+  if (dashpots > 0)
+    memset(mpm->boundaries.dashpot, 0, (size_t)dashpots * sizeof *mpm->boundaries.dashpot);
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_list_boundaries(mps_mpm *mpm, const char *function, mps_status status) {
   const mpsi_held *old = mpm->boundaries.held;
-  const mpsi_dash *old_dash = mpm->boundaries.dash;
+  const mpsi_dashpot *old_dashpot = mpm->boundaries.dashpot;
   const int64_t old_count = mpm->boundaries.held_count;
   if (status == MPS_OK) status = make_list(mpm, function);
   if (!mpsi_mpm_absorbs(mpm)) return status;
-  if (!mpm->share) {
-    if (status == MPS_OK) mpsi_mpm_place_dashes(mpm, NULL, old, old_count, old_dash);
+  if (!mpm->partition) {
+    if (status == MPS_OK) mpsi_mpm_place_dashpots(mpm, NULL, old, old_count, old_dashpot);
     return status;
   }
-  status = mpsi_domain_settle(mpm->share->domain, function, status);
-  if (status == MPS_OK) status = mpsi_mpm_share_dashes(mpm, function, old, old_count, old_dash);
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (status == MPS_OK)
+    status = mpsi_mpm_exchange_dashpots(mpm, function, old, old_count, old_dashpot);
   mpm->boundaries.outdated = status != MPS_OK;
   return status;
 }
 
-mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function, mps_status status) {
-  return mpm->boundaries.outdated ? mpsi_mpm_list_holds(mpm, function, status) : status;
+mps_status mpsi_mpm_update_boundaries(mps_mpm *mpm, const char *function, mps_status status) {
+  return mpm->boundaries.outdated ? mpsi_mpm_list_boundaries(mpm, function, status) : status;
 }
 
-mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
-                               const mpsi_dash *dash) {
+mps_status mpsi_mpm_put_dashpots(mps_mpm *mpm, const char *function, int64_t count,
+                                 const mpsi_dashpot *dashpot) {
   const mps_status status = make_list(mpm, function);
   if (status != MPS_OK) return status;
   const int64_t plane = mpm->grid.block_nodes / MPSI_SIDE;
   int64_t expected = 0;
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];
-    if (held->dash < 0 || !held->whole) continue;
+    if (held->dashpot < 0 || !held->whole) continue;
     if (expected + plane <= count)
-      memcpy(mpm->boundaries.dash + held->dash, dash + expected, (size_t)plane * sizeof *dash);
+      memcpy(mpm->boundaries.dashpot + held->dashpot, dashpot + expected,
+             (size_t)plane * sizeof *dashpot);
     expected += plane;
   }
   if (count == expected) return MPS_OK;
@@ -117,19 +122,19 @@ mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count
                    (long long)expected);
 }
 
-void mpsi_mpm_keep_dashes(mps_mpm *mpm, int64_t count, const mpsi_dash *dash) {
-  if (count > 0) memcpy(mpm->boundaries.kept_room.item, dash, (size_t)count * sizeof *dash);
-  mpm->boundaries.kept = count;
+void mpsi_mpm_keep_dashpots(mps_mpm *mpm, int64_t count, const mpsi_dashpot *dashpot) {
+  if (count > 0) memcpy(mpm->boundaries.warm_room.item, dashpot, (size_t)count * sizeof *dashpot);
+  mpm->boundaries.warm = count;
 }
 
 mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function) {
-  if (!mpm->share || !mpm->share->outdated) return MPS_OK;
+  if (!mpm->partition || !mpm->partition->outdated) return MPS_OK;
   const bool stale = mpm->run.stale;
-  mps_status status = mpsi_mpm_share_join(mpm, function);
+  mps_status status = mpsi_mpm_partition_find_ghosts(mpm, function);
   if (status == MPS_OK)
-    status = mpsi_domain_settle(
-        mpm->share->domain, function,
-        mpsi_mpm_put_dashes(mpm, function, mpm->boundaries.kept, mpm->boundaries.kept_room.item));
+    status = mpsi_domain_agree(
+        mpm->partition->domain, function,
+        mpsi_mpm_put_dashpots(mpm, function, mpm->boundaries.warm, mpm->boundaries.warm_room.item));
   mpm->run.stale = mpm->run.stale || stale;
   mpm->run.broken = mpm->run.broken || status != MPS_OK;
   return status;
@@ -142,17 +147,17 @@ mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function) {
 /* A block at work. */
 typedef struct block {
   mps_mpm *mpm;
-  mpsi_node *node, *side;         /* side: NULL where the block has none */
-  uint8_t *held;                  /* bit c: nothing else moves component c */
-  bool again;                     /* across thin bodies: nodes that have been counted already */
-  double push[MPSI_SIDES][BLOCK]; /* N s, of frictional sides at their nodes */
+  mpsi_node *node, *side; /* side: NULL where the block has none */
+  uint8_t *held;          /* bit c: nothing else moves component c */
+  bool again;             /* across thin bodies: nodes that have been counted already */
+  double normal_impulse[MPSI_SIDES][BLOCK]; /* N s, of frictional sides at their nodes */
 } block;
 
-typedef void (*hold_fn)(block *b, const mpsi_hold *hold, mpsi_held *held, int k);
+typedef void (*hold_fn)(block *b, const mpsi_boundary *hold, mpsi_held *held, int k);
 
 /* Gives component c of node k the velocity v, by an impulse of the boundary that moves with
  * hold->v. */
-static void set(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int c, double v) {
+static void set(block *b, const mpsi_boundary *hold, mpsi_held *held, int k, int c, double v) {
   double *at = &b->node[k][MPSI_VECTOR + c];
   const double impulse = b->node[k][MPSI_MASS] * (v - *at);
   double x[3];
@@ -164,33 +169,34 @@ static void set(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int c, 
   *at = v;
 }
 
-static void hold_across(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void hold_across(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   set(b, hold, held, k, hold->axis, hold->v[hold->axis]);
   b->held[k] |= (uint8_t)(1u << hold->axis);
 }
 
-static void absorb(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   if (!(b->node[k][MPSI_MASS] > 0.0)) return;
   double v[3];
   const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
-  mpsi_dash *dash = &b->mpm->boundaries.dash[held->dash + mpsi_plane_index(hold->axis, k)];
-  mpsi_mpm_dash(b->mpm, hold, dash, b->node[k], before, v);
+  mpsi_dashpot *dashpot =
+      &b->mpm->boundaries.dashpot[held->dashpot + mpsi_plane_index(hold->axis, k)];
+  mpsi_mpm_apply_dashpot(b->mpm, hold, dashpot, b->node[k], before, v);
   for (int c = 0; c < b->mpm->dim; c++)
     if (!(b->held[k] >> c & 1)) set(b, hold, held, k, c, v[c]);
 }
 
 /* Takes away the velocity into a frictional side. */
-static void stop_inward(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void stop_inward(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   const int c = hold->axis, number = held->hold;
   const double into = (b->node[k][MPSI_VECTOR + c] - hold->v[c]) * (number % 2 ? 1.0 : -1.0);
-  b->push[number][k] = into > 0.0 ? b->node[k][MPSI_MASS] * into : 0.0;
+  b->normal_impulse[number][k] = into > 0.0 ? b->node[k][MPSI_MASS] * into : 0.0;
   if (!(into > 0.0)) return;
   set(b, hold, held, k, c, hold->v[c]);
   b->held[k] |= (uint8_t)(1u << c);
 }
 
-static void apply_friction(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
-  const double most = hold->friction * b->push[held->hold][k], m = b->node[k][MPSI_MASS];
+static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
+  const double most = hold->friction * b->normal_impulse[held->hold][k], m = b->node[k][MPSI_MASS];
   double slip[3] = {0.0}, square = 0.0;
   if (!(most > 0.0) || !(m > 0.0)) return;
   for (int c = 0; c < b->mpm->dim; c++) {
@@ -206,7 +212,7 @@ static void apply_friction(block *b, const mpsi_hold *hold, mpsi_held *held, int
 }
 
 /* All components of a fixed side, those that a box prescribes. */
-static void prescribe(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   for (int c = 0; c < b->mpm->dim; c++)
     if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);
   b->held[k] |= (uint8_t)hold->dofs;
@@ -214,7 +220,7 @@ static void prescribe(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
 
 /* ---- a block --------------------------------------------------------------------------------- */
 
-static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn work) {
+static void for_range(block *b, const mpsi_boundary *hold, mpsi_held *held, hold_fn work) {
   mpsi_range r;
   if (!mpsi_find_range(b->mpm->dim, held->at, hold, &r)) return;
   const int64_t counted = b->again ? held->count : 0;
@@ -249,7 +255,7 @@ void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g) {
   }
 }
 
-void mpsi_mpm_hold_mirrors(mps_mpm *mpm, int64_t g) {
+void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g) {
   uint8_t fixed[BLOCK];
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   mpsi_held *first = mpm->boundaries.held + nodes->first_held;
@@ -258,7 +264,7 @@ void mpsi_mpm_hold_mirrors(mps_mpm *mpm, int64_t g) {
   begin_block(mpm, g, fixed, &b);
   for (int pass = 0; pass < 2; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
-      const mpsi_hold *hold = &mpm->boundaries.hold[first[t].hold];
+      const mpsi_boundary *hold = &mpm->boundaries.hold[first[t].hold];
       const bool holds_all = hold->kind == MPS_MPM_BOUNDARY_FIXED;
       if (mpsi_is_mirror(mpm, first[t].hold) && holds_all == (pass == 1))
         for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
@@ -270,7 +276,7 @@ void mpsi_mpm_hold_mirrors(mps_mpm *mpm, int64_t g) {
 
 /* What acts across walls comes before friction: where walls meet, that of one must not move a node
  * into the other. */
-void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
+void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
   static const struct {
     int32_t kind;
     hold_fn work;
@@ -285,29 +291,29 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
   begin_block(mpm, g, fixed, &b);
   for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
-      const mpsi_hold *hold = &mpm->boundaries.hold[first[t].hold];
+      const mpsi_boundary *hold = &mpm->boundaries.hold[first[t].hold];
       if (hold->kind == order[pass].kind) for_range(&b, hold, &first[t], order[pass].work);
     }
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
+void mpsi_mpm_begin_boundaries(mps_mpm *mpm, double dt) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++)
     if (mpm->boundaries.hold[k].finds) mpm->boundaries.hold[k].found += dt;
 }
 
 /* What the step before has added is part of all. */
-static void begin_sums(mpsi_hold *hold) {
+static void begin_sums(mpsi_boundary *hold) {
   if (!hold->sums) return;
-  for (int k = 0; k < MPSI_HOLD_MASS; k++)
+  for (int k = 0; k < MPSI_BOUNDARY_MASS; k++)
     mpsi_exact_merge(&hold->sums->all[k], &hold->sums->step[k]);
   memset(hold->sums->step, 0, sizeof hold->sums->step);
   hold->count = 0;
 }
 
-void mpsi_mpm_sum_holds(mps_mpm *mpm) {
-  mpsi_hold *hold = mpm->boundaries.hold;
+void mpsi_mpm_sum_boundaries(mps_mpm *mpm) {
+  mpsi_boundary *hold = mpm->boundaries.hold;
   mpm->boundaries.dt = mpm->run.dt;
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     begin_sums(&hold[k]);
@@ -316,8 +322,8 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];
     if (!held->counted) continue;
-    mpsi_mpm_hold_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work,
-                              held->count);
+    mpsi_mpm_boundary_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work,
+                                  held->count);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, held->work);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, held->work);
   }
@@ -357,7 +363,7 @@ static void check_place(mps_mpm *mpm, int64_t k) {
 }
 
 /* A particle moves as it is told: what its velocity changes by is an impulse. */
-static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
+static void drive_particle(mps_mpm *mpm, mpsi_boundary *hold, int64_t k) {
   const mpsi_columns *p = &mpm->p;
   double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0, kinetic = 0.0;
   for (int c = 0; c < mpm->dim; c++) x[c] = p->x[c][k];
@@ -375,7 +381,7 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
     moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
   }
-  mpsi_mpm_hold_add_impulse(hold, impulse, moment, work, 1);
+  mpsi_mpm_boundary_add_impulse(hold, impulse, moment, work, 1);
   mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
   mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, kinetic);
   mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, work - kinetic);
@@ -384,7 +390,7 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
 
 void mpsi_mpm_drive_particles(mps_mpm *mpm) {
   for (int32_t b = MPSI_SIDES; b < MPSI_HOLDS; b++) {
-    mpsi_hold *hold = &mpm->boundaries.hold[b];
+    mpsi_boundary *hold = &mpm->boundaries.hold[b];
     for (int64_t i = 0; hold->ids && i < hold->id_count; i++) {
       const int64_t k = mps_particles_index(mpm->particles, hold->ids[i]);
       if (k >= 0) drive_particle(mpm, hold, k);

@@ -127,27 +127,30 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
 
 /* ---- touches --------------------------------------------------------------------------------- */
 
-static bool is_pressed(const mpsi_touch *touch) { return touch->impulse.push > 0.0; }
+static bool is_pressed(const mpsi_constraint *constraint) {
+  return constraint->impulse.normal_impulse > 0.0;
+}
 
 /* The nodes around the feet of a block's touches. */
 static void surround_block(void *data, int64_t unit, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_touch_block *block = &all->block[unit];
+  const mpsi_constraint_block *block = &all->block[unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    mpsi_touch *touch = &all->touch[n];
-    touch->areas = 0;
-    if (!mpsi_has_strength(mpm->contact.handle[touch->body])) continue;
-    const around nodes = find_around(mpm, block->at, touch->impulse.at, 4);
+    mpsi_constraint *constraint = &all->constraint[n];
+    constraint->areas = 0;
+    if (!mpsi_has_strength(mpm->contact.handle[constraint->body])) continue;
+    const around nodes = find_around(mpm, block->at, constraint->impulse.at, 4);
     for (int k = 0; k < nodes_around(mpm, 4); k++) {
       int at[3];
       const double weight = node_around(&nodes, k, at);
-      mpsi_area *area = mpm->share
-                            ? mpsi_mpm_met_area(mpm, block->at, at, touch->body)
-                            : area_under(mpm, &mpm->grid.cells[block->cells], at, touch->body);
+      mpsi_area *area = mpm->partition
+                            ? mpsi_mpm_shared_area(mpm, block->at, at, constraint->body)
+                            : area_under(mpm, &mpm->grid.cells[block->cells], at, constraint->body);
       if (area && area->area > 0.0 && weight > 0.0)
-        all->around[n * nodes_around(mpm, 4) + touch->areas++] = (mpsi_area_share){area, weight};
+        all->around[n * nodes_around(mpm, 4) + constraint->areas++] =
+            (mpsi_area_share){area, weight};
     }
   }
 }
@@ -155,12 +158,12 @@ static void surround_block(void *data, int64_t unit, int32_t worker) {
 static void count_block(void *data, int64_t unit, int32_t worker) {
   mps_mpm *mpm = data;
   const mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_touch_block *block = &all->block[all->area_first + unit];
+  const mpsi_constraint_block *block = &all->block[all->area_first + unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
-    if (!is_pressed(&all->touch[n])) continue;
-    for (int q = 0; q < all->touch[n].areas; q++) at[q].node->touches += at[q].weight;
+    if (!is_pressed(&all->constraint[n])) continue;
+    for (int q = 0; q < all->constraint[n].areas; q++) at[q].node->constraints += at[q].weight;
   }
 }
 
@@ -168,34 +171,34 @@ static void count_block(void *data, int64_t unit, int32_t worker) {
 static void share_block(void *data, int64_t unit, int32_t worker) {
   mps_mpm *mpm = data;
   const mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_touch_block *block = &all->block[unit];
+  const mpsi_constraint_block *block = &all->block[unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    mpsi_touch *touch = &all->touch[n];
+    mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
-    const mps_contact_def *def = &mpm->contact.handle[touch->body]->def;
+    const mps_contact_def *def = &mpm->contact.handle[constraint->body]->def;
     double area = 0.0;
-    if (!mpsi_has_strength(mpm->contact.handle[touch->body])) continue;
-    for (int q = 0; q < touch->areas; q++)
+    if (!mpsi_has_strength(mpm->contact.handle[constraint->body])) continue;
+    for (int q = 0; q < constraint->areas; q++)
       area += at[q].weight * at[q].node->area /
-              fmax(at[q].node->touches, is_pressed(touch) ? 0.0 : 1.0);
-    touch->impulse.adhesion = mpm->run.dt * area * def->adhesion;
-    if (!isnan(def->strength)) touch->impulse.strength = mpm->run.dt * area * def->strength;
+              fmax(at[q].node->constraints, is_pressed(constraint) ? 0.0 : 1.0);
+    constraint->impulse.adhesion = mpm->run.dt * area * def->adhesion;
+    if (!isnan(def->strength)) constraint->impulse.strength = mpm->run.dt * area * def->strength;
   }
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t touches) {
+bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t constraints) {
   mpsi_impulses *all = &mpm->contact.impulses;
   bool wanted = false;
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     wanted = wanted || mpsi_has_strength(mpm->contact.handle[b]);
   all->areas = false;
   if (!wanted) return true;
-  const int64_t nodes = mpm->share ? 0 : mpm->contact.node_pair_count * mpm->grid.block_nodes;
+  const int64_t nodes = mpm->partition ? 0 : mpm->contact.node_pair_count * mpm->grid.block_nodes;
   if (!mpsi_room_ensure(mpm->context, &all->area_room, nodes, sizeof *all->area) ||
-      !mpsi_room_ensure(mpm->context, &all->around_room, touches * nodes_around(mpm, 4),
+      !mpsi_room_ensure(mpm->context, &all->around_room, constraints * nodes_around(mpm, 4),
                         sizeof *all->around))
     return false;
   all->area = all->area_room.item;
@@ -208,21 +211,21 @@ bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t touches) {
 /* Blocks of one colour share no node. */
 void mpsi_mpm_find_areas(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  if (!all->areas || all->touch_count == 0) return;
-  if (!mpm->share) memset(all->area, 0, (size_t)all->area_count * sizeof *all->area);
-  for (int k = 0; k < MPSI_CORNERS && !mpm->share; k++) {
+  if (!all->areas || all->constraint_count == 0) return;
+  if (!mpm->partition) memset(all->area, 0, (size_t)all->area_count * sizeof *all->area);
+  for (int k = 0; k < MPSI_CORNERS && !mpm->partition; k++) {
     all->area_first = mpm->grid.colour[k];
     mpsi_parallel_for(mpm->context, mpm->grid.colour[k + 1] - all->area_first, add_block, mpm);
   }
   mpsi_parallel_for(mpm->context, all->block_count, surround_block, mpm);
 }
 
-void mpsi_mpm_share_areas(mps_mpm *mpm) {
+void mpsi_mpm_distribute_areas(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   if (!all->areas) return;
-  for (int64_t n = 0; n < all->touch_count; n++)
-    for (int32_t q = 0; q < all->touch[n].areas; q++)
-      all->around[n * nodes_around(mpm, 4) + q].node->touches = 0.0;
+  for (int64_t n = 0; n < all->constraint_count; n++)
+    for (int32_t q = 0; q < all->constraint[n].areas; q++)
+      all->around[n * nodes_around(mpm, 4) + q].node->constraints = 0.0;
   for (int k = 0; k < MPSI_CORNERS; k++) {
     all->area_first = all->colour[k];
     mpsi_parallel_for(mpm->context, all->colour[k + 1] - all->area_first, count_block, mpm);

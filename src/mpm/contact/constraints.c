@@ -27,25 +27,25 @@ static uint64_t slot_of(const mpsi_impulses *all, int64_t id, int64_t body) {
 bool mpsi_mpm_index_impulses(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   int64_t slots = 16;
-  while (slots < 2 * all->kept_count) slots *= 2;
+  while (slots < 2 * all->warm_count) slots *= 2;
   if (!mpsi_room_ensure(mpm->context, &all->lookup_room, slots, sizeof *all->lookup)) return false;
   all->lookup = all->lookup_room.item;
   all->lookup_mask = (uint64_t)slots - 1;
   for (int64_t k = 0; k < slots; k++) all->lookup[k] = -1;
-  for (int64_t k = 0; k < all->kept_count; k++) {
-    uint64_t at = slot_of(all, all->kept[k].id, all->kept[k].body);
+  for (int64_t k = 0; k < all->warm_count; k++) {
+    uint64_t at = slot_of(all, all->warm[k].id, all->warm[k].body);
     while (all->lookup[at] >= 0) at = (at + 1) & all->lookup_mask;
     all->lookup[at] = (int32_t)k;
   }
   return true;
 }
 
-const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, int32_t body) {
+const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mps_mpm *mpm, int64_t id, int32_t body) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
        at = (at + 1) & all->lookup_mask) {
-    const mpsi_kept_impulse *kept = &all->kept[all->lookup[at]];
-    if (kept->id == id && kept->body == body) return kept;
+    const mpsi_warm_impulse *warm = &all->warm[all->lookup[at]];
+    if (warm->id == id && warm->body == body) return warm;
   }
   return NULL;
 }
@@ -53,13 +53,13 @@ const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, i
 void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body) {
   mpsi_impulses *all = &mpm->contact.impulses;
   int64_t to = 0;
-  for (int64_t k = 0; k < all->kept_count; k++) {
-    mpsi_kept_impulse kept = all->kept[k];
-    if (kept.body == body) continue;
-    kept.body -= kept.body > body;
-    all->kept[to++] = kept;
+  for (int64_t k = 0; k < all->warm_count; k++) {
+    mpsi_warm_impulse warm = all->warm[k];
+    if (warm.body == body) continue;
+    warm.body -= warm.body > body;
+    all->warm[to++] = warm;
   }
-  all->kept_count = to;
+  all->warm_count = to;
 }
 
 /* ---- who may touch --------------------------------------------------------------------------- */
@@ -173,7 +173,7 @@ static int64_t share_candidates(mps_mpm *mpm) {
     const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
     pair->first_candidate = count;
     pair->candidates = 0;
-    pair->touched = false; /* also of blocks that give after the bodies are met (step.c) */
+    pair->in_contact = false; /* also of blocks that give after the bodies are met (step.c) */
     pair->deepest = 0.0;
     if (mpsi_by_impulses(mpm->contact.handle[pair->body])) count += cells->end - cells->begin;
   }
@@ -183,7 +183,7 @@ static int64_t share_candidates(mps_mpm *mpm) {
 /* The blocks with candidates, colour by colour. */
 static void list_blocks(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  all->touch_count = all->block_count = 0;
+  all->constraint_count = all->block_count = 0;
   for (int colour = 0; colour < MPSI_CORNERS; colour++) {
     all->colour[colour] = all->block_count;
     for (int64_t i = mpm->grid.colour[colour]; i < mpm->grid.colour[colour + 1]; i++) {
@@ -193,20 +193,20 @@ static void list_blocks(mps_mpm *mpm) {
         count += mpm->contact.cell_pair[cells->first_pair + q].candidates;
       if (count == 0) continue;
       all->block[all->block_count++] =
-          (mpsi_touch_block){.first = all->touch_count,
-                             .count = count,
-                             .cells = mpm->grid.coloured[i],
-                             .at = {cells->at[0], cells->at[1], cells->at[2]}};
-      all->touch_count += count;
+          (mpsi_constraint_block){.first = all->constraint_count,
+                                  .count = count,
+                                  .cells = mpm->grid.coloured[i],
+                                  .at = {cells->at[0], cells->at[1], cells->at[2]}};
+      all->constraint_count += count;
     }
   }
   all->colour[MPSI_CORNERS] = all->block_count;
 }
 
-mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   mpsi_impulses *all = &mpm->contact.impulses;
   mps_context *context = mpm->context;
-  all->touch_count = all->block_count = 0;
+  all->constraint_count = all->block_count = 0;
   if (mpm->contact.bodies == 0) return MPS_OK;
   const int64_t candidates = share_candidates(mpm);
   const int32_t side = mpm->def.spline + 1;
@@ -219,19 +219,19 @@ mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
     mpsi_mpm_for_cells(mpm, find_in_block);
     list_blocks(mpm);
   }
-  const int64_t n = all->touch_count;
-  good = good && mpsi_room_ensure(context, &all->touch_room, n, sizeof *all->touch) &&
+  const int64_t n = all->constraint_count;
+  good = good && mpsi_room_ensure(context, &all->constraint_room, n, sizeof *all->constraint) &&
          mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
          mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
-         mpsi_room_ensure(context, &all->next_room, n, sizeof *all->kept) &&
+         mpsi_room_ensure(context, &all->next_room, n, sizeof *all->warm) &&
          mpsi_mpm_index_impulses(mpm) && mpsi_mpm_area_room(mpm, n);
   if (!good) {
-    all->touch_count = all->block_count = 0;
+    all->constraint_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
-                            (size_t)(n + 1) * (sizeof *all->touch + (size_t)all->stride * 40) +
+                            (size_t)(n + 1) * (sizeof *all->constraint + (size_t)all->stride * 40) +
                                 (size_t)candidates * sizeof *all->candidate);
   }
-  all->touch = all->touch_room.item;
+  all->constraint = all->constraint_room.item;
   all->weight = all->weight_room.item;
   all->node = all->node_room.item;
   all->free_bodies = false;
@@ -246,17 +246,18 @@ mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
 /* ---- their weights --------------------------------------------------------------------------- */
 
 static int by_place(const void *a, const void *b) {
-  const mpsi_touch *s = a, *t = b;
+  const mpsi_constraint *s = a, *t = b;
   for (int c = 0; c < 3; c++)
     if (s->x[c] != t->x[c]) return s->x[c] < t->x[c] ? -1 : 1;
   if (s->id != t->id) return s->id < t->id ? -1 : 1;
   return (s->body > t->body) - (s->body < t->body);
 }
 
-static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, mpsi_touch *out) {
+static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id,
+                        mpsi_constraint *out) {
   mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
   const mps_contact *contact = mpm->contact.handle[pair->body];
-  *out = (mpsi_touch){.particle = k, .id = id[k], .pair = t, .body = pair->body};
+  *out = (mpsi_constraint){.particle = k, .id = id[k], .pair = t, .body = pair->body};
   place_of(mpm, k, out->x);
   const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, out->x);
   const mpsi_foot foot = bearing.foot;
@@ -270,17 +271,17 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, m
   c->friction = contact->def.friction;
   c->strength = INFINITY;
   if (-bearing.outside > pair->deepest) {
-    pair->touched = true;
+    pair->in_contact = true;
     pair->deepest = -bearing.outside, pair->deep = k;
   }
 }
 
 /* psi at the nodes of the touch's stencil. */
 static void weigh(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                  const mpsi_touch *touch, mpsi_foot_weights *out) {
+                  const mpsi_constraint *constraint, mpsi_foot_weights *out) {
   double d[3];
-  for (int a = 0; a < 3; a++) d[a] = touch->impulse.at[a] - touch->x[a];
-  mpm->kernels->foot(mpm, cells, worker, touch->particle, d, out);
+  for (int a = 0; a < 3; a++) d[a] = constraint->impulse.at[a] - constraint->x[a];
+  mpm->kernels->foot(mpm, cells, worker, constraint->particle, d, out);
 }
 
 /* Tile node of number s of the stencil. */
@@ -289,12 +290,12 @@ static void find_place(const mpsi_foot_weights *f, int s, int *place) {
 }
 
 /* Adds `weight` to those of a node of the touch, which may be there already, for a ghost. */
-static void add_node(mpsi_touch *touch, double **node, double (*to)[4], double *at,
+static void add_node(mpsi_constraint *constraint, double **node, double (*to)[4], double *at,
                      const double *weight, bool may_be_there) {
-  int32_t i = may_be_there ? 0 : touch->nodes;
-  while (i < touch->nodes && node[i] != at) i++;
-  if (i == touch->nodes) {
-    node[touch->nodes++] = at;
+  int32_t i = may_be_there ? 0 : constraint->nodes;
+  while (i < constraint->nodes && node[i] != at) i++;
+  if (i == constraint->nodes) {
+    node[constraint->nodes++] = at;
     to[i][MPSI_MASS] = 1.0 / at[MPSI_MASS];
     memcpy(to[i] + MPSI_VECTOR, weight, 3 * sizeof *weight);
     return;
@@ -307,7 +308,7 @@ static void add_node(mpsi_touch *touch, double **node, double (*to)[4], double *
 static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
                          int64_t n) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_touch *touch = &all->touch[n];
+  mpsi_constraint *constraint = &all->constraint[n];
   double(*weight)[4] = all->weight + n * all->stride, **node = all->node + n * all->stride;
   for (uint64_t left = f->active; left != 0; left &= left - 1) {
     const int s = __builtin_ctzll(left);
@@ -318,18 +319,18 @@ static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
     const bool image = cells->mirrors && mpsi_mpm_find_image(mpm, cells, place, keeps, carried);
     for (int a = 0; a < 3 && image; a++) {
       psis[a] *= keeps[a];
-      touch->carried[a] += psi * carried[a];
+      constraint->carried[a] += psi * carried[a];
     }
     const int64_t g = f->across >> s & 1
                           ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
                           : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
     if (mpm->grid.node[g][MPSI_MASS] > 0.0)
-      add_node(touch, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
+      add_node(constraint, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
   }
-  for (int32_t i = 0; i < touch->nodes; i++)
+  for (int32_t i = 0; i < constraint->nodes; i++)
     for (int a = 0; a < 3; a++) {
       const double psi = weight[i][MPSI_VECTOR + a];
-      touch->impulse.mobility[a] += psi * psi * weight[i][MPSI_MASS];
+      constraint->impulse.mobility[a] += psi * psi * weight[i][MPSI_MASS];
     }
 }
 
@@ -337,7 +338,7 @@ static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
 static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
                        int64_t n) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_touch *touch = &all->touch[n];
+  mpsi_constraint *constraint = &all->constraint[n];
   double(*weight)[2] = mpsi_even_weights(all, n), **node = all->node + n * all->stride;
   double mobility = 0.0;
   int32_t count = 0;
@@ -355,18 +356,18 @@ static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_fo
     mobility += f->psi[s] * f->psi[s] * weight[count][0];
     node[count++] = at;
   }
-  touch->nodes = count;
-  for (int a = 0; a < 3; a++) touch->impulse.mobility[a] = mobility;
+  constraint->nodes = count;
+  for (int a = 0; a < 3; a++) constraint->impulse.mobility[a] = mobility;
 }
 
 /* The weights of a touch, and its mobility. */
 static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
-  mpsi_touch *touch = &mpm->contact.impulses.touch[n];
+  mpsi_constraint *constraint = &mpm->contact.impulses.constraint[n];
   mpsi_foot_weights f;
-  weigh(mpm, cells, &mpm->grid.workers[worker], touch, &f);
-  touch->nodes = 0;
-  touch->even = !mpm->share && !cells->mirrors;
-  if (touch->even)
+  weigh(mpm, cells, &mpm->grid.workers[worker], constraint, &f);
+  constraint->nodes = 0;
+  constraint->even = !mpm->partition && !cells->mirrors;
+  if (constraint->even)
     fit_evenly(mpm, cells, &f, n);
   else
     fit_unevenly(mpm, cells, &f, n);
@@ -374,41 +375,42 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
 
 /* States of nodes for the touches whose fits were not kept. */
 static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                        const mpsi_touch_block *block, mpsi_worker *worker) {
-  const mpsi_touch *touch = mpm->contact.impulses.touch + block->first;
+                        const mpsi_constraint_block *block, mpsi_worker *worker) {
+  const mpsi_constraint *constraint = mpm->contact.impulses.constraint + block->first;
   bool all = cells->first_fit >= 0;
   for (int64_t n = 0; n < block->count && all; n++)
-    all = mpm->grid.fitted[cells->first_fit + (touch[n].particle - cells->begin)] != 0;
+    all = mpm->grid.fitted[cells->first_fit + (constraint[n].particle - cells->begin)] != 0;
   if (!all) mpsi_mpm_find_states(mpm, cells, worker);
 }
 
 static void mirror_block(void *data, int64_t unit, int32_t number) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_touch_block *block = &all->block[unit];
+  const mpsi_constraint_block *block = &all->block[unit];
   if (block->cells < 0) return;
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   mpsi_worker *worker = &mpm->grid.workers[number];
   if (!cells->mirrors) return;
   find_states(mpm, cells, block, worker);
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    const mpsi_touch *touch = &all->touch[n];
-    const mpsi_impulse *c = &touch->impulse;
+    const mpsi_constraint *constraint = &all->constraint[n];
+    const mpsi_impulse *c = &constraint->impulse;
     mpsi_foot_weights f;
-    if (!(c->push > 0.0)) continue;
-    weigh(mpm, cells, worker, touch, &f);
+    if (!(c->normal_impulse > 0.0)) continue;
+    weigh(mpm, cells, worker, constraint, &f);
     for (uint64_t left = f.active; left != 0; left &= left - 1) {
       const int s = __builtin_ctzll(left);
       int place[3];
       double by[3];
       find_place(&f, s, place);
-      for (int a = 0; a < 3; a++) by[a] = f.psi[s] * (c->push * c->normal[a] + c->rub[a]);
+      for (int a = 0; a < 3; a++)
+        by[a] = f.psi[s] * (c->normal_impulse * c->normal[a] + c->tangent_impulse[a]);
       if (f.psi[s] != 0.0) mpsi_mpm_reflect_impulse(mpm, cells, place, by);
     }
   }
 }
 
-void mpsi_mpm_mirror_touches(mps_mpm *mpm) {
+void mpsi_mpm_mirror_constraints(mps_mpm *mpm) {
   if (mpm->mirrors.sides)
     mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, mirror_block, mpm);
 }
@@ -416,7 +418,7 @@ void mpsi_mpm_mirror_touches(mps_mpm *mpm) {
 static void fit_block(void *data, int64_t unit, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_touch_block *block = &all->block[unit];
+  const mpsi_constraint_block *block = &all->block[unit];
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
   int64_t n = block->first;
@@ -425,19 +427,19 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
     const int32_t *candidate = all->candidate + pair->first_candidate;
     for (int64_t i = 0; i < pair->candidates; i++)
-      begin_touch(mpm, t, cells->begin + candidate[i], id, &all->touch[n++]);
+      begin_touch(mpm, t, cells->begin + candidate[i], id, &all->constraint[n++]);
   }
-  qsort(all->touch + block->first, (size_t)block->count, sizeof *all->touch, by_place);
+  qsort(all->constraint + block->first, (size_t)block->count, sizeof *all->constraint, by_place);
   find_states(mpm, cells, block, &mpm->grid.workers[worker]);
   for (n = block->first; n < block->first + block->count; n++) {
     fit_touch(mpm, cells, worker, n);
-    mpsi_touch *touch = &all->touch[n];
-    const mpsi_kept_impulse *kept = mpsi_mpm_kept_impulse(mpm, touch->id, touch->body);
-    for (int a = 0; a < 3; a++) touch->impulse.rub[a] = kept ? kept->by[a] : 0.0;
+    mpsi_constraint *constraint = &all->constraint[n];
+    const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(mpm, constraint->id, constraint->body);
+    for (int a = 0; a < 3; a++) constraint->impulse.tangent_impulse[a] = warm ? warm->by[a] : 0.0;
   }
 }
 
-void mpsi_mpm_fit_touches(mps_mpm *mpm) {
+void mpsi_mpm_fit_constraints(mps_mpm *mpm) {
   mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, fit_block, mpm);
-  if (!mpm->share) mpsi_mpm_find_areas(mpm);
+  if (!mpm->partition) mpsi_mpm_find_areas(mpm);
 }

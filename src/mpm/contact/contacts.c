@@ -94,7 +94,7 @@ mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_c
 /* All ranks make the same contact with the same body. */
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 const mps_contact *contact) {
-  if (!mpm->share) return status;
+  if (!mpm->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   if (status == MPS_OK) {
@@ -115,7 +115,7 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     MPSI_GIVE(&given, d, tolerance);
     mpsi_body_give(&given, contact->body);
   }
-  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
 }
 
 /* ---- the handle's questions ------------------------------------------------------------------ */
@@ -161,9 +161,9 @@ static void end(void *owner, mps_contact *contact) {
 /* Whether particle k at x touches the body now, by the method of the contact; `c` receives force
  * and depth, `foot` and `half` where and from which half size (m) its gap counts. By impulses: one
  * that the body has pushed in the last step. */
-static bool touches(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
-                    int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
-                    double *half) {
+static bool constraints(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
+                        int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
+                        double *half) {
   *half = contact->def.offset;
   if (!mpsi_by_impulses(contact)) {
     if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
@@ -172,9 +172,9 @@ static bool touches(const mps_mpm *mpm, const mps_contact *contact, int32_t body
     *foot = mpsi_body_foot(contact->body, x);
     return true;
   }
-  const mpsi_kept_impulse *kept = mpsi_mpm_kept_impulse(mpm, id, body);
-  if (!kept) return false;
-  for (int a = 0; a < 3; a++) c->force[a] = kept->by[a] / mpm->contact.impulses.kept_dt;
+  const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(mpm, id, body);
+  if (!warm) return false;
+  for (int a = 0; a < 3; a++) c->force[a] = warm->by[a] / mpm->contact.impulses.warm_dt;
   const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, x);
   *foot = bearing.foot;
   *half = bearing.half;
@@ -190,14 +190,14 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
   int32_t body = 0;
   if (!mpsi_mpm_index_impulses(mpm))
     return mpsi_fail_memory(mpm->context, "mps_contact_get_particles",
-                            (size_t)mpm->contact.impulses.kept_count * 4 * sizeof(int32_t));
+                            (size_t)mpm->contact.impulses.warm_count * 4 * sizeof(int32_t));
   while (mpm->contact.handle[body] != contact) body++;
   for (int64_t k = 0; k < mpm->p.count; k++) {
     mpsi_contact_particle c;
     double x[3] = {0.0}, half;
     for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
     mpsi_foot at;
-    if (!touches(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
+    if (!constraints(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
     if (n < capacity) {
       if (ids) ids[n] = id[k];
       if (gap) gap[n] = at.distance - half;
@@ -251,7 +251,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
     status = mpsi_mpm_clear_body(mpm, __func__, contact);
   else if (status == MPS_OK)
-    status = mpsi_mpm_share_settle(mpm, __func__, mpsi_mpm_check_inside(mpm, __func__, contact, 0));
+    status = mpsi_mpm_agree(mpm, __func__, mpsi_mpm_check_inside(mpm, __func__, contact, 0));
   if (status != MPS_OK) {
     give_up(contact);
     return status;
@@ -275,7 +275,7 @@ mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function) {
   for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
     const double most = mpm->contact.handle[pair->body]->def.depth;
-    if (!pair->touched || !(pair->deepest > most) ||
+    if (!pair->in_contact || !(pair->deepest > most) ||
         mpm->contact.handle[pair->body]->def.inside == MPS_CONTACT_INSIDE_REMOVE)
       continue;
     const int64_t id = mpsi_particles_integers(mpm->particles, "id")[pair->deep];

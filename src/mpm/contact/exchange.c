@@ -18,7 +18,7 @@ typedef struct head {
   int32_t colour; /* in whose turn it is swept */
   int64_t cells;  /* its number, on its own rank */
   int64_t bytes;  /* of the entry */
-  int64_t nodes, touches;
+  int64_t nodes, constraints;
   int64_t components; /* of a weight: 1, 3 */
   int64_t areas;
 } head;
@@ -54,7 +54,7 @@ static int64_t index_bytes(int64_t nodes) { return (nodes + 1) / 2 * 8; }
 
 /* At most. `block`: NULL where there are areas alone. */
 static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                           const mpsi_touch_block *block) {
+                           const mpsi_constraint_block *block) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   int64_t bytes = (int64_t)sizeof(head), nodes = 0;
   for (int32_t q = 0; q < cells->pairs && all->areas; q++)
@@ -62,21 +62,21 @@ static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_cell_block *cells,
       bytes += mpm->grid.tile_nodes * (int64_t)sizeof(named_area);
   if (!block) return bytes;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    nodes += all->touch[n].nodes;
-    bytes += (int64_t)sizeof(mpsi_touch) + index_bytes(all->touch[n].nodes);
+    nodes += all->constraint[n].nodes;
+    bytes += (int64_t)sizeof(mpsi_constraint) + index_bytes(all->constraint[n].nodes);
   }
   return bytes + nodes * (int64_t)(3 * sizeof(double) + sizeof(named_node));
 }
 
 /* The nodes of the block's touches, each once; `number` of each place in that list. */
-static int64_t name_nodes(const mps_mpm *mpm, const mpsi_touch_block *block, int32_t *number,
+static int64_t name_nodes(const mps_mpm *mpm, const mpsi_constraint_block *block, int32_t *number,
                           named_node *out) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   int64_t count = 0;
   memset(number, -1, 2 * PLACES * sizeof *number);
   for (int64_t n = block->first; n < block->first + block->count; n++)
-    for (int32_t i = 0; i < all->touch[n].nodes; i++) {
+    for (int32_t i = 0; i < all->constraint[n].nodes; i++) {
       const double *node = all->node[n * all->stride + i];
       const int place = place_under(mpm, cells, node);
       if (number[place] >= 0) continue;
@@ -90,23 +90,24 @@ static int64_t name_nodes(const mps_mpm *mpm, const mpsi_touch_block *block, int
 static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t n,
                          const int32_t *number, int64_t components, char *to) {
   const mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_touch *touch = &all->touch[n];
-  memcpy(to, touch, sizeof *touch);
-  to += sizeof *touch;
+  const mpsi_constraint *constraint = &all->constraint[n];
+  memcpy(to, constraint, sizeof *constraint);
+  to += sizeof *constraint;
   int32_t *index = (int32_t *)to;
-  for (int32_t i = 0; i < touch->nodes; i++)
+  for (int32_t i = 0; i < constraint->nodes; i++)
     index[i] = number[place_under(mpm, cells, all->node[n * all->stride + i])];
-  to += index_bytes(touch->nodes);
-  for (int32_t i = 0; i < touch->nodes; i++, to += components * (int64_t)sizeof(double))
+  to += index_bytes(constraint->nodes);
+  for (int32_t i = 0; i < constraint->nodes; i++, to += components * (int64_t)sizeof(double))
     memcpy(to, all->weight[n * all->stride + i] + MPSI_VECTOR, (size_t)components * sizeof(double));
   return to;
 }
 
-static char *write_touches(const mps_mpm *mpm, const mpsi_touch_block *block, head *h, char *to) {
+static char *write_touches(const mps_mpm *mpm, const mpsi_constraint_block *block, head *h,
+                           char *to) {
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   int32_t number[2 * PLACES];
   h->nodes = name_nodes(mpm, block, number, (named_node *)to);
-  h->touches = block->count;
+  h->constraints = block->count;
   to += h->nodes * (int64_t)sizeof(named_node);
   for (int64_t n = block->first; n < block->first + block->count; n++)
     to = write_touch(mpm, cells, n, number, h->components, to);
@@ -131,7 +132,7 @@ static char *write_areas(const mps_mpm *mpm, const mpsi_cell_block *cells, head 
 
 /* `block`: NULL where there are areas alone. Returns `to` where there are none either. */
 static char *write_block(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                         const mpsi_touch_block *block, char *to) {
+                         const mpsi_constraint_block *block, char *to) {
   const int32_t *at = cells->at;
   head h = {.colour = (at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2,
             .cells = cells - mpm->grid.cells,
@@ -140,7 +141,7 @@ static char *write_block(const mps_mpm *mpm, const mpsi_cell_block *cells,
   char *end = to + sizeof h;
   if (block) end = write_touches(mpm, block, &h, end);
   end = write_areas(mpm, cells, &h, end);
-  if (h.touches == 0 && h.areas == 0) return to;
+  if (h.constraints == 0 && h.areas == 0) return to;
   h.bytes = end - to;
   memcpy(to, &h, sizeof h);
   return end;
@@ -155,24 +156,24 @@ typedef struct entry {
   bool own;
 } entry;
 
-typedef struct meeting {
+typedef struct exchange {
   mps_mpm *mpm;
   const char *function;
   mpsi_mailbox box;
   const char *own;
   int64_t own_bytes;
   entry *entry;
-  int64_t entries, touches, nodes; /* nodes: of all entries, and their areas */
-} meeting;
+  int64_t entries, constraints, nodes; /* nodes: of all entries, and their areas */
+} exchange;
 
-static const char *message_of(const meeting *m, int32_t k, int64_t *bytes) {
+static const char *message_of(const exchange *m, int32_t k, int64_t *bytes) {
   *bytes = k < m->box.count ? m->box.mail[k].bytes : m->own_bytes;
   return k < m->box.count ? m->box.mail[k].data : m->own;
 }
 
 /* Counts the entries, or lists them. */
-static void read_entries(meeting *m) {
-  m->entries = m->touches = m->nodes = 0;
+static void read_entries(exchange *m) {
+  m->entries = m->constraints = m->nodes = 0;
   for (int32_t k = 0; k <= m->box.count; k++) {
     int64_t bytes;
     const char *at = message_of(m, k, &bytes), *end = at + bytes;
@@ -181,7 +182,7 @@ static void read_entries(meeting *m) {
       memcpy(&e.h, at, sizeof e.h);
       if (m->entry) m->entry[m->entries] = e;
       m->entries++;
-      m->touches += e.h.touches;
+      m->constraints += e.h.constraints;
       m->nodes += e.h.nodes + e.h.areas;
       at += e.h.bytes;
     }
@@ -197,18 +198,18 @@ static int by_turn(const void *left, const void *right) {
   return 0;
 }
 
-static bool make_room(meeting *m, int64_t slots) {
+static bool make_room(exchange *m, int64_t slots) {
   mps_context *context = m->mpm->context;
   mpsi_impulses *all = &m->mpm->contact.impulses;
-  mpsi_meeting *r = &m->mpm->share->meeting;
-  return mpsi_room_ensure(context, &r->touch, m->touches, sizeof *all->touch) &&
+  mpsi_contact_exchange *r = &m->mpm->partition->exchange;
+  return mpsi_room_ensure(context, &r->constraint, m->constraints, sizeof *all->constraint) &&
          mpsi_room_ensure(context, &r->block, m->entries, sizeof *all->block) &&
-         mpsi_room_ensure(context, &r->weight, m->touches * all->stride, sizeof *all->weight) &&
-         mpsi_room_ensure(context, &r->node, m->touches * all->stride, sizeof *all->node) &&
-         mpsi_room_ensure(context, &r->met, m->nodes, sizeof(mpsi_met_node)) &&
+         mpsi_room_ensure(context, &r->weight, m->constraints * all->stride, sizeof *all->weight) &&
+         mpsi_room_ensure(context, &r->node, m->constraints * all->stride, sizeof *all->node) &&
+         mpsi_room_ensure(context, &r->shared, m->nodes, sizeof(mpsi_shared_node)) &&
          mpsi_room_ensure(context, &r->lookup, slots, sizeof(int32_t)) &&
-         mpsi_room_ensure(context, &all->next_room, m->touches, sizeof *all->kept) &&
-         mpsi_mpm_area_room(m->mpm, m->touches);
+         mpsi_room_ensure(context, &all->next_room, m->constraints, sizeof *all->warm) &&
+         mpsi_mpm_area_room(m->mpm, m->constraints);
 }
 
 static void place_of(const int32_t *block, int place, int32_t *at) {
@@ -218,39 +219,39 @@ static void place_of(const int32_t *block, int place, int32_t *at) {
 }
 
 /* The areas of an entry, to those of others. */
-static void take_areas(meeting *m, const head *h, const char *from) {
+static void take_areas(exchange *m, const head *h, const char *from) {
   static const double none[4] = {0.0};
   for (int64_t k = 0; k < h->areas; k++, from += sizeof(named_area)) {
     named_area named;
     int32_t at[3];
     memcpy(&named, from, sizeof named);
     place_of(h->at, named.place, at);
-    mpsi_mpm_meet_node(m->mpm, at, MPSI_MET_AREA + named.body, none)->area.area += named.area;
+    mpsi_mpm_shared_node(m->mpm, at, MPSI_SHARED_AREA + named.body, none)->area.area += named.area;
   }
 }
 
 /* The touches of an entry behind those that are there. */
-static void take_entry(meeting *m, const entry *e, int64_t first) {
+static void take_entry(exchange *m, const entry *e, int64_t first) {
   mpsi_impulses *all = &m->mpm->contact.impulses;
   const named_node *named = (const named_node *)e->data;
   const char *from = e->data + e->h.nodes * (int64_t)sizeof *named;
   const size_t components = (size_t)e->h.components;
-  for (int64_t n = first; n < first + e->h.touches; n++) {
-    mpsi_touch *touch = &all->touch[n];
-    memcpy(touch, from, sizeof *touch);
-    from += sizeof *touch;
-    if (!e->own) touch->pair = touch->particle = -1;
+  for (int64_t n = first; n < first + e->h.constraints; n++) {
+    mpsi_constraint *constraint = &all->constraint[n];
+    memcpy(constraint, from, sizeof *constraint);
+    from += sizeof *constraint;
+    if (!e->own) constraint->pair = constraint->particle = -1;
     const int32_t *index = (const int32_t *)from;
-    from += index_bytes(touch->nodes);
-    for (int32_t i = 0; i < touch->nodes; i++, from += components * sizeof(double)) {
+    from += index_bytes(constraint->nodes);
+    for (int32_t i = 0; i < constraint->nodes; i++, from += components * sizeof(double)) {
       const int place = (int)named[index[i]].place % PLACES;
       const int32_t across = (int32_t)(named[index[i]].place / PLACES);
       int32_t at[3];
       place_of(e->h.at, place, at);
       double *weight = all->weight[n * all->stride + i] + MPSI_VECTOR;
       all->node[n * all->stride + i] =
-          mpsi_mpm_meet_node(m->mpm, at, across ? MPSI_MET_ACROSS : MPSI_MET_NODE,
-                             named[index[i]].value)
+          mpsi_mpm_shared_node(m->mpm, at, across ? MPSI_SHARED_ACROSS : MPSI_SHARED_NODE,
+                               named[index[i]].value)
               ->value;
       weight[-MPSI_VECTOR] = 1.0 / named[index[i]].value[MPSI_MASS];
       memcpy(weight, from, components * sizeof(double));
@@ -260,44 +261,45 @@ static void take_entry(meeting *m, const entry *e, int64_t first) {
   take_areas(m, &e->h, from);
 }
 
-static void join_touches(meeting *m, int64_t slots) {
+static void join_touches(exchange *m, int64_t slots) {
   mps_mpm *mpm = m->mpm;
   mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_meeting *r = &mpm->share->meeting;
+  mpsi_contact_exchange *r = &mpm->partition->exchange;
   memset(r->lookup.item, -1, (size_t)slots * sizeof(int32_t));
   r->slots = slots;
   r->nodes = 0;
-  all->touch = r->touch.item;
+  all->constraint = r->constraint.item;
   all->block = r->block.item;
   all->weight = r->weight.item;
   all->node = r->node.item;
-  all->touch_count = all->block_count = 0;
+  all->constraint_count = all->block_count = 0;
   int32_t colour = 0;
   for (int64_t k = 0; k < m->entries; k++) {
     const entry *e = &m->entry[k];
     while (colour <= e->h.colour) all->colour[colour++] = all->block_count;
-    all->block[all->block_count++] = (mpsi_touch_block){.first = all->touch_count,
-                                                        .count = e->h.touches,
-                                                        .cells = e->own ? (int32_t)e->h.cells : -1};
+    all->block[all->block_count++] =
+        (mpsi_constraint_block){.first = all->constraint_count,
+                                .count = e->h.constraints,
+                                .cells = e->own ? (int32_t)e->h.cells : -1};
     memcpy(all->block[all->block_count - 1].at, e->h.at, sizeof e->h.at);
-    take_entry(m, e, all->touch_count);
-    all->touch_count += e->h.touches;
+    take_entry(m, e, all->constraint_count);
+    all->constraint_count += e->h.constraints;
   }
   while (colour <= MPSI_CORNERS) all->colour[colour++] = all->block_count;
   mpsi_mpm_find_areas(mpm);
 }
 
-static mps_status join(meeting *m) {
+static mps_status join(exchange *m) {
   mps_context *context = m->mpm->context;
-  mpsi_meeting *r = &m->mpm->share->meeting;
+  mpsi_contact_exchange *r = &m->mpm->partition->exchange;
   int64_t slots = 16;
   m->entry = NULL;
   read_entries(m);
   while (slots < 2 * m->nodes) slots *= 2;
   if (!mpsi_room_ensure(context, &r->list, m->entries, sizeof *m->entry) || !make_room(m, slots))
     return mpsi_fail_memory(context, m->function,
-                            (size_t)(m->touches + 1) * sizeof(mpsi_touch) +
-                                (size_t)m->nodes * sizeof(mpsi_met_node));
+                            (size_t)(m->constraints + 1) * sizeof(mpsi_constraint) +
+                                (size_t)m->nodes * sizeof(mpsi_shared_node));
   m->entry = r->list.item;
   read_entries(m);
   if (m->entries > 0) qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_turn);
@@ -309,13 +311,14 @@ static mps_status join(meeting *m) {
 
 /* Blocks of cells in the order of the colours that have touches, which `next` is the first of, or
  * may have areas. */
-static const mpsi_touch_block *touches_of(const mpsi_impulses *all, int32_t cells, int64_t *next) {
+static const mpsi_constraint_block *touches_of(const mpsi_impulses *all, int32_t cells,
+                                               int64_t *next) {
   if (*next == all->block_count || all->block[*next].cells != cells) return NULL;
   return &all->block[(*next)++];
 }
 
-static bool has_entry(const mpsi_cell_block *cells, const mpsi_touch_block *block) {
-  return block || (cells->touched && !cells->ghost);
+static bool has_entry(const mpsi_cell_block *cells, const mpsi_constraint_block *block) {
+  return block || (cells->in_contact && !cells->ghost);
 }
 
 static int64_t message_bytes(const mps_mpm *mpm) {
@@ -323,7 +326,7 @@ static int64_t message_bytes(const mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   int64_t bytes = 0, next = 0;
   for (int64_t i = 0; i < grid->cell_count; i++) {
-    const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_constraint_block *block = touches_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
     if (has_entry(cells, block)) bytes += entry_bytes(mpm, cells, block);
   }
@@ -331,23 +334,23 @@ static int64_t message_bytes(const mps_mpm *mpm) {
 }
 
 /* Those that mates are told of, or the others. */
-static char *write_blocks(const mps_mpm *mpm, bool told, char *to) {
+static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
   const mpsi_grid *grid = &mpm->grid;
   const mpsi_impulses *all = &mpm->contact.impulses;
   int64_t next = 0;
   for (int64_t i = 0; i < grid->cell_count; i++) {
-    const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_constraint_block *block = touches_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
-    if (has_entry(cells, block) && cells->told == told) to = write_block(mpm, cells, block, to);
+    if (has_entry(cells, block) && cells->sent == sent) to = write_block(mpm, cells, block, to);
   }
   return to;
 }
 
 /* For this rank's entries, of which those that go lie first, and for whom they go to. */
-static mps_status make_room_for_message(meeting *m, mps_domain_message **list) {
+static mps_status make_room_for_message(exchange *m, mps_domain_message **list) {
   mps_mpm *mpm = m->mpm;
-  mps_domain *domain = mpm->share->domain;
-  mpsi_room *mail = &mpm->share->meeting.mail;
+  mps_domain *domain = mpm->partition->domain;
+  mpsi_room *mail = &mpm->partition->exchange.mail;
   const int64_t bytes = message_bytes(mpm);
   if (bytes == 0) return MPS_OK;
   *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
@@ -357,58 +360,59 @@ static mps_status make_room_for_message(meeting *m, mps_domain_message **list) {
 }
 
 /* The same to each mate. */
-static int32_t address(meeting *m, mps_domain_message *list) {
+static int32_t address(exchange *m, mps_domain_message *list) {
   const mps_mpm *mpm = m->mpm;
-  const mps_domain *domain = mpm->share->domain;
+  const mps_domain *domain = mpm->partition->domain;
   int32_t count = 0;
   if (!list) return 0;
-  char *own = mpm->share->meeting.mail.item;
+  char *own = mpm->partition->exchange.mail.item;
   const int64_t bytes = write_blocks(mpm, true, own) - own;
   m->own = own;
   m->own_bytes = write_blocks(mpm, false, own + bytes) - own;
   for (int32_t r = 0; r < mps_domain_size(domain) && bytes > 0; r++)
-    if (r != mps_domain_rank(domain) && mpsi_mpm_is_mate(mpm, r))
+    if (r != mps_domain_rank(domain) && mpsi_mpm_is_partner(mpm, r))
       list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = own};
   return count;
 }
 
-mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status) {
-  mps_domain *domain = mpm->share->domain;
-  meeting m = {.mpm = mpm, .function = function, .box.context = mpm->context};
+mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_status status) {
+  mps_domain *domain = mpm->partition->domain;
+  exchange m = {.mpm = mpm, .function = function, .box.context = mpm->context};
   mps_domain_message *list = NULL;
-  int64_t touches = 0;
+  int64_t constraints = 0;
   if (status == MPS_OK) status = make_room_for_message(&m, &list);
-  status = mpsi_mpm_find_mates(mpm, function, status, &touches);
-  mpm->share->meeting.nodes = 0;
-  mpm->share->meeting.touches = touches;
-  if (status == MPS_OK && touches > 0) {
+  status = mpsi_mpm_find_partners(mpm, function, status, &constraints);
+  mpm->partition->exchange.nodes = 0;
+  mpm->partition->exchange.constraints = constraints;
+  if (status == MPS_OK && constraints > 0) {
     const int32_t count = address(&m, list);
-    if (mpm->share->mates.any) status = mpsi_domain_post(domain, function, count, list, &m.box);
+    if (mpm->partition->partners.any)
+      status = mpsi_domain_post(domain, function, count, list, &m.box);
     if (status == MPS_OK) status = join(&m);
-    status = mpsi_domain_settle(domain, function, status);
+    status = mpsi_domain_agree(domain, function, status);
   }
   mpsi_domain_free_mail(&m.box);
   mpsi_free(mpm->context, list);
   return status;
 }
 
-void mpsi_mpm_meet_end(mps_mpm *mpm) {
+void mpsi_mpm_end_contact_exchange(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_meeting *r = &mpm->share->meeting;
-  mpsi_met_node *met = r->met.item;
+  mpsi_contact_exchange *r = &mpm->partition->exchange;
+  mpsi_shared_node *shared = r->shared.item;
   for (int64_t k = 0; k < r->nodes; k++)
-    if (met[k].home)
-      memcpy(met[k].home + MPSI_VECTOR, met[k].value + MPSI_VECTOR, 3 * sizeof(double));
-  for (int64_t n = 0; n < all->touch_count; n++) /* what is read of them later is at home */
-    for (int32_t i = 0; i < all->touch[n].nodes && all->touch[n].pair >= 0; i++) {
+    if (shared[k].home)
+      memcpy(shared[k].home + MPSI_VECTOR, shared[k].value + MPSI_VECTOR, 3 * sizeof(double));
+  for (int64_t n = 0; n < all->constraint_count; n++) /* what is read of them later is at home */
+    for (int32_t i = 0; i < all->constraint[n].nodes && all->constraint[n].pair >= 0; i++) {
       double **node = &all->node[n * all->stride + i];
-      *node = ((mpsi_met_node *)((char *)*node - offsetof(mpsi_met_node, value)))->home;
+      *node = ((mpsi_shared_node *)((char *)*node - offsetof(mpsi_shared_node, value)))->home;
     }
 }
 
-void mpsi_mpm_meet_free(mps_mpm *mpm) {
-  mpsi_meeting *r = &mpm->share->meeting;
-  mpsi_room *const rooms[] = {&r->touch, &r->block,  &r->weight, &r->node,
-                              &r->met,   &r->lookup, &r->mail,   &r->list};
+void mpsi_mpm_free_contact_exchange(mps_mpm *mpm) {
+  mpsi_contact_exchange *r = &mpm->partition->exchange;
+  mpsi_room *const rooms[] = {&r->constraint, &r->block,  &r->weight, &r->node,
+                              &r->shared,     &r->lookup, &r->mail,   &r->list};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]->item);
 }

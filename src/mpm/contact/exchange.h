@@ -5,8 +5,8 @@
  * costs a message between any two mates, and the sweeps that one rank would make over their
  * touches. What contacts keep for the next step goes round before particles change ranks (warm_start.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_MEET_H
-#define MPSI_MPM_MEET_H
+#ifndef MPSI_MPM_EXCHANGE_H
+#define MPSI_MPM_EXCHANGE_H
 
 #include "impulses.h"
 
@@ -14,8 +14,8 @@
 
 /* A node that some touch uses: its values, as all ranks move them, and where it is here; or the
  * surface that soil covers there (area.c). */
-enum { MPSI_MET_NODE, MPSI_MET_ACROSS, MPSI_MET_AREA }; /* and on, of each body */
-typedef struct mpsi_met_node {
+enum { MPSI_SHARED_NODE, MPSI_SHARED_ACROSS, MPSI_SHARED_AREA }; /* and on, of each body */
+typedef struct mpsi_shared_node {
   int32_t at[3]; /* of the whole grid */
   int32_t kind;  /* MPSI_MET_..., ACROSS: its values across a thin body (thin_bodies.h) */
   union {
@@ -23,32 +23,33 @@ typedef struct mpsi_met_node {
     mpsi_area area;
   };
   double *home; /* of grid.node, or NULL: of another rank */
-} mpsi_met_node;
+} mpsi_shared_node;
 
-typedef struct mpsi_meeting {
-  int64_t touches;      /* of all ranks */
+typedef struct mpsi_contact_exchange {
+  int64_t constraints;  /* of all ranks */
   int64_t nodes, slots; /* of `met`, of `lookup` */
-  mpsi_room touch, block, weight, node, met, lookup, kept, mail, list;
-} mpsi_meeting;
+  mpsi_room constraint, block, weight, node, shared, lookup, warm, mail, list;
+} mpsi_contact_exchange;
 
 /* warm_start.c: what contacts keep of the particles of any rank is on all, before particles change ranks
  * or a checkpoint is written. `status`: what has become of that so far here. Collective. */
-mps_status mpsi_mpm_share_kept(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_warm_start(mps_mpm *mpm, const char *function, mps_status status);
 /* warm_start.c: the same in an order of its own, on any number of ranks. Not collective. */
-void mpsi_mpm_order_kept(mps_mpm *mpm);
+void mpsi_mpm_order_warm_start(mps_mpm *mpm);
 /* The touches of mates take the place of this rank's in contact.impulses, in the order of one
  * rank, until the next step finds its own. What has become of all ranks before, `status` here,
  * comes first. Collective. */
-mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_status status);
 /* After the sweeps: velocities to the nodes that are here. Not collective. */
-void mpsi_mpm_meet_end(mps_mpm *mpm);
+void mpsi_mpm_end_contact_exchange(mps_mpm *mpm);
 /* shared_nodes.c: the node of all ranks at `at`; where none is yet, one with these values, for which there
  * is room. Not collective. */
-mpsi_met_node *mpsi_mpm_meet_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
-                                  const double *value);
+mpsi_shared_node *mpsi_mpm_shared_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
+                                       const double *value);
 /* shared_nodes.c: the area at the node `at` under the tile of a block of cells, or NULL: soil covers nothing
  * there. Not collective. */
-mpsi_area *mpsi_mpm_met_area(const mps_mpm *mpm, const int32_t *block, const int *at, int32_t body);
-void mpsi_mpm_meet_free(mps_mpm *mpm);
+mpsi_area *mpsi_mpm_shared_area(const mps_mpm *mpm, const int32_t *block, const int *at,
+                                int32_t body);
+void mpsi_mpm_free_contact_exchange(mps_mpm *mpm);
 
 #endif

@@ -26,7 +26,7 @@ typedef struct sweep {
 
 static void one_block(void *data, int64_t unit, int32_t worker) {
   const sweep *s = data;
-  mpsi_touch_block *block = &s->mpm->contact.impulses.block[s->first + unit];
+  mpsi_constraint_block *block = &s->mpm->contact.impulses.block[s->first + unit];
   (void)worker;
   if (s->warm)
     s->mpm->kernels->warm(s->mpm, block);
@@ -36,7 +36,8 @@ static void one_block(void *data, int64_t unit, int32_t worker) {
 
 static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
   const mpsi_impulses *all = &mpm->contact.impulses;
-  const bool shared = !all->free_bodies && mpm->grid.worker_count > 1 && all->touch_count > SHARED;
+  const bool shared =
+      !all->free_bodies && mpm->grid.worker_count > 1 && all->constraint_count > SHARED;
   sweep s = {mpm, 0, warm, back};
   if (!shared) {
     for (int64_t k = 0; k < all->block_count; k++)
@@ -86,9 +87,9 @@ double mpsi_mpm_relative_change(const double *most) {
 static void find_change(mps_mpm *mpm, bool agree) {
   double most[MPSI_SWEEP_SUMS];
   mpsi_mpm_sweep_sums(mpm, most);
-  if (agree && mpm->share && mpm->share->lost == MPS_OK)
-    mpm->share->lost =
-        mpsi_domain_settle_max(mpm->share->domain, "mps_mpm_step", MPS_OK, MPSI_SWEEP_SUMS, most);
+  if (agree && mpm->partition && mpm->partition->lost == MPS_OK)
+    mpm->partition->lost = mpsi_domain_agree_max(mpm->partition->domain, "mps_mpm_step", MPS_OK,
+                                                 MPSI_SWEEP_SUMS, most);
   mpm->contact.impulses.left = mpsi_mpm_relative_change(most);
 }
 
@@ -99,73 +100,75 @@ static bool is_checked(int32_t sweeps) { return sweeps >= 10 && sweeps % 4 == 2;
 /* ---- a step ---------------------------------------------------------------------------------- */
 
 /* The impulse `by` on the particle, to what its block and the body feel. */
-static void add_reaction(mps_mpm *mpm, const mpsi_touch *touch, const double *by) {
-  mpsi_cell_pair *pair = &mpm->contact.cell_pair[touch->pair];
-  const double *x = mpm->contact.body[touch->body]->pose.x;
+static void add_reaction(mps_mpm *mpm, const mpsi_constraint *constraint, const double *by) {
+  mpsi_cell_pair *pair = &mpm->contact.cell_pair[constraint->pair];
+  const double *x = mpm->contact.body[constraint->body]->pose.x;
   double arm[3], force[3];
   for (int a = 0; a < 3; a++) {
     force[a] = -by[a] / mpm->run.dt;
-    arm[a] = touch->impulse.at[a] - x[a];
+    arm[a] = constraint->impulse.at[a] - x[a];
   }
-  pair->touched = true;
-  pair->contacts[touch->part]++;
-  mpsi_contact_add_load(&pair->load[touch->part], arm, force);
+  pair->in_contact = true;
+  pair->contacts[constraint->part]++;
+  mpsi_contact_add_load(&pair->load[constraint->part], arm, force);
 }
 
 /* What the bodies feel, and what the next step begins with. */
 static void take_over(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_kept_impulse *next = all->next_room.item;
+  mpsi_warm_impulse *next = all->next_room.item;
   int64_t count = 0;
-  for (int64_t n = 0; n < all->touch_count; n++) {
-    const mpsi_touch *touch = &all->touch[n];
-    const mpsi_impulse *c = &touch->impulse;
-    if (!(c->push > 0.0)) continue;
-    next[count] = (mpsi_kept_impulse){.id = touch->id, .body = touch->body};
-    for (int a = 0; a < 3; a++) next[count].by[a] = c->push * c->normal[a] + c->rub[a];
-    if (touch->pair >= 0) add_reaction(mpm, touch, next[count].by);
+  for (int64_t n = 0; n < all->constraint_count; n++) {
+    const mpsi_constraint *constraint = &all->constraint[n];
+    const mpsi_impulse *c = &constraint->impulse;
+    if (!(c->normal_impulse > 0.0)) continue;
+    next[count] = (mpsi_warm_impulse){.id = constraint->id, .body = constraint->body};
+    for (int a = 0; a < 3; a++)
+      next[count].by[a] = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
+    if (constraint->pair >= 0) add_reaction(mpm, constraint, next[count].by);
     count++;
   }
-  const mpsi_room old = all->kept_room;
-  all->kept_room = all->next_room;
+  const mpsi_room old = all->warm_room;
+  all->warm_room = all->next_room;
   all->next_room = old;
-  all->kept = all->kept_room.item;
-  all->kept_count = count;
-  all->kept_dt = mpm->run.dt;
+  all->warm = all->warm_room.item;
+  all->warm_count = count;
+  all->warm_dt = mpm->run.dt;
 }
 
 void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  const bool any = mpm->share ? mpm->share->meeting.touches > 0 : all->touch_count > 0;
+  const bool any =
+      mpm->partition ? mpm->partition->exchange.constraints > 0 : all->constraint_count > 0;
   double tolerance;
   const int32_t most = most_sweeps(mpm, &tolerance);
   if (any) sweep_all(mpm, true, false);
   all->sweeps = 0, all->left = 0.0;
   for (int32_t s = 1; any && s <= most; s++) {
-    if (s % 2 != 0) mpsi_mpm_share_areas(mpm);
+    if (s % 2 != 0) mpsi_mpm_distribute_areas(mpm);
     sweep_all(mpm, false, s % 2 == 0);
     all->sweeps = s;
     if (s < most && (tolerance == 0.0 || !is_checked(s))) continue;
     find_change(mpm, tolerance > 0.0);
     if (!(all->left > tolerance)) break;
   }
-  mpsi_mpm_mirror_touches(mpm);
+  mpsi_mpm_mirror_constraints(mpm);
   take_over(mpm);
 }
 
 void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   if (!mpm->energy.counts) return;
-  for (int64_t n = 0; n < all->touch_count; n++) {
-    const mpsi_touch *touch = &all->touch[n];
-    const mpsi_impulse *c = &touch->impulse;
+  for (int64_t n = 0; n < all->constraint_count; n++) {
+    const mpsi_constraint *constraint = &all->constraint[n];
+    const mpsi_impulse *c = &constraint->impulse;
     double v[3], surface[3];
-    if (!(c->push > 0.0) || touch->pair < 0) continue;
+    if (!(c->normal_impulse > 0.0) || constraint->pair < 0) continue;
     mpm->kernels->foot_velocity(mpm, n, v);
-    mpsi_body_velocity(&mpm->contact.body[touch->body]->pose, c->at, surface);
+    mpsi_body_velocity(&mpm->contact.body[constraint->body]->pose, c->at, surface);
     double work = 0.0, loss = 0.0;
     for (int a = 0; a < mpm->dim; a++) {
-      const double by = c->push * c->normal[a] + c->rub[a];
+      const double by = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
       work += by * surface[a];
       loss += by * (surface[a] - v[a]);
     }
@@ -176,9 +179,9 @@ void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
 
 void mpsi_mpm_free_impulses(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  void *rooms[] = {all->touch_room.item, all->block_room.item,     all->weight_room.item,
-                   all->node_room.item,  all->candidate_room.item, all->kept_room.item,
-                   all->next_room.item,  all->lookup_room.item,    all->area_room.item,
+  void *rooms[] = {all->constraint_room.item, all->block_room.item,     all->weight_room.item,
+                   all->node_room.item,       all->candidate_room.item, all->warm_room.item,
+                   all->next_room.item,       all->lookup_room.item,    all->area_room.item,
                    all->around_room.item};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]);
 }

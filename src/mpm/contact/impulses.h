@@ -16,7 +16,7 @@
  * node: these differ where ghosts of mirrors (mirror.h) stand for nodes. Where none may, the touch
  * is `even`, and its weights are pairs of 1/m and psi, from the same place on: half the memory to
  * read in a sweep. */
-typedef struct mpsi_touch {
+typedef struct mpsi_constraint {
   mpsi_impulse impulse;
   double x[3];       /* m, of the particle */
   double carried[3]; /* m/s, velocity at the foot that moving mirrors give besides the nodes */
@@ -26,27 +26,27 @@ typedef struct mpsi_touch {
   int32_t body, part, nodes;
   bool even;
   int32_t areas; /* nodes whose areas it shares, of around[] (area.c) */
-} mpsi_touch;
+} mpsi_constraint;
 
 /* The touches of a block of cells: neighbours in the list. */
-typedef struct mpsi_touch_block {
+typedef struct mpsi_constraint_block {
   int64_t first, count;
-  int32_t cells; /* -1: of another rank */
-  int32_t at[3]; /* of the cells */
+  int32_t cells;            /* -1: of another rank */
+  int32_t at[3];            /* of the cells */
   double changed, impulses; /* (N s)2, sums of squares in the last sweep: changes, impulses */
-} mpsi_touch_block;
+} mpsi_constraint_block;
 
 /* What a body gave to a particle in the last step. */
-typedef struct mpsi_kept_impulse {
+typedef struct mpsi_warm_impulse {
   int64_t id, body;
   double by[3]; /* N s */
-} mpsi_kept_impulse;
+} mpsi_warm_impulse;
 
 /* At a node, for one body: the surface that soil covers, and the touches that share it (area.c).
  */
 typedef struct mpsi_area {
   double area; /* m2, of the measure */
-  double touches;
+  double constraints;
 } mpsi_area;
 typedef struct mpsi_area_share {
   mpsi_area *node;
@@ -54,20 +54,20 @@ typedef struct mpsi_area_share {
 } mpsi_area_share;
 
 typedef struct mpsi_impulses {
-  mpsi_touch *touch;
-  mpsi_touch_block *block; /* colour by colour */
+  mpsi_constraint *constraint;
+  mpsi_constraint_block *block; /* colour by colour */
   double (*weight)[4];
   double **node; /* its four values: see mpsi_node */
   int32_t *candidate;
-  int64_t touch_count, block_count;
+  int64_t constraint_count, block_count;
   int64_t colour[9]; /* first block of each in `block` */
   int32_t stride;
   bool free_bodies; /* one of those that may be touched moves freely */
   mpsi_impulse_body body[MPS_MPM_MAX_CONTACTS];
-  mpsi_kept_impulse *kept; /* of the last step */
-  int64_t kept_count;
-  double kept_dt;  /* s, of that step */
-  int64_t sweeps;  /* of that step, and the relative change of impulses in the last of them */
+  mpsi_warm_impulse *warm; /* of the last step */
+  int64_t warm_count;
+  double warm_dt; /* s, of that step */
+  int64_t sweeps; /* of that step, and the relative change of impulses in the last of them */
   double left;
   int32_t *lookup; /* by particle and body: index into `kept`, or -1; lookup_mask + 1 of them */
   uint64_t lookup_mask;
@@ -76,26 +76,26 @@ typedef struct mpsi_impulses {
   int64_t area_count;
   int64_t area_first; /* block of the colour in work */
   mpsi_area_share *around;
-  mpsi_room touch_room, block_room, weight_room, node_room, candidate_room, kept_room, next_room,
-      lookup_room, area_room, around_room;
+  mpsi_room constraint_room, block_room, weight_room, node_room, candidate_room, warm_room,
+      next_room, lookup_room, area_room, around_room;
 } mpsi_impulses;
 
 /* constraints.c: before anything moves, what may touch in a step of mpm->run.dt, and room for it; then,
  * the masses of the nodes known, the touches with their weights, and how deep particles are. */
-mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function);
-void mpsi_mpm_fit_touches(mps_mpm *mpm);
+mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function);
+void mpsi_mpm_fit_constraints(mps_mpm *mpm);
 /* area.c: room for the areas of the step and for those of so many touches; these; and what each
  * touch may bear in shear by its share of them, touches being pressed as they now are. */
-bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t touches);
+bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t constraints);
 void mpsi_mpm_find_areas(mps_mpm *mpm);
-void mpsi_mpm_share_areas(mps_mpm *mpm);
+void mpsi_mpm_distribute_areas(mps_mpm *mpm);
 /* constraints.c: what mirrors give with the impulses of a step. */
-void mpsi_mpm_mirror_touches(mps_mpm *mpm);
+void mpsi_mpm_mirror_constraints(mps_mpm *mpm);
 /* constraints.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of the
  * last step on a particle, or NULL; where a particle meets the contact's body; a contact has ended:
  * bodies above it move down by one. */
 bool mpsi_mpm_index_impulses(mps_mpm *mpm);
-const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, int32_t body);
+const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mps_mpm *mpm, int64_t id, int32_t body);
 mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
                               const double *x);
 void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body);
@@ -114,8 +114,8 @@ static inline bool mpsi_by_impulses(const mps_contact *contact) {
 }
 
 /* The weights of an even touch. */
-static inline double (*mpsi_even_weights(const mpsi_impulses *all, int64_t touch))[2] {
-  return (double(*)[2])(double *)all->weight[touch * all->stride];
+static inline double (*mpsi_even_weights(const mpsi_impulses *all, int64_t constraint))[2] {
+  return (double(*)[2])(double *)all->weight[constraint * all->stride];
 }
 
 #endif

@@ -73,7 +73,7 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   memset((void *)(mpm->contact.reached + mpsi_first_node(mpm, nodes->near)), 0, count);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const int32_t b = mpm->contact.node_pair[t].body;
-    if (mpm->contact.springs > 0)
+    if (mpm->contact.penalty_bodies > 0)
       memset(mpm->contact.node + (int64_t)t * mpm->grid.block_nodes, 0,
              count * sizeof *mpm->contact.node);
     if (mpm->contact.thin >> b & 1) continue; /* cuts no support: thin_bodies.h */

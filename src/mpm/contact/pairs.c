@@ -104,7 +104,7 @@ static bool list_node_pairs(mps_mpm *mpm, int64_t *count, int64_t *near) {
 static bool ensure_nodes(mps_mpm *mpm, int64_t nodes) {
   mpsi_contacts *contact = &mpm->contact;
   if (!mpsi_room_ensure(mpm->context, &contact->normal_room, nodes, sizeof *contact->normal) ||
-      !mpsi_room_ensure(mpm->context, &contact->node_room, contact->springs > 0 ? nodes : 0,
+      !mpsi_room_ensure(mpm->context, &contact->node_room, contact->penalty_bodies > 0 ? nodes : 0,
                         sizeof *contact->node))
     return false;
   contact->normal = contact->normal_room.item;
@@ -151,12 +151,13 @@ void mpsi_mpm_find_contact_mass(mps_mpm *mpm) {
   memset(sum, 0, sizeof sum);
   for (int64_t t = 0; t < mpm->contact.node_pair_count; t++) {
     const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
-    if (asks_for_mass(mpm, pair->body) && (!mpm->share || mpsi_mpm_share_counts(mpm, pair->nodes)))
+    if (asks_for_mass(mpm, pair->body) &&
+        (!mpm->partition || mpsi_mpm_counts_node_block(mpm, pair->nodes)))
       mpsi_exact_add(&sum[pair->body], pair->mass);
   }
-  if (mpm->share && mpm->share->lost == MPS_OK)
-    mpm->share->lost =
-        mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", mpm->contact.bodies, sum);
+  if (mpm->partition && mpm->partition->lost == MPS_OK)
+    mpm->partition->lost =
+        mpsi_domain_sum_exact(mpm->partition->domain, "mps_mpm_step", mpm->contact.bodies, sum);
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     mpm->contact.mass[b] = mpsi_exact_value(&sum[b]);
 }

@@ -16,9 +16,9 @@
 /* A block of cells and a body that its particles may touch. */
 typedef struct mpsi_cell_pair {
   int32_t cells, body;
-  bool touched;   /* some particle is in contact */
-  double deepest; /* m, >= 0, of a particle below the surface */
-  int64_t deep;   /* that particle */
+  bool in_contact; /* some particle is in contact */
+  double deepest;  /* m, >= 0, of a particle below the surface */
+  int64_t deep;    /* that particle */
   mpsi_load load[MPS_BODY_MAX_PARTS];
   int64_t contacts[MPS_BODY_MAX_PARTS];
   int64_t first_candidate, candidates; /* for contact by impulses: see constraints.c */
@@ -31,14 +31,14 @@ typedef struct mpsi_node_pair {
 } mpsi_node_pair;
 
 /* What particles that touch a body by springs give to a node: as in mpsi_contact_node. */
-typedef struct mpsi_spring_node {
+typedef struct mpsi_penalty_node {
   double mass, slip[3], force[3];
-} mpsi_spring_node;
+} mpsi_penalty_node;
 
 typedef struct mpsi_contacts {
   mps_contact *handle[MPS_MPM_MAX_CONTACTS];
   mps_body *body[MPS_MPM_MAX_CONTACTS]; /* of each */
-  int32_t bodies, springs;              /* springs: how many of them act by springs */
+  int32_t bodies, penalty_bodies;       /* springs: how many of them act by springs */
   double least_mass;                 /* kg, of a particle; in axisymmetry over its radius, kg/m */
   double mass[MPS_MPM_MAX_CONTACTS]; /* kg, of the nodes in contact with each body */
   mpsi_cell_pair *cell_pair;
@@ -54,7 +54,7 @@ typedef struct mpsi_contacts {
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_impulses impulses;
   mpsi_room cell_pair_room, node_pair_room, node_room, normal_room, inside_room, reached_room,
-      sight_room, beside_room, across_room, spring_room, load_room; /* load_room: sums of parts */
+      sight_room, beside_room, across_room, penalty_room, load_room; /* load_room: sums of parts */
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and
@@ -69,13 +69,14 @@ bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, 
 void mpsi_mpm_find_contact_mass(mps_mpm *mpm);
 /* penalty.c: room for their tiles; whether a block has one for its pair number `pair`, that of a
  * body; emptied; added to the nodes; all of that with p2g in between. */
-bool mpsi_mpm_spring_room(mps_mpm *mpm);
-bool mpsi_mpm_has_springs(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair);
-mpsi_spring_node *mpsi_mpm_spring_tile(const mps_mpm *mpm, const mpsi_worker *worker, int32_t body);
-void mpsi_mpm_clear_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
+bool mpsi_mpm_penalty_room(mps_mpm *mpm);
+bool mpsi_mpm_has_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair);
+mpsi_penalty_node *mpsi_mpm_penalty_tile(const mps_mpm *mpm, const mpsi_worker *worker,
+                                         int32_t body);
+void mpsi_mpm_clear_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker);
-void mpsi_mpm_add_springs(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker);
-void mpsi_mpm_scatter_springs(mps_mpm *mpm, int64_t b, int32_t worker);
+void mpsi_mpm_add_penalty(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker);
+void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t worker);
 /* inside.c: nodes of a block inside bodies; corners of the cells of a block that hold particles. */
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);

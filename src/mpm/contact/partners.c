@@ -9,9 +9,9 @@
 
 #include <string.h>
 
-enum { FAILED, TOUCHES, HEAD };
+enum { FAILED, CONSTRAINTS, HEAD };
 
-static int32_t ranks_of(const mps_mpm *mpm) { return mps_domain_size(mpm->share->domain); }
+static int32_t ranks_of(const mps_mpm *mpm) { return mps_domain_size(mpm->partition->domain); }
 
 static int32_t words_of(const mps_mpm *mpm) { return (ranks_of(mpm) + 63) / 64; }
 
@@ -25,17 +25,17 @@ static bool has_free_bodies(const mps_mpm *mpm) {
 
 /* Two for each rank, or one. */
 static int32_t rows_of(const mps_mpm *mpm) {
-  return has_free_bodies(mpm) || ranks_of(mpm) > MPSI_MATES_MOST ? 1 : 2 * ranks_of(mpm);
+  return has_free_bodies(mpm) || ranks_of(mpm) > MPSI_MOST_PARTNERS ? 1 : 2 * ranks_of(mpm);
 }
 
 static bool has_bit(const uint64_t *row, int32_t bit) { return row[bit / 64] >> (bit % 64) & 1; }
 
 static void set_bit(uint64_t *row, int32_t bit) { row[bit / 64] |= UINT64_C(1) << (bit % 64); }
 
-bool mpsi_mpm_begin_mates(mps_mpm *mpm) {
-  mpsi_mates *m = &mpm->share->mates;
+bool mpsi_mpm_begin_partners(mps_mpm *mpm) {
+  mpsi_contact_partners *m = &mpm->partition->partners;
   const int64_t words = words_of(mpm), ranks = ranks_of(mpm);
-  const int64_t rows = ranks > MPSI_MATES_MOST ? 1 : 2 * ranks;
+  const int64_t rows = ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
   const bool good =
       mpsi_room_ensure(mpm->context, &m->words_room, HEAD + rows * words, sizeof *m->words) &&
       mpsi_room_ensure(mpm->context, &m->own_room, 2 * words, sizeof *m->own);
@@ -44,29 +44,29 @@ bool mpsi_mpm_begin_mates(mps_mpm *mpm) {
   return good;
 }
 
-void mpsi_mpm_free_mates(mps_mpm *mpm) {
-  mpsi_free(mpm->context, mpm->share->mates.words_room.item);
-  mpsi_free(mpm->context, mpm->share->mates.own_room.item);
+void mpsi_mpm_free_partners(mps_mpm *mpm) {
+  mpsi_free(mpm->context, mpm->partition->partners.words_room.item);
+  mpsi_free(mpm->context, mpm->partition->partners.own_room.item);
 }
 
-bool mpsi_mpm_is_mate(const mps_mpm *mpm, int32_t rank) {
-  return has_bit(mpm->share->mates.own, rank);
+bool mpsi_mpm_is_partner(const mps_mpm *mpm, int32_t rank) {
+  return has_bit(mpm->partition->partners.own, rank);
 }
 
 /* ---- this rank's blocks ---------------------------------------------------------------------- */
 
-void mpsi_mpm_mark_touched(mps_mpm *mpm) {
+void mpsi_mpm_mark_contact_blocks(mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
-    cells->touched = cells->told = false;
+    cells->in_contact = cells->sent = false;
     for (int32_t q = 0; q < cells->pairs && all->areas && !cells->ghost; q++)
       if (mpsi_has_strength(
               mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + q].body]))
-        cells->touched = true;
+        cells->in_contact = true;
   }
   for (int64_t k = 0; k < all->block_count; k++)
-    mpm->grid.cells[all->block[k].cells].touched = true;
+    mpm->grid.cells[all->block[k].cells].in_contact = true;
 }
 
 /* One goes on where blocks over one block of nodes are touched. Returns whether some became told.
@@ -75,13 +75,13 @@ static bool spread(mps_mpm *mpm) {
   bool changed = false;
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-    bool told = false;
+    bool sent = false;
     for (int q = 0; q < 1 << mpm->dim; q++)
-      told = told || (nodes->from[q] >= 0 && mpm->grid.cells[nodes->from[q]].told);
-    for (int q = 0; q < 1 << mpm->dim && told; q++) {
+      sent = sent || (nodes->from[q] >= 0 && mpm->grid.cells[nodes->from[q]].sent);
+    for (int q = 0; q < 1 << mpm->dim && sent; q++) {
       mpsi_cell_block *cells = nodes->from[q] >= 0 ? &mpm->grid.cells[nodes->from[q]] : NULL;
-      if (!cells || !cells->touched || cells->ghost || cells->told) continue;
-      cells->told = changed = true;
+      if (!cells || !cells->in_contact || cells->ghost || cells->sent) continue;
+      cells->sent = changed = true;
     }
   }
   return changed;
@@ -89,36 +89,36 @@ static bool spread(mps_mpm *mpm) {
 
 /* Own blocks beside ghosts are told of; of the ghosts that are touched, the ranks: to `meets` where
  * an own block is touched too, else to `looks`. */
-static void find_links(mps_mpm *mpm, uint64_t *meets, uint64_t *looks) {
+static void find_links(mps_mpm *mpm, uint64_t *linked, uint64_t *readers) {
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[g];
     mpsi_cell_block *over[MPSI_CORNERS];
     int count = 0;
-    bool own = false, touched = false, ghost = false;
+    bool own = false, in_contact = false, ghost = false;
     for (int q = 0; q < 1 << mpm->dim; q++)
       if (nodes->from[q] >= 0) over[count++] = &mpm->grid.cells[nodes->from[q]];
     for (int i = 0; i < count; i++) {
       own = own || !over[i]->ghost;
       ghost = ghost || over[i]->ghost;
-      touched = touched || (over[i]->touched && !over[i]->ghost);
+      in_contact = in_contact || (over[i]->in_contact && !over[i]->ghost);
     }
     for (int i = 0; i < count && own && ghost; i++) {
-      if (!over[i]->touched) continue;
+      if (!over[i]->in_contact) continue;
       if (!over[i]->ghost)
-        over[i]->told = true;
+        over[i]->sent = true;
       else
-        set_bit(touched ? meets : looks, mpm->share->ghost_rank[over[i]->parcel]);
+        set_bit(in_contact ? linked : readers, mpm->partition->ghost_rank[over[i]->parcel]);
     }
   }
 }
 
 /* All are told of everything that there is. */
 static void tell_all(mps_mpm *mpm, uint64_t *row) {
-  const int32_t rank = mps_domain_rank(mpm->share->domain);
+  const int32_t rank = mps_domain_rank(mpm->partition->domain);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
-    if (!cells->touched) continue;
-    cells->told = !cells->ghost;
+    if (!cells->in_contact) continue;
+    cells->sent = !cells->ghost;
     set_bit(row, rank); /* ghosts are beside own blocks */
   }
 }
@@ -126,15 +126,15 @@ static void tell_all(mps_mpm *mpm, uint64_t *row) {
 /* ---- all ranks ------------------------------------------------------------------------------- */
 
 /* From this rank on along the rows of those that meet; then who looks at any of them. */
-static void follow(mps_mpm *mpm, const uint64_t *meets, const uint64_t *looks) {
+static void follow(mps_mpm *mpm, const uint64_t *linked, const uint64_t *readers) {
   const int32_t words = words_of(mpm);
-  uint64_t *own = mpm->share->mates.own, *all = own + words;
+  uint64_t *own = mpm->partition->partners.own, *all = own + words;
   bool changed = true;
   while (changed) {
     changed = false;
     for (int32_t r = 0; r < ranks_of(mpm); r++)
       for (int32_t w = 0; has_bit(own, r) && w < words; w++) {
-        const uint64_t more = meets[(int64_t)r * words + w] & ~own[w];
+        const uint64_t more = linked[(int64_t)r * words + w] & ~own[w];
         own[w] |= more;
         changed = changed || more != 0;
       }
@@ -142,45 +142,45 @@ static void follow(mps_mpm *mpm, const uint64_t *meets, const uint64_t *looks) {
   memcpy(all, own, (size_t)words * sizeof *own);
   for (int32_t r = 0; r < ranks_of(mpm); r++)
     for (int32_t w = 0; w < words; w++)
-      if (looks[(int64_t)r * words + w] & own[w]) set_bit(all, r);
+      if (readers[(int64_t)r * words + w] & own[w]) set_bit(all, r);
   memcpy(own, all, (size_t)words * sizeof *own);
 }
 
 static void take_rows(mps_mpm *mpm, const uint64_t *rows, int32_t count) {
-  mpsi_mates *m = &mpm->share->mates;
+  mpsi_contact_partners *m = &mpm->partition->partners;
   const int32_t words = words_of(mpm);
   int64_t bits = 0;
   for (int64_t w = 0; w < (int64_t)count * words; w++) bits += __builtin_popcountll(rows[w]);
   m->any = count > 1 ? bits > 0 : bits > 1;
   memset(m->own, 0, (size_t)words * sizeof *m->own);
-  set_bit(m->own, mps_domain_rank(mpm->share->domain));
+  set_bit(m->own, mps_domain_rank(mpm->partition->domain));
   if (count > 1)
     follow(mpm, rows, rows + (int64_t)(count / 2) * words);
   else
     for (int32_t w = 0; w < words; w++) m->own[w] |= rows[w];
 }
 
-mps_status mpsi_mpm_find_mates(mps_mpm *mpm, const char *function, mps_status status,
-                               int64_t *touches) {
-  mpsi_mates *m = &mpm->share->mates;
+mps_status mpsi_mpm_find_partners(mps_mpm *mpm, const char *function, mps_status status,
+                                  int64_t *constraints) {
+  mpsi_contact_partners *m = &mpm->partition->partners;
   const int32_t words = words_of(mpm), rows = rows_of(mpm);
   uint64_t *row = (uint64_t *)m->words + HEAD;
   memset(m->words, 0, (size_t)(HEAD + rows * words) * sizeof *m->words);
   m->words[FAILED] = status != MPS_OK;
-  m->words[TOUCHES] = mpm->contact.impulses.touch_count;
+  m->words[CONSTRAINTS] = mpm->contact.impulses.constraint_count;
   if (status == MPS_OK && rows == 1)
     tell_all(mpm, row);
   else if (status == MPS_OK) {
-    uint64_t *meets = row + (int64_t)mps_domain_rank(mpm->share->domain) * words;
-    find_links(mpm, meets, meets + (int64_t)(rows / 2) * words);
+    uint64_t *linked = row + (int64_t)mps_domain_rank(mpm->partition->domain) * words;
+    find_links(mpm, linked, linked + (int64_t)(rows / 2) * words);
     while (spread(mpm)) {
     }
   }
   const mps_status lost =
-      mpsi_domain_sum(mpm->share->domain, function, HEAD + rows * words, m->words);
+      mpsi_domain_sum(mpm->partition->domain, function, HEAD + rows * words, m->words);
   if (lost != MPS_OK) return lost;
-  if (m->words[FAILED] > 0) return mpsi_domain_settle(mpm->share->domain, function, status);
-  *touches = m->words[TOUCHES];
+  if (m->words[FAILED] > 0) return mpsi_domain_agree(mpm->partition->domain, function, status);
+  *constraints = m->words[CONSTRAINTS];
   take_rows(mpm, row, rows);
   return MPS_OK;
 }

@@ -6,40 +6,40 @@
 
 #include <string.h>
 
-bool mpsi_mpm_has_springs(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair) {
+bool mpsi_mpm_has_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair) {
   return cells->inside &&
          !mpsi_by_impulses(
              mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + pair].body]);
 }
 
-mpsi_spring_node *mpsi_mpm_spring_tile(const mps_mpm *mpm, const mpsi_worker *worker,
-                                       int32_t body) {
-  return worker->springs + (int64_t)body * mpm->grid.tile_nodes;
+mpsi_penalty_node *mpsi_mpm_penalty_tile(const mps_mpm *mpm, const mpsi_worker *worker,
+                                         int32_t body) {
+  return worker->penalty_bodies + (int64_t)body * mpm->grid.tile_nodes;
 }
 
-bool mpsi_mpm_spring_room(mps_mpm *mpm) {
+bool mpsi_mpm_penalty_room(mps_mpm *mpm) {
   mpsi_grid *grid = &mpm->grid;
   mpsi_contacts *contact = &mpm->contact;
   const int64_t each = (int64_t)contact->bodies * grid->tile_nodes;
-  contact->springs = 0;
+  contact->penalty_bodies = 0;
   for (int32_t b = 0; b < contact->bodies; b++)
-    contact->springs += !mpsi_by_impulses(contact->handle[b]);
-  if (contact->springs == 0) return true;
-  if (!mpsi_room_ensure(mpm->context, &contact->spring_room, each * grid->worker_count,
-                        sizeof(mpsi_spring_node)))
+    contact->penalty_bodies += !mpsi_by_impulses(contact->handle[b]);
+  if (contact->penalty_bodies == 0) return true;
+  if (!mpsi_room_ensure(mpm->context, &contact->penalty_room, each * grid->worker_count,
+                        sizeof(mpsi_penalty_node)))
     return false;
   for (int32_t k = 0; k < grid->worker_count; k++)
-    grid->workers[k].springs = (mpsi_spring_node *)contact->spring_room.item + k * each;
+    grid->workers[k].penalty_bodies = (mpsi_penalty_node *)contact->penalty_room.item + k * each;
   return true;
 }
 
-void mpsi_mpm_clear_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
+void mpsi_mpm_clear_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker) {
-  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_spring_node);
+  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_penalty_node);
   for (int32_t q = 0; q < cells->pairs; q++) {
-    if (!mpsi_mpm_has_springs(mpm, cells, q)) continue;
-    mpsi_spring_node *tile =
-        mpsi_mpm_spring_tile(mpm, worker, mpm->contact.cell_pair[cells->first_pair + q].body);
+    if (!mpsi_mpm_has_penalty(mpm, cells, q)) continue;
+    mpsi_penalty_node *tile =
+        mpsi_mpm_penalty_tile(mpm, worker, mpm->contact.cell_pair[cells->first_pair + q].body);
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
         memset(tile + mpsi_tile_index(cells->low[0], j, k), 0, bytes);
@@ -47,9 +47,9 @@ void mpsi_mpm_clear_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
 }
 
 static void add_row(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t body, int j, int k,
-                    const mpsi_spring_node *row) {
+                    const mpsi_penalty_node *row) {
   for (int i = cells->low[0]; i < cells->high[0]; i++) {
-    const mpsi_spring_node *from = &row[i - cells->low[0]];
+    const mpsi_penalty_node *from = &row[i - cells->low[0]];
     if (from->mass == 0.0) continue;
     const int64_t node = mpsi_node_under(mpm, cells, i, j, k);
     int32_t t = mpm->grid.nodes[node / mpm->grid.block_nodes].first_pair;
@@ -61,21 +61,21 @@ static void add_row(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t body, in
   }
 }
 
-void mpsi_mpm_add_springs(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker) {
+void mpsi_mpm_add_penalty(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker) {
   for (int32_t q = 0; q < cells->pairs; q++) {
-    if (!mpsi_mpm_has_springs(mpm, cells, q)) continue;
+    if (!mpsi_mpm_has_penalty(mpm, cells, q)) continue;
     const int32_t body = mpm->contact.cell_pair[cells->first_pair + q].body;
-    const mpsi_spring_node *tile = mpsi_mpm_spring_tile(mpm, worker, body);
+    const mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(mpm, worker, body);
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
         add_row(mpm, cells, body, j, k, tile + mpsi_tile_index(cells->low[0], j, k));
   }
 }
 
-void mpsi_mpm_scatter_springs(mps_mpm *mpm, int64_t b, int32_t number) {
+void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
-  mpsi_mpm_clear_springs(mpm, cells, worker);
+  mpsi_mpm_clear_penalty(mpm, cells, worker);
   mpm->kernels->p2g[mpm->def.geometry][mpm->def.spline - 2](mpm, b, number);
-  mpsi_mpm_add_springs(mpm, cells, worker);
+  mpsi_mpm_add_penalty(mpm, cells, worker);
 }

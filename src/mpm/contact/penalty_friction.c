@@ -38,12 +38,12 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
       const double m = node[k][MPSI_MASS];
       double x[3], f[3];
       mpsi_node_place(mpm, nodes->at, k, x);
-      const bool rubs =
+      const bool frictional =
           mpsi_contact_friction(mpm->contact.handle[b], mpm->dim, &at[k], mpm->contact.mass[b], x,
                                 node[k] + MPSI_VECTOR, side[k] + MPSI_VECTOR, m, mpm->run.dt, f);
       for (int c = 0; c < 3; c++) {
-        at[k].slip[c] = rubs ? f[c] / at[k].mass : 0.0;
-        if (rubs) node[k][MPSI_VECTOR + c] += mpm->run.dt * f[c] / m;
+        at[k].slip[c] = frictional ? f[c] / at[k].mass : 0.0;
+        if (frictional) node[k][MPSI_VECTOR + c] += mpm->run.dt * f[c] / m;
       }
     }
   }
@@ -68,7 +68,7 @@ bool mpsi_mpm_load_room(mps_mpm *mpm) {
 static void add_loads(const mps_mpm *mpm, int32_t b, load_sums *sum) {
   for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
-    if (pair->body != b || !pair->touched || mpm->grid.cells[pair->cells].ghost) continue;
+    if (pair->body != b || !pair->in_contact || mpm->grid.cells[pair->cells].ghost) continue;
     for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++) {
       for (int c = 0; c < 3; c++) {
         mpsi_exact_add(&sum[part][FORCE + c], pair->load[part].force[c]);
@@ -108,9 +108,9 @@ void mpsi_mpm_update_bodies(mps_mpm *mpm) {
   memset(sum, 0, (size_t)parts * sizeof *sum);
   for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.body[b++]->parts)
     add_loads(mpm, b, of);
-  if (mpm->share && mpm->share->lost == MPS_OK)
-    mpm->share->lost =
-        mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", parts * SUMS, sum[0]);
+  if (mpm->partition && mpm->partition->lost == MPS_OK)
+    mpm->partition->lost =
+        mpsi_domain_sum_exact(mpm->partition->domain, "mps_mpm_step", parts * SUMS, sum[0]);
   of = sum;
   for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.body[b++]->parts)
     react(mpm, b, of);

@@ -32,39 +32,40 @@ static double *find_home(const mps_mpm *mpm, const int32_t *at, bool across) {
 }
 
 /* Where in the lookup the node is, or would be. */
-static int64_t slot_of(const mpsi_meeting *r, const int32_t *at, int32_t kind) {
-  const mpsi_met_node *met = r->met.item;
+static int64_t slot_of(const mpsi_contact_exchange *r, const int32_t *at, int32_t kind) {
+  const mpsi_shared_node *shared = r->shared.item;
   const int32_t *lookup = r->lookup.item;
   uint64_t key = (uint64_t)kind;
   for (int c = 0; c < 3; c++) key = (key ^ (uint32_t)at[c]) * UINT64_C(0x9E3779B97F4A7C15);
   int64_t slot = (int64_t)(key >> 20) & (r->slots - 1);
-  while (lookup[slot] >= 0 &&
-         (memcmp(met[lookup[slot]].at, at, sizeof met->at) != 0 || met[lookup[slot]].kind != kind))
+  while (lookup[slot] >= 0 && (memcmp(shared[lookup[slot]].at, at, sizeof shared->at) != 0 ||
+                               shared[lookup[slot]].kind != kind))
     slot = (slot + 1) & (r->slots - 1);
   return slot;
 }
 
-mpsi_met_node *mpsi_mpm_meet_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
-                                  const double *value) {
-  mpsi_meeting *r = &mpm->share->meeting;
-  mpsi_met_node *met = r->met.item;
+mpsi_shared_node *mpsi_mpm_shared_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
+                                       const double *value) {
+  mpsi_contact_exchange *r = &mpm->partition->exchange;
+  mpsi_shared_node *shared = r->shared.item;
   int32_t *lookup = r->lookup.item;
   const int64_t slot = slot_of(r, at, kind);
-  if (lookup[slot] >= 0) return &met[lookup[slot]];
-  mpsi_met_node *node = &met[r->nodes];
+  if (lookup[slot] >= 0) return &shared[lookup[slot]];
+  mpsi_shared_node *node = &shared[r->nodes];
   memcpy(node->at, at, sizeof node->at);
   memcpy(node->value, value, sizeof node->value);
   node->kind = kind;
-  node->home = kind < MPSI_MET_AREA ? find_home(mpm, at, kind == MPSI_MET_ACROSS) : NULL;
+  node->home = kind < MPSI_SHARED_AREA ? find_home(mpm, at, kind == MPSI_SHARED_ACROSS) : NULL;
   lookup[slot] = (int32_t)r->nodes++;
   return node;
 }
 
-mpsi_area *mpsi_mpm_met_area(const mps_mpm *mpm, const int32_t *block, const int *at,
-                             int32_t body) {
-  const mpsi_meeting *r = &mpm->share->meeting;
+mpsi_area *mpsi_mpm_shared_area(const mps_mpm *mpm, const int32_t *block, const int *at,
+                                int32_t body) {
+  const mpsi_contact_exchange *r = &mpm->partition->exchange;
   int32_t place[3];
   for (int c = 0; c < 3; c++) place[c] = block[c] * MPSI_SIDE + at[c];
-  const int32_t found = ((const int32_t *)r->lookup.item)[slot_of(r, place, MPSI_MET_AREA + body)];
-  return found < 0 ? NULL : &((mpsi_met_node *)r->met.item)[found].area;
+  const int32_t found =
+      ((const int32_t *)r->lookup.item)[slot_of(r, place, MPSI_SHARED_AREA + body)];
+  return found < 0 ? NULL : &((mpsi_shared_node *)r->shared.item)[found].area;
 }

@@ -22,16 +22,16 @@ MPSI_INLINE void kick_nodes(double *const *node, const double *weight, bool even
 
 /* What the impulse `by` does to the nodes, and to the body. */
 MPSI_INLINE void kick(mpsi_impulses *all, int64_t n, const double *by) {
-  const mpsi_touch *touch = &all->touch[n];
+  const mpsi_constraint *constraint = &all->constraint[n];
   const mpsi_quad impulse = {0.0, by[0], by[1], by[2]};
   double *const *node = all->node + n * all->stride;
   const double *weight = all->weight[n * all->stride];
-  if (touch->even)
-    kick_nodes(node, weight, true, touch->nodes, impulse);
+  if (constraint->even)
+    kick_nodes(node, weight, true, constraint->nodes, impulse);
   else
-    kick_nodes(node, weight, false, touch->nodes, impulse);
-  if (all->body[touch->body].free)
-    mpsi_impulse_kick(&all->body[touch->body], touch->impulse.at, by);
+    kick_nodes(node, weight, false, constraint->nodes, impulse);
+  if (all->body[constraint->body].free)
+    mpsi_impulse_kick(&all->body[constraint->body], constraint->impulse.at, by);
 }
 
 /* sum psi v, from `first` on. */
@@ -49,40 +49,42 @@ MPSI_INLINE mpsi_quad sum_nodes(double *const *node, const double *weight, bool 
 
 /* Velocity of the particle's side at the foot. */
 MPSI_INLINE void velocity_at(const mpsi_impulses *all, int64_t n, double *v) {
-  const mpsi_touch *touch = &all->touch[n];
+  const mpsi_constraint *constraint = &all->constraint[n];
   double *const *node = all->node + n * all->stride;
   const double *weight = all->weight[n * all->stride];
-  const mpsi_quad carried = {0.0, touch->carried[0], touch->carried[1], touch->carried[2]};
-  const mpsi_quad sum = touch->even ? sum_nodes(node, weight, true, touch->nodes, carried)
-                                    : sum_nodes(node, weight, false, touch->nodes, carried);
+  const mpsi_quad carried = {0.0, constraint->carried[0], constraint->carried[1],
+                             constraint->carried[2]};
+  const mpsi_quad sum = constraint->even
+                            ? sum_nodes(node, weight, true, constraint->nodes, carried)
+                            : sum_nodes(node, weight, false, constraint->nodes, carried);
   for (int a = 0; a < 3; a++) v[a] = sum[MPSI_VECTOR + a];
 }
 
-void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v) {
-  velocity_at(&mpm->contact.impulses, touch, v);
+void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t constraint, double *v) {
+  velocity_at(&mpm->contact.impulses, constraint, v);
 }
 
 /* `rub` holds the last step's impulse. */
-void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_touch_block *block) {
+void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_constraint_block *block) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  const double share = all->kept_dt > 0.0 ? mpm->run.dt / all->kept_dt : 0.0;
+  const double fraction = all->warm_dt > 0.0 ? mpm->run.dt / all->warm_dt : 0.0;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    mpsi_impulse *c = &all->touch[n].impulse;
-    const double last[3] = {c->rub[0], c->rub[1], c->rub[2]};
+    mpsi_impulse *c = &all->constraint[n].impulse;
+    const double last[3] = {c->tangent_impulse[0], c->tangent_impulse[1], c->tangent_impulse[2]};
     double by[3];
-    mpsi_impulse_warm(c, &all->body[all->touch[n].body], last, share, by);
-    if (c->push > 0.0) kick(all, n, by);
+    mpsi_impulse_warm(c, &all->body[all->constraint[n].body], last, fraction, by);
+    if (c->normal_impulse > 0.0) kick(all, n, by);
   }
 }
 
 /* Counts what it changes, by which the sweeps end. */
-void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool back) {
+void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_constraint_block *block, bool back) {
   mpsi_impulses *all = &mpm->contact.impulses;
   double changed = 0.0, impulses = 0.0;
   for (int64_t i = 0; i < block->count; i++) {
     const int64_t n = back ? block->first + block->count - 1 - i : block->first + i;
-    const mpsi_impulse_body *body = &all->body[all->touch[n].body];
-    mpsi_impulse *c = &all->touch[n].impulse;
+    const mpsi_impulse_body *body = &all->body[all->constraint[n].body];
+    mpsi_impulse *c = &all->constraint[n].impulse;
     double u[3], surface[3], by[3];
     velocity_at(all, n, u);
     mpsi_impulse_surface(body, c->at, surface);
@@ -91,7 +93,8 @@ void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool b
       kick(all, n, by);
       changed += mpsi_dot3(by, by);
     }
-    impulses += c->push * c->push + mpsi_dot3(c->rub, c->rub);
+    impulses +=
+        c->normal_impulse * c->normal_impulse + mpsi_dot3(c->tangent_impulse, c->tangent_impulse);
   }
   block->changed = changed;
   block->impulses = impulses;

@@ -16,8 +16,8 @@
  * Values across have blocks of nodes of their own, behind those that the particles reach
  * (mpsi_all_nodes), and a second tile; they are found anew before each step. By springs
  * (MPS_CONTACT_METHOD_PENALTY) nothing is parted. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_ACROSS_H
-#define MPSI_MPM_ACROSS_H
+#ifndef MPSI_MPM_THIN_BODIES_H
+#define MPSI_MPM_THIN_BODIES_H
 
 #include <mps/mpm.h>
 

@@ -59,11 +59,11 @@ typedef struct mpsi_cell_block {
   bool lost;                  /* that one, and no other, is outside: all are finite */
   double speed;               /* largest c + |v|, m/s */
   /* On several ranks (partition.h): */
-  bool ghost;     /* another rank's: it has no particles here */
-  bool late;      /* it, or one that gives before it, is a ghost */
-  bool touched;   /* it has touches in the step, or areas (area.c) */
-  bool told;      /* these touch what other ranks' do: partners.h */
-  int64_t parcel; /* where its tile is among those that come (ghosts) or go; -1: nowhere */
+  bool ghost;      /* another rank's: it has no particles here */
+  bool late;       /* it, or one that gives before it, is a ghost */
+  bool in_contact; /* it has touches in the step, or areas (area.c) */
+  bool sent;       /* these touch what other ranks' do: partners.h */
+  int64_t parcel;  /* where its tile is among those that come (ghosts) or go; -1: nowhere */
 } mpsi_cell_block;
 
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
@@ -97,11 +97,11 @@ enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
 /* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
 typedef struct mpsi_worker {
   void *memory;
-  mpsi_node *tile, *force;               /* force, and excess mass: where they are apart */
-  mpsi_node *across_tile, *across_force; /* the same of what thin bodies part (thin_bodies.h) */
-  struct mpsi_spring_node *springs;      /* of each body: see penalty.c */
-  uint32_t *inside;                      /* bit b: in body b */
-  uint8_t *state;                        /* MPSI_... bits, 0: free */
+  mpsi_node *tile, *force;                  /* force, and excess mass: where they are apart */
+  mpsi_node *across_tile, *across_force;    /* the same of what thin bodies part (thin_bodies.h) */
+  struct mpsi_penalty_node *penalty_bodies; /* of each body: see penalty.c */
+  uint32_t *inside;                         /* bit b: in body b */
+  uint8_t *state;                           /* MPSI_... bits, 0: free */
 } mpsi_worker;
 
 /* The fit of a particle beside bodies, from the scatter of a step to its gather (least_squares_batch.c). */

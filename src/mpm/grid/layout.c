@@ -30,7 +30,7 @@ typedef struct key_chunks {
   int64_t first[CHUNKS];  /* blocks that begin in the chunk; then the number of its first */
   mpsi_cell_block *cells; /* NULL: they are only counted */
   int64_t *order;         /* of list_order */
-  bool kept[CHUNKS];      /* its particles are in order already */
+  bool warm[CHUNKS];      /* its particles are in order already */
 } key_chunks;
 
 static int32_t for_chunks(key_chunks *c, void (*work)(void *data, int64_t chunk, int32_t worker)) {
@@ -86,20 +86,20 @@ static void list_chunk(void *data, int64_t chunk, int32_t worker) {
   key_chunks *c = data;
   const int64_t end = end_of_chunk(c, chunk);
   (void)worker;
-  c->kept[chunk] = true;
+  c->warm[chunk] = true;
   for (int64_t k = chunk * c->length; k < end; k++) {
     c->order[k] = c->mpm->grid.sorted[k].index;
-    if (c->order[k] != k) c->kept[chunk] = false;
+    if (c->order[k] != k) c->warm[chunk] = false;
   }
 }
 
 /* Whether the particles have it already. */
 static bool list_order(mps_mpm *mpm, int64_t *order) {
   key_chunks c = {.mpm = mpm, .order = order};
-  bool kept = true;
+  bool warm = true;
   const int32_t chunks = for_chunks(&c, list_chunk);
-  for (int32_t k = 0; k < chunks; k++) kept = kept && c.kept[k];
-  return kept;
+  for (int32_t k = 0; k < chunks; k++) warm = warm && c.warm[k];
+  return warm;
 }
 
 /* Particles [begin, end) of one stencil by their ids, so that their order is not that of former
@@ -241,9 +241,9 @@ mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t cou
       mpm->grid.cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
     }
   }
-  if (mpm->share) { /* its ghosts follow before the next step */
+  if (mpm->partition) { /* its ghosts follow before the next step */
     mpm->grid.cell_count = count;
-    mpm->share->outdated = true;
+    mpm->partition->outdated = true;
     return MPS_OK;
   }
   return mpsi_mpm_build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);

@@ -121,7 +121,7 @@ static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
     if (grid->nodes[g].waits) update_in_turn(&w, g);
   if (pass->between && !pass->between(mpm, pass->data)) return;
   gather_in_turn(&w, false);
-  if (!mpm->share) return;
+  if (!mpm->partition) return;
   for (int32_t b = 0; pass->scatter && b < grid->cell_count; b++)
     if (!grid->cells[b].late) give_in_turn(&w, b);
   if (pass->arrive) pass->arrive(mpm);

@@ -197,7 +197,7 @@ static bool in_parts(const mps_mpm *mpm) { return mpsi_particles_deal(mpm->parti
 static mps_status join_extremes(mps_mpm *mpm, mps_status status) {
   double most[2] = {mpm->run.speed,
                     isnan(mpm->contact.least_mass) ? -INFINITY : -mpm->contact.least_mass};
-  status = mpsi_domain_settle_max(mpm->def.domain, create, status, 2, most);
+  status = mpsi_domain_agree_max(mpm->def.domain, create, status, 2, most);
   if (status != MPS_OK) return status;
   mpm->run.speed = most[0];
   mpm->contact.least_mass = most[1] == -INFINITY ? NAN : -most[1];
@@ -334,7 +334,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     if (status != MPS_OK && copy) put_columns_back(mpm, copy);
     mpsi_free(mpm->context, copy);
   }
-  if (shared) status = mpsi_mpm_share_take(mpm, create, status, former);
+  if (shared) status = mpsi_mpm_partition_create(mpm, create, status, former);
   if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->particles, fields);
   mpm->boundaries.outdated = true; /* listed with the first step */
   return status;
@@ -398,9 +398,9 @@ static void hold(mps_mpm *mpm, const char *function, bool shared) {
                               .leaving = mpsi_mpm_thin_out,
                               .renew = mpsi_mpm_renew};
   if (shared) {
-    mpm->holder.runs = mpsi_mpm_share_runs;
-    mpm->holder.agree = mpsi_mpm_share_agree_added;
-    mpm->holder.find = mpsi_mpm_share_find;
+    mpm->holder.runs = mpsi_mpm_row_runs;
+    mpm->holder.agree = mpsi_mpm_agree_on_insertion;
+    mpm->holder.find = mpsi_mpm_find_removed;
   }
   (void)mpsi_particles_hold(mpm->particles, function, &mpm->holder);
 }
@@ -440,7 +440,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (status == MPS_OK && !mpm) status = mpsi_fail_memory(context, __func__, sizeof *mpm);
   if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
     status = mpsi_particles_back_up(particles, __func__, &backup);
-  status = mpsi_domain_settle(def.domain, __func__, status);
+  status = mpsi_domain_agree(def.domain, __func__, status);
   if (status != MPS_OK) {
     if (backup.memory) mpsi_backup_drop(particles, &backup);
     mpsi_free(context, mpm);
@@ -452,7 +452,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   hold(mpm, __func__, is_shared(&def)); /* checked above */
   describe(mpm, &def, low, high);
   if (!mpsi_mpm_begin_sides(mpm))
-    status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_hold_sums));
+    status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_boundary_sums));
   if (def.kernel)
     mpm->weights = mpsi_kernel_retain(def.kernel);
   else if (status == MPS_OK)
@@ -496,16 +496,16 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->contact.sight_room.item,
                    mpm->contact.across_room.item,
                    mpm->contact.beside_room.item,
-                   mpm->contact.spring_room.item,
+                   mpm->contact.penalty_room.item,
                    mpm->contact.load_room.item,
                    mpm->grid.across_room.item,
                    mpm->mirrors.mirror_room.item,
                    mpm->mirrors.mass_room.item,
                    mpm->boundaries.held_room.item,
-                   mpm->boundaries.dash_room.item,
+                   mpm->boundaries.dashpot_room.item,
                    mpm->boundaries.old_held_room.item,
-                   mpm->boundaries.old_dash_room.item,
-                   mpm->boundaries.kept_room.item,
+                   mpm->boundaries.old_dashpot_room.item,
+                   mpm->boundaries.warm_room.item,
                    mpm->energy.cells_room.item,
                    mpm->energy.nodes_room.item,
                    mpm->settling.nodes_room.item,
@@ -517,7 +517,7 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->rooms.gone.item,
                    mpm->undo.list_room.item,
                    mpm->undo.room.item,
-                   mpm->undo.dash_room.item,
+                   mpm->undo.dashpot_room.item,
                    mpm->undo.sums_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
 }
@@ -538,7 +538,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
     mpsi_free(context, mpm->laws.law[k].history);
   }
   mps_kernel_destroy(&mpm->weights);
-  mpsi_mpm_share_free(mpm);
+  mpsi_mpm_partition_free(mpm);
   mps_domain_destroy(&mpm->def.domain);
   mpsi_state_forget(&mpm->identity);
   mpsi_particles_release(mpm->particles, &mpm->holder);
@@ -568,7 +568,7 @@ static mps_status check_before_steps(mps_mpm *mpm, const char *function, const c
     status = mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                        "the solver has taken %lld steps: the variant is chosen before the first",
                        (long long)mpm->run.steps);
-  return mpsi_domain_settle_same(mpm->def.domain, function, status, name, value);
+  return mpsi_domain_agree_same(mpm->def.domain, function, status, name, value);
 }
 
 mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
@@ -603,7 +603,7 @@ mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   mpm->standard = true;
   mpm->flip = flip;
   const mps_status widened =
-      mpsi_domain_settle(mpm->def.domain, __func__, mpsi_mpm_widen_sides(mpm, __func__));
+      mpsi_domain_agree(mpm->def.domain, __func__, mpsi_mpm_widen_sides(mpm, __func__));
   if (widened != MPS_OK) mpm->standard = false, mpm->flip = 0.0;
   return widened;
 }

@@ -47,8 +47,8 @@ static mps_status gather_blocks(mps_mpm *mpm, const char *function, mpsi_value *
   for (int64_t k = 0; k < value->rows; k++)
     block[k][0] = (k + 1 < value->rows ? block[k + 1][0] : mpm->p.count) - block[k][0];
   const mps_status status =
-      mpsi_domain_gather_rows(mpm->share->domain, function, value->rows, value);
-  if (status != MPS_OK || mps_domain_rank(mpm->share->domain) > 0) return status;
+      mpsi_domain_gather_rows(mpm->partition->domain, function, value->rows, value);
+  if (status != MPS_OK || mps_domain_rank(mpm->partition->domain) > 0) return status;
   block = value->data;
   qsort(block, (size_t)value->rows, sizeof *block, by_place);
   int64_t begin = 0;
@@ -61,7 +61,7 @@ static mps_status gather_blocks(mps_mpm *mpm, const char *function, mpsi_value *
 }
 
 static mps_status merge(mps_mpm *mpm, const char *function, mpsi_values *state) {
-  mps_domain *domain = mpm->share->domain;
+  mps_domain *domain = mpm->partition->domain;
   mps_status status = MPS_OK;
   for (int32_t k = 0; k < state->count && status == MPS_OK; k++) {
     mpsi_value *value = &state->item[k];
@@ -80,29 +80,29 @@ static mps_status merge(mps_mpm *mpm, const char *function, mpsi_values *state) 
       status = gather_blocks(mpm, function, value);
       break;
     case DASHES:
-      status = mpsi_mpm_gather_dashes(mpm, function, value);
+      status = mpsi_mpm_gather_dashpots(mpm, function, value);
       break;
     }
   }
   return status;
 }
 
-mps_status mpsi_mpm_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
-                               const char *path, const mps_checkpoint *info) {
-  mps_domain *domain = mpm->share->domain;
+mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
+                                  const char *path, const mps_checkpoint *info) {
+  mps_domain *domain = mpm->partition->domain;
   mps_snapshot state = {.context = mpm->context};
   mps_particles *whole = NULL;
-  mps_status status = mpsi_mpm_share_kept(mpm, function, MPS_OK);
-  mpsi_mpm_order_kept(mpm);
+  mps_status status = mpsi_mpm_share_warm_start(mpm, function, MPS_OK);
+  mpsi_mpm_order_warm_start(mpm);
   if (status == MPS_OK)
-    status = mpsi_domain_settle(domain, function, mpsi_state_get(of, function, &state));
+    status = mpsi_domain_agree(domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(mpm, function, &state.state);
   if (status == MPS_OK)
     status = mpsi_as(mpm->context, function, mps_domain_gather(domain, mpm->particles, &whole));
   if (status == MPS_OK) {
     if (mps_domain_rank(domain) == 0)
       status = mpsi_checkpoint_save_values(of, function, path, info, whole, &state.state);
-    status = mpsi_domain_settle(domain, function, status);
+    status = mpsi_domain_agree(domain, function, status);
   }
   mps_particles_destroy(&whole);
   mpsi_values_free(mpm->context, &state.state);
@@ -116,18 +116,18 @@ mps_status mpsi_mpm_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char
 static int64_t take_blocks(const mps_mpm *mpm, mpsi_value *blocks, int64_t particles,
                            int64_t *rows) {
   mpsi_block *block = blocks->data;
-  const int32_t rank = mps_domain_rank(mpm->share->domain);
-  int64_t kept = 0, count = 0;
+  const int32_t rank = mps_domain_rank(mpm->partition->domain);
+  int64_t warm = 0, count = 0;
   for (int64_t b = 0; b < blocks->rows; b++) {
     const int64_t begin = block[b][0], end = b + 1 < blocks->rows ? block[b + 1][0] : particles;
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
-    if (mpsi_mpm_share_owner(mpm, at) != rank) continue;
-    memmove(block[kept], block[b], sizeof *block); /* kept <= b */
-    block[kept++][0] = count;
+    if (mpsi_mpm_block_owner(mpm, at) != rank) continue;
+    memmove(block[warm], block[b], sizeof *block); /* kept <= b */
+    block[warm++][0] = count;
     for (int64_t k = begin; k < end; k++) rows[count++] = k;
   }
-  blocks->rows = kept;
+  blocks->rows = warm;
   return count;
 }
 
@@ -145,7 +145,7 @@ static void take_fields(mps_snapshot *values, const int64_t *rows, int64_t count
 }
 
 static void take_values(const mps_mpm *mpm, mpsi_values *state) {
-  const bool first = mps_domain_rank(mpm->share->domain) == 0;
+  const bool first = mps_domain_rank(mpm->partition->domain) == 0;
   for (int32_t k = 0; k < state->count; k++) {
     mpsi_value *value = &state->item[k];
     const merging how = merging_of(value);
@@ -155,10 +155,10 @@ static void take_values(const mps_mpm *mpm, mpsi_values *state) {
   }
 }
 
-mps_status mpsi_mpm_share_take_values(void *solver, const char *function, mps_status status,
-                                      mps_snapshot *values) {
+mps_status mpsi_mpm_restore_on_ranks(void *solver, const char *function, mps_status status,
+                                     mps_snapshot *values) {
   mps_mpm *mpm = solver;
-  if (!mpm->share) return status;
+  if (!mpm->partition) return status;
   int64_t *rows = NULL;
   if (status == MPS_OK) {
     rows = mpsi_alloc(mpm->context, values->particles, sizeof *rows);
@@ -166,15 +166,15 @@ mps_status mpsi_mpm_share_take_values(void *solver, const char *function, mps_st
       status = mpsi_fail_memory(mpm->context, function, (size_t)values->particles * sizeof *rows);
   }
   if (status == MPS_OK)
-    status = mpsi_mpm_take_dashes(mpm, function, mpsi_values_find(&values->state, "blocks"),
-                                  (mpsi_value *)mpsi_values_find(&values->state, "dashpots"));
-  status = mpsi_domain_settle(mpm->share->domain, function, status);
+    status = mpsi_mpm_take_dashpots(mpm, function, mpsi_values_find(&values->state, "blocks"),
+                                    (mpsi_value *)mpsi_values_find(&values->state, "dashpots"));
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status == MPS_OK) {
     mpsi_value *blocks = (mpsi_value *)mpsi_values_find(&values->state, "blocks");
     const int64_t count = take_blocks(mpm, blocks, values->particles, rows);
     take_fields(values, rows, count);
     take_values(mpm, &values->state);
-    mpm->share->heaviest = 0.0; /* to be cut anew where it is sorted next */
+    mpm->partition->heaviest = 0.0; /* to be cut anew where it is sorted next */
   }
   mpsi_free(mpm->context, rows);
   return status;

@@ -8,9 +8,9 @@
 
 /* The file of one rank, from all of them; of a whole file what is this rank's (mpsi_state_of).
  * Collective. */
-mps_status mpsi_mpm_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
-                               const char *path, const mps_checkpoint *info);
-mps_status mpsi_mpm_share_take_values(void *solver, const char *function, mps_status status,
-                                      mps_snapshot *values);
+mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
+                                  const char *path, const mps_checkpoint *info);
+mps_status mpsi_mpm_restore_on_ranks(void *solver, const char *function, mps_status status,
+                                     mps_snapshot *values);
 
 #endif

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-_Static_assert(sizeof(mpsi_dash) == MPSI_DASH * sizeof(double), "kept as numbers");
+_Static_assert(sizeof(mpsi_dashpot) == MPSI_DASH * sizeof(double), "kept as numbers");
 
 /* ---- tables: blocks, their nodes, dashpots --------------------------------------------------- */
 
@@ -80,7 +80,7 @@ static void get_sizes(const void *solver, void *values) {
   int64_t *size = values;
   size[0] = mpm->grid.node_count;
   size[1] = mpm->boundaries.held_count;
-  size[2] = mpm->boundaries.dash_count;
+  size[2] = mpm->boundaries.dashpot_count;
   size[3] = mpm->mirrors.count;
 }
 
@@ -95,15 +95,15 @@ static bool reserve_sizes(void *solver, int64_t rows, const void *values) {
       keep_room(mpm->context, &grid->node_room, size[0] * grid->block_nodes, sizeof *grid->node) &&
       keep_room(mpm->context, &b->held_room, size[1], sizeof *b->held) &&
       keep_room(mpm->context, &b->old_held_room, size[1], sizeof *b->held) &&
-      keep_room(mpm->context, &b->dash_room, size[2], sizeof *b->dash) &&
-      keep_room(mpm->context, &b->old_dash_room, size[2], sizeof *b->dash) &&
+      keep_room(mpm->context, &b->dashpot_room, size[2], sizeof *b->dashpot) &&
+      keep_room(mpm->context, &b->old_dashpot_room, size[2], sizeof *b->dashpot) &&
       keep_room(mpm->context, &mpm->mirrors.mirror_room, size[3], sizeof *mpm->mirrors.mirror) &&
       keep_room(mpm->context, &mpm->mirrors.mass_room,
                 size[3] * mpsi_mirror_plane(grid->tile_nodes), sizeof *mpm->mirrors.mass);
   grid->nodes = grid->nodes_room.item;
   grid->node = grid->node_room.item;
   b->held = b->held_room.item;
-  b->dash = b->dash_room.item;
+  b->dashpot = b->dashpot_room.item;
   mpm->mirrors.mirror = mpm->mirrors.mirror_room.item;
   mpm->mirrors.mass = mpm->mirrors.mass_room.item;
   return good;
@@ -118,7 +118,7 @@ static int64_t count_dashes(const void *solver) {
   const mps_mpm *mpm = solver;
   int64_t count = 0;
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++)
-    if (mpm->boundaries.held[t].dash >= 0 && mpm->boundaries.held[t].whole)
+    if (mpm->boundaries.held[t].dashpot >= 0 && mpm->boundaries.held[t].whole)
       count += mpm->grid.block_nodes / MPSI_SIDE;
   return count;
 }
@@ -127,72 +127,72 @@ static void get_dashes(const void *solver, void *values) {
   const mps_mpm *mpm = solver;
   const mpsi_boundaries *b = &mpm->boundaries;
   const int64_t plane = mpm->grid.block_nodes / MPSI_SIDE;
-  mpsi_dash *to = values;
+  mpsi_dashpot *to = values;
   for (int64_t t = 0; t < b->held_count; t++) {
-    if (b->held[t].dash < 0 || !b->held[t].whole) continue;
-    memcpy(to, b->dash + b->held[t].dash, (size_t)plane * sizeof *to);
+    if (b->held[t].dashpot < 0 || !b->held[t].whole) continue;
+    memcpy(to, b->dashpot + b->held[t].dashpot, (size_t)plane * sizeof *to);
     to += plane;
   }
 }
 
 /* On several ranks they wait for the ghosts: mpsi_mpm_regain_share. */
-static bool reserve_dashes(void *solver, int64_t rows, const void *values) {
+static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   (void)values;
-  return !mpm->share ||
-         mpsi_room_ensure(mpm->context, &mpm->boundaries.kept_room, rows, sizeof(mpsi_dash));
+  return !mpm->partition ||
+         mpsi_room_ensure(mpm->context, &mpm->boundaries.warm_room, rows, sizeof(mpsi_dashpot));
 }
 
-static void set_dashes(void *solver, int64_t rows, const void *values) {
+static void set_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
-  if (mpm->share)
-    mpsi_mpm_keep_dashes(mpm, rows, values);
+  if (mpm->partition)
+    mpsi_mpm_keep_dashpots(mpm, rows, values);
   else if (!mpm->run.broken)
-    mpm->run.broken = mpsi_mpm_put_dashes(mpm, "restore", rows, values) != MPS_OK;
+    mpm->run.broken = mpsi_mpm_put_dashpots(mpm, "restore", rows, values) != MPS_OK;
 }
 
 /* ---- impulses of the last step, for contact ---------------------------------------------------
  */
 
 static int64_t count_kept(const void *solver) {
-  return ((const mps_mpm *)solver)->contact.impulses.kept_count;
+  return ((const mps_mpm *)solver)->contact.impulses.warm_count;
 }
 
 static void get_kept_owners(const void *solver, void *values) {
   const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
   int64_t *row = values;
-  for (int64_t k = 0; k < all->kept_count; k++)
-    row[2 * k] = all->kept[k].id, row[2 * k + 1] = all->kept[k].body;
+  for (int64_t k = 0; k < all->warm_count; k++)
+    row[2 * k] = all->warm[k].id, row[2 * k + 1] = all->warm[k].body;
 }
 
 static bool reserve_kept(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   mpsi_impulses *all = &mpm->contact.impulses;
   (void)values;
-  const bool good = keep_room(mpm->context, &all->kept_room, rows, sizeof *all->kept);
-  all->kept = all->kept_room.item;
+  const bool good = keep_room(mpm->context, &all->warm_room, rows, sizeof *all->warm);
+  all->warm = all->warm_room.item;
   return good;
 }
 
 static void set_kept_owners(void *solver, int64_t rows, const void *values) {
   mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
   const int64_t *row = values;
-  all->kept_count = rows;
+  all->warm_count = rows;
   for (int64_t k = 0; k < rows; k++)
-    all->kept[k].id = row[2 * k], all->kept[k].body = row[2 * k + 1];
+    all->warm[k].id = row[2 * k], all->warm[k].body = row[2 * k + 1];
 }
 
 static void get_kept(const void *solver, void *values) {
   const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
   double *row = values;
-  for (int64_t k = 0; k < all->kept_count; k++)
-    memcpy(row + 3 * k, all->kept[k].by, sizeof all->kept[k].by);
+  for (int64_t k = 0; k < all->warm_count; k++)
+    memcpy(row + 3 * k, all->warm[k].by, sizeof all->warm[k].by);
 }
 
 static void set_kept(void *solver, int64_t rows, const void *values) {
   mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
   const double *row = values;
-  for (int64_t k = 0; k < rows; k++) memcpy(all->kept[k].by, row + 3 * k, sizeof all->kept[k].by);
+  for (int64_t k = 0; k < rows; k++) memcpy(all->warm[k].by, row + 3 * k, sizeof all->warm[k].by);
 }
 
 /* ---- the list ------------------------------------------------------------------------------- */
@@ -201,8 +201,8 @@ static const mpsi_state_table blocks_table = {MPSI_STATE_I64, MPSI_BLOCK,     co
                                               get_blocks,     reserve_blocks, set_blocks};
 static const mpsi_state_table sizes_table = {MPSI_STATE_I64, SIZES,         one_row,
                                              get_sizes,      reserve_sizes, set_sizes};
-static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH,      count_dashes,
-                                              get_dashes,     reserve_dashes, set_dashes};
+static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH,        count_dashes,
+                                              get_dashes,     reserve_dashpots, set_dashpots};
 
 static const mpsi_state_table kept_owners_table = {
     MPSI_STATE_I64, 2, count_kept, get_kept_owners, reserve_kept, set_kept_owners};
@@ -244,13 +244,14 @@ static void list_state(mpsi_state *s, void *solver) {
   mps_mpm *mpm = solver;
   list_setting(s, mpm);
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    mpsi_hold *hold = &mpm->boundaries.hold[k];
+    mpsi_boundary *hold = &mpm->boundaries.hold[k];
     mpsi_state_enter(s, "boundary%d", k);
     mpsi_state_agree_integer(s, "kind", hold->kind);
     /* a side that has been set free still shows its last force and what it has done */
-    if (hold->kind != MPSI_HOLD_NONE || (k < MPSI_SIDES && hold->sums)) {
-      mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_HOLD_MASS * MPSI_EXACT_LIMBS);
-      mpsi_state_i64(s, "all", hold->sums->all[0].limb, (MPSI_HOLD_MASS + 1) * MPSI_EXACT_LIMBS);
+    if (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums)) {
+      mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_BOUNDARY_MASS * MPSI_EXACT_LIMBS);
+      mpsi_state_i64(s, "all", hold->sums->all[0].limb,
+                     (MPSI_BOUNDARY_MASS + 1) * MPSI_EXACT_LIMBS);
       mpsi_state_i64(s, "count", &hold->count, 1);
       mpsi_state_i64(s, "removed", &hold->removed, 1);
       mpsi_state_bool(s, "finds", &hold->finds);
@@ -280,7 +281,7 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_contact_list_state(s, mpm->contact.handle[b]);
     mpsi_state_leave(s);
   }
-  mpsi_state_f64(s, "impulses_dt", &mpm->contact.impulses.kept_dt, 1);
+  mpsi_state_f64(s, "impulses_dt", &mpm->contact.impulses.warm_dt, 1);
   mpsi_state_i64(s, "sweeps", &mpm->contact.impulses.sweeps, 1);
   mpsi_state_f64(s, "impulses_left", &mpm->contact.impulses.left, 1);
   mpsi_state_add_table(s, "impulses_of", &kept_owners_table);
@@ -407,7 +408,7 @@ static void bind(void *solver) { mpsi_mpm_bind(solver); }
 static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
-  return mpsi_mpm_share_settle(solver, function, status);
+  return mpsi_mpm_agree(solver, function, status);
 }
 
 static mpsi_state_of state_of(mps_mpm *mpm) {
@@ -419,7 +420,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .list = list_state,
                          .fits = fits,
                          .make_room = mpsi_mpm_make_room,
-                         .take_share = mpsi_mpm_share_take_values,
+                         .take_share = mpsi_mpm_restore_on_ranks,
                          .settle = settle,
                          .bind = bind,
                          .after = forget_edits,
@@ -431,9 +432,9 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
 /* The lists that are kept must be of the present boundaries. */
 static mps_status make_whole(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
-  if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_tidy(mpm, function);
+  if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_apply_edits(mpm, function);
   if (status != MPS_OK) return status;
-  if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function, MPS_OK);
+  if (!mpm->run.broken) return mpsi_mpm_update_boundaries(mpm, function, MPS_OK);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "step %lld has failed: there is no state to go on from",
                    (long long)mpm->run.steps);
@@ -441,12 +442,12 @@ static mps_status make_whole(mps_mpm *mpm, const char *function) {
 
 mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
   mps_status status = make_whole(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_state_snapshot(&of, __func__, snapshot);
-  status = mpsi_mpm_share_settle(mpm, __func__, status);
-  if (status != MPS_OK) mpsi_mpm_put_off(mpm, &before);
+  status = mpsi_mpm_agree(mpm, __func__, status);
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
   return status;
 }
 
@@ -460,15 +461,15 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
-  mps_status status = mpsi_mpm_share_settle(mpm, __func__, make_whole(mpm, __func__));
+  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
+  mps_status status = mpsi_mpm_agree(mpm, __func__, make_whole(mpm, __func__));
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) {
-    mpsi_mpm_order_kept(mpm);
-    status = mpm->share ? mpsi_mpm_share_save(mpm, &of, __func__, path, info)
-                        : mpsi_checkpoint_save(&of, __func__, path, info);
+    mpsi_mpm_order_warm_start(mpm);
+    status = mpm->partition ? mpsi_mpm_save_on_ranks(mpm, &of, __func__, path, info)
+                            : mpsi_checkpoint_save(&of, __func__, path, info);
   }
-  if (status != MPS_OK) mpsi_mpm_put_off(mpm, &before);
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
   return status;
 }
 

@@ -13,10 +13,10 @@ enum { MPSI_BLOCK_AT = 1, MPSI_BLOCK_LOW = 4, MPSI_BLOCK_HIGH = 7, MPSI_BLOCK = 
 typedef int64_t mpsi_block[MPSI_BLOCK];
 
 /* At a node of an absorbing wall. */
-typedef struct mpsi_dash {
+typedef struct mpsi_dashpot {
   double across, along; /* rho c A, kg/s */
   double rest[3];       /* N, force of the wall at rest */
-} mpsi_dash;
+} mpsi_dashpot;
 enum { MPSI_DASH = 5 }; /* doubles */
 
 #define MPSI_SIDES 6 /* 2 axis + upper */

@@ -86,7 +86,7 @@ void mpsi_mpm_drop_loads(mps_mpm *mpm) {
 #define STRONGEST 1e150 /* N: impulses are numbers */
 
 static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def) {
-  const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+  const int64_t most = mpm->partition ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
   if (def->id_count < 1 || def->id_count > most || !def->ids)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld and ids %s, allowed are 1 to %lld particles",
@@ -111,7 +111,7 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mp
 static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
                              const mps_mpm_load_def *def) {
   if (status == MPS_OK) status = check_numbers(mpm, function, def);
-  return mpsi_mpm_share_check_ids(mpm, function, status, def->id_count, def->ids);
+  return mpsi_mpm_check_ids(mpm, function, status, def->id_count, def->ids);
 }
 
 static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,
@@ -156,7 +156,7 @@ static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_lo
 /* All ranks give the same load (`number` -1: a new one). */
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 int32_t number, const mps_mpm_load_def *def) {
-  if (!mpm->share) return status;
+  if (!mpm->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "load", number);
@@ -169,7 +169,7 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     mpsi_give_bytes(&given, "a hash of ids", def->ids, bytes);
     mpsi_give_bytes(&given, "a hash of area", def->area, bytes);
   }
-  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
 }
 
 /* The lowest free number, with a place in the list. */
@@ -198,7 +198,7 @@ mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t 
   if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
   if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);
   if (status == MPS_OK) status = find_number(mpm, __func__, &at);
-  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_agree(mpm, __func__, status);
   if (status != MPS_OK) {
     drop(mpm, &made);
     return status;
@@ -230,7 +230,7 @@ mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def
     mpsi_traction list = {.count = 0};
     status = check_list(mpm, __func__, status, &def);
     if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &list);
-    status = mpsi_mpm_share_settle(mpm, __func__, status);
+    status = mpsi_mpm_agree(mpm, __func__, status);
     if (status != MPS_OK) {
       drop(mpm, &list);
       return status;
@@ -246,8 +246,8 @@ mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def
 mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_status status = find_load(mpm, __func__, number);
-  if (mpm->share)
-    status = mpsi_domain_settle_same(mpm->share->domain, __func__, status, "load", number);
+  if (mpm->partition)
+    status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "load", number);
   if (status == MPS_OK) drop(mpm, &mpm->loads.traction[number]);
   return status;
 }

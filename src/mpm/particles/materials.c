@@ -108,18 +108,18 @@ static int32_t number_of(const mps_mpm *mpm, const mps_material *material) {
 static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
                              const mps_material *material, int64_t count, const int64_t *ids) {
   int64_t known = 0, all;
-  if (status == MPS_OK && (!ids || count < 0 || !mpm->share))
+  if (status == MPS_OK && (!ids || count < 0 || !mpm->partition))
     status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
-  if (!mpm->share) return status;
+  if (!mpm->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "having a list of ids", ids != NULL);
   mpsi_material_give(&given, material);
   mpsi_give(&given, "the number of the material", number_of(mpm, material));
-  status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+  status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
-  return mpsi_mpm_share_find(mpm, function, status, count, ids, known, &all);
+  return mpsi_mpm_find_removed(mpm, function, status, count, ids, known, &all);
 }
 
 static mps_status check(mps_mpm *mpm, const char *function, const mps_material *material,
@@ -171,11 +171,11 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
   if (!mpm) return MPS_ERROR_ARGUMENT;
   int32_t number = 0;
   mps_status status = mpsi_mpm_usable(mpm, __func__);
-  if (mpm->share) status = mpsi_mpm_share_agree(mpm, __func__, status);
+  if (mpm->partition) status = mpsi_mpm_compare_edits(mpm, __func__, status);
   if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
-  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_agree(mpm, __func__, status);
   if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
-  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_agree(mpm, __func__, status);
   if (status != MPS_OK) return status;
   for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
     const int64_t k = place(mpm, ids, i);

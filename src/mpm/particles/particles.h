@@ -38,7 +38,7 @@ double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t particle);
 mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
                                  bool *cleared);
-void mpsi_mpm_let_go(mps_mpm *mpm);
+void mpsi_mpm_remove_leaving(mps_mpm *mpm);
 mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact);
 
 /* As the holder of the set: see mpsi_holder; insertion.c from the third on. */
@@ -49,13 +49,13 @@ mps_status mpsi_mpm_insert(void *mpm, const char *function, int64_t first, int64
 mps_status mpsi_mpm_remove(void *mpm, const char *function, int64_t count, const int64_t *ids);
 void mpsi_mpm_renew(void *mpm);
 
-/* ready.c: a call that fails after it has taken up what the caller has written (mpsi_mpm_tidy) puts
+/* ready.c: a call that fails after it has taken up what the caller has written (mpsi_mpm_apply_edits) puts
  * that off again: the step and its limit are those of before. */
-typedef struct mpsi_untidy {
+typedef struct mpsi_edit_state {
   double speed;
   bool edited;
-} mpsi_untidy;
-mpsi_untidy mpsi_mpm_untidy(const mps_mpm *mpm);
-void mpsi_mpm_put_off(mps_mpm *mpm, const mpsi_untidy *before);
+} mpsi_edit_state;
+mpsi_edit_state mpsi_mpm_edit_state(const mps_mpm *mpm);
+void mpsi_mpm_restore_edit_state(mps_mpm *mpm, const mpsi_edit_state *before);
 
 #endif

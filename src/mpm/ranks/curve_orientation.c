@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-int64_t mpsi_mpm_placing_key(int32_t dim, const mpsi_placing *p, const int32_t *at) {
+int64_t mpsi_mpm_curve_key(int32_t dim, const mpsi_curve_orientation *p, const int32_t *at) {
   const int64_t last = MPSI_CURVE_SIDE(dim) - 1;
   int32_t place[3];
   for (int d = 0; d < dim; d++) {
@@ -29,7 +29,7 @@ typedef struct trial {
   int32_t dim;
   int64_t blocks, particles;
   const mpsi_placed *block;
-  mpsi_placing placing;
+  mpsi_curve_orientation orientation;
   int32_t ranks;
   weighed *list;
   int32_t *owner;   /* of each block */
@@ -45,7 +45,7 @@ static int compare(const void *left, const void *right) {
 static void find_owners(trial *t) {
   int64_t below = 0;
   for (int64_t b = 0; b < t->blocks; b++)
-    t->list[b] = (weighed){mpsi_mpm_placing_key(t->dim, &t->placing, t->block[b].at), b};
+    t->list[b] = (weighed){mpsi_mpm_curve_key(t->dim, &t->orientation, t->block[b].at), b};
   qsort(t->list, (size_t)t->blocks, sizeof *t->list, compare);
   for (int64_t k = 0; k < t->blocks; k++) {
     const int64_t weight = t->block[t->list[k].cells].particles;
@@ -104,8 +104,8 @@ static int64_t find_bounds(const trial *t, int32_t *low, int64_t *extent) {
 }
 
 /* Places that differ for any two blocks, and room to move beside them. */
-static mpsi_placing make_placing(const trial *t, int first, bool stretched) {
-  mpsi_placing p = {.side = 2};
+static mpsi_curve_orientation make_placing(const trial *t, int first, bool stretched) {
+  mpsi_curve_orientation p = {.side = 2};
   int64_t extent[3];
   const int64_t most = find_bounds(t, p.low, extent);
   while (p.side < 2 * most && p.side < MPSI_CURVE_SIDE(t->dim) / 4) p.side *= 2;
@@ -117,8 +117,8 @@ static mpsi_placing make_placing(const trial *t, int first, bool stretched) {
   return p;
 }
 
-bool mpsi_mpm_choose_placing(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
-                             const mpsi_placed *block, mpsi_placing *out) {
+bool mpsi_mpm_choose_orientation(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
+                                 const mpsi_placed *block, mpsi_curve_orientation *out) {
   trial t = {.dim = dim, .blocks = blocks, .block = block, .ranks = ranks};
   int64_t least = -1;
   for (int64_t b = 0; b < blocks; b++) t.particles += block[b].particles;
@@ -127,12 +127,12 @@ bool mpsi_mpm_choose_placing(mps_context *context, int32_t dim, int32_t ranks, i
   t.foreign = mpsi_alloc(context, ranks, sizeof *t.foreign);
   const bool good = t.list && t.owner && t.foreign;
   for (int way = 0; good && way < 2 * dim; way++) {
-    t.placing = make_placing(&t, way / 2, way % 2 != 0);
+    t.orientation = make_placing(&t, way / 2, way % 2 != 0);
     if (blocks > 0) find_owners(&t);
     const int64_t foreign = blocks > 0 ? count_foreign(&t) : 0;
     if (least >= 0 && foreign >= least) continue;
     least = foreign;
-    *out = t.placing;
+    *out = t.orientation;
   }
   mpsi_free(context, t.list);
   mpsi_free(context, t.owner);

@@ -3,29 +3,30 @@
  * borders of ranks. So several ways are tried, and the one is taken in which the rank that has most
  * blocks of others beside its own has fewest. Results do not depend on it.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PLACING_H
-#define MPSI_MPM_PLACING_H
+#ifndef MPSI_MPM_CURVE_ORIENTATION_H
+#define MPSI_MPM_CURVE_ORIENTATION_H
 
 #include <mps/mpm.h>
 
 #include <stdbool.h>
 
-typedef struct mpsi_placing {
+typedef struct mpsi_curve_orientation {
   int32_t axis[3]; /* of the grid, along each axis of the curve */
   int32_t low[3];  /* of the grid: its first block lies `base` places from the curve's beginning, */
   int64_t base;
   int64_t side, extent[3]; /* and so many blocks along `side` places */
-} mpsi_placing;
+} mpsi_curve_orientation;
 
 /* The key of the block `at`, also beyond the curve's ends. */
-int64_t mpsi_mpm_placing_key(int32_t dim, const mpsi_placing *placing, const int32_t *at);
+int64_t mpsi_mpm_curve_key(int32_t dim, const mpsi_curve_orientation *orientation,
+                           const int32_t *at);
 /* A block of cells with its number of particles. */
 typedef struct mpsi_placed {
   int32_t at[3];
   int64_t particles;
 } mpsi_placed;
 /* For all blocks, in order, of `ranks` ranks; false: memory refused. */
-bool mpsi_mpm_choose_placing(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
-                             const mpsi_placed *block, mpsi_placing *out);
+bool mpsi_mpm_choose_orientation(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
+                                 const mpsi_placed *block, mpsi_curve_orientation *out);
 
 #endif

@@ -33,7 +33,7 @@ static mpsi_placed *list_own(const mps_mpm *mpm) {
 
 /* The blocks of all ranks in one list, in order, each once. */
 static mpsi_placed *join_lists(mps_mpm *mpm, const mpsi_mailbox *box, int64_t *blocks) {
-  int64_t count = 0, kept = 0;
+  int64_t count = 0, warm = 0;
   for (int32_t m = 0; m < box->count; m++)
     count += box->mail[m].bytes / (int64_t)sizeof(mpsi_placed);
   mpsi_placed *list = mpsi_alloc(mpm->context, count, sizeof *list);
@@ -43,17 +43,17 @@ static mpsi_placed *join_lists(mps_mpm *mpm, const mpsi_mailbox *box, int64_t *b
     memcpy(to, box->mail[m].data, (size_t)box->mail[m].bytes);
   qsort(list, (size_t)count, sizeof *list, compare);
   for (int64_t k = 0; k < count; k++)
-    if (kept > 0 && compare(&list[kept - 1], &list[k]) == 0)
-      list[kept - 1].particles += list[k].particles;
+    if (warm > 0 && compare(&list[warm - 1], &list[k]) == 0)
+      list[warm - 1].particles += list[k].particles;
     else
-      list[kept++] = list[k];
-  *blocks = kept;
+      list[warm++] = list[k];
+  *blocks = warm;
   return list;
 }
 
 /* Every rank's list to every rank. */
 static mps_status place_by_list(mps_mpm *mpm, const char *function) {
-  mps_domain *domain = mpm->share->domain;
+  mps_domain *domain = mpm->partition->domain;
   const int32_t ranks = mps_domain_size(domain);
   mpsi_mailbox box = {.context = mpm->context};
   int64_t blocks = 0;
@@ -65,17 +65,17 @@ static mps_status place_by_list(mps_mpm *mpm, const char *function) {
   for (int32_t r = 0; status == MPS_OK && r < ranks; r++)
     message[r] = (mps_domain_message){
         .rank = r, .bytes = mpm->grid.cell_count * (int64_t)sizeof *own, .data = own};
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) status = mpsi_domain_exchange(domain, function, ranks, message, &box);
-  if (status == MPS_OK &&
-      (!(all = join_lists(mpm, &box, &blocks)) ||
-       !mpsi_mpm_choose_placing(mpm->context, mpm->dim, ranks, blocks, all, &mpm->share->placing)))
+  if (status == MPS_OK && (!(all = join_lists(mpm, &box, &blocks)) ||
+                           !mpsi_mpm_choose_orientation(mpm->context, mpm->dim, ranks, blocks, all,
+                                                        &mpm->partition->orientation)))
     status = mpsi_fail_memory(mpm->context, function, (size_t)blocks * sizeof *all);
   mpsi_domain_free_mail(&box);
   mpsi_free(mpm->context, own);
   mpsi_free(mpm->context, all);
   mpsi_free(mpm->context, message);
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }
 
 /* Over the first and the last block along each axis. */
@@ -87,14 +87,15 @@ static mps_status place_by_bounds(mps_mpm *mpm, const char *function) {
       const double at = mpm->grid.cells[b].at[c];
       bound[c] = fmax(bound[c], -at), bound[3 + c] = fmax(bound[3 + c], at);
     }
-  mps_status status = mpsi_domain_max(mpm->share->domain, function, 6, bound);
+  mps_status status = mpsi_domain_max(mpm->partition->domain, function, 6, bound);
   if (status != MPS_OK) return status;
   mpsi_placed corner[2] = {{.particles = 1}, {.particles = 1}};
   for (int c = 0; c < 3; c++)
     corner[0].at[c] = (int32_t)-bound[c], corner[1].at[c] = (int32_t)bound[3 + c];
-  if (!mpsi_mpm_choose_placing(mpm->context, mpm->dim, 1, 2, corner, &mpm->share->placing))
+  if (!mpsi_mpm_choose_orientation(mpm->context, mpm->dim, 1, 2, corner,
+                                   &mpm->partition->orientation))
     status = mpsi_fail_memory(mpm->context, function, sizeof corner);
-  return mpsi_domain_settle(mpm->share->domain, function, status);
+  return mpsi_domain_agree(mpm->partition->domain, function, status);
 }
 
 static mps_status find_blocks(mps_mpm *mpm, const char *function) {
@@ -123,13 +124,13 @@ mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status st
   int64_t blocks;
   status = mpsi_mpm_share_begin(mpm, function, status);
   if (status != MPS_OK) return status;
-  status = mpsi_domain_settle(mpm->share->domain, function, find_blocks(mpm, function));
+  status = mpsi_domain_agree(mpm->partition->domain, function, find_blocks(mpm, function));
   if (status != MPS_OK) return status;
   blocks = mpm->grid.cell_count;
-  status = mpsi_domain_sum(mpm->share->domain, function, 1, &blocks);
+  status = mpsi_domain_sum(mpm->partition->domain, function, 1, &blocks);
   if (status == MPS_OK)
     status = blocks <= MOST_BLOCKS ? place_by_list(mpm, function) : place_by_bounds(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_share_migrate(mpm, function, status, &moved);
-  return status == MPS_OK ? mpsi_domain_settle(mpm->share->domain, function, fit(mpm, function))
+  if (status == MPS_OK) status = mpsi_mpm_partition_migrate(mpm, function, status, &moved);
+  return status == MPS_OK ? mpsi_domain_agree(mpm->partition->domain, function, fit(mpm, function))
                           : status;
 }

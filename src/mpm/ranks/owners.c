@@ -19,11 +19,12 @@
 /* ---- the curve ------------------------------------------------------------------------------- */
 
 static int64_t key_of(const mps_mpm *mpm, const int32_t *at) {
-  return mpsi_mpm_placing_key(mpm->dim, &mpm->share->placing, at);
+  return mpsi_mpm_curve_key(mpm->dim, &mpm->partition->orientation, at);
 }
 
-int32_t mpsi_mpm_share_owner(const mps_mpm *mpm, const int32_t *at) {
-  return mpsi_curve_owner(mps_domain_size(mpm->share->domain), mpm->share->first, key_of(mpm, at));
+int32_t mpsi_mpm_block_owner(const mps_mpm *mpm, const int32_t *at) {
+  return mpsi_curve_owner(mps_domain_size(mpm->partition->domain), mpm->partition->first,
+                          key_of(mpm, at));
 }
 
 typedef struct weighed {
@@ -44,25 +45,26 @@ static bool place_curve(mps_mpm *mpm, int32_t ranks) {
     list[b].particles = cells->end - cells->begin;
     memcpy(list[b].at, cells->at, sizeof list[b].at);
   }
-  const bool good = list && mpsi_mpm_choose_placing(mpm->context, mpm->dim, ranks, blocks, list,
-                                                    &mpm->share->placing);
+  const bool good = list && mpsi_mpm_choose_orientation(mpm->context, mpm->dim, ranks, blocks, list,
+                                                        &mpm->partition->orientation);
   mpsi_free(mpm->context, list);
   return good;
 }
 
-mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole) {
-  mpsi_share *share = mpm->share;
-  const int32_t ranks = mps_domain_size(share->domain);
+mps_status mpsi_mpm_partition_cut(mps_mpm *mpm, const char *function, bool whole) {
+  mpsi_partition *partition = mpm->partition;
+  const int32_t ranks = mps_domain_size(partition->domain);
   const int64_t all = mpm->grid.cell_count,
-                blocks = whole && mps_domain_rank(share->domain) > 0 ? 0 : all;
+                blocks = whole && mps_domain_rank(partition->domain) > 0 ? 0 : all;
   const bool placed = !whole || place_curve(mpm, ranks);
   weighed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
   int64_t *key = mpsi_alloc(mpm->context, 2 * blocks, sizeof *key);
-  if (!share->first) share->first = mpsi_alloc(mpm->context, ranks + 1, sizeof *share->first);
+  if (!partition->first)
+    partition->first = mpsi_alloc(mpm->context, ranks + 1, sizeof *partition->first);
   mps_status status = MPS_OK;
-  if (!placed || !list || !key || !share->first)
+  if (!placed || !list || !key || !partition->first)
     status = mpsi_fail_memory(mpm->context, function, (size_t)(blocks + ranks) * sizeof *list);
-  status = mpsi_domain_settle(share->domain, function, status);
+  status = mpsi_domain_agree(partition->domain, function, status);
   for (int64_t b = 0; status == MPS_OK && b < blocks; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
     list[b] = (weighed){key_of(mpm, cells->at), cells->end - cells->begin};
@@ -70,7 +72,8 @@ mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole) {
   if (status == MPS_OK) {
     qsort(list, (size_t)blocks, sizeof *list, compare);
     for (int64_t b = 0; b < blocks; b++) key[b] = list[b].key, key[blocks + b] = list[b].weight;
-    status = mpsi_curve_cut(share->domain, function, blocks, key, key + blocks, share->first);
+    status =
+        mpsi_curve_cut(partition->domain, function, blocks, key, key + blocks, partition->first);
   }
   mpsi_free(mpm->context, list);
   mpsi_free(mpm->context, key);
@@ -109,7 +112,7 @@ static mps_status list_columns(departure *d) {
 
 static mps_status list_leaving(departure *d, const char *function) {
   mps_mpm *mpm = d->mpm;
-  const int32_t rank = mps_domain_rank(mpm->share->domain);
+  const int32_t rank = mps_domain_rank(mpm->partition->domain);
   mps_status status = list_columns(d);
   if (status != MPS_OK) return status;
   const int64_t count = mpm->p.count;
@@ -122,7 +125,7 @@ static mps_status list_leaving(departure *d, const char *function) {
   memset(d->gone, 0, (size_t)count);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    const int32_t owner = mpsi_mpm_share_owner(mpm, cells->at);
+    const int32_t owner = mpsi_mpm_block_owner(mpm, cells->at);
     for (int64_t k = cells->begin; owner != rank && k < cells->end; k++) {
       d->gone[k] = 1;
       d->row[d->count] = k;
@@ -146,7 +149,7 @@ static mps_status take_in(departure *d, const char *function, const mpsi_mailbox
     status = mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
   if (status == MPS_OK) status = mpsi_particles_hold_room(mpm->particles, function, count);
   mpsi_mpm_bind(mpm); /* columns may have moved */
-  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_particles_make_way(mpm->particles, d->gone);
   (void)list_columns(d);
@@ -162,12 +165,12 @@ static const int64_t *ids_of(const mps_mpm *mpm) {
 
 static mps_status send(departure *d, const char *function, mps_status status, bool *moved) {
   mps_mpm *mpm = d->mpm;
-  mps_domain *domain = mpm->share->domain;
+  mps_domain *domain = mpm->partition->domain;
   mpsi_mailbox box = {.context = mpm->context};
   mpsi_census before;
   int64_t arriving = 0;
   if (status == MPS_OK) status = list_leaving(d, function);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   if (COUNT_IDS && status == MPS_OK)
     status = mpsi_census_take(domain, function, mpm->p.count, ids_of(mpm), &before);
   if (status != MPS_OK) return status;
@@ -187,24 +190,24 @@ static mps_status send(departure *d, const char *function, mps_status status, bo
 
 /* Anew where a rank has more than any had. */
 static mps_status rebalance(mps_mpm *mpm, const char *function, mps_status status) {
-  mpsi_share *share = mpm->share;
+  mpsi_partition *partition = mpm->partition;
   double most = (double)mpm->p.count;
-  status = mpsi_domain_settle_max(share->domain, function, status, 1, &most);
-  if (status != MPS_OK || (share->heaviest > 0.0 && most <= GROWTH * share->heaviest))
+  status = mpsi_domain_agree_max(partition->domain, function, status, 1, &most);
+  if (status != MPS_OK || (partition->heaviest > 0.0 && most <= GROWTH * partition->heaviest))
     return status;
-  share->heaviest = 0.0;
-  return mpsi_mpm_share_cut(mpm, function, false);
+  partition->heaviest = 0.0;
+  return mpsi_mpm_partition_cut(mpm, function, false);
 }
 
-mps_status mpsi_mpm_share_migrate(mps_mpm *mpm, const char *function, mps_status status,
-                                  bool *moved) {
-  mpsi_share *share = mpm->share;
+mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_status status,
+                                      bool *moved) {
+  mpsi_partition *partition = mpm->partition;
   departure d = {.mpm = mpm};
   status = rebalance(mpm, function, status);
   if (status == MPS_OK) status = send(&d, function, status, moved);
-  if (status == MPS_OK && share->heaviest == 0.0) {
-    share->heaviest = (double)mpm->p.count;
-    status = mpsi_domain_max(share->domain, function, 1, &share->heaviest);
+  if (status == MPS_OK && partition->heaviest == 0.0) {
+    partition->heaviest = (double)mpm->p.count;
+    status = mpsi_domain_max(partition->domain, function, 1, &partition->heaviest);
   }
   mpsi_free(mpm->context, d.column);
   mpsi_free(mpm->context, d.gone);
@@ -220,15 +223,15 @@ static bool is_own(const mps_mpm *mpm, int64_t k) {
   for (int c = 0; c < mpm->dim; c++)
     block[c] = (int32_t)mpsi_block_of(
         (int64_t)mpsi_base(mpm->def.spline, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])));
-  return mpsi_mpm_share_owner(mpm, block) == mps_domain_rank(mpm->share->domain);
+  return mpsi_mpm_block_owner(mpm, block) == mps_domain_rank(mpm->partition->domain);
 }
 
-mps_status mpsi_mpm_share_keep_added(mps_mpm *mpm, const char *function, mps_status status,
-                                     int64_t first) {
+mps_status mpsi_mpm_keep_own_inserted(mps_mpm *mpm, const char *function, mps_status status,
+                                      int64_t first) {
   uint8_t *gone = NULL;
   if (status == MPS_OK && !(gone = mpsi_alloc(mpm->context, mpm->p.count, 1)))
     status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
-  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status == MPS_OK) {
     memset(gone, 0, (size_t)first);
     for (int64_t k = first; k < mpm->p.count; k++) gone[k] = !is_own(mpm, k);

@@ -24,7 +24,7 @@ typedef struct search {
   mpsi_cell_block *own; /* in their order */
   int64_t count;
   int64_t *range; /* of each rank: lower (3) and upper (3) blocks, and how many */
-  notice *told;   /* to each rank one after the other */
+  notice *sent;   /* to each rank one after the other */
   mps_domain_message *message;
   mpsi_mailbox box;
   notice *ghost; /* in order of their owners */
@@ -62,14 +62,14 @@ static bool beside_own(const search *s, const int32_t *at) {
 static mps_status take_own(search *s) {
   const mpsi_grid *grid = &s->mpm->grid;
   mps_context *context = s->mpm->context;
-  const int64_t ranks = mps_domain_size(s->mpm->share->domain);
+  const int64_t ranks = mps_domain_size(s->mpm->partition->domain);
   s->own = mpsi_alloc(context, grid->cell_count, sizeof *s->own);
   s->range = mpsi_alloc(context, RANGE * ranks, sizeof *s->range);
   if (!s->own || !s->range)
     return mpsi_fail_memory(context, s->function, (size_t)grid->cell_count * sizeof *s->own);
   for (int64_t b = 0; b < grid->cell_count; b++)
     if (!grid->cells[b].ghost) s->own[s->count++] = grid->cells[b];
-  int64_t *mine = s->range + RANGE * mps_domain_rank(s->mpm->share->domain);
+  int64_t *mine = s->range + RANGE * mps_domain_rank(s->mpm->partition->domain);
   memset(s->range, 0, (size_t)(RANGE * ranks) * sizeof *s->range);
   for (int64_t b = 0; b < s->count; b++)
     for (int c = 0; c < 3; c++) {
@@ -91,24 +91,24 @@ static bool near_range(const int64_t *range, const int32_t *at) {
 
 static mps_status tell(search *s) {
   mps_context *context = s->mpm->context;
-  mps_domain *domain = s->mpm->share->domain;
+  mps_domain *domain = s->mpm->partition->domain;
   const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
   int64_t notices = 0;
   int32_t messages = 0;
   for (int32_t r = 0; r < ranks; r++)
     for (int64_t b = 0; r != rank && b < s->count; b++)
       notices += near_range(s->range + RANGE * r, s->own[b].at);
-  s->told = mpsi_alloc(context, notices, sizeof *s->told);
+  s->sent = mpsi_alloc(context, notices, sizeof *s->sent);
   s->message = mpsi_alloc(context, ranks, sizeof *s->message);
   mps_status status = MPS_OK;
-  if (!s->told || !s->message)
-    status = mpsi_fail_memory(context, s->function, (size_t)notices * sizeof *s->told);
+  if (!s->sent || !s->message)
+    status = mpsi_fail_memory(context, s->function, (size_t)notices * sizeof *s->sent);
   notices = 0;
   for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
     const int64_t first = notices;
     for (int64_t b = 0; r != rank && b < s->count; b++) {
       if (!near_range(s->range + RANGE * r, s->own[b].at)) continue;
-      notice *n = &s->told[notices++];
+      notice *n = &s->sent[notices++];
       n->number = (int32_t)b;
       memcpy(n->at, s->own[b].at, sizeof n->at);
       memcpy(n->low, s->own[b].low, sizeof n->low);
@@ -117,10 +117,10 @@ static mps_status tell(search *s) {
     if (notices > first)
       s->message[messages++] =
           (mps_domain_message){.rank = r,
-                               .bytes = (notices - first) * (int64_t)sizeof *s->told,
-                               .data = s->told + first};
+                               .bytes = (notices - first) * (int64_t)sizeof *s->sent,
+                               .data = s->sent + first};
   }
-  status = mpsi_domain_settle(domain, s->function, status);
+  status = mpsi_domain_agree(domain, s->function, status);
   if (status != MPS_OK) return status;
   return mpsi_domain_exchange(domain, s->function, messages, s->message, &s->box);
 }
@@ -191,22 +191,22 @@ static void merge(const search *s, const int64_t *order, int32_t *place) {
 
 static bool put_lists(search *s) {
   mps_mpm *mpm = s->mpm;
-  mpsi_share *share = mpm->share;
+  mpsi_partition *partition = mpm->partition;
   const int64_t all = s->count + s->ghosts;
   int64_t *order = mpsi_alloc(mpm->context, 2 * s->ghosts, sizeof *order);
   int32_t *place = mpsi_alloc(mpm->context, s->count, sizeof *place);
-  bool good =
-      order && place && mpsi_mpm_ensure_cells(mpm, all) &&
-      mpsi_room_ensure(mpm->context, &share->border_room, s->count, sizeof *share->border) &&
-      mpsi_room_ensure(mpm->context, &share->rank_room, s->ghosts, sizeof *s->rank);
+  bool good = order && place && mpsi_mpm_ensure_cells(mpm, all) &&
+              mpsi_room_ensure(mpm->context, &partition->border_room, s->count,
+                               sizeof *partition->border) &&
+              mpsi_room_ensure(mpm->context, &partition->rank_room, s->ghosts, sizeof *s->rank);
   if (good) {
-    share->border = share->border_room.item;
-    share->ghost_rank = share->rank_room.item;
-    if (s->ghosts > 0) memcpy(share->ghost_rank, s->rank, (size_t)s->ghosts * sizeof *s->rank);
+    partition->border = partition->border_room.item;
+    partition->ghost_rank = partition->rank_room.item;
+    if (s->ghosts > 0) memcpy(partition->ghost_rank, s->rank, (size_t)s->ghosts * sizeof *s->rank);
     sort_ghosts(s, order, order + s->ghosts);
     merge(s, order, place);
-    for (int64_t k = 0; k < s->count; k++) share->border[k] = place[k];
-    share->ghosts = s->ghosts;
+    for (int64_t k = 0; k < s->count; k++) partition->border[k] = place[k];
+    partition->ghosts = s->ghosts;
     good = mpsi_mpm_build_nodes(mpm, all);
   }
   mpsi_free(mpm->context, order);
@@ -227,19 +227,20 @@ static void mark_blocks(mps_mpm *mpm) {
     }
   }
   for (int64_t g = 0; g < grid->node_count; g++)
-    grid->nodes[g].foreign = !mpsi_mpm_share_knows(mpm, g);
+    grid->nodes[g].foreign = !mpsi_mpm_node_block_complete(mpm, g);
 }
 
 /* Which own blocks others have asked for; room for parcels. */
 static mps_status find_border(mps_mpm *mpm, const char *function) {
-  mpsi_share *share = mpm->share;
+  mpsi_partition *partition = mpm->partition;
   const int64_t *item;
-  share->borders = mpsi_halo_items(share->halo, &item);
-  for (int64_t k = 0; k < share->borders; k++) { /* item[k] >= k: none is overwritten too early */
-    share->border[k] = share->border[item[k]];
-    mpm->grid.cells[share->border[k]].parcel = k;
+  partition->borders = mpsi_halo_items(partition->halo, &item);
+  for (int64_t k = 0; k < partition->borders;
+       k++) { /* item[k] >= k: none is overwritten too early */
+    partition->border[k] = partition->border[item[k]];
+    mpm->grid.cells[partition->border[k]].parcel = k;
   }
-  return mpsi_mpm_share_parcels(mpm, function);
+  return mpsi_mpm_reserve_tiles(mpm, function);
 }
 
 static double widest(const search *s) {
@@ -254,55 +255,55 @@ static double widest(const search *s) {
 
 static mps_status join(search *s) {
   mps_mpm *mpm = s->mpm;
-  mpsi_share *share = mpm->share;
+  mpsi_partition *partition = mpm->partition;
   double most = widest(s);
   mps_status status = choose_ghosts(s);
   if (status == MPS_OK && !put_lists(s))
     status = mpsi_fail_memory(mpm->context, s->function,
                               (size_t)(s->count + s->ghosts) * sizeof *mpm->grid.cells);
-  status = mpsi_domain_settle_max(share->domain, s->function, status, 1, &most);
+  status = mpsi_domain_agree_max(partition->domain, s->function, status, 1, &most);
   if (status != MPS_OK) return status;
-  share->most = (int32_t)most;
+  partition->most = (int32_t)most;
   mark_blocks(mpm);
-  mpsi_halo_destroy(mpm->context, &share->halo);
+  mpsi_halo_destroy(mpm->context, &partition->halo);
   const mpsi_halo_def def = {.guests = s->ghosts, .rank = s->rank, .index = s->index};
-  status = mpsi_halo_create(share->domain, s->function, &def, &share->halo);
+  status = mpsi_halo_create(partition->domain, s->function, &def, &partition->halo);
   if (status != MPS_OK) return status;
-  return mpsi_domain_settle(share->domain, s->function, find_border(mpm, s->function));
+  return mpsi_domain_agree(partition->domain, s->function, find_border(mpm, s->function));
 }
 
-mps_status mpsi_mpm_share_join(mps_mpm *mpm, const char *function) {
-  mpsi_share *share = mpm->share;
-  if (!share->outdated) return MPS_OK;
+mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
+  mpsi_partition *partition = mpm->partition;
+  if (!partition->outdated) return MPS_OK;
   search s = {.mpm = mpm, .function = function, .box.context = mpm->context};
-  mps_status status = mpsi_domain_settle(share->domain, function, take_own(&s));
+  mps_status status = mpsi_domain_agree(partition->domain, function, take_own(&s));
   if (status == MPS_OK)
-    status =
-        mpsi_domain_sum(share->domain, function, RANGE * mps_domain_size(share->domain), s.range);
+    status = mpsi_domain_sum(partition->domain, function,
+                             RANGE * mps_domain_size(partition->domain), s.range);
   if (status == MPS_OK) status = tell(&s);
   if (status == MPS_OK) status = join(&s);
   mpsi_domain_free_mail(&s.box);
-  void *parts[] = {s.own, s.range, s.told, s.message, s.ghost, s.rank, s.index};
+  void *parts[] = {s.own, s.range, s.sent, s.message, s.ghost, s.rank, s.index};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
-  share->outdated = status != MPS_OK;
-  if (share->outdated) mpm->run.stale = true; /* the lists may be gone */
+  partition->outdated = status != MPS_OK;
+  if (partition->outdated) mpm->run.stale = true; /* the lists may be gone */
   return status;
 }
 
-mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function) {
   bool moved = false;
-  mpm->share->outdated = true;
+  mpm->partition->outdated = true;
   mps_status status = mpsi_mpm_sort_cells(mpm, function);
-  status = mpsi_mpm_share_kept(mpm, function, status);
-  status = mpsi_mpm_share_migrate(mpm, function, status, &moved);
+  status = mpsi_mpm_share_warm_start(mpm, function, status);
+  status = mpsi_mpm_partition_migrate(mpm, function, status, &moved);
   if (status != MPS_OK) {
     mpm->run.stale = true;
     return status;
   }
   if (moved) status = mpsi_mpm_sort_cells(mpm, function);
-  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) mpm->run.stale = true;
-  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
+  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
 }
 
 /* ---- the first cut --------------------------------------------------------------------------- */
@@ -310,10 +311,10 @@ mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function) {
 /* The rows of own blocks, which come to lie one behind the other. */
 static int64_t take_blocks(mps_mpm *mpm, int64_t *rows) {
   mpsi_cell_block *cells = mpm->grid.cells;
-  const int32_t rank = mps_domain_rank(mpm->share->domain);
+  const int32_t rank = mps_domain_rank(mpm->partition->domain);
   int64_t blocks = 0, count = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    if (mpsi_mpm_share_owner(mpm, cells[b].at) != rank) continue;
+    if (mpsi_mpm_block_owner(mpm, cells[b].at) != rank) continue;
     const int64_t begin = count;
     for (int64_t k = cells[b].begin; k < cells[b].end; k++) rows[count++] = k;
     cells[blocks] = cells[b];
@@ -360,67 +361,67 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   MPSI_GIVE_VECTOR(&given, d, lower, mpm->dim);
   MPSI_GIVE_VECTOR(&given, d, upper, mpm->dim);
   if (status == MPS_OK) mpsi_material_give(&given, mpm->laws.law[0].material);
-  status = mpsi_domain_settle_given(d->domain, function, status, &given);
+  status = mpsi_domain_agree_given(d->domain, function, status, &given);
   if (status != MPS_OK || mpsi_particles_deal(mpm->particles)) return status;
   return mpsi_domain_settle_particles(d->domain, function, status, mpm->particles);
 }
 
 mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
   mps_domain *domain = mpm->def.domain;
-  if (status == MPS_OK) mpm->share = mpsi_alloc(mpm->context, 1, sizeof *mpm->share);
-  if (status == MPS_OK && !mpm->share)
-    status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->share);
+  if (status == MPS_OK) mpm->partition = mpsi_alloc(mpm->context, 1, sizeof *mpm->partition);
+  if (status == MPS_OK && !mpm->partition)
+    status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->partition);
   status = mpsi_domain_settle_parts(domain, function, status, mpm->particles);
   if (status != MPS_OK) {
-    mpsi_free(mpm->context, mpm->share);
-    mpm->share = NULL;
+    mpsi_free(mpm->context, mpm->partition);
+    mpm->partition = NULL;
     return status;
   }
-  *mpm->share = (mpsi_share){.domain = mpsi_domain_retain(domain), .outdated = true};
-  if (!mpsi_mpm_begin_mates(mpm))
+  *mpm->partition = (mpsi_partition){.domain = mpsi_domain_retain(domain), .outdated = true};
+  if (!mpsi_mpm_begin_partners(mpm))
     status = mpsi_fail_memory(mpm->context, function, (size_t)mps_domain_size(domain));
-  return mpsi_domain_settle(domain, function, status);
+  return mpsi_domain_agree(domain, function, status);
 }
 
-mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status status,
-                               mpsi_storage **former) {
+mps_status mpsi_mpm_partition_create(mps_mpm *mpm, const char *function, mps_status status,
+                                     mpsi_storage **former) {
   mps_domain *domain = mpm->def.domain;
   status = mpsi_mpm_share_begin(mpm, function, status);
   if (status == MPS_OK) status = compare_ranks(mpm, function, status);
-  if (status == MPS_OK) status = mpsi_mpm_share_cut(mpm, function, true);
+  if (status == MPS_OK) status = mpsi_mpm_partition_cut(mpm, function, true);
   if (status == MPS_OK)
-    status = mpsi_domain_settle(domain, function, keep_own(mpm, function, former));
-  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
+    status = mpsi_domain_agree(domain, function, keep_own(mpm, function, former));
+  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
 }
 
 mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status) {
   status = compare_ranks(mpm, function, status);
-  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
+  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
 }
 
-void mpsi_mpm_share_free(mps_mpm *mpm) {
-  mpsi_share *share = mpm->share;
-  if (!share) return;
-  mpsi_mpm_meet_free(mpm);
-  mpsi_mpm_free_mates(mpm);
-  mpm->share = NULL;
-  mpsi_halo_destroy(mpm->context, &share->halo);
-  mpsi_free(mpm->context, share->first);
-  mpsi_free(mpm->context, share->border_room.item);
-  mpsi_free(mpm->context, share->rank_room.item);
-  mpsi_free(mpm->context, share->out_room.item);
-  mpsi_free(mpm->context, share->in_room.item);
-  mps_domain_destroy(&share->domain);
-  mpsi_free(mpm->context, share);
+void mpsi_mpm_partition_free(mps_mpm *mpm) {
+  mpsi_partition *partition = mpm->partition;
+  if (!partition) return;
+  mpsi_mpm_free_contact_exchange(mpm);
+  mpsi_mpm_free_partners(mpm);
+  mpm->partition = NULL;
+  mpsi_halo_destroy(mpm->context, &partition->halo);
+  mpsi_free(mpm->context, partition->first);
+  mpsi_free(mpm->context, partition->border_room.item);
+  mpsi_free(mpm->context, partition->rank_room.item);
+  mpsi_free(mpm->context, partition->out_room.item);
+  mpsi_free(mpm->context, partition->in_room.item);
+  mps_domain_destroy(&partition->domain);
+  mpsi_free(mpm->context, partition);
 }
 
 /* ---- before a step
  * ------------------------------------------------------------------------------- */
 
-mps_status mpsi_mpm_share_tidy(mps_mpm *mpm, const char *function, mps_status status) {
-  if (!mpm->run.stale && !mpm->share->outdated) return status;
-  status = mpsi_domain_settle(mpm->share->domain, function, status);
+mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status) {
+  if (!mpm->run.stale && !mpm->partition->outdated) return status;
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK || mpm->run.stale) return status;
   mpm->boundaries.outdated = true;
-  return mpsi_mpm_share_join(mpm, function);
+  return mpsi_mpm_partition_find_ghosts(mpm, function);
 }

@@ -10,8 +10,8 @@
  *
  * Sums over blocks of nodes count each where the first block of cells that covers it is.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_SHARE_H
-#define MPSI_MPM_SHARE_H
+#ifndef MPSI_MPM_PARTITION_H
+#define MPSI_MPM_PARTITION_H
 
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
@@ -22,7 +22,7 @@
 
 #include <mps/mpm.h>
 
-typedef struct mpsi_share {
+typedef struct mpsi_partition {
   mps_domain *domain;
   mpsi_halo *halo;         /* of tiles; NULL: none yet */
   bool outdated;           /* the ghosts are not those of the present blocks */
@@ -31,25 +31,25 @@ typedef struct mpsi_share {
   int32_t *border;         /* numbers of the blocks of cells */
   int32_t *ghost_rank;     /* of each copy */
   int32_t most;            /* nodes of the widest part of a tile in use, on all ranks */
-  bool apart, thin;     /* some tile that is sent has forces, is parted, in the step being made; */
-  int32_t springs;      /* of so many bodies are there tiles of springs with one, at most */
-  int32_t item;         /* bytes of a parcel: a tile on its way, or other sums */
-  double *out, *in;     /* parcels */
-  int64_t *first;       /* of each rank: the first key on the curve of its blocks (curve.h) */
-  mpsi_placing placing; /* how the curve lies over the blocks */
-  double heaviest;      /* particles of the rank that had most, after the last cut */
-  bool cancel;          /* a hook has asked to stop, on whatever rank */
-  mps_status lost;      /* of a message in the step being made */
-  mpsi_mates mates;     /* who meets: see partners.h */
-  mpsi_meeting meeting; /* touches of mates: see exchange.h */
+  bool apart, thin; /* some tile that is sent has forces, is parted, in the step being made; */
+  int32_t penalty_bodies; /* of so many bodies are there tiles of springs with one, at most */
+  int32_t item;           /* bytes of a parcel: a tile on its way, or other sums */
+  double *out, *in;       /* parcels */
+  int64_t *first;         /* of each rank: the first key on the curve of its blocks (curve.h) */
+  mpsi_curve_orientation orientation; /* how the curve lies over the blocks */
+  double heaviest;                    /* particles of the rank that had most, after the last cut */
+  bool cancel;                        /* a hook has asked to stop, on whatever rank */
+  mps_status lost;                    /* of a message in the step being made */
+  mpsi_contact_partners partners;     /* who meets: see partners.h */
+  mpsi_contact_exchange exchange;     /* touches of mates: see exchange.h */
   mpsi_room border_room, rank_room, out_room, in_room;
-} mpsi_share;
+} mpsi_partition;
 
 /* partition.c: leaves a solver that is made, with the whole set on each rank, this rank's share.
  * `status`: what has become of it so far here. Collective, as all of the following but where they
  * say so. */
-mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status status,
-                               mpsi_storage **former);
+mps_status mpsi_mpm_partition_create(mps_mpm *mpm, const char *function, mps_status status,
+                                     mpsi_storage **former);
 /* The first part of that: whether all ranks take part. */
 mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status);
 /* deal.c: the same of a set in parts, before the solver has added its fields: particles go to the
@@ -57,74 +57,74 @@ mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status s
 mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status status);
 mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status);
 /* Not collective. */
-void mpsi_mpm_share_free(mps_mpm *mpm);
+void mpsi_mpm_partition_free(mps_mpm *mpm);
 /* owners.c: cuts the curve anew for blocks in grid.cells, which all ranks or (`whole`) each has all
  * of; the owner of a block (not collective). */
-mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole);
-int32_t mpsi_mpm_share_owner(const mps_mpm *mpm, const int32_t *at);
+mps_status mpsi_mpm_partition_cut(mps_mpm *mpm, const char *function, bool whole);
+int32_t mpsi_mpm_block_owner(const mps_mpm *mpm, const int32_t *at);
 /* owners.c: particles of blocks of cells that are not this rank's go to their owners; `moved`
  * where some have gone or come. */
-mps_status mpsi_mpm_share_migrate(mps_mpm *mpm, const char *function, mps_status status,
-                                  bool *moved);
+mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_status status,
+                                      bool *moved);
 /* partition.c: sorts, and finds the ghosts; the latter alone, where they are outdated. */
-mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function);
-mps_status mpsi_mpm_share_join(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function);
 /* collective_status.c: what has become of all ranks, or of the only one. */
-mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_agree(mps_mpm *mpm, const char *function, mps_status status);
 /* collective_status.c: the same, and whether all have the same time and bodies; with the greatest of `count`
  * values. In a step also whether signals have given all the same. */
-mps_status mpsi_mpm_share_settle_alike(mps_mpm *mpm, const char *function, mps_status status,
-                                       int32_t count, double *values);
-mps_status mpsi_mpm_share_settle_step(mps_mpm *mpm, const char *function, mps_status status,
-                                      int32_t count, double *values);
+mps_status mpsi_mpm_agree_alike(mps_mpm *mpm, const char *function, mps_status status,
+                                int32_t count, double *values);
+mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
+                                  int32_t count, double *values);
 /* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank; what has
  * become of all before, `status` here, comes first. */
-mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
-                                    int64_t count, const int64_t *ids);
+mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
+                              const int64_t *ids);
 /* collective_status.c: whether a sum over blocks of nodes counts g here. Not collective. */
-bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g);
+bool mpsi_mpm_counts_node_block(const mps_mpm *mpm, int64_t g);
 /* collective_status.c: whether all that reaches g is known here, its own or as a ghost. Not collective. */
-bool mpsi_mpm_share_knows(const mps_mpm *mpm, int64_t g);
+bool mpsi_mpm_node_block_complete(const mps_mpm *mpm, int64_t g);
 
 /* row_order.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank; before
  * particles leave the set, on one rank too, the blocks follow. Not collective. */
-int64_t mpsi_mpm_share_runs(const void *mpm, mpsi_row_run *out);
+int64_t mpsi_mpm_row_runs(const void *mpm, mpsi_row_run *out);
 void mpsi_mpm_thin_out(void *mpm, const uint8_t *gone);
 /* collective_status.c: as the holder of the set, what the caller adds and removes. */
-mps_status mpsi_mpm_share_agree_added(void *mpm, const char *function, mps_status status,
-                                      int64_t first);
-mps_status mpsi_mpm_share_find(void *mpm, const char *function, mps_status status, int64_t count,
-                               const int64_t *ids, int64_t known, int64_t *all);
+mps_status mpsi_mpm_agree_on_insertion(void *mpm, const char *function, mps_status status,
+                                       int64_t first);
+mps_status mpsi_mpm_find_removed(void *mpm, const char *function, mps_status status, int64_t count,
+                                 const int64_t *ids, int64_t known, int64_t *all);
 /* owners.c: of the particles from `first` on, which all ranks have, those stay that are this
  * rank's. */
-mps_status mpsi_mpm_share_keep_added(mps_mpm *mpm, const char *function, mps_status status,
-                                     int64_t first);
+mps_status mpsi_mpm_keep_own_inserted(mps_mpm *mpm, const char *function, mps_status status,
+                                      int64_t first);
 
 /* partition.c: before the blocks are used: sorted or not, ghosts are those of the present ones. */
-mps_status mpsi_mpm_share_tidy(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status);
 /* collective_status.c: whether some rank has it. */
-mps_status mpsi_mpm_share_any(mps_mpm *mpm, const char *function, bool *any);
+mps_status mpsi_mpm_any_rank(mps_mpm *mpm, const char *function, bool *any);
 /* collective_status.c: what the callers of all ranks have edited. */
-mps_status mpsi_mpm_share_agree(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_compare_edits(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: room for parcels, whatever the step. Not collective. */
-mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_reserve_tiles(mps_mpm *mpm, const char *function);
 /* tiles.c: corners of cells with particles (pairs.h), of ghosts too: while bodies are looked for.
  */
-mps_status mpsi_mpm_share_reached(mps_mpm *mpm, const char *function, bool known);
+mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);
 /* tiles.c: whether the step to be made needs what the last one needed, so that nothing of it can
  * fail: then the ranks need not ask one another. Not collective: all know the same. */
-bool mpsi_mpm_share_goes_on(const mps_mpm *mpm);
+bool mpsi_mpm_partition_unchanged(const mps_mpm *mpm);
 /* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */
-mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */
-mps_status mpsi_mpm_share_send(mps_mpm *mpm, const char *function);
-void mpsi_mpm_share_receive(mps_mpm *mpm);
+mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function);
+void mpsi_mpm_receive_tiles(mps_mpm *mpm);
 /* tiles.c: the same for other sums, which `sum` puts into a worker's tile, without forces; then
  * such a tile of block b (not collective), false where messages are lost. */
-void mpsi_mpm_share_send_sums(mps_mpm *mpm, void (*sum)(mps_mpm *, int64_t, int32_t));
-bool mpsi_mpm_share_take_sums(mps_mpm *mpm, int64_t b, int32_t worker,
-                              void (*sum)(mps_mpm *, int64_t, int32_t));
+void mpsi_mpm_send_sums(mps_mpm *mpm, void (*sum)(mps_mpm *, int64_t, int32_t));
+bool mpsi_mpm_receive_sums(mps_mpm *mpm, int64_t b, int32_t worker,
+                           void (*sum)(mps_mpm *, int64_t, int32_t));
 /* tiles.c: a block of cells to its nodes, whoever has summed it. Not collective. */
-void mpsi_mpm_share_scatter(mps_mpm *mpm, int64_t b, int32_t worker);
+void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

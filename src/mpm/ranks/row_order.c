@@ -14,7 +14,7 @@ static int64_t list_added(const mps_mpm *mpm, int64_t first, mpsi_row_run *out) 
   return mpm->p.count - first;
 }
 
-int64_t mpsi_mpm_share_runs(const void *self, mpsi_row_run *out) {
+int64_t mpsi_mpm_row_runs(const void *self, mpsi_row_run *out) {
   const mps_mpm *mpm = self;
   int64_t count = 0, rows = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {

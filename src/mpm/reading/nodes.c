@@ -18,23 +18,23 @@ mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out, size_t si
 
 /* The sums themselves, when all is known. */
 static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
-  mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_springs};
-  if (mpm->share) {
-    pass.scatter = mpsi_mpm_share_scatter;
-    pass.arrive = mpsi_mpm_share_receive;
-    const mps_status status = mpsi_mpm_share_send(mpm, function);
+  mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_penalty};
+  if (mpm->partition) {
+    pass.scatter = mpsi_mpm_scatter_tile;
+    pass.arrive = mpsi_mpm_receive_tiles;
+    const mps_status status = mpsi_mpm_send_tiles(mpm, function);
     if (status != MPS_OK) return status;
   }
   mpsi_mpm_run_pass(mpm, &pass);
-  return mpm->share ? mpm->share->lost : MPS_OK;
+  return mpm->partition ? mpm->partition->lost : MPS_OK;
 }
 
 /* Sums of mass, momentum and force at the nodes. `status`: status of the call so far here;
  * collective. */
 static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status status) {
-  status = mpsi_mpm_share_settle(mpm, function, status);
-  if (status == MPS_OK) status = mpsi_mpm_tidy(mpm, function);
-  if (status == MPS_OK && mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
+  status = mpsi_mpm_agree(mpm, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_apply_edits(mpm, function);
+  if (status == MPS_OK && mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
@@ -42,10 +42,10 @@ static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status statu
   if (status != MPS_OK) return status; /* on all ranks */
   mpm->grid.apart = true;
   status = mpsi_mpm_evaluate_signals(mpm, function, mps_mpm_dt(mpm), false);
-  status = mpsi_mpm_update_holds(mpm, function, status);
+  status = mpsi_mpm_update_boundaries(mpm, function, status);
   status = mpsi_mpm_find_near(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
-  if (mpm->share) status = mpsi_mpm_share_ready(mpm, function, status);
+  if (mpm->partition) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status == MPS_OK) status = sum_nodes(mpm, function);
   mpm->grid.apart = false;
   return status;
@@ -70,7 +70,7 @@ static bool read_node(const mps_mpm *mpm, int64_t g, int k, node *out) {
     out->v[c] = c < mpm->dim ? sum[MPSI_VECTOR + c] / carried : 0.0;
     out->f[c] = c < mpm->dim ? side[MPSI_VECTOR + c] : 0.0;
   }
-  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  const int32_t pairs = mpm->contact.penalty_bodies > 0 ? nodes->pairs : 0;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
     const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
     for (int c = 0; c < mpm->dim && at->mass != 0.0; c++) out->f[c] += at->force[c];
@@ -96,7 +96,7 @@ mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity, int64_t *count, 
   int64_t n = 0;
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++)
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
-      if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) break;
+      if (mpm->partition && !mpsi_mpm_counts_node_block(mpm, g)) break;
       node at;
       if (!read_node(mpm, g, k, &at)) continue;
       if (n < capacity) {
@@ -151,14 +151,14 @@ mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   mps_mpm *mpm = grid->mpm;
   int64_t count = 0;
-  mps_status status = mpsi_mpm_share_settle(mpm, __func__, check_set(mpm, __func__, set));
+  mps_status status = mpsi_mpm_agree(mpm, __func__, check_set(mpm, __func__, set));
   if (status == MPS_OK)
     status = mpsi_as(mpm->context, __func__,
                      mps_grid_get_nodes(grid, 0, &count, NULL, NULL, NULL, NULL));
   if (status != MPS_OK) return status;
   double *memory = mpsi_alloc(mpm->context, count * 10, sizeof *memory);
   if (!memory) status = mpsi_fail_memory(mpm->context, __func__, (size_t)count * 80);
-  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_agree(mpm, __func__, status);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, memory);
     return status;
@@ -182,5 +182,5 @@ mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
     mpsi_particles_drop_fields(set, fields);
   }
   mpsi_free(mpm->context, memory);
-  return mpsi_mpm_share_settle(mpm, __func__, status);
+  return mpsi_mpm_agree(mpm, __func__, status);
 }

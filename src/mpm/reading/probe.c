@@ -104,21 +104,21 @@ static mps_status join_rows(near *list, const char *function, const mpsi_mailbox
 }
 
 static mps_status tell_all(near *list, const char *function, mps_status status) {
-  mps_domain *domain = list->mpm->share->domain;
+  mps_domain *domain = list->mpm->partition->domain;
   mps_context *context = list->mpm->context;
   mpsi_mailbox box = {.context = context};
   int32_t count = 0;
   mps_domain_message *message = mpsi_alloc(context, mps_domain_size(domain), sizeof *message);
   if (!message && status == MPS_OK)
     status = mpsi_fail_memory(context, function, (size_t)mps_domain_size(domain) * 24);
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_domain_agree(domain, function, status);
   for (int32_t r = 0; status == MPS_OK && r < mps_domain_size(domain) && list->count > 0; r++)
     if (r != mps_domain_rank(domain))
       message[count++] = (mps_domain_message){
           .rank = r, .bytes = list->count * (int64_t)sizeof(row), .data = list->row};
   if (status == MPS_OK) status = mpsi_domain_exchange(domain, function, count, message, &box);
   if (status == MPS_OK)
-    status = mpsi_domain_settle(domain, function, join_rows(list, function, &box));
+    status = mpsi_domain_agree(domain, function, join_rows(list, function, &box));
   mpsi_domain_free_mail(&box);
   mpsi_free(context, message);
   return status;
@@ -129,12 +129,12 @@ static mps_status list_near(near *list, const char *function, int64_t count, con
   mps_status status = MPS_OK;
   if (!list_own(list, count, points))
     status = mpsi_fail_memory(context, function, (size_t)list->count * sizeof *list->row);
-  if (list->mpm->share) status = tell_all(list, function, status);
+  if (list->mpm->partition) status = tell_all(list, function, status);
   if (status != MPS_OK) return status;
   list->item = mpsi_alloc(context, list->count, sizeof *list->item);
   if (!list->item)
     status = mpsi_fail_memory(context, function, (size_t)list->count * sizeof *list->item);
-  status = mpsi_mpm_share_settle(list->mpm, function, status);
+  status = mpsi_mpm_agree(list->mpm, function, status);
   for (int64_t k = 0; status == MPS_OK && k < list->count; k++) {
     list->item[k] = list->row[k].at;
     list->item[k].index = k;
@@ -313,7 +313,7 @@ mps_status mps_grid_evaluate(mps_grid *grid, const char *field, int32_t componen
   near list = {.mpm = mpm};
   int32_t components = 0;
   mps_status status = check(mpm, __func__, field, component, count, points, values, &components);
-  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_agree(mpm, __func__, status);
   if (status != MPS_OK || count == 0) return status;
   const int32_t first = component < 0 ? 0 : component, width = component < 0 ? components : 1;
   list.columns = width;

@@ -28,12 +28,12 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->contact.sight_room.capacity, sizeof *mpm->contact.sight},
               {mpm->contact.across_room.capacity, sizeof *mpm->contact.across},
               {mpm->contact.beside_room.capacity, sizeof *mpm->contact.beside},
-              {mpm->contact.spring_room.capacity, sizeof(mpsi_spring_node)},
+              {mpm->contact.penalty_room.capacity, sizeof(mpsi_penalty_node)},
               {mpm->grid.across_room.capacity, sizeof(mpsi_node)},
               {mpm->boundaries.held_room.capacity + mpm->boundaries.old_held_room.capacity,
                sizeof *mpm->boundaries.held},
-              {mpm->boundaries.dash_room.capacity + mpm->boundaries.old_dash_room.capacity,
-               sizeof *mpm->boundaries.dash},
+              {mpm->boundaries.dashpot_room.capacity + mpm->boundaries.old_dashpot_room.capacity,
+               sizeof *mpm->boundaries.dashpot},
               {mpm->grid.worker_count, mpsi_worker_bytes(mpm)},
               {mpm->energy.cells_room.capacity, sizeof *mpm->energy.cells},
               {mpm->energy.nodes_room.capacity, sizeof *mpm->energy.nodes},
@@ -97,7 +97,7 @@ static void sum_share(const mps_mpm *mpm, mpsi_exact *sum) {
   }
   for (int64_t k = 0; k < mpm->p.count; k++) /* whatever the blocks: it must not change */
     mpsi_exact_add(&sum[MASS], mpm->p.m[k]);
-  mpsi_mpm_hold_add_works(mpm, &sum[WORK]);
+  mpsi_mpm_boundary_add_works(mpm, &sum[WORK]);
 }
 
 /* Of all ranks. */
@@ -105,8 +105,8 @@ static mps_status sum_energies(mps_mpm *mpm, const char *function, double *out) 
   mpsi_exact sum[MPSI_ENERGY_SUMS];
   mps_status status = MPS_OK;
   memcpy(sum, mpm->energy.sum, sizeof sum);
-  if (mpm->share && mpm->energy.counts)
-    status = mpsi_domain_sum_exact(mpm->share->domain, function, MPSI_ENERGY_SUMS, sum);
+  if (mpm->partition && mpm->energy.counts)
+    status = mpsi_domain_sum_exact(mpm->partition->domain, function, MPSI_ENERGY_SUMS, sum);
   for (int k = 0; k < MPSI_ENERGY_SUMS; k++) out[k] = mpsi_exact_value(&sum[k]);
   return status;
 }
@@ -117,10 +117,10 @@ mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) 
   mpsi_exact sum[SUMS] = {{{0}}};
   double e[MPSI_ENERGY_SUMS];
   mps_status status = MPS_OK;
-  if (mpm->share) status = mpsi_mpm_share_agree(mpm, function, status);
+  if (mpm->partition) status = mpsi_mpm_compare_edits(mpm, function, status);
   if (status != MPS_OK) return status;
   sum_share(mpm, sum);
-  if (mpm->share) status = mpsi_domain_sum_exact(mpm->share->domain, function, SUMS, sum);
+  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, SUMS, sum);
   if (status == MPS_OK) status = sum_energies(mpm, function, e);
   if (status != MPS_OK) return status;
   mps_totals t = {.mass = mpsi_exact_value(&sum[MASS]),
@@ -148,7 +148,7 @@ mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out, size_t si
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "budget is 0 in the solver's definition: the losses are not known");
   double e[MPSI_ENERGY_SUMS];
-  mps_status status = mpsi_mpm_share_settle(mpm, function, MPS_OK);
+  mps_status status = mpsi_mpm_agree(mpm, function, MPS_OK);
   if (status == MPS_OK) status = sum_energies(mpm, function, e);
   if (status != MPS_OK) return status;
   mps_mpm_losses l = {.laws = e[MPSI_ENERGY_SPENT],

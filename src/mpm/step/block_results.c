@@ -26,16 +26,16 @@ static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k, cons
 /* On several ranks: what has been found anywhere. An error of one is that of all. */
 static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, int64_t bad,
                                 int64_t lost) {
-  mpsi_share *share = mpm->share;
+  mpsi_partition *partition = mpm->partition;
   enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FOUND };
   double most[MPSI_SWEEP_SUMS];
   mpsi_mpm_sweep_sums(mpm, most);
-  mps_status own = MPS_OK, status = share->lost;
+  mps_status own = MPS_OK, status = partition->lost;
   if (bad >= 0)
     own = report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
   else if (lost >= 0)
     own = report_bad(mpm, function, lost, "has left the domain");
-  if (bad < 0) mpsi_mpm_let_go(mpm);
+  if (bad < 0) mpsi_mpm_remove_leaving(mpm);
   double found[FOUND] = {speed,
                          mpm->run.stale,
                          bad >= 0,
@@ -44,19 +44,19 @@ static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed
                          mpsi_cancelled(mpm->context),
                          most[MPSI_SWEEP_CHANGED],
                          most[MPSI_SWEEP_IMPULSES]};
-  status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
+  status = mpsi_domain_agree_max(partition->domain, function, status, FOUND, found);
   mpm->run.broken = status != MPS_OK || found[BAD] > 0.0;
   if (status != MPS_OK) return status;
   mpm->run.stale = found[STALE] > 0.0;
   mpm->run.edited = found[EDITED] > 0.0;
-  share->cancel = found[CANCEL] > 0.0;
+  partition->cancel = found[CANCEL] > 0.0;
   mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
   if (!mpm->run.broken) mpm->run.speed = found[SPEED];
   mpm->run.lost = mpm->run.lost || (!mpm->run.broken && found[LOST] > 0.0);
   if (mpm->run.lost) mpm->run.stale = true;
   if (!mpm->run.broken && found[LOST] == 0.0) return MPS_OK;
   if (mpm->run.broken && bad < 0) own = MPS_OK; /* the others have worse */
-  return mpsi_domain_settle(share->domain, function, own);
+  return mpsi_domain_agree(partition->domain, function, own);
 }
 
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
@@ -69,7 +69,7 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
     if (cells->left) mpm->run.stale = true;
     if (cells->speed > speed) speed = cells->speed;
   }
-  if (mpm->share) return collect_ranks(mpm, function, speed, bad, lost);
+  if (mpm->partition) return collect_ranks(mpm, function, speed, bad, lost);
   mpm->run.broken = bad >= 0;
   if (bad >= 0)
     return report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");

@@ -73,10 +73,10 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
     mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     box under = box_under(cells, q, low, high);
     under = common(&under, near);
-    const bool touched = !is_empty(&under);
-    if (!touched && !cells->edge && !mpm->standard && !all_apart(mpm)) continue;
+    const bool in_contact = !is_empty(&under);
+    if (!in_contact && !cells->edge && !mpm->standard && !all_apart(mpm)) continue;
     if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
-    nodes->split = nodes->split || all || (touched && (rough || cells->pairs > 1));
+    nodes->split = nodes->split || all || (in_contact && (rough || cells->pairs > 1));
   }
 }
 
@@ -104,7 +104,7 @@ static bool list_fits(mps_mpm *mpm) {
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   bool finds = false; /* an absorbing wall asks for the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
-    const mpsi_hold *hold = &mpm->boundaries.hold[k];
+    const mpsi_boundary *hold = &mpm->boundaries.hold[k];
     finds = finds || (hold->finds && !(hold->settle > 0.0));
   }
   for (int64_t g = 0; g < mpm->grid.node_count; g++)
@@ -136,10 +136,10 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
-  if (!mpsi_mpm_spring_room(mpm) && status == MPS_OK)
+  if (!mpsi_mpm_penalty_room(mpm) && status == MPS_OK)
     status = mpsi_fail_memory(mpm->context, function,
                               (size_t)(mpm->contact.bodies * mpm->grid.tile_nodes) *
-                                  sizeof(mpsi_spring_node));
+                                  sizeof(mpsi_penalty_node));
   static const mpsi_pass pass = {
       .update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached, .ghosts = true};
   if (mpm->contact.bodies > 0) {
@@ -149,10 +149,10 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
                                 (size_t)(mpm->contact.node_pair_count * mpm->grid.block_nodes) *
                                     sizeof *mpm->contact.sight);
     if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
-    if (mpm->share) { /* all ranks, whatever has become of this one */
+    if (mpm->partition) { /* all ranks, whatever has become of this one */
       for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
         mpm->grid.cells[b].thin = near_thin(mpm, &mpm->grid.cells[b]);
-      const mps_status lost = mpsi_mpm_share_reached(mpm, function, status == MPS_OK);
+      const mps_status lost = mpsi_mpm_exchange_corners(mpm, function, status == MPS_OK);
       if (lost != MPS_OK) status = lost;
     }
   }

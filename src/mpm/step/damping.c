@@ -64,7 +64,7 @@ static double size_of(const double *v) { return sqrt(v[0] * v[0] + v[1] * v[1] +
 /* Of the forces of bodies on node k. */
 static double contact_force(const mps_mpm *mpm, const mpsi_node_block *nodes, int k) {
   double sum = 0.0;
-  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  const int32_t pairs = mpm->contact.penalty_bodies > 0 ? nodes->pairs : 0;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
     const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
     const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];

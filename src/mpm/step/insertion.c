@@ -34,12 +34,12 @@ static mps_status take_in(mps_mpm *mpm, const char *function, int64_t first, int
 mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
   mps_mpm *mpm = self;
   const mps_status status = take_in(mpm, function, first, count);
-  return mpm->share ? mpsi_mpm_share_keep_added(mpm, function, status, first) : status;
+  return mpm->partition ? mpsi_mpm_keep_own_inserted(mpm, function, status, first) : status;
 }
 
 mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
   (void)count, (void)ids; /* lists of ids pass over those that are no more */
-  return mpsi_mpm_share_settle(self, function, mpsi_mpm_usable(self, function));
+  return mpsi_mpm_agree(self, function, mpsi_mpm_usable(self, function));
 }
 
 void mpsi_mpm_renew(void *self) {

@@ -31,7 +31,7 @@ static int32_t passed(const mps_mpm *mpm, int64_t k) {
 }
 
 /* What a particle carries out is taken from those that stay, as by an impulse. */
-static void carry_out(mps_mpm *mpm, int64_t k, mpsi_hold *hold) {
+static void carry_out(mps_mpm *mpm, int64_t k, mpsi_boundary *hold) {
   const mpsi_columns *p = &mpm->p;
   const double m = p->m[k], h = mpm->def.cell;
   const double second = mpm->standard ? 0.0 : h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
@@ -48,7 +48,7 @@ static void carry_out(mps_mpm *mpm, int64_t k, mpsi_hold *hold) {
     moment[c] = -spin;
     kinetic += 0.5 * m * v[c] * v[c];
   }
-  mpsi_mpm_hold_add_impulse(hold, impulse, moment, -kinetic, 1);
+  mpsi_mpm_boundary_add_impulse(hold, impulse, moment, -kinetic, 1);
   mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_BOUNDARIES, -kinetic);
   mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_KINETIC, -kinetic);
 }
@@ -60,10 +60,10 @@ static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
     for (int64_t k = cells->begin; k < cells->end && cells->gone; k++) {
       const int32_t side = passed(mpm, k);
       if (side < 0) continue;
-      mpsi_hold *hold = &mpm->boundaries.hold[side];
+      mpsi_boundary *hold = &mpm->boundaries.hold[side];
       carry_out(mpm, k, hold);
       hold->removed++;
-      mpsi_exact_add(&hold->sums->all[MPSI_HOLD_MASS], mpm->p.m[k]);
+      mpsi_exact_add(&hold->sums->all[MPSI_BOUNDARY_MASS], mpm->p.m[k]);
       gone[k] = 1;
       count++;
     }
@@ -106,9 +106,9 @@ static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *con
     mpsi_exact_add(&mass[part], mpm->p.m[k]);
     count[part]++;
   }
-  if (mpm->share) status = mpsi_domain_sum(mpm->share->domain, function, parts, count);
-  if (mpm->share && status == MPS_OK)
-    status = mpsi_domain_sum_exact(mpm->share->domain, function, parts, mass);
+  if (mpm->partition) status = mpsi_domain_sum(mpm->partition->domain, function, parts, count);
+  if (mpm->partition && status == MPS_OK)
+    status = mpsi_domain_sum_exact(mpm->partition->domain, function, parts, mass);
   for (int32_t part = 0; status == MPS_OK && part < parts; part++) {
     contact->source.reaction[part].removed += count[part];
     contact->source.reaction[part].removed_mass += mpsi_exact_value(&mass[part]);
@@ -120,7 +120,7 @@ static void begin_marks(const mps_mpm *mpm) {
   if (mpm->p.count > 0) memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
 }
 
-void mpsi_mpm_let_go(mps_mpm *mpm) {
+void mpsi_mpm_remove_leaving(mps_mpm *mpm) {
   bool any = false;
   for (int64_t b = 0; b < mpm->grid.cell_count && mpm->boundaries.open && !any; b++)
     any = mpm->grid.cells[b].gone;
@@ -154,7 +154,8 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
   if (!wanted) return status;
   const int64_t count = status == MPS_OK ? mark_inside(mpm) : 0;
   double any = (double)count;
-  if (mpm->share) status = mpsi_domain_settle_max(mpm->share->domain, function, status, 1, &any);
+  if (mpm->partition)
+    status = mpsi_domain_agree_max(mpm->partition->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
   for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
     if (takes_away(mpm->contact.handle[b]))
@@ -170,7 +171,7 @@ mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *
   uint8_t *gone = mpsi_alloc(mpm->context, mpm->p.count, 1);
   mps_status status = MPS_OK;
   if (!gone) status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
-  status = mpsi_mpm_share_settle(mpm, function, status);
+  status = mpsi_mpm_agree(mpm, function, status);
   int64_t count = 0;
   if (status == MPS_OK) {
     count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, 1);

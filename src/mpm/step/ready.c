@@ -5,32 +5,33 @@
 #include "mpm/particles/particles.h"
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  return mpm->share ? mpsi_mpm_share_sort(mpm, function) : mpsi_mpm_sort_alone(mpm, function);
+  return mpm->partition ? mpsi_mpm_partition_sort(mpm, function)
+                        : mpsi_mpm_sort_alone(mpm, function);
 }
 
-mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_check_whole(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
-  if (mpm->share) status = mpsi_mpm_share_agree(mpm, function, status);
+  if (mpm->partition) status = mpsi_mpm_compare_edits(mpm, function, status);
   if (status != MPS_OK) return status;
   if (mpm->run.lost) mpm->run.lost = false, mpm->run.edited = true; /* on no rank any more */
   if (!mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
-  if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
+  if (mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
-  status = mpsi_mpm_list_holds(mpm, function, status);
-  if (mpm->share) status = mpsi_domain_settle(mpm->share->domain, function, status);
+  status = mpsi_mpm_list_boundaries(mpm, function, status);
+  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   mpm->run.edited = false;
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 
-mpsi_untidy mpsi_mpm_untidy(const mps_mpm *mpm) {
-  return (mpsi_untidy){mpm->run.speed, mpm->run.edited};
+mpsi_edit_state mpsi_mpm_edit_state(const mps_mpm *mpm) {
+  return (mpsi_edit_state){mpm->run.speed, mpm->run.edited};
 }
 
-void mpsi_mpm_put_off(mps_mpm *mpm, const mpsi_untidy *before) {
+void mpsi_mpm_restore_edit_state(mps_mpm *mpm, const mpsi_edit_state *before) {
   if (!before->edited) return;
   mpm->run.speed = before->speed;
   mpm->run.edited = true;
@@ -38,5 +39,5 @@ void mpsi_mpm_put_off(mps_mpm *mpm, const mpsi_untidy *before) {
 
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   const mps_status status = mpsi_mpm_between_steps(mpm, function);
-  return status == MPS_OK ? mpsi_mpm_tidy(mpm, function) : status;
+  return status == MPS_OK ? mpsi_mpm_apply_edits(mpm, function) : status;
 }

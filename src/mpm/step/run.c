@@ -7,8 +7,8 @@
 /* All ranks are asked for the same. */
 static mps_status same_on_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 const char *name, double value) {
-  if (!mpm->share) return status;
-  return mpsi_domain_settle_same(mpm->share->domain, function, status, name, value);
+  if (!mpm->partition) return status;
+  return mpsi_domain_agree_same(mpm->partition->domain, function, status, name, value);
 }
 
 /* ---- the size of a step ---------------------------------------------------------------------- */
@@ -30,7 +30,7 @@ mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
 /* ---- many steps ------------------------------------------------------------------------------ */
 
 static mps_status ask_cancel(mps_mpm *mpm, const char *function) {
-  if (mpm->share ? !mpm->share->cancel : !mpsi_cancelled(mpm->context)) return MPS_OK;
+  if (mpm->partition ? !mpm->partition->cancel : !mpsi_cancelled(mpm->context)) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
                    "stopped by the cancel hook at step %lld, t = %g s", (long long)mpm->run.steps,
                    mpm->run.time);
@@ -44,7 +44,7 @@ static mps_status check_bounded(mps_mpm *mpm, const char *function) {
 
 mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
   const int64_t steps = mpm->run.steps;
   mps_status status = MPS_OK;
   if (count < 0)
@@ -55,12 +55,12 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (status != MPS_OK) return status;
   mpsi_guard_enter(&mpm->run.guard, mpm->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    if (mpm->run.edited) status = mpsi_mpm_tidy(mpm, __func__); /* some have left */
+    if (mpm->run.edited) status = mpsi_mpm_apply_edits(mpm, __func__); /* some have left */
     if (status == MPS_OK) status = check_bounded(mpm, __func__);
     if (status == MPS_OK) status = mpsi_mpm_step_from_settling(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
   }
-  if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_put_off(mpm, &before);
+  if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_restore_edit_state(mpm, &before);
   mpsi_guard_end(&mpm->run.guard);
   return status;
 }
@@ -69,7 +69,7 @@ static mps_status call(mps_mpm *mpm, const char *function, mps_mpm_fn callback, 
   mpsi_guard_enter(&mpm->run.guard, mpm->context, "the callback of mps_mpm_run");
   const mps_status status =
       mpsi_guard_leave(&mpm->run.guard, mpm->context, function, callback(user, mpm));
-  return mpm->share ? mpsi_mpm_share_settle_alike(mpm, function, status, 0, NULL) : status;
+  return mpm->partition ? mpsi_mpm_agree_alike(mpm, function, status, 0, NULL) : status;
 }
 
 /* A run under way. */
@@ -96,7 +96,8 @@ static mps_status march(mps_mpm *mpm, const char *function, const run *r) {
   bool called = r->callback != NULL, last = false;
   if (called) status = call(mpm, function, r->callback, r->user);
   while (status == MPS_OK && mpm->run.time < r->t_end) {
-    if (called || mpm->run.edited) status = mpsi_mpm_tidy(mpm, function); /* some have left */
+    if (called || mpm->run.edited)
+      status = mpsi_mpm_apply_edits(mpm, function); /* some have left */
     if (status != MPS_OK) break;
     const int64_t steps = mpm->run.steps;
     status = mpsi_mpm_step_from_settling(mpm, function, next_step(mpm, r->t_end, &last));
@@ -129,14 +130,14 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
   if (status == MPS_OK) status = same_on_ranks(mpm, __func__, status, "every", (double)every);
   if (status == MPS_OK)
     status = same_on_ranks(mpm, __func__, status, "having a callback", callback != NULL);
-  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
   const int64_t steps = mpm->run.steps;
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   if (status != MPS_OK) return status;
   const run r = {mpm->run.time, t_end, every, callback, user};
   mpsi_guard_enter(&mpm->run.guard, mpm->context, __func__);
   status = march(mpm, __func__, &r);
-  if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_put_off(mpm, &before);
+  if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_restore_edit_state(mpm, &before);
   mpsi_guard_end(&mpm->run.guard);
   return status;
 }

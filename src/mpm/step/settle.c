@@ -35,21 +35,21 @@ static mps_status check_bodies(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-static void stop_bodies(mps_mpm *mpm, motions *kept) {
+static void stop_bodies(mps_mpm *mpm, motions *warm) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_pose *pose = &mpm->contact.body[b]->pose;
-    memcpy(kept->v[b], pose->v, sizeof pose->v);
-    memcpy(kept->spin[b], pose->spin, sizeof pose->spin);
+    memcpy(warm->v[b], pose->v, sizeof pose->v);
+    memcpy(warm->spin[b], pose->spin, sizeof pose->spin);
     memset(pose->v, 0, sizeof pose->v);
     memset(pose->spin, 0, sizeof pose->spin);
   }
 }
 
-static void let_bodies_go(mps_mpm *mpm, const motions *kept) {
+static void let_bodies_go(mps_mpm *mpm, const motions *warm) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_pose *pose = &mpm->contact.body[b]->pose;
-    memcpy(pose->v, kept->v[b], sizeof pose->v);
-    memcpy(pose->spin, kept->spin[b], sizeof pose->spin);
+    memcpy(pose->v, warm->v[b], sizeof pose->v);
+    memcpy(pose->spin, warm->spin[b], sizeof pose->spin);
   }
 }
 
@@ -88,29 +88,29 @@ void mpsi_mpm_leave_settling(mps_mpm *mpm) {
  * order of the particles. NULL: no memory. */
 static double *keep_motion(mps_mpm *mpm, const char *function) {
   const int64_t n = mpm->p.count;
-  double *kept = mpsi_alloc(mpm->context, 13 * n, sizeof *kept);
-  if (!kept) {
-    (void)mpsi_fail_memory(mpm->context, function, (size_t)n * 13 * sizeof *kept);
+  double *warm = mpsi_alloc(mpm->context, 13 * n, sizeof *warm);
+  if (!warm) {
+    (void)mpsi_fail_memory(mpm->context, function, (size_t)n * 13 * sizeof *warm);
     return NULL;
   }
-  const size_t bytes = (size_t)n * sizeof *kept;
-  memcpy(kept, mpsi_particles_integers(mpm->particles, "id"), bytes);
+  const size_t bytes = (size_t)n * sizeof *warm;
+  memcpy(warm, mpsi_particles_integers(mpm->particles, "id"), bytes);
   for (int c = 0; c < 12; c++) {
     const double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
-    if (column) memcpy(kept + (c + 1) * n, column, bytes);
+    if (column) memcpy(warm + (c + 1) * n, column, bytes);
   }
-  return kept;
+  return warm;
 }
 
-static void put_motion_back(mps_mpm *mpm, const double *kept) {
+static void put_motion_back(mps_mpm *mpm, const double *warm) {
   const int64_t n = mpm->p.count;
   for (int64_t k = 0; k < n; k++) {
     int64_t id;
-    memcpy(&id, &kept[k], sizeof id);
+    memcpy(&id, &warm[k], sizeof id);
     const int64_t at = mps_particles_index(mpm->particles, id); /* the step may have sorted */
     for (int c = 0; c < 12 && at >= 0; c++) {
       double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
-      if (column) column[at] = kept[(c + 1) * n + k];
+      if (column) column[at] = warm[(c + 1) * n + k];
     }
   }
 }
@@ -120,7 +120,7 @@ mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, doubl
   const int64_t steps = mpm->run.steps;
   const mpsi_energy energy = mpm->energy;
   double *motion = NULL;
-  if (!mpm->share && !(motion = keep_motion(mpm, function))) return MPS_ERROR_MEMORY;
+  if (!mpm->partition && !(motion = keep_motion(mpm, function))) return MPS_ERROR_MEMORY;
   mpsi_mpm_leave_settling(mpm);
   const mps_status status = mpsi_mpm_take_step(mpm, function, dt);
   if (motion && status != MPS_OK && mpm->run.steps == steps && !mpm->run.broken) {
@@ -137,12 +137,12 @@ enum { UNBALANCED, APPLIED, KINETIC, SUMS };
 /* The sizes of the forces that bodies give by impulses to the particles here (N). */
 static void add_impulses(const mps_mpm *mpm, mpsi_exact *sum) {
   const mpsi_impulses *all = &mpm->contact.impulses;
-  for (int64_t n = 0; n < all->touch_count; n++) {
-    const mpsi_impulse *c = &all->touch[n].impulse;
-    if (!(c->push > 0.0) || all->touch[n].pair < 0) continue;
+  for (int64_t n = 0; n < all->constraint_count; n++) {
+    const mpsi_impulse *c = &all->constraint[n].impulse;
+    if (!(c->normal_impulse > 0.0) || all->constraint[n].pair < 0) continue;
     double square = 0.0;
     for (int a = 0; a < 3; a++) {
-      const double by = c->push * c->normal[a] + c->rub[a];
+      const double by = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
       square += by * by;
     }
     mpsi_exact_add(sum, sqrt(square) / mpm->run.dt);
@@ -158,12 +158,12 @@ static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) 
   add_impulses(mpm, &sum[APPLIED]);
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_balance *n = &mpm->settling.nodes[g];
-    if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) continue;
+    if (mpm->partition && !mpsi_mpm_counts_node_block(mpm, g)) continue;
     mpsi_exact_add(&sum[UNBALANCED], n->unbalanced);
     mpsi_exact_add(&sum[APPLIED], n->applied);
     mpsi_exact_add(&sum[KINETIC], n->kinetic);
   }
-  if (mpm->share) status = mpsi_domain_sum_exact(mpm->share->domain, function, SUMS, sum);
+  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, SUMS, sum);
   for (int k = 0; k < SUMS; k++) sums[k] = mpsi_exact_value(&sum[k]);
   return status;
 }
@@ -198,7 +198,7 @@ static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_
     if (now->steps % 100 == 0)
       mpsi_progress(mpm->context, "mpm settle", mpm->run.steps, (double)now->steps,
                     (double)def->max_steps);
-    if (mpm->share ? !mpm->share->cancel : !mpsi_cancelled(mpm->context)) continue;
+    if (mpm->partition ? !mpm->partition->cancel : !mpsi_cancelled(mpm->context)) continue;
     settling->cut = true;
     return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
                      "stopped by the cancel hook after %lld steps, the unbalanced force being "
@@ -235,33 +235,33 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_settle_def def = settle_defaults;
   mps_mpm_settled now = {0};
-  motions kept;
-  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  motions warm;
+  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
   if (out && (size == 0 || size > MPSI_STRUCT_MOST)) /* refused before anything moves */
     return mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
   mps_status status = mpsi_mpm_ready(mpm, function);
   if (status == MPS_OK) status = read_def(mpm, function, user, &def);
   if (status == MPS_OK) status = check_bodies(mpm, function);
   if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
-  if (mpm->share) {
+  if (mpm->partition) {
     mpsi_given given;
     mpsi_given_begin(&given);
     MPSI_GIVE(&given, &def, tolerance);
     MPSI_GIVE(&given, &def, max_steps);
-    status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
+    status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   }
   double *motion = status == MPS_OK ? keep_motion(mpm, function) : NULL;
   if (status == MPS_OK && !motion) status = MPS_ERROR_MEMORY;
-  status = mpsi_mpm_share_settle(mpm, function, status);
+  status = mpsi_mpm_agree(mpm, function, status);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, motion);
-    mpsi_mpm_put_off(mpm, &before);
+    mpsi_mpm_restore_edit_state(mpm, &before);
     return status;
   }
   mpsi_settling *settling = &mpm->settling;
   const mpsi_settling former = *settling;
   const mpsi_energy energy = mpm->energy;
-  stop_bodies(mpm, &kept);
+  stop_bodies(mpm, &warm);
   if (!settling->cut) { /* else all goes on from where it was cut */
     stop_particles(mpm);
     settling->from_rest = true;
@@ -275,16 +275,16 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   status = relax_until(mpm, function, &def, &now);
   mpsi_guard_end(&mpm->run.guard);
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
-  let_bodies_go(mpm, &kept);
+  let_bodies_go(mpm, &warm);
   settling->on = false;
-  if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->share &&
+  if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->partition &&
       !mpm->run.broken) { /* no step was made */
     put_motion_back(mpm, motion);
     memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
     settling->cut = former.cut, settling->from_rest = former.from_rest;
     settling->before = former.before;
     settling->steps = former.steps, settling->peaks = former.peaks;
-    mpsi_mpm_put_off(mpm, &before);
+    mpsi_mpm_restore_edit_state(mpm, &before);
   }
   mpsi_free(mpm->context, motion);
   if (!out) return status;

@@ -23,7 +23,7 @@ static mps_status evaluate_loads(mps_mpm *mpm, const char *function) {
 
 static mps_status evaluate_boundaries(mps_mpm *mpm, const char *function, double dt) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    mpsi_hold *hold = &mpm->boundaries.hold[k];
+    mpsi_boundary *hold = &mpm->boundaries.hold[k];
     for (int c = 0; c < mpm->dim; c++) {
       const mpsi_signal_use use = {mpm->context, function, "boundary", k, c};
       mpsi_signal_motion m = {0};

@@ -48,23 +48,23 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
  * them. An error loses nothing but, on several ranks, the tractions at rest of absorbing sides.
  * `status`: status of the call so far here; collective. */
 static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status) {
-  const bool renewed = mpm->run.stale || (mpm->share && mpm->share->outdated);
-  if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
+  const bool renewed = mpm->run.stale || (mpm->partition && mpm->partition->outdated);
+  if (mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
   }
   if (status != MPS_OK && renewed) return status;                         /* on all ranks */
   if (status == MPS_OK) status = mpsi_mpm_prepare_outflow(mpm, function); /* for those here now */
-  const bool dashes = mpm->boundaries.dash_count > 0;
+  const bool dashpots = mpm->boundaries.dashpot_count > 0;
   const mps_status before = status;
-  status = mpsi_mpm_update_holds(mpm, function, status);
-  if (before == MPS_OK && status != MPS_OK) mpm->run.broken = dashes && mpm->share;
+  status = mpsi_mpm_update_boundaries(mpm, function, status);
+  if (before == MPS_OK && status != MPS_OK) mpm->run.broken = dashpots && mpm->partition;
   status = mpsi_mpm_find_near(mpm, function, status);
   bool cleared = false;
   status = mpsi_mpm_clear_bodies(mpm, function, status, &cleared);
   if (cleared) {
-    status = mpsi_mpm_tidy(mpm, function);
+    status = mpsi_mpm_apply_edits(mpm, function);
     return status == MPS_OK ? prepare(mpm, function, status) : status;
   }
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
@@ -79,11 +79,11 @@ static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 /* What happens between the nodes and the bodies in a step, on the way of its pass or by itself. */
-typedef struct meeting {
+typedef struct exchange {
   const char *function;
   mps_status status; /* of the search for touches, and then of all */
   double dt;
-} meeting;
+} exchange;
 
 static bool find_masses(mps_mpm *mpm, void *data) {
   (void)data;
@@ -92,22 +92,22 @@ static bool find_masses(mps_mpm *mpm, void *data) {
 }
 
 /* No particle moves before all depths are known. */
-static bool meet_bodies(mps_mpm *mpm, void *data) {
-  meeting *m = data;
-  mpsi_mpm_fit_touches(mpm);
+static bool solve_contacts(mps_mpm *mpm, void *data) {
+  exchange *m = data;
+  mpsi_mpm_fit_constraints(mpm);
   if (m->status == MPS_OK) m->status = mpsi_mpm_check_depth(mpm, m->function);
-  if (mpm->share) m->status = mpsi_mpm_meet(mpm, m->function, m->status);
+  if (mpm->partition) m->status = mpsi_mpm_exchange_contacts(mpm, m->function, m->status);
   if (m->status != MPS_OK) return false;
   mpsi_mpm_apply_impulses(mpm);
-  if (mpm->share) mpsi_mpm_meet_end(mpm);
-  mpsi_mpm_begin_holds(mpm, m->dt);
+  if (mpm->partition) mpsi_mpm_end_contact_exchange(mpm);
+  mpsi_mpm_begin_boundaries(mpm, m->dt);
   return true;
 }
 
 /* One thread can let the blocks near bodies give first, and then go over all in one wave. Springs
  * and areas of contact ask for nodes anywhere near a body. */
 static bool can_meet_on_the_way(const mps_mpm *mpm) {
-  bool can = !mpm->share && mpsi_mpm_passes_alone(mpm) && mpm->contact.springs == 0;
+  bool can = !mpm->partition && mpsi_mpm_passes_alone(mpm) && mpm->contact.penalty_bodies == 0;
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     can = can && mpsi_by_impulses(mpm->contact.handle[b]) &&
           !mpsi_has_strength(mpm->contact.handle[b]);
@@ -115,7 +115,7 @@ static bool can_meet_on_the_way(const mps_mpm *mpm) {
 }
 
 /* The nodes of all touches are to be updated before the bodies are met. */
-static void wait_for_touches(mps_mpm *mpm) {
+static void wait_for_constraints(mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   for (int64_t k = 0; k < all->block_count; k++)
     for (int q = 0; q < 1 << mpm->dim; q++)
@@ -136,70 +136,72 @@ static void wait_for_touches(mps_mpm *mpm) {
  * `found`: what has become of the search for touches here, of which all ranks are told on the way.
  */
 static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status found) {
-  const bool contacts = mpm->contact.cell_pair_count > 0 || (mpm->share && mpm->contact.bodies > 0);
+  const bool contacts =
+      mpm->contact.cell_pair_count > 0 || (mpm->partition && mpm->contact.bodies > 0);
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
-  meeting met = {function, found, dt};
+  exchange shared = {function, found, dt};
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
-                    .scatter = mpm->contact.springs > 0 ? mpsi_mpm_scatter_springs
-                                                        : mpm->kernels->p2g[geometry][spline],
+                    .scatter = mpm->contact.penalty_bodies > 0
+                                   ? mpsi_mpm_scatter_penalty
+                                   : mpm->kernels->p2g[geometry][spline],
                     .update = mpsi_mpm_update_nodes,
-                    .between = mpm->contact.bodies > 0 && !mpm->share ? find_masses : NULL,
-                    .data = &met};
-  if (mpm->share) {
-    const mps_status status = mpsi_mpm_share_send(mpm, function);
+                    .between = mpm->contact.bodies > 0 && !mpm->partition ? find_masses : NULL,
+                    .data = &shared};
+  if (mpm->partition) {
+    const mps_status status = mpsi_mpm_send_tiles(mpm, function);
     if (status != MPS_OK) return status;
-    pass.scatter = mpsi_mpm_share_scatter;
-    pass.arrive = mpsi_mpm_share_receive;
+    pass.scatter = mpsi_mpm_scatter_tile;
+    pass.arrive = mpsi_mpm_receive_tiles;
   }
   if (contacts && can_meet_on_the_way(mpm)) {
-    wait_for_touches(mpm);
-    pass.between = meet_bodies;
+    wait_for_constraints(mpm);
+    pass.between = solve_contacts;
   } else if (contacts) {
     mpsi_mpm_run_pass(mpm, &pass);
-    if (mpm->share) mpsi_mpm_find_contact_mass(mpm); /* of all ranks */
-    if (!meet_bodies(mpm, &met)) return met.status;
+    if (mpm->partition) mpsi_mpm_find_contact_mass(mpm); /* of all ranks */
+    if (!solve_contacts(mpm, &shared)) return shared.status;
     pass = (mpsi_pass){.clear = NULL};
   } else {
-    mpm->contact.impulses.kept_count = mpm->contact.impulses.sweeps = 0;
+    mpm->contact.impulses.warm_count = mpm->contact.impulses.sweeps = 0;
     mpm->contact.impulses.left = 0.0;
-    mpsi_mpm_begin_holds(mpm, dt);
+    mpsi_mpm_begin_boundaries(mpm, dt);
   }
   pass.finish = mpsi_mpm_finish_nodes;
   pass.gather = mpm->undo.on ? keep_and_gather : mpm->kernels->g2p[geometry][spline];
   mpsi_mpm_run_pass(mpm, &pass);
-  return met.status;
+  return shared.status;
 }
 
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
-  const bool goes_on = mpm->share && mpsi_mpm_share_goes_on(mpm);
+  const bool goes_on = mpm->partition && mpsi_mpm_partition_unchanged(mpm);
   mps_status status = mpsi_mpm_evaluate_signals(mpm, function, dt, true);
-  if (mpm->share && mpsi_mpm_signals_may_refuse(mpm))
-    status = mpsi_mpm_share_settle_step(mpm, function, status, 0, NULL);
-  if (status != MPS_OK && !(mpm->share && mpm->contact.bodies > 0)) return status;
+  if (mpm->partition && mpsi_mpm_signals_may_refuse(mpm))
+    status = mpsi_mpm_agree_in_step(mpm, function, status, 0, NULL);
+  if (status != MPS_OK && !(mpm->partition && mpm->contact.bodies > 0)) return status;
   status = prepare(mpm, function, status); /* where ranks agree on the signals of bodies */
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
-  if (mpm->share && !goes_on) status = mpsi_mpm_share_ready(mpm, function, status);
+  if (mpm->partition && !goes_on) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status != MPS_OK) return status;
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
-  status = mpsi_mpm_find_touches(mpm, function);
-  if (status != MPS_OK && !mpm->share) return status;
-  if (mpm->share && mpm->contact.bodies > 0) mpsi_mpm_mark_touched(mpm);
+  status = mpsi_mpm_find_constraints(mpm, function);
+  if (status != MPS_OK && !mpm->partition) return status;
+  if (mpm->partition && mpm->contact.bodies > 0) mpsi_mpm_mark_contact_blocks(mpm);
   status = move(mpm, function, dt, status); /* particles --> nodes --> particles */
   if (status != MPS_OK) return status;
-  mpsi_mpm_sum_holds(mpm);         /* impulses of nodes --> forces of walls */
+  mpsi_mpm_sum_boundaries(mpm);    /* impulses of nodes --> forces of walls */
   mpsi_mpm_drive_particles(mpm);   /* held particles: v, x */
   mpsi_mpm_find_impulse_loss(mpm); /* before means take the nodes' places */
   if (mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT)
     mpsi_mpm_apply_laws_by_cell(mpm);             /* L, V --> sigma by means of cells */
   bool refused = mpm->laws.refusal.cells != NULL; /* by a law of the caller's */
-  if (mpm->share && mpm->undo.on &&
-      (status = mpsi_mpm_share_any(mpm, function, &refused)) != MPS_OK)
+  if (mpm->partition && mpm->undo.on &&
+      (status = mpsi_mpm_any_rank(mpm, function, &refused)) != MPS_OK)
     return status;
   if (refused) {
     mpsi_mpm_undo(mpm);
     status = mpm->laws.refusal.cells ? report_refusal(mpm, function) : MPS_OK;
-    return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
+    return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
   }
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
   mpsi_mpm_energy_end(mpm);
@@ -207,6 +209,6 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpm->run.time += dt;
   mpm->run.steps++;
   status = mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
-  if (!mpm->run.broken && !mpm->share) mpsi_mpm_let_go(mpm); /* through open sides */
+  if (!mpm->run.broken && !mpm->partition) mpsi_mpm_remove_leaving(mpm); /* through open sides */
   return status;
 }

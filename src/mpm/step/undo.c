@@ -28,40 +28,40 @@ static void list_columns(mps_mpm *mpm) {
     for (int32_t h = 0; h < mpm->laws.law[k].columns; h++) add(u, mpm->laws.law[k].history[h]);
 }
 
-static double *kept(const mpsi_undo *u, int32_t c, int64_t count) {
+static double *warm(const mpsi_undo *u, int32_t c, int64_t count) {
   return (double *)u->room.item + c * count;
 }
 
 /* A step exchanges the memory of the impulses of contacts with that of the step before. */
 static void keep_impulses(mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
-  mpm->undo.kept_impulses = all->kept_room.item;
-  mpm->undo.kept_count = all->kept_count;
-  mpm->undo.kept_dt = all->kept_dt;
+  mpm->undo.kept_impulses = all->warm_room.item;
+  mpm->undo.warm_count = all->warm_count;
+  mpm->undo.warm_dt = all->warm_dt;
 }
 
 static void put_impulses_back(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  if (all->kept_room.item != mpm->undo.kept_impulses) {
-    const mpsi_room next = all->kept_room;
-    all->kept_room = all->next_room;
+  if (all->warm_room.item != mpm->undo.kept_impulses) {
+    const mpsi_room next = all->warm_room;
+    all->warm_room = all->next_room;
     all->next_room = next;
   }
-  all->kept = all->kept_room.item;
-  all->kept_count = mpm->undo.kept_count;
-  all->kept_dt = mpm->undo.kept_dt;
+  all->warm = all->warm_room.item;
+  all->warm_count = mpm->undo.warm_count;
+  all->warm_dt = mpm->undo.warm_dt;
 }
 
 /* The sums of boundaries, to their copies or back. */
 static void copy_sums(mps_mpm *mpm, bool back) {
-  mpsi_hold_sums *kept = mpm->undo.sums_room.item;
+  mpsi_boundary_sums *warm = mpm->undo.sums_room.item;
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    mpsi_hold_sums *sums = mpm->boundaries.hold[k].sums;
+    mpsi_boundary_sums *sums = mpm->boundaries.hold[k].sums;
     if (!sums) continue;
     if (back)
-      *sums = *kept++;
+      *sums = *warm++;
     else
-      *kept++ = *sums;
+      *warm++ = *sums;
   }
 }
 
@@ -73,9 +73,10 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   int64_t most = MPSI_UNDO_COLUMNS, holds = 0;
   for (int32_t k = 0; k < MPSI_HOLDS; k++) holds += b->hold[k].sums != NULL;
   for (int32_t k = 0; k < mpm->laws.count; k++) most += mpm->laws.law[k].columns;
-  bool good = mpsi_room_ensure(mpm->context, &u->list_room, most, sizeof *u->column) &&
-              mpsi_room_ensure(mpm->context, &u->sums_room, holds, sizeof(mpsi_hold_sums)) &&
-              mpsi_room_ensure(mpm->context, &u->dash_room, b->dash_count, sizeof *b->dash);
+  bool good =
+      mpsi_room_ensure(mpm->context, &u->list_room, most, sizeof *u->column) &&
+      mpsi_room_ensure(mpm->context, &u->sums_room, holds, sizeof(mpsi_boundary_sums)) &&
+      mpsi_room_ensure(mpm->context, &u->dashpot_room, b->dashpot_count, sizeof *b->dashpot);
   u->column = u->list_room.item;
   if (good) list_columns(mpm);
   good =
@@ -87,8 +88,8 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   u->holds_dt = b->dt;
   copy_sums(mpm, false);
   keep_impulses(mpm);
-  if (b->dash_count > 0)
-    memcpy(u->dash_room.item, b->dash, (size_t)b->dash_count * sizeof *b->dash);
+  if (b->dashpot_count > 0)
+    memcpy(u->dashpot_room.item, b->dashpot, (size_t)b->dashpot_count * sizeof *b->dashpot);
   return MPS_OK;
 }
 
@@ -97,20 +98,20 @@ void mpsi_mpm_keep_block(mps_mpm *mpm, int64_t block) {
   const mpsi_cell_block *cells = &mpm->grid.cells[block];
   const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
   for (int32_t c = 0; c < u->columns; c++)
-    memcpy(kept(u, c, mpm->p.count) + cells->begin, u->column[c] + cells->begin, bytes);
+    memcpy(warm(u, c, mpm->p.count) + cells->begin, u->column[c] + cells->begin, bytes);
 }
 
 void mpsi_mpm_undo(mps_mpm *mpm) {
   const mpsi_undo *u = &mpm->undo;
   mpsi_boundaries *b = &mpm->boundaries;
   for (int32_t c = 0; c < u->columns; c++)
-    memcpy(u->column[c], kept(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
+    memcpy(u->column[c], warm(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
   memcpy(b->hold, u->hold, sizeof u->hold);
   b->dt = u->holds_dt;
   copy_sums(mpm, true);
   put_impulses_back(mpm);
-  if (b->dash_count > 0)
-    memcpy(b->dash, u->dash_room.item, (size_t)b->dash_count * sizeof *b->dash);
+  if (b->dashpot_count > 0)
+    memcpy(b->dashpot, u->dashpot_room.item, (size_t)b->dashpot_count * sizeof *b->dashpot);
   for (int64_t c = 0; c < mpm->grid.cell_count; c++) { /* nobody has moved */
     mpm->grid.cells[c].left = mpm->grid.cells[c].gone = mpm->grid.cells[c].lost = false;
     mpm->grid.cells[c].bad = -1;

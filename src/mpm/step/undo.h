@@ -12,13 +12,13 @@ typedef struct mpsi_undo {
   bool on;         /* some law can refuse */
   double **column; /* that the step writes; room for MPSI_UNDO_COLUMNS and all histories */
   int32_t columns;
-  mpsi_room list_room, room, dash_room;
-  mpsi_hold hold[MPSI_HOLDS];
+  mpsi_room list_room, room, dashpot_room;
+  mpsi_boundary hold[MPSI_HOLDS];
   double holds_dt;
-  mpsi_room sums_room; /* mpsi_hold_sums, of each boundary that has some */
+  mpsi_room sums_room; /* mpsi_boundary_sums, of each boundary that has some */
   void *kept_impulses; /* of contacts, in the step before */
-  int64_t kept_count;
-  double kept_dt;
+  int64_t warm_count;
+  double warm_dt;
 } mpsi_undo;
 
 /* Before a step: room, and what belongs to no particle. MPS_ERROR_MEMORY. */

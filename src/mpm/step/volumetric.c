@@ -207,13 +207,13 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   for (int64_t k = cells->begin; k < cells->end; k++) {
     if (is_grains(mpm, k)) continue;
     const support s = support_of(mpm, cells, k);
-    double share = 1.0, wave, shear, slope[3];
+    double fraction = 1.0, wave, shear, slope[3];
     slope_at_rest(mpm, k, slope);
     if (mpsi_material_kept(mpsi_law_of(mpm, k)->material) != MPSI_KEPT_PRESSURE) {
       mpsi_mpm_elastic(mpm, k, &wave, &shear);
-      share = fmin(1.0, BETA * sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse);
+      fraction = fmin(1.0, BETA * sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse);
     }
-    const double change = share * (take(mpm, cells, &s, slope) - mean_stress(mpm, k));
+    const double change = fraction * (take(mpm, cells, &s, slope) - mean_stress(mpm, k));
     for (int c = 0; c < 3; c++) p->s[c][k] += change;
   }
   mpm->kernels->speed(mpm, b, worker);
@@ -276,8 +276,8 @@ static void smooth_one(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
   double *gap = gap_of(mpm, k), wave, shear;
   mpsi_mpm_elastic(mpm, k, &wave, &shear);
   const double cells_a_step = sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse;
-  const double share = fmin(1.0, GRAINS_EVERY * GRAINS_BETA * cells_a_step);
-  const double closed = was + bulk * *gap - share * (r - take(mpm, cells, &s, level));
+  const double fraction = fmin(1.0, GRAINS_EVERY * GRAINS_BETA * cells_a_step);
+  const double closed = was + bulk * *gap - fraction * (r - take(mpm, cells, &s, level));
   const double now =
       *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
   *gap = fmax(0.0, (closed - now) / bulk);
@@ -373,9 +373,9 @@ static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_work
 /* What a block gives, summed here or by its own rank. */
 static void add_block(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  if (!mpm->share)
+  if (!mpm->partition)
     sum(mpm, b, number);
-  else if (!mpsi_mpm_share_take_sums(mpm, b, number, sum))
+  else if (!mpsi_mpm_receive_sums(mpm, b, number, sum))
     return;
   for (int across = 0; across < (cells->thin ? 2 : 1); across++)
     add_tile(mpm, cells, &mpm->grid.workers[number], across != 0);
@@ -401,8 +401,8 @@ static void run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mp
   const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
                           .scatter = add,
                           .gather = gather,
-                          .arrive = mpm->share ? mpsi_mpm_share_receive : NULL};
-  if (mpm->share) mpsi_mpm_share_send_sums(mpm, sum);
+                          .arrive = mpm->partition ? mpsi_mpm_receive_tiles : NULL};
+  if (mpm->partition) mpsi_mpm_send_sums(mpm, sum);
   mpsi_mpm_run_pass(mpm, &pass);
 }
 
@@ -415,9 +415,9 @@ static bool has_failed(const mps_mpm *mpm) {
 
 /* Whether some rank, or the only one, has. */
 static bool on_any(mps_mpm *mpm, bool failed) {
-  if (!mpm->share || mpm->share->lost != MPS_OK) return failed;
-  mpm->share->lost = mpsi_mpm_share_any(mpm, "mps_mpm_step", &failed);
-  return failed || mpm->share->lost != MPS_OK;
+  if (!mpm->partition || mpm->partition->lost != MPS_OK) return failed;
+  mpm->partition->lost = mpsi_mpm_any_rank(mpm, "mps_mpm_step", &failed);
+  return failed || mpm->partition->lost != MPS_OK;
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {

@@ -288,7 +288,7 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells,
   if (mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
       !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
     return;
-  pair->touched = true;
+  pair->in_contact = true;
   pair->contacts[c.part]++;
   if (c.depth > pair->deepest) pair->deepest = c.depth, pair->deep = p;
   double arm[3], reaction[3];
@@ -296,8 +296,8 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells,
   mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
   MPSI_FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    mpsi_spring_node *to =
-        mpsi_mpm_spring_tile(mpm, worker, pair->body) + tile_node_of(&at->nodes, i, j, k);
+    mpsi_penalty_node *to =
+        mpsi_mpm_penalty_tile(mpm, worker, pair->body) + tile_node_of(&at->nodes, i, j, k);
     const double mass = mpm->p.m[p] * f->phi[n];
     double slip[3] = {0.0}, force[3] = {0.0};
     for (int a = 0; a < dim; a++) slip[a] = mass * c.slip[a], force[a] = f->phi[n] * c.force[a];
@@ -317,7 +317,7 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
                                 mpsi_cell_pair *pair) {
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
-  if (!pair->touched || mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
+  if (!pair->in_contact || mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
       mpm->contact.handle[pair->body]->def.friction == 0.0 ||
       !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
     return;
@@ -402,14 +402,14 @@ MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
 /* Momentum that a node has and its particles would not get: all is done with a mass m that is never
  * less than MPSI_LEAST_MASS of that by weights, and they take with their own, M. */
 static void find_kept(const mps_mpm *mpm, const mpsi_node_block *nodes, int32_t g, int local,
-                      double *weight, double *kept) {
+                      double *weight, double *warm) {
   const double *node = mpm->grid.node[mpsi_first_node(mpm, g) + local];
   const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + local];
   const double m = node[MPSI_MASS], own = mpsi_own_mass(m, side[MPSI_EXCESS]);
   *weight = own + side[MPSI_EXCESS];
   const bool moves = nodes->split && mpsi_carried_mass(own, *weight) < 0.0; /* as they do */
   for (int c = 0; c < 3; c++)
-    kept[c] =
+    warm[c] =
         own < m ? (m - own) * (node[MPSI_VECTOR + c] - (moves ? side[MPSI_VECTOR + c] : 0.0)) : 0.0;
 }
 
@@ -421,12 +421,12 @@ static void give_back(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
     if (f->w[n] == 0.0) continue;
     if (is_across(f, n)) g = mpm->grid.nodes[g].across;
     const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-    double weight, kept[3];
+    double weight, warm[3];
     if (!nodes->light) continue;
-    find_kept(mpm, nodes, g, mpsi_support_local(&at->nodes, i, j, k), &weight, kept);
-    for (int c = 0; c < 3 && weight > 0.0; c++) kept[c] *= f->w[n] / weight;
-    if (is_folded(at, i, j, k)) reflect(mpm, cells, at, i, j, k, kept, mpm->p.m[particle]);
-    for (int c = 0; c < dim && weight > 0.0; c++) v[MPSI_VECTOR + c] += kept[c];
+    find_kept(mpm, nodes, g, mpsi_support_local(&at->nodes, i, j, k), &weight, warm);
+    for (int c = 0; c < 3 && weight > 0.0; c++) warm[c] *= f->w[n] / weight;
+    if (is_folded(at, i, j, k)) reflect(mpm, cells, at, i, j, k, warm, mpm->p.m[particle]);
+    for (int c = 0; c < dim && weight > 0.0; c++) v[MPSI_VECTOR + c] += warm[c];
   }
 }
 
@@ -442,12 +442,12 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   MPSI_FOR_NODES(dim, spline) {
     const int t = mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k);
     const double *from = (is_across(&f, n) ? worker->across_tile : worker->tile)[t];
-    const mpsi_quad node = mpsi_get(from), share = f.phi[n] * node;
-    sum += share;
+    const mpsi_quad node = mpsi_get(from), partition = f.phi[n] * node;
+    sum += partition;
     for (int d = 0; d < dim; d++) by[d] += f.gradient[d][n] * node;
-    moment[0] += at.at.s[0][i] * share;
-    moment[1] += at.at.s[1][j] * share;
-    if (dim == 3) moment[2] += at.at.s[2][k] * share;
+    moment[0] += at.at.s[0][i] * partition;
+    moment[1] += at.at.s[1][j] * partition;
+    if (dim == 3) moment[2] += at.at.s[2][k] * partition;
   }
   mpsi_put(out->v, sum);
   if (cells->light) {

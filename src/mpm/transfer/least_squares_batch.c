@@ -500,25 +500,25 @@ typedef struct node_sums {
 MPSI_INLINE void sum_row(int dim, int spline, const batch *b, const mpsi_node *node, int j, int k,
                          node_sums *out) {
   const mpsi_quad value = across(dim, b, b->q[0], j, k);
-  mpsi_quad one[3] = {{0.0}}, by_x[3] = {{0.0}}, share[3] = {{0.0}};
+  mpsi_quad one[3] = {{0.0}}, by_x[3] = {{0.0}}, partition[3] = {{0.0}};
   for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
     const mpsi_quad x = b->s[0][i], phi = value + b->q[0][1] * x;
     for (int a = 0; a < dim; a++) {
       const mpsi_quad v = b->w[n] * node[i][MPSI_VECTOR + a], by_phi = phi * v;
       one[a] += v;
       by_x[a] += v * x;
-      share[a] += by_phi;
+      partition[a] += by_phi;
       if (a != 0) out->moment[a][0] += by_phi * x;
     }
   }
   for (int a = 0; a < dim; a++) {
-    out->v[a] += share[a];
+    out->v[a] += partition[a];
     out->by[a][0] += one[a];
     out->by[a][1] += by_x[a];
     for (int d = 1; d < dim; d++) {
       const mpsi_quad s = d == 1 ? b->s[1][j] : b->s[2][k];
       out->by[a][1 + d] += one[a] * s;
-      if (a != d) out->moment[a][d] += share[a] * s;
+      if (a != d) out->moment[a][d] += partition[a] * s;
     }
   }
 }

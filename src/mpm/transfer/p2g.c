@@ -322,7 +322,7 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
   const int dim = mpsi_dim_of(geometry);
   for (int32_t q = 0; q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    pair->touched = false;
+    pair->in_contact = false;
     pair->deepest = 0.0;
     memset(pair->load, 0, sizeof pair->load);
     memset(pair->contacts, 0, sizeof pair->contacts);
