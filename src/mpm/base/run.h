@@ -25,8 +25,9 @@ typedef struct mpsi_run {
   uint32_t warned_about_chatter; /* bit b: ... that body b's contact is too stiff for dt */
 } mpsi_run;
 
-/* step.c: one step of dt. On an error nothing has moved, but where a particle has left the domain
- * (run.lost: the step is whole) or got values that are no numbers (run.broken). */
+/* step_on_ranks.c: one step of dt, in one process (step.c) or on several ranks. On an error nothing
+ * has moved, but where a particle has left the domain (run.lost: the step is whole) or got values
+ * that are no numbers (run.broken). */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
 /* signals.c: of loads and boundaries, and of bodies where they `move` at the end of the step of dt.
  * Not collective: `function` goes on with the status where all ranks agree on one. */

@@ -1,0 +1,100 @@
+/* stages.c - see stages.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "stages.h"
+
+#include "core/particles/particles_internal.h"
+#include "mpm/particles/particles.h"
+
+#define CHATTER 6.0 /* k dt^2/m above which a contact does not settle */
+
+mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function) {
+  mps_status status = mpsi_mpm_find_forces(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_energy_begin(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_begin_balance(mpm, function);
+  return status;
+}
+
+static void warn_about_courant(mps_mpm *mpm, double dt) {
+  const double limit = mps_mpm_limit(mpm), courant = mpm->def.courant;
+  if (mpm->run.warned_about_dt || !(dt > courant * limit * (1.0 + 1e-9))) return;
+  mpm->run.warned_about_dt = true;
+  mpsi_log(mpm->context, MPS_LOG_WARNING,
+           "step %lld: dt is %.4g s, %.3g of the Courant limit h/(c + v), above the fraction "
+           "courant = %g: choose a smaller dt, or NaN for a step that follows the limit",
+           (long long)mpm->run.steps, dt, dt / limit, courant);
+}
+
+static void warn_about_chatter(mps_mpm *mpm, double dt) {
+  double stiffest = 0.0;
+  for (int32_t k = 0; k < mpm->laws.count; k++) stiffest = fmax(stiffest, mpm->laws.law[k].modulus);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const mps_contact *contact = mpm->contact.handle[b];
+    if (mpsi_by_impulses(contact)) continue;
+    const double k = mpm->def.measure * mpsi_contact_penalty(contact, stiffest,
+                                                             mps_particles_spacing(mpm->particles),
+                                                             mpm->def.cell, mpm->def.courant);
+    const double ratio = k * dt * dt / mpm->contact.least_mass;
+    if (!(ratio > CHATTER) || (mpm->run.warned_about_chatter >> b & 1)) continue;
+    mpm->run.warned_about_chatter |= UINT32_C(1) << b;
+    mpsi_log(mpm->context, MPS_LOG_WARNING,
+             "contact with body %d will chatter: k dt^2/m = %.3g, above %g; use a penalty k of at "
+             "most %.4g or a dt of at most %.4g s",
+             b, ratio, CHATTER, k * CHATTER / ratio, dt * sqrt(CHATTER / ratio));
+  }
+}
+
+void mpsi_step_begin(mps_mpm *mpm, double dt) {
+  mpm->run.dt = dt;
+  warn_about_courant(mpm, dt);
+  warn_about_chatter(mpm, dt);
+}
+
+static mpsi_mpm_task g2p(const mps_mpm *mpm) {
+  return mpm->kernels->g2p[mpm->def.geometry][mpm->def.spline - 2];
+}
+
+static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_mpm_keep_block(mpm, b);
+  g2p(mpm)(mpm, b, worker);
+}
+
+mpsi_pass mpsi_step_scatter_pass(const mps_mpm *mpm) {
+  const mpsi_mpm_task p2g = mpm->kernels->p2g[mpm->def.geometry][mpm->def.spline - 2];
+  return (mpsi_pass){.clear = mpsi_mpm_clear_nodes,
+                     .scatter = mpm->contact.penalty_bodies > 0 ? mpsi_mpm_scatter_penalty : p2g,
+                     .update = mpsi_mpm_update_nodes};
+}
+
+void mpsi_step_gather_pass(const mps_mpm *mpm, mpsi_pass *pass) {
+  pass->finish = mpsi_mpm_finish_nodes;
+  pass->gather = mpm->undo.on ? keep_and_gather : g2p(mpm);
+}
+
+void mpsi_step_without_contact(mps_mpm *mpm, double dt) {
+  mpm->contact.impulses.warm_count = mpm->contact.impulses.sweeps = 0;
+  mpm->contact.impulses.left = 0.0;
+  mpsi_mpm_begin_boundaries(mpm, dt);
+}
+
+void mpsi_step_after_gather(mps_mpm *mpm) {
+  mpsi_mpm_sum_boundaries(mpm);
+  mpsi_mpm_drive_particles(mpm);
+  mpsi_mpm_find_impulse_loss(mpm); /* before means take the nodes' places */
+  if (mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT) mpsi_mpm_apply_laws_by_cell(mpm);
+}
+
+mps_status mpsi_step_refuse(mps_mpm *mpm, const char *function) {
+  mpsi_refusal *r = &mpm->laws.refusal;
+  mpsi_mpm_undo(mpm);
+  if (!r->cells) return MPS_OK;
+  r->cells = NULL;
+  return mpsi_material_refused(mpm->context, function, r->material, r->status, r->message,
+                               r->particle >= 0 ? mpm->laws.ids[r->particle] : -1, mpm->run.steps);
+}
+
+void mpsi_step_complete(mps_mpm *mpm) {
+  if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm);
+  mpsi_mpm_energy_end(mpm);
+  mpm->run.moments = true;
+  mpm->run.time += mpm->run.dt;
+  mpm->run.steps++;
+}
