@@ -29,7 +29,7 @@ typedef struct mpsi_contact_particle {
 } mpsi_contact_particle;
 
 /* The contact of the particle at out->x, with velocity v and its gradient L (dim x dim, rows; 1/s);
- * false where it does not touch the body. */
+ * false where it is not in contact with the body. */
 static inline bool mpsi_contact_find(const mps_contact *contact, int dim,
                                      const mpsi_contact_law *law, const double *v, const double *L,
                                      mpsi_contact_particle *out) {

@@ -1,5 +1,5 @@
 /* corner.h - where a body bears a particle whose edges and corners are rounded by a radius that
- * the grid can show: docs/theory/contact.md tells why. The rounded body is that which a ball of
+ * the grid can show: docs/theory/contact.md derives it. The rounded body is that which a ball of
  * this radius sweeps out inside the body; faces stay where they are.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_CORNER_H

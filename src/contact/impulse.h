@@ -20,8 +20,8 @@
 double mpsi_impulse_half_size(double half, double wave, double shear, const double *stress,
                               const double *n);
 
-/* Whether a particle of half size `half` over the gap g (m) may touch within dt, where body and
- * particle approach each other by `closing` (m/s). */
+/* Whether a particle of half size `half` over the gap g (m) may be in contact within dt, where body
+ * and particle approach each other by `closing` (m/s). */
 static inline bool mpsi_impulse_near(double gap, double half, double closing, double dt) {
   return gap <= 0.2 * half + dt * fmax(0.0, closing);
 }

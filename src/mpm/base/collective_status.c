@@ -1,5 +1,5 @@
-/* collective_status.c - what a rank asks the others: whether all are well, and what any of them has found.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* collective_status.c - one status on all ranks: whether each has succeeded so far, and the largest
+ * of what any of them has found. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
 bool mpsi_mpm_counts_node_block(const mps_mpm *mpm, int64_t g) {

@@ -184,11 +184,11 @@ void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held,
   mpm->energy.nodes[g] = sum;
 }
 
-/* ---- springs of contacts ----------------------------------------------------------------------
+/* ---- penalty contact --------------------------------------------------------------------------
  */
 
-/* Half the normal force times the depth that it comes from, of all that touches: `sign` times that
- * is what the springs have now, and the bodies' work on them less. */
+/* Half the normal force times the depth that it comes from, of all particles in penalty contact:
+ * `sign` times that is the elastic energy of the contact now, and the bodies' work on it less. */
 static void add_springs(mps_mpm *mpm, double sign) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     const mps_contact *contact = mpm->contact.handle[b];
@@ -241,7 +241,7 @@ static void add_cells(mps_mpm *mpm) {
   }
 }
 
-/* Of the bodies' work that is not by friction or on nodes, the springs have some. */
+/* Of the bodies' work that is not by friction or on nodes, penalty contact stores some. */
 static void add_nodes(mps_mpm *mpm) {
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_energy *e = &mpm->energy.nodes[g];

@@ -80,7 +80,7 @@ typedef struct mpsi_before_law {
 /* Where the budget is wanted: to the step being made, or (at once) to what has been. */
 void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy);
 void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy);
-/* Before the step: room, and the springs. */
+/* Before the step: room, and the energy of penalty contact. */
 mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
 /* Particles [begin, end) of a block: kinetic energy before and after G2P, the latter before lists
  * of held particles get theirs (walls.c), though with means the laws come later than these. */

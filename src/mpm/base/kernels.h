@@ -1,6 +1,6 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * least_squares.c, least_squares_batch.c, search.c, sweep.c, and loops.h for what they share.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * least_squares.c, least_squares_batch.c, search.c, sweep.c, and loops.h for what they have in
+ * common. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H
 
@@ -39,8 +39,8 @@ typedef struct mpsi_kernels {
   int64_t (*next_near)(const mps_mpm *mpm, const mpsi_far *far, int64_t begin, int64_t end);
   int64_t (*next_in)(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *low,
                      const int *high, int64_t begin);
-  /* sweep.c: the first impulses of a block's touches; a visit to each; velocity of the particle's
-   * side at the foot of one (m/s). */
+  /* sweep.c: the first impulses of a block's constraints; an update of each; velocity of the
+   * particle's side at the foot of one (m/s). */
   void (*warm)(mps_mpm *mpm, const mpsi_constraint_block *block);
   void (*sweep)(mps_mpm *mpm, mpsi_constraint_block *block, bool back);
   void (*foot_velocity)(const mps_mpm *mpm, int64_t constraint, double *v);

@@ -240,10 +240,9 @@ typedef struct mpsi_gathered {
   double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
 } mpsi_gathered;
 
-/* ---- least_squares.c: particles whose support is cut -------------------------------------------------
- */
+/* ---- least_squares.c: particles whose support is cut ----------------------------------------- */
 
-/* Gives a particle to the tiles; at bodies also what contact needs to those of springs. */
+/* Gives a particle to the tiles; at bodies also the sums of penalty contact. */
 void MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                             const mpsi_worker *worker, int64_t particle);
 /* What the nodes give to a particle: lanes 1 to 3 of each are components of the velocity. */
@@ -257,8 +256,7 @@ void MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *
                                            const mpsi_worker *worker, int64_t particle,
                                            mpsi_fitted *out);
 
-/* ---- least_squares_batch.c: particles beside bodies that act by impulses -----------------------------------
- */
+/* ---- least_squares_batch.c: particles beside bodies that act by impulses --------------------- */
 
 typedef enum mpsi_batched {
   MPSI_BATCHED_NOT,  /* nothing is done: they are for least_squares.c; */

@@ -57,7 +57,7 @@ static void fit_along(const mps_mpm *mpm, int c, double X, int64_t *base, double
     m0 += w[i], m1 += w[i] * s[i], m2 += w[i] * s[i] * s[i];
   }
   for (int i = 0; i < 4; i++) phi[i] = w[i] * (m2 - m1 * s[i]) / (m0 * m2 - m1 * m1);
-  for (int i = 0; i < 4; i++) { /* ghosts of a mirror that meets the wall: to their partners */
+  for (int i = 0; i < 4; i++) { /* ghosts of a mirror beside the wall: to their partners */
     const int64_t n = *base + i;
     const int64_t wall = n < mpm->grid.low[c] ? mpm->grid.low[c] : mpm->grid.high[c];
     if ((n >= mpm->grid.low[c] && n <= mpm->grid.high[c]) || phi[i] == 0.0) continue;

@@ -91,7 +91,7 @@ typedef struct mpsi_dashpot_parcels {
   int64_t doubles; /* of a plane */
 } mpsi_dashpot_parcels;
 
-/* walls.c: which blocks of nodes are held, after a sort. `status`: what has become of the call so
+/* walls.c: which blocks of nodes are held, after a sort. `status`: of the call so
  * far here; collective where sides absorb. */
 mps_status mpsi_mpm_list_boundaries(mps_mpm *mpm, const char *function, mps_status status);
 /* walls.c: the same where they are outdated. */

@@ -1,6 +1,6 @@
 /* walls.c - boundaries at work: the nodes of the domain's sides, boxes of nodes and lists of
  * particles with prescribed velocity. What they do to the velocity of a node, after all other
- * forces, is an impulse; the sums of these are the reactions that mps_mpm_get_reaction tells.
+ * forces, is an impulse; the sums of these are the reactions of mps_mpm_get_reaction.
  *
  * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse across the wall is
  * known once the velocity into it has been taken away, so the impulse along it is the smaller of
@@ -274,8 +274,8 @@ void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g) {
       if (fixed[k] >> c & 1) b.side[k][MPSI_VECTOR + c] = b.node[k][MPSI_VECTOR + c];
 }
 
-/* What acts across walls comes before friction: where walls meet, that of one must not move a node
- * into the other. */
+/* What acts across walls comes before friction: where two walls join, that of one must not move a
+ * node into the other. */
 void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
   static const struct {
     int32_t kind;
@@ -362,7 +362,7 @@ static void check_place(mps_mpm *mpm, int64_t k) {
   }
 }
 
-/* A particle moves as it is told: what its velocity changes by is an impulse. */
+/* The velocity of the particle is prescribed; m dv is the impulse. */
 static void drive_particle(mps_mpm *mpm, mpsi_boundary *hold, int64_t k) {
   const mpsi_columns *p = &mpm->p;
   double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0, kinetic = 0.0;

@@ -1,15 +1,16 @@
-/* area.c - how much of a surface each touch stands for, where the shear stress that the surface
- * bears has a strength or an adhesion in Pa. Particles are no measure: where soil flows along a
- * body few of those that touch it in one step do. The soil in the layer next to the surface is: a
- * particle of volume V at the distance D from it stands for the area
+/* area.c - the area of the surface that each contact constraint stands for, where the shear stress
+ * on the surface has a strength or an adhesion in Pa. The constraints of one step are no measure of
+ * it: where soil flows along a body, few of the particles beside it are in contact in any one step.
+ * The layer of soil next to the surface is: a particle of volume V at the distance D from the
+ * surface stands for the area
  *
  *   a = V w(D),   w = 2/d (1 - D/d) up to d = 4 half sizes or a cell, whose integral is 1,
  *
- * in axisymmetry brought from its own radius to that of its foot. It goes by bilinear weights to
- * the corners of the cell of the foot, and from these in equal parts to the touches that are
- * pressed within two cells, by cubic weights: the sum of their areas is that of the surface that
- * soil covers. What the particles of a block give is summed apart, and added to the nodes in the
- * order of the colours; of other ranks it comes with their touches (exchange.h).
+ * in axisymmetry brought from its own radius to that of its foot. The area goes by bilinear weights
+ * to the corners of the cell of the foot, and from these in equal parts to the constraints within
+ * two cells whose normal impulse is positive, by cubic weights: the sum of their areas is that of
+ * the surface that soil covers. Sums of a block are made apart and added to the nodes in the order
+ * of the colours; those of other ranks come with their constraints (exchange.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 
@@ -125,13 +126,13 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
   }
 }
 
-/* ---- touches --------------------------------------------------------------------------------- */
+/* ---- constraints ----------------------------------------------------------------------------- */
 
 static bool is_pressed(const mpsi_constraint *constraint) {
   return constraint->impulse.normal_impulse > 0.0;
 }
 
-/* The nodes around the feet of a block's touches. */
+/* The nodes around the feet of a block's constraints. */
 static void surround_block(void *data, int64_t unit, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;

@@ -1,12 +1,13 @@
-/* constraints.c - which particles may touch which body in a step, their weights at the foot, and the
- * impulses of the last step, with which the next begins. A particle counts by its distance from
- * the surface, not by the nodes inside the body that it sees: so thin bodies are touched too.
+/* constraints.c - the contact constraints of a step: particles that may reach a body in dt, their
+ * weights at the foot, and the warm start from the impulses of the last step. A particle counts by
+ * its distance from the surface, not by the nodes inside the body that it sees: thin bodies have
+ * contacts too.
  *
  * The impulse acts at the foot x_c through psi_i = phi_i(x_p) + grad phi_i . (x_c - x_p): sum psi_i
  * = 1 and sum psi_i x_i = x_c, so that nodes receive its force and its moment about any point.
  *
- * Blocks of cells are listed colour by colour (blocks.h), the touches of a block by place, then by
- * body: in the order in which impulses.c sweeps, whatever the order of the particles.
+ * Blocks of cells are listed colour by colour (blocks.h), the constraints of a block by place, then
+ * by body: in the order in which impulses.c sweeps, whatever the order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/base/kernels.h"
@@ -62,7 +63,7 @@ void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body) {
   all->warm_count = to;
 }
 
-/* ---- who may touch --------------------------------------------------------------------------- */
+/* ---- candidates ------------------------------------------------------------------------------ */
 
 /* Half the size (m) of a particle along n. */
 static double half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
@@ -84,7 +85,7 @@ static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
   for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
 }
 
-/* No particle of the block touches that is further away than this (m). */
+/* Distance (m) beyond which no particle of the block is in contact. */
 static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mps_contact *contact) {
   const double fastest = mpm->kernels->fastest(mpm, cells->begin, cells->end);
@@ -173,7 +174,7 @@ static int64_t share_candidates(mps_mpm *mpm) {
     const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
     pair->first_candidate = count;
     pair->candidates = 0;
-    pair->in_contact = false; /* also of blocks that give after the bodies are met (step.c) */
+    pair->in_contact = false; /* also of blocks scattered after the contacts are solved (step.c) */
     pair->deepest = 0.0;
     if (mpsi_by_impulses(mpm->contact.handle[pair->body])) count += cells->end - cells->begin;
   }
@@ -276,7 +277,7 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id,
   }
 }
 
-/* psi at the nodes of the touch's stencil. */
+/* psi at the nodes of the constraint's stencil. */
 static void weigh(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                   const mpsi_constraint *constraint, mpsi_foot_weights *out) {
   double d[3];
@@ -289,7 +290,7 @@ static void find_place(const mpsi_foot_weights *f, int s, int *place) {
   place[0] = f->at[0] + s % 4, place[1] = f->at[1] + s / 4 % 4, place[2] = f->at[2] + s / 16;
 }
 
-/* Adds `weight` to those of a node of the touch, which may be there already, for a ghost. */
+/* Adds `weight` to those of a node of the constraint, which may be there already, for a ghost. */
 static void add_node(mpsi_constraint *constraint, double **node, double (*to)[4], double *at,
                      const double *weight, bool may_be_there) {
   int32_t i = may_be_there ? 0 : constraint->nodes;
@@ -303,8 +304,8 @@ static void add_node(mpsi_constraint *constraint, double **node, double (*to)[4]
   for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
 }
 
-/* psi at the nodes of the touch's stencil that have mass, where these may stand for ghosts or be
- * other ranks'. */
+/* psi at the nodes of the constraint's stencil that have mass, where these may stand for ghosts or
+ * be other ranks'. */
 static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
                          int64_t n) {
   mpsi_impulses *all = &mpm->contact.impulses;
@@ -360,7 +361,7 @@ static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_fo
   for (int a = 0; a < 3; a++) constraint->impulse.mobility[a] = mobility;
 }
 
-/* The weights of a touch, and its mobility. */
+/* The weights of a constraint, and its mobility. */
 static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
   mpsi_constraint *constraint = &mpm->contact.impulses.constraint[n];
   mpsi_foot_weights f;
@@ -373,7 +374,7 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
     fit_unevenly(mpm, cells, &f, n);
 }
 
-/* States of nodes for the touches whose fits were not kept. */
+/* States of nodes for the constraints whose fits were not kept. */
 static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
                         const mpsi_constraint_block *block, mpsi_worker *worker) {
   const mpsi_constraint *constraint = mpm->contact.impulses.constraint + block->first;

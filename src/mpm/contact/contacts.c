@@ -1,5 +1,5 @@
-/* contacts.c - which bodies the particles touch: contacts made, asked and ended. At work: pairs.c,
- * inside.c, least_squares.c, friction.c. SPDX-License-Identifier: BSD-3-Clause */
+/* contacts.c - the contacts of a solver with bodies: added, queried and ended. At work: pairs.c,
+ * inside.c, constraints.c, impulses.c, penalty.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "particle.h"
 #include "mpm/particles/particles.h"
 
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define OVERLAP 0.1 /* cells: bodies may by so much */
-#define SHARP 1e-3  /* cells: walls below are the edge where two faces meet */
+#define SHARP 1e-3  /* cells: walls below are the edge of two faces */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -43,7 +43,8 @@ static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_bo
   return MPS_OK;
 }
 
-/* Impulses keep what is on the sides of a thin wall apart (thin_bodies.h), springs do not. */
+/* Contact by impulses separates the sides of a thin wall (thin_bodies.h), penalty contact does
+ * not. */
 static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contact *contact) {
   const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
   contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
@@ -158,10 +159,10 @@ static void end(void *owner, mps_contact *contact) {
   mpsi_contact_leave(contact);
 }
 
-/* Whether particle k at x touches the body now, by the method of the contact; `c` receives force
- * and depth, `foot` and `half` where and from which half size (m) its gap counts. By impulses: one
- * that the body has pushed in the last step. */
-static bool constraints(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
+/* Whether particle k at x is in contact with the body now, by the method of the contact; `c`
+ * receives force and depth, `foot` and `half` where and from which half size (m) its gap counts. By
+ * impulses: one that the body has pushed in the last step. */
+static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
                         int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
                         double *half) {
   *half = contact->def.offset;
@@ -197,7 +198,7 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
     double x[3] = {0.0}, half;
     for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
     mpsi_foot at;
-    if (!constraints(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
+    if (!is_in_contact(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
     if (n < capacity) {
       if (ids) ids[n] = id[k];
       if (gap) gap[n] = at.distance - half;

@@ -1,7 +1,7 @@
-/* exchange.c - see exchange.h. A message has one entry for each block of cells with touches or areas: its
- * head, the nodes that the touches use, each once, the touches, each followed by the numbers of its
- * nodes in that list and by its weights, one or (in blocks at mirrors) three a node, and the areas
- * that its particles stand for (area.c).
+/* exchange.c - see exchange.h. A message has one entry for each block of cells with constraints or
+ * areas: its head, the nodes that the constraints use, each once, the constraints, each followed by
+ * the numbers of its nodes in that list and by its weights, one or (in blocks at mirrors) three a
+ * node, and the areas that its particles stand for (area.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 
@@ -68,7 +68,7 @@ static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_cell_block *cells,
   return bytes + nodes * (int64_t)(3 * sizeof(double) + sizeof(named_node));
 }
 
-/* The nodes of the block's touches, each once; `number` of each place in that list. */
+/* The nodes of the block's constraints, each once; `number` of each place in that list. */
 static int64_t name_nodes(const mps_mpm *mpm, const mpsi_constraint_block *block, int32_t *number,
                           named_node *out) {
   const mpsi_impulses *all = &mpm->contact.impulses;
@@ -230,7 +230,7 @@ static void take_areas(exchange *m, const head *h, const char *from) {
   }
 }
 
-/* The touches of an entry behind those that are there. */
+/* Appends the constraints of an entry. */
 static void take_entry(exchange *m, const entry *e, int64_t first) {
   mpsi_impulses *all = &m->mpm->contact.impulses;
   const named_node *named = (const named_node *)e->data;
@@ -309,8 +309,8 @@ static mps_status join(exchange *m) {
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-/* Blocks of cells in the order of the colours that have touches, which `next` is the first of, or
- * may have areas. */
+/* Blocks of cells in the order of the colours that have constraints, which `next` is the first of,
+ * or may have areas. */
 static const mpsi_constraint_block *touches_of(const mpsi_impulses *all, int32_t cells,
                                                int64_t *next) {
   if (*next == all->block_count || all->block[*next].cells != cells) return NULL;
@@ -333,7 +333,7 @@ static int64_t message_bytes(const mps_mpm *mpm) {
   return bytes;
 }
 
-/* Those that mates are told of, or the others. */
+/* Those that are sent to partners, or the others. */
 static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
   const mpsi_grid *grid = &mpm->grid;
   const mpsi_impulses *all = &mpm->contact.impulses;
@@ -359,7 +359,7 @@ static mps_status make_room_for_message(exchange *m, mps_domain_message **list) 
   return MPS_OK;
 }
 
-/* The same to each mate. */
+/* The same message to each partner. */
 static int32_t address(exchange *m, mps_domain_message *list) {
   const mps_mpm *mpm = m->mpm;
   const mps_domain *domain = mpm->partition->domain;

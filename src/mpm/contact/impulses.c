@@ -1,11 +1,11 @@
-/* impulses.c - the impulses of a step, by sweeps of projected Gauss and Seidel over the touches
- * (constraints.c): each visit satisfies one contact exactly with all others as they are
- * (contact/impulse.h), and moves its nodes by psi_i J/m_i at once (sweep.c). Sweeps go forward and
- * backward in turn, begin with the impulses of the last step, and end at their number or, where a
- * contact asks for it, once one changes the impulses by less than a tolerance.
+/* impulses.c - the impulses of a step, by sweeps of projected Gauss-Seidel over the contact
+ * constraints (constraints.c): each update satisfies one constraint exactly with all others as they
+ * are (contact/impulse.h), and changes its nodes by psi_i J/m_i at once (sweep.c). Sweeps go
+ * forward and backward in turn, begin with the impulses of the last step, and end where one changes
+ * the impulses by less than a tolerance.
  *
  * Blocks of one colour share no node: where no body moves freely, their sweeps are independent and
- * shared out among the threads, with the same bits. A free body is in contact with all blocks at
+ * are divided among the threads, with the same bits. A free body is in contact with all blocks at
  * once; then one thread takes them in their order. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "sweeps.h"
@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-#define SHARED 512 /* touches: below, sharing the work costs more than it gains */
+#define SHARED 512 /* constraints: below, dividing the work costs more than it gains */
 
 /* ---- all blocks ------------------------------------------------------------------------------ */
 

@@ -1,6 +1,6 @@
-/* impulses.h - contact by impulses on the grid (impulses.c, constraints.c): which particles may touch
- * which body in a step, the nodes through which they do, and what is kept for the next step.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* impulses.h - contact by impulses on the grid (impulses.c, constraints.c): which particles may
+ * reach which body in a step, the nodes through which they act, and the warm start of the next
+ * step. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_IMPULSES_H
 #define MPSI_MPM_IMPULSES_H
 
@@ -10,12 +10,12 @@
 
 #include <mps/mpm.h>
 
-/* A particle that may touch a body in the step being made. Its weights and nodes are
- * weight[k * stride] and on, node[k * stride] and on, k its number in the list. A weight has 1/m of
- * the node and then psi for each component of its velocity, in the places that they have in the
- * node: these differ where ghosts of mirrors (mirror.h) stand for nodes. Where none may, the touch
- * is `even`, and its weights are pairs of 1/m and psi, from the same place on: half the memory to
- * read in a sweep. */
+/* A particle that may reach a body in the step being made. Its weights and nodes are weight[k *
+ * stride] and on, node[k * stride] and on, k its number in the list. A weight has 1/m of the node
+ * and then psi for each component of its velocity, in the places that they have in the node: these
+ * differ where ghosts of mirrors (mirror.h) stand for nodes. Where none may, the constraint is
+ * `even`, and its weights are pairs of 1/m and psi, from the same place on: half the memory to read
+ * in a sweep. */
 typedef struct mpsi_constraint {
   mpsi_impulse impulse;
   double x[3];       /* m, of the particle */
@@ -28,7 +28,7 @@ typedef struct mpsi_constraint {
   int32_t areas; /* nodes whose areas it shares, of around[] (area.c) */
 } mpsi_constraint;
 
-/* The touches of a block of cells: neighbours in the list. */
+/* The constraints of a block of cells: consecutive in the list. */
 typedef struct mpsi_constraint_block {
   int64_t first, count;
   int32_t cells;            /* -1: of another rank */
@@ -42,7 +42,7 @@ typedef struct mpsi_warm_impulse {
   double by[3]; /* N s */
 } mpsi_warm_impulse;
 
-/* At a node, for one body: the surface that soil covers, and the touches that share it (area.c).
+/* At a node, for one body: the area that soil covers, and the constraints that bear it (area.c).
  */
 typedef struct mpsi_area {
   double area; /* m2, of the measure */
@@ -62,7 +62,7 @@ typedef struct mpsi_impulses {
   int64_t constraint_count, block_count;
   int64_t colour[9]; /* first block of each in `block` */
   int32_t stride;
-  bool free_bodies; /* one of those that may be touched moves freely */
+  bool free_bodies; /* one of those in contact moves freely */
   mpsi_impulse_body body[MPS_MPM_MAX_CONTACTS];
   mpsi_warm_impulse *warm; /* of the last step */
   int64_t warm_count;
@@ -80,20 +80,21 @@ typedef struct mpsi_impulses {
       next_room, lookup_room, area_room, around_room;
 } mpsi_impulses;
 
-/* constraints.c: before anything moves, what may touch in a step of mpm->run.dt, and room for it; then,
- * the masses of the nodes known, the touches with their weights, and how deep particles are. */
+/* constraints.c: before anything moves, candidates for contact in a step of mpm->run.dt, and room;
+ * then, the masses of the nodes known, the constraints with their weights, and how deep particles
+ * are. */
 mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function);
 void mpsi_mpm_fit_constraints(mps_mpm *mpm);
-/* area.c: room for the areas of the step and for those of so many touches; these; and what each
- * touch may bear in shear by its share of them, touches being pressed as they now are. */
+/* area.c: room for the areas of the step and of so many constraints; the areas; and the shear
+ * strength of each constraint by its part of them, with the present normal impulses. */
 bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t constraints);
 void mpsi_mpm_find_areas(mps_mpm *mpm);
 void mpsi_mpm_distribute_areas(mps_mpm *mpm);
 /* constraints.c: what mirrors give with the impulses of a step. */
 void mpsi_mpm_mirror_constraints(mps_mpm *mpm);
-/* constraints.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of the
- * last step on a particle, or NULL; where a particle meets the contact's body; a contact has ended:
- * bodies above it move down by one. */
+/* constraints.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of
+ * the last step on a particle, or NULL; where a particle bears on the contact's body; a contact has
+ * ended: bodies above it move down by one. */
 bool mpsi_mpm_index_impulses(mps_mpm *mpm);
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mps_mpm *mpm, int64_t id, int32_t body);
 mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
@@ -113,7 +114,7 @@ static inline bool mpsi_by_impulses(const mps_contact *contact) {
   return contact->def.method == MPS_CONTACT_METHOD_IMPULSE;
 }
 
-/* The weights of an even touch. */
+/* The weights of an even constraint. */
 static inline double (*mpsi_even_weights(const mpsi_impulses *all, int64_t constraint))[2] {
   return (double(*)[2])(double *)all->weight[constraint * all->stride];
 }

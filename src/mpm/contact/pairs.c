@@ -1,6 +1,5 @@
 /* pairs.c - before each step: which blocks of cells and of nodes are near which bodies. Only these
- * pairs are looked at for contact.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * pairs are searched for contact. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/solver.h"
 
 #include <string.h>
@@ -100,7 +99,7 @@ static bool list_node_pairs(mps_mpm *mpm, int64_t *count, int64_t *near) {
   return *count <= mpm->contact.node_pair_room.capacity;
 }
 
-/* Contacts by springs have sums at the nodes; all have normals there. */
+/* Penalty contacts have sums at the nodes; all have normals there. */
 static bool ensure_nodes(mps_mpm *mpm, int64_t nodes) {
   mpsi_contacts *contact = &mpm->contact;
   if (!mpsi_room_ensure(mpm->context, &contact->normal_room, nodes, sizeof *contact->normal) ||

@@ -1,5 +1,5 @@
-/* pairs.h - contact on the grid. A block and a body that may touch are a pair: the lists of pairs
- * are found anew before each step, so that only the blocks near a body look at it.
+/* pairs.h - contact on the grid. A block and a body near it are a pair: the lists of pairs are
+ * found anew before each step, so that only the blocks near a body are searched for contact.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_PAIRS_H
 #define MPSI_MPM_PAIRS_H
@@ -13,7 +13,7 @@
 
 #include <stdatomic.h>
 
-/* A block of cells and a body that its particles may touch. */
+/* A block of cells and a body near its particles. */
 typedef struct mpsi_cell_pair {
   int32_t cells, body;
   bool in_contact; /* some particle is in contact */
@@ -30,7 +30,7 @@ typedef struct mpsi_node_pair {
   double mass; /* kg, of the nodes in contact */
 } mpsi_node_pair;
 
-/* What particles that touch a body by springs give to a node: as in mpsi_contact_node. */
+/* Sums at a node of particles in penalty contact: as in mpsi_contact_node. */
 typedef struct mpsi_penalty_node {
   double mass, slip[3], force[3];
 } mpsi_penalty_node;
@@ -38,12 +38,12 @@ typedef struct mpsi_penalty_node {
 typedef struct mpsi_contacts {
   mps_contact *handle[MPS_MPM_MAX_CONTACTS];
   mps_body *body[MPS_MPM_MAX_CONTACTS]; /* of each */
-  int32_t bodies, penalty_bodies;       /* springs: how many of them act by springs */
+  int32_t bodies, penalty_bodies;       /* the latter: how many of them by penalty contact */
   double least_mass;                 /* kg, of a particle; in axisymmetry over its radius, kg/m */
   double mass[MPS_MPM_MAX_CONTACTS]; /* kg, of the nodes in contact with each body */
   mpsi_cell_pair *cell_pair;
   mpsi_node_pair *node_pair;
-  mpsi_contact_node *node;  /* where springs act, of each node of each pair; */
+  mpsi_contact_node *node;  /* with penalty contact, of each node of each pair; */
   double (*normal)[3];      /* of the surface there, where `inside` and `reached` */
   uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
   uint32_t thin;            /* bit b: body b parts particles (thin_bodies.h) */
@@ -58,7 +58,7 @@ typedef struct mpsi_contacts {
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and
- * split. It calls the next ones. `status`: what has become of the step so far here; collective
+ * split. It calls the next ones. `status`: of the step so far on this rank here; collective
  * where there are bodies. */
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status);
 /* pairs.c: lists the pairs; whether a body may have a node inside of the tile or block at `at` of
@@ -85,8 +85,8 @@ void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits);
 void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits);
 /* area.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
 bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
-/* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
- * their motion, for which there is room. */
+/* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies
+ * feel, and their motion, for which there is room. */
 bool mpsi_mpm_load_room(mps_mpm *mpm);
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);

@@ -5,8 +5,8 @@
 
 #include "mpm/base/solver.h"
 
-/* False where the particle does not touch the body. The state of the particle is that at the
- * beginning of the step. */
+/* False where the particle is not in contact with the body. The state of the particle is that at
+ * the beginning of the step. */
 MPSI_INLINE bool mpsi_find_contact(const mps_mpm *mpm, const mps_contact *contact, int dim,
                                    int64_t particle, mpsi_contact_particle *out) {
   const mpsi_columns *p = &mpm->p;

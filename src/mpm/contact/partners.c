@@ -1,8 +1,8 @@
-/* partners.c - see partners.h. What goes round is how many ranks are not well, how many touches there are
- * and then bits, which one rank each sets: of each rank a row of those whose touches its own ones
- * reach, and a row of those whose touches move nodes under its own blocks that have none there; or,
- * of many ranks or with free bodies, one row of those that touches concern.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* partners.c - see partners.h. Ranks reduce the counts of failures and of constraints, then a
+ * matrix of bits, of which each rank sets its own part: a row of the ranks whose constraints its
+ * own ones reach, and a row of the ranks whose constraints change nodes under its own blocks that
+ * have none there; of more than MPSI_MOST_PARTNERS ranks or with free bodies, one row of those that
+ * have constraints. SPDX-License-Identifier: BSD-3-Clause */
 #include "partners.h"
 
 #include "mpm/base/solver.h"
@@ -69,8 +69,8 @@ void mpsi_mpm_mark_contact_blocks(mps_mpm *mpm) {
     mpm->grid.cells[all->block[k].cells].in_contact = true;
 }
 
-/* One goes on where blocks over one block of nodes are touched. Returns whether some became told.
- */
+/* Marks spread over blocks with constraints over one block of nodes. Returns whether some were
+ * marked. */
 static bool spread(mps_mpm *mpm) {
   bool changed = false;
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
@@ -87,8 +87,8 @@ static bool spread(mps_mpm *mpm) {
   return changed;
 }
 
-/* Own blocks beside ghosts are told of; of the ghosts that are touched, the ranks: to `meets` where
- * an own block is touched too, else to `looks`. */
+/* Own blocks beside ghosts are sent; ranks of ghosts with constraints go to `linked` where an own
+ * block has constraints too, else to `readers`. */
 static void find_links(mps_mpm *mpm, uint64_t *linked, uint64_t *readers) {
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[g];
@@ -112,7 +112,7 @@ static void find_links(mps_mpm *mpm, uint64_t *linked, uint64_t *readers) {
   }
 }
 
-/* All are told of everything that there is. */
+/* All constraints are sent to all ranks. */
 static void tell_all(mps_mpm *mpm, uint64_t *row) {
   const int32_t rank = mps_domain_rank(mpm->partition->domain);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
@@ -125,7 +125,7 @@ static void tell_all(mps_mpm *mpm, uint64_t *row) {
 
 /* ---- all ranks ------------------------------------------------------------------------------- */
 
-/* From this rank on along the rows of those that meet; then who looks at any of them. */
+/* From this rank on along the rows of linked ranks; then the readers of any of them. */
 static void follow(mps_mpm *mpm, const uint64_t *linked, const uint64_t *readers) {
   const int32_t words = words_of(mpm);
   uint64_t *own = mpm->partition->partners.own, *all = own + words;

@@ -1,8 +1,7 @@
-/* penalty_friction.c - contact at the nodes of a block: the normal forces of all bodies first, then Coulomb
- * friction body by body, Nakamura (31)-(34), by contacts of springs; then what the bodies feel, by
- * whatever contact. The equations themselves, of one particle or node, are in src/contact:
- * friction.c has (31)-(34).
- * SPDX-License-Identifier: BSD-3-Clause */
+/* penalty_friction.c - penalty contact at the nodes of a block: the normal forces of all bodies
+ * first, then Coulomb friction body by body, Nakamura (31)-(34); then the forces on the bodies, by
+ * whatever contact. The equations of one particle or node are in src/contact: friction.c has
+ * (31)-(34). SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/base/solver.h"
 

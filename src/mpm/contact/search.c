@@ -1,6 +1,7 @@
-/* search.c - which particles of a block may be near a body, four at once: what the last foot that was
- * found tells of the others (constraints.c), and which are in cells with corners in bodies (inside.c).
- * Compiled once for each instruction set. SPDX-License-Identifier: BSD-3-Clause */
+/* search.c - which particles of a block may be near a body, four at once: the bound that the last
+ * foot found gives for the others (constraints.c), and which particles are in cells with corners in
+ * bodies (inside.c). Compiled once for each instruction set.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/loops.h"
 
 double MPSI_LEVELLED(mpsi_mpm_fastest)(const mps_mpm *mpm, int64_t begin, int64_t end) {

@@ -1,5 +1,5 @@
-/* shared_nodes.c - the nodes that touches of all ranks use, each once, by their place on the grid (exchange.h).
- * SPDX-License-Identifier: BSD-3-Clause */
+/* shared_nodes.c - the nodes that constraints of all partner ranks use, each once, found by their
+ * place on the grid (exchange.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 
 #include "mpm/base/solver.h"

@@ -1,14 +1,14 @@
-/* sweep.c - a visit of projected Gauss and Seidel to each touch of a block, see impulses.c. Node by
- * node the four values are one vector, and so are the weights. Compiled once for each instruction
- * set. SPDX-License-Identifier: BSD-3-Clause */
+/* sweep.c - a projected Gauss-Seidel update of each contact constraint of a block, see impulses.c.
+ * Node by node the four values are one vector, and so are the weights. Compiled once for each
+ * instruction set. SPDX-License-Identifier: BSD-3-Clause */
 #include "contact/visit.h"
 #include "mpm/base/loops.h"
 
 #define WAYS 8 /* sums side by side: none waits for the one before */
 
-/* psi of number i of the weights of a touch. */
+/* psi of number i of the weights of a constraint. */
 MPSI_INLINE mpsi_quad psi_of(const double *weight, bool even, int32_t i) {
-  if (!even) return mpsi_get(weight + 4 * i); /* its first lane meets a mass, for nothing */
+  if (!even) return mpsi_get(weight + 4 * i); /* its first lane multiplies a mass, for nothing */
   const double psi = weight[2 * i + 1];
   return (mpsi_quad){psi, psi, psi, psi};
 }
@@ -64,7 +64,7 @@ void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t constrain
   velocity_at(&mpm->contact.impulses, constraint, v);
 }
 
-/* `rub` holds the last step's impulse. */
+/* `tangent_impulse` holds the last step's impulse. */
 void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_constraint_block *block) {
   mpsi_impulses *all = &mpm->contact.impulses;
   const double fraction = all->warm_dt > 0.0 ? mpm->run.dt / all->warm_dt : 0.0;

@@ -102,7 +102,8 @@ static bool ensure_tiles(mps_mpm *mpm) {
   return true;
 }
 
-/* The block across those nodes: it is held, damped and counted as they are, and no springs act. */
+/* The block across those nodes: it is prescribed, damped and counted as they are, without penalty
+ * contact. */
 static void make_across(mps_mpm *mpm, const mpsi_node_block *nodes) {
   mpsi_node_block *across = &mpm->grid.nodes[nodes->across];
   *across = *nodes;

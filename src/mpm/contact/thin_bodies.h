@@ -1,21 +1,18 @@
-/* thin_bodies.h - thin bodies: those with a wall below two cells. Such a wall has nodes of the grid on
- * its one side within the stencils of particles on the other, and must not pass momentum on through
- * them. So a node has two sets of values: its own, of the particles that see it, and those across,
- * of the particles from which a thin body parts it: the straight way from particle to node leads
- * through the body. A node in such a body stands where its nearest point of the surface is.
+/* thin_bodies.h - thin bodies: those with a wall below two cells. Nodes on one side of such a wall
+ * lie within the stencils of particles on the other, and must not pass momentum through it. So a
+ * node has two sets of values: its own, of the particles that see it, and those across, of the
+ * particles from which a thin body separates it: the straight line from particle to node crosses
+ * the body. A node inside the body belongs to the side of its nearest point of the surface. No
+ * support is cut there: the nodes in the body take part as all others.
  *
- * The nodes in the body take part as all others. Those across do where they lie less than a cell
- * behind the tangent plane at the particle's foot, much as beside thick bodies: a node further off
- * would have hardly any mass, and of the pressure at the surface another part than of the impulses
- * that bear it. What is left is fitted (least_squares.c).
- *
- * Which is asked for each particle and node, not for the whole body: so it holds beside the ends
- * and edges of plates and piles, where the ground is connected, and of meshes. Three sides that
- * meet within a stencil are not told apart: two thin walls within two cells of each other.
+ * The line is tested for each particle and node, not for the whole body: so the rule holds beside
+ * the ends and edges of plates and piles, where the ground is connected, and for meshes. Three
+ * sides that lie within one stencil are not distinguished: two thin walls within two cells of each
+ * other.
  *
  * Values across have blocks of nodes of their own, behind those that the particles reach
- * (mpsi_all_nodes), and a second tile; they are found anew before each step. By springs
- * (MPS_CONTACT_METHOD_PENALTY) nothing is parted. SPDX-License-Identifier: BSD-3-Clause */
+ * (mpsi_all_nodes), and a second tile; they are found anew before each step. With penalty contact
+ * (MPS_CONTACT_METHOD_PENALTY) no node is two-sided. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_THIN_BODIES_H
 #define MPSI_MPM_THIN_BODIES_H
 

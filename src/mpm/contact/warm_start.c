@@ -1,6 +1,5 @@
-/* warm_start.c - the impulses of the last step, with which contacts begin the next one, on several ranks:
- * after a step each rank has those of its own particles and of its mates' (partners.h).
- * SPDX-License-Identifier: BSD-3-Clause */
+/* warm_start.c - warm-start impulses on several ranks: after a step each rank has those of its own
+ * particles and of its contact partners' (partners.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/solver.h"
 
 #include <stdlib.h>

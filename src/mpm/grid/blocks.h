@@ -49,7 +49,7 @@ typedef struct mpsi_cell_block {
   bool light; /* some block of nodes under it is: particles get back what its nodes keep */
   bool gone;  /* a particle has passed an open side */
   bool left;  /* a particle is more than a cell outside the block */
-  int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
+  int32_t first_pair, pairs;  /* bodies near it: of the list of mpsi_cell_pair */
   int64_t first_fit;          /* of its particles in the list of kept fits; -1: none are kept */
   int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after
                                  this one, in the order of colours; -1: this is the last */
@@ -61,8 +61,8 @@ typedef struct mpsi_cell_block {
   /* On several ranks (partition.h): */
   bool ghost;      /* another rank's: it has no particles here */
   bool late;       /* it, or one that gives before it, is a ghost */
-  bool in_contact; /* it has touches in the step, or areas (area.c) */
-  bool sent;       /* these touch what other ranks' do: partners.h */
+  bool in_contact; /* it has constraints in the step, or areas (area.c) */
+  bool sent;       /* these are sent to partner ranks: partners.h */
   int64_t parcel;  /* where its tile is among those that come (ghosts) or go; -1: nowhere */
 } mpsi_cell_block;
 
@@ -78,8 +78,8 @@ typedef struct mpsi_node_block {
   bool light;     /* some node's own mass is less than forces see: MPSI_LEAST_MASS */
   bool inside;    /* some node is in a body: */
   int32_t low[3], high[3];    /* they are within low to high - 1 */
-  uint32_t bodies;            /* bit b: a block of cells whose tile covers it may meet body b */
-  int32_t first_pair, pairs;  /* bodies that may touch it: of the list of mpsi_node_pair */
+  uint32_t bodies;            /* bit b: a block of cells whose tile covers it is near body b */
+  int32_t first_pair, pairs;  /* bodies near it: of the list of mpsi_node_pair */
   int32_t first_held, holds;  /* of the list of mpsi_held */
   int32_t from[MPSI_CORNERS]; /* blocks of cells whose tiles cover it, as corner q; -1: none */
   bool late;                  /* a ghost, or one that gives after one, gives to it (partition.h) */
@@ -104,7 +104,8 @@ typedef struct mpsi_worker {
   uint8_t *state;                           /* MPSI_... bits, 0: free */
 } mpsi_worker;
 
-/* The fit of a particle beside bodies, from the scatter of a step to its gather (least_squares_batch.c). */
+/* The fit of a particle beside bodies, from the scatter of a step to its gather
+ * (least_squares_batch.c). */
 typedef struct mpsi_kept_fit {
   double q[12];    /* the upper half of the inverse of M by rows, q00, q01, q02, ... (shape.h) */
   uint64_t active; /* bit 16 k + 4 j + i: node of the stencil that takes part */
@@ -220,7 +221,8 @@ bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells);
 /* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
 mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
                                  const mpsi_block *block);
-/* node_update.c: one block of nodes: emptied; velocities, normal contact forces; friction and walls. */
+/* node_update.c: one block of nodes: emptied; velocities, normal contact forces; friction and
+ * walls. */
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);

@@ -1,13 +1,12 @@
 /* pass.c - see pass.h. Blocks that are ready stand in a queue, from which the threads claim some at
- * a time; who does the last that a block waits for puts that block there. Those that became ready
+ * a time; the thread that completes a block's last dependency enqueues it. Blocks that became ready
  * go before those that were so from the start: their particles and nodes are still in the cache. A
- * thread that finds nothing ready looks again for some microseconds and then sleeps for a moment;
- * under a caller's executor, which may run the units one after the other, it leaves. All is done
- * when all have left, since who makes a block ready looks at the queue after that. One thread alone
- * goes over the blocks in their order and does for each what it waits for. On several ranks the
- * caller's thread, which alone may call the transport, receives what ghosts give when it finds
- * nothing else to do, while the others work on.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * thread that finds nothing ready spins for some microseconds and then sleeps for a moment; under a
+ * caller's executor, which may run the units one after the other, it leaves. All is done when all
+ * have left, since the thread that makes a block ready looks at the queue after that. One thread
+ * alone goes over the blocks in their order and does for each what it depends on. On several ranks
+ * the caller's thread, which alone may call the transport, receives the ghosts' tiles when it finds
+ * nothing else to do, while the others work on. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/solver.h"
 
 #include <stdatomic.h>

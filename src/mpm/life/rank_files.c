@@ -1,7 +1,7 @@
-/* rank_files.c - checkpoints of a body that lies on several ranks. Rank 0 writes what the run without a
- * domain would write: particles and blocks in the order of one rank, sums over all ranks. Each rank
- * reads the whole file and takes its share of it, so that a run goes on with any number of ranks,
- * or without a domain. SPDX-License-Identifier: BSD-3-Clause */
+/* rank_files.c - checkpoints of a body that lies on several ranks. Rank 0 writes what the run
+ * without a domain would write: particles and blocks in the order of one rank, sums over all ranks.
+ * Each rank reads the whole file and keeps its own part, so that a run goes on with any number of
+ * ranks, or without a domain. SPDX-License-Identifier: BSD-3-Clause */
 #include "rank_files.h"
 
 #include <stdlib.h>

@@ -1,5 +1,4 @@
-/* laws.h - the materials' laws that the particles obey.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* laws.h - the materials' laws of the particles. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_LAWS_H
 #define MPSI_MPM_LAWS_H
 

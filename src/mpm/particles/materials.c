@@ -1,5 +1,5 @@
-/* materials.c - which laws there are and which particles obey them: the fields that a law works on,
- * the state in which it begins, and several materials in one solver.
+/* materials.c - the laws of a solver and the particles that have each: the fields that a law reads
+ * and writes, the state in which it begins, and several materials in one solver.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 

@@ -32,7 +32,7 @@ void mpsi_mpm_begin_particles(mps_mpm *mpm);
 double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t particle);
 
 /* outflow.c: room for the marks of a step that may take particles out; what bodies take before it,
- * `cleared` where they do, on whatever rank (`status`: what has become of the step so far); those
+ * `cleared` where they do, on whatever rank (`status`: of the step so far on this rank); those
  * that have passed open sides in it; and those inside a body that takes away what it finds, when
  * its contact is made. */
 mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function);
@@ -49,8 +49,8 @@ mps_status mpsi_mpm_insert(void *mpm, const char *function, int64_t first, int64
 mps_status mpsi_mpm_remove(void *mpm, const char *function, int64_t count, const int64_t *ids);
 void mpsi_mpm_renew(void *mpm);
 
-/* ready.c: a call that fails after it has taken up what the caller has written (mpsi_mpm_apply_edits) puts
- * that off again: the step and its limit are those of before. */
+/* ready.c: a call that fails after it has taken up what the caller has written
+ * (mpsi_mpm_apply_edits) puts that off again: the step and its limit are those of before. */
 typedef struct mpsi_edit_state {
   double speed;
   bool edited;

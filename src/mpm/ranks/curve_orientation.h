@@ -1,7 +1,7 @@
-/* curve_orientation.h - how the blocks of a body lie along Hilbert's curve (domain/curve.h). The curve halves
- * a cube again and again; of how the cube lies over the blocks depends how much of the body is at
- * borders of ranks. So several ways are tried, and the one is taken in which the rank that has most
- * blocks of others beside its own has fewest. Results do not depend on it.
+/* curve_orientation.h - how the blocks of a body lie along Hilbert's curve (domain/curve.h). The
+ * curve halves a cube again and again; the cube's place over the blocks decides how much of the
+ * body is at borders of ranks. So several orientations are tried, and the one is taken in which the
+ * rank with the most ghosts has the fewest. Results do not depend on it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_CURVE_ORIENTATION_H
 #define MPSI_MPM_CURVE_ORIENTATION_H

@@ -1,9 +1,8 @@
 /* partition.c - which blocks of cells a rank has, and which are its ghosts: see partition.h.
  *
- * All ranks begin with the same set, sort it in the same way and keep their blocks of it, or with a
- * set in parts (deal.c). Ghosts
- * follow from the blocks that there are: each rank tells those ranks whose blocks may be beside its
- * own of these. SPDX-License-Identifier: BSD-3-Clause */
+ * All ranks begin with the same set, sort it in the same way and keep their own blocks of it.
+ * Ghosts follow from the blocks that exist: each rank sends the list of its blocks to the ranks
+ * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
 
@@ -11,7 +10,7 @@
 
 /* ---- ghosts ---------------------------------------------------------------------------------- */
 
-/* A block as another rank is told of it. */
+/* A block as it is sent to another rank. */
 typedef struct notice {
   int32_t number; /* among its owner's own ones */
   int32_t at[3], low[3], high[3];

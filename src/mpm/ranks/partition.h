@@ -1,14 +1,15 @@
-/* partition.h - the share that one rank has of a body whose particles lie on several ranks.
+/* partition.h - the part of a body that one rank computes, where its particles lie on several
+ * ranks.
  *
- * A rank has whole blocks of cells with their particles, and besides a list of ghosts: blocks of
- * other ranks beside its own, whose tiles cover nodes that its own ones cover. In each step a rank
- * sums its own particles into tiles and sends those of its border, the blocks that are ghosts
- * elsewhere; whoever shares a block of nodes adds the same tiles to it in the same order, that of
- * the colours (blocks.h), and updates it by itself. So one message a step is enough, and every node
- * has the bits that it has on one rank. Blocks of nodes that only ghosts cover would have part of
- * their sums: they are left alone.
+ * A rank has whole blocks of cells with their particles, and a list of ghosts: blocks of other
+ * ranks beside its own, whose tiles cover nodes that its own ones cover. In each step a rank sums
+ * its own particles into tiles and sends those of its border, the blocks that are ghosts elsewhere;
+ * every rank that has a block of nodes adds the same tiles to it in the same order, that of the
+ * colours (blocks.h), and updates it by itself. So one message a step is enough, and every node has
+ * the bits that it has on one rank. Blocks of nodes that only ghosts cover would have part of their
+ * sums: they are left alone.
  *
- * Sums over blocks of nodes count each where the first block of cells that covers it is.
+ * Sums over blocks of nodes count each on the rank of the first block of cells that covers it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_PARTITION_H
 #define MPSI_MPM_PARTITION_H
@@ -32,7 +33,7 @@ typedef struct mpsi_partition {
   int32_t *ghost_rank;     /* of each copy */
   int32_t most;            /* nodes of the widest part of a tile in use, on all ranks */
   bool apart, thin; /* some tile that is sent has forces, is parted, in the step being made; */
-  int32_t penalty_bodies; /* of so many bodies are there tiles of springs with one, at most */
+  int32_t penalty_bodies; /* most tiles of penalty contact, one a body, that go with a tile */
   int32_t item;           /* bytes of a parcel: a tile on its way, or other sums */
   double *out, *in;       /* parcels */
   int64_t *first;         /* of each rank: the first key on the curve of its blocks (curve.h) */
@@ -40,13 +41,13 @@ typedef struct mpsi_partition {
   double heaviest;                    /* particles of the rank that had most, after the last cut */
   bool cancel;                        /* a hook has asked to stop, on whatever rank */
   mps_status lost;                    /* of a message in the step being made */
-  mpsi_contact_partners partners;     /* who meets: see partners.h */
-  mpsi_contact_exchange exchange;     /* touches of mates: see exchange.h */
+  mpsi_contact_partners partners;     /* contact partners: partners.h */
+  mpsi_contact_exchange exchange;     /* constraints of partners: exchange.h */
   mpsi_room border_room, rank_room, out_room, in_room;
 } mpsi_partition;
 
 /* partition.c: leaves a solver that is made, with the whole set on each rank, this rank's share.
- * `status`: what has become of it so far here. Collective, as all of the following but where they
+ * `status`: of the call so far on this rank. Collective, as all of the following but where they
  * say so. */
 mps_status mpsi_mpm_partition_create(mps_mpm *mpm, const char *function, mps_status status,
                                      mpsi_storage **former);
@@ -69,25 +70,26 @@ mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_st
 /* partition.c: sorts, and finds the ghosts; the latter alone, where they are outdated. */
 mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function);
-/* collective_status.c: what has become of all ranks, or of the only one. */
+/* collective_status.c: the worst status of all ranks. */
 mps_status mpsi_mpm_agree(mps_mpm *mpm, const char *function, mps_status status);
-/* collective_status.c: the same, and whether all have the same time and bodies; with the greatest of `count`
- * values. In a step also whether signals have given all the same. */
+/* collective_status.c: the same, and whether all have the same time and bodies; with the greatest
+ * of `count` values. In a step also whether signals have given all the same. */
 mps_status mpsi_mpm_agree_alike(mps_mpm *mpm, const char *function, mps_status status,
                                 int32_t count, double *values);
 mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
                                   int32_t count, double *values);
-/* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank; what has
- * become of all before, `status` here, comes first. */
+/* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank;
+ * what has become of all before, `status` here, comes first. */
 mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
                               const int64_t *ids);
 /* collective_status.c: whether a sum over blocks of nodes counts g here. Not collective. */
 bool mpsi_mpm_counts_node_block(const mps_mpm *mpm, int64_t g);
-/* collective_status.c: whether all that reaches g is known here, its own or as a ghost. Not collective. */
+/* collective_status.c: whether all that reaches g is known here, its own or as a ghost. Not
+ * collective. */
 bool mpsi_mpm_node_block_complete(const mps_mpm *mpm, int64_t g);
 
-/* row_order.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank; before
- * particles leave the set, on one rank too, the blocks follow. Not collective. */
+/* row_order.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank;
+ * before particles leave the set, on one rank too, the blocks follow. Not collective. */
 int64_t mpsi_mpm_row_runs(const void *mpm, mpsi_row_run *out);
 void mpsi_mpm_thin_out(void *mpm, const uint8_t *gone);
 /* collective_status.c: as the holder of the set, what the caller adds and removes. */
@@ -124,7 +126,7 @@ void mpsi_mpm_receive_tiles(mps_mpm *mpm);
 void mpsi_mpm_send_sums(mps_mpm *mpm, void (*sum)(mps_mpm *, int64_t, int32_t));
 bool mpsi_mpm_receive_sums(mps_mpm *mpm, int64_t b, int32_t worker,
                            void (*sum)(mps_mpm *, int64_t, int32_t));
-/* tiles.c: a block of cells to its nodes, whoever has summed it. Not collective. */
+/* tiles.c: a block of cells to its nodes, whichever rank has summed it. Not collective. */
 void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

@@ -1,4 +1,4 @@
-/* row_order.c - in which order the rows of all ranks make the whole (partition.h).
+/* row_order.c - the order in which the rows of all ranks make the whole set (partition.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/solver.h"
 

@@ -1,11 +1,11 @@
-/* tiles.c - tiles on their way between ranks (partition.h): the border is summed and sent, the interior
- * is summed meanwhile, and then what has come is added to the nodes.
+/* tiles.c - tiles between ranks (partition.h): border blocks are summed and sent, the interior is
+ * summed meanwhile, and then the tiles received are added to the nodes.
  *
- * A parcel has four numbers, whether its forces are apart, whether they are split, whether thin
- * bodies part it and whether it has touches, and then the part of the tile that is in use, that of
- * the forces where some tile of the step has them, both across thin bodies (thin_bodies.h) where some
- * tile has these, and those of springs, body by body (penalty.c). SPDX-License-Identifier:
- * BSD-3-Clause */
+ * A parcel has four numbers (whether its forces are apart, whether they are split, whether thin
+ * bodies separate its nodes, whether it has contact constraints) and then the part of the tile that
+ * is in use, that of the forces where some tile of the step has them, both across thin bodies
+ * (thin_bodies.h) where some tile has these, and those of penalty contact, body by body
+ * (penalty.c). SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* probe.c - fields of the particles at any points (mps/grid.h): at each a weighted least-squares
  * fit of a linear function, Nakamura (5), (6), with the roles of nodes and particles exchanged. The
  * fit is about the weighted mean of the particles' places, so that it keeps its digits. On several
- * ranks all are told of the particles near the points. Sums go by cells and in them by ids.
+ * ranks all receive the particles near the points. Sums go by cells and in them by ids.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/particles.h"
 #include "mpm/base/shape.h"

@@ -1,5 +1,5 @@
-/* block_results.c - what the blocks have found in a step, here and on the other ranks: the largest speed,
- * and a particle that ends the step. SPDX-License-Identifier: BSD-3-Clause */
+/* block_results.c - results of the blocks of a step, on this rank and all others: the largest
+ * speed, and a particle that ends the step. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
 #include "mpm/contact/sweeps.h"

@@ -1,6 +1,5 @@
-/* node_update.c - one block of nodes: emptied before the particles' sums; then velocities before and after
- * the forces, Nakamura (25), (26), (39).
- * SPDX-License-Identifier: BSD-3-Clause */
+/* node_update.c - one block of nodes: emptied before the particles' sums; then velocities without
+ * and with the forces, Nakamura (25), (26), (39). SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/solver.h"
 
 #include <string.h>

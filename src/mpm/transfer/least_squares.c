@@ -1,7 +1,7 @@
-/* least_squares.c - particles whose support bodies or edges cut: the least-squares fit over the active
- * nodes, transfers with it, and contact, Nakamura (5), (6), (28)-(30). With the standard scheme all
- * particles, and the splines in place of the fit, Nakamura Table 1. Compiled once for each
- * instruction set.
+/* least_squares.c - particles whose support bodies or edges cut: the least-squares fit over the
+ * active nodes, transfers with it, and contact, Nakamura (5), (6), (28)-(30). With the standard
+ * scheme all particles, and the splines in place of the fit, Nakamura Table 1. Compiled once for
+ * each instruction set.
  *
  * Active are, of the stencil's nodes in the domain: those in no body; the corners of the particle's
  * own cell; and corners of other cells that hold particles, if they lie on the particle's side of
@@ -263,7 +263,7 @@ MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
 /* ---- contact ----------------------------------------------------------------------------------
  */
 
-/* The node `local` of the block g, as body b touches it. */
+/* The node `local` of the block g, in contact with body b. */
 static mpsi_contact_node *contact_node_of(const mps_mpm *mpm, int32_t g, int local, int32_t b) {
   int32_t t = mpm->grid.nodes[g].first_pair;
   while (mpm->contact.node_pair[t].body != b) t++;
@@ -311,7 +311,7 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells,
 }
 
 /* The friction that the nodes have given, back to the part of the surface that the particle
- * touches: at a node by the share of its mass in contact. */
+ * particles in contact: at a node by the part of its mass in contact. */
 MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                                 int64_t p, const support *at, const mpsi_shape_values *f,
                                 mpsi_cell_pair *pair) {
@@ -374,9 +374,8 @@ MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
 
 /* Derivatives along the axes whose stencil is full, ghosts of mirrors included, where nothing but
  * sides of the domain cuts the support: there the fit falls apart into one along each axis
- * (wall_support.h), so that phi/w along such an axis is constant and d phi = phi dw/w. Along the other
- * axes, and near bodies, the slopes serve.
- */
+ * (wall_support.h), so that phi/w along such an axis is constant and d phi = phi dw/w. Along the
+ * other axes, and near bodies, the slopes serve. */
 MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int dim, int spline, const support *at,
                              const mpsi_shape_values *f, double (*derivative)[4]) {

@@ -1,8 +1,8 @@
-/* least_squares_batch.c - particles beside bodies that act by impulses, up to four of one stencil at once: the
- * fit over the active nodes and the transfers of least_squares.c, particle by particle in the lanes of a
- * vector. What else may cut a support (corners of sides that are no mirrors, thin bodies), springs
- * and the variants for comparison are least_squares.c's. Compiled once for each instruction set.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* least_squares_batch.c - particles beside bodies with contact by impulses, up to four of one
+ * stencil at once: the fit over the active nodes and the transfers of least_squares.c, particle by
+ * particle in the lanes of a vector. What else may cut a support (corners of sides that are no
+ * mirrors, thin bodies), penalty contact and the variants for comparison are in least_squares.c.
+ * Compiled once for each instruction set. SPDX-License-Identifier: BSD-3-Clause */
 #include "spin.h"
 #include "support.h"
 

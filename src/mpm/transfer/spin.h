@@ -20,7 +20,7 @@
 #define MPSI_LEAST_INERTIA 0.1 /* of a full support: below, turning would take too large a spin */
 
 /* Whether a particle that has nodes of `bodies` (bit by bit) in its stencil keeps its moment: not
- * in axisymmetry, where particles are rings, nor by springs, which are as published. */
+ * in axisymmetry, where particles are rings, nor with penalty contact, which is as published. */
 MPSI_INLINE bool mpsi_keeps_spin(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                  uint32_t bodies) {
   bool impulses = false;

@@ -1,5 +1,5 @@
-/* support.h - the nodes of a stencil beside bodies and mirrors, for least_squares.c and least_squares_batch.c.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* support.h - the nodes of a stencil beside bodies and mirrors, for least_squares.c and
+ * least_squares_batch.c. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_SUPPORT_H
 #define MPSI_MPM_SUPPORT_H
 
