@@ -7,7 +7,7 @@
 
 #include <mps/io.h>
 
-#include <core/particles_internal.h>
+#include <core/particles/particles_internal.h>
 #include <io/replace.h>
 
 #include <fcntl.h>

@@ -8,7 +8,7 @@
 
 #include <mps/io.h>
 
-#include <core/particles_internal.h>
+#include <core/particles/particles_internal.h>
 
 #include <pthread.h>
 #include <sys/stat.h>

@@ -81,15 +81,15 @@ static void one_visit_solves_one_contact(void **state) {
     double u[3] = {slides[k], -1.0, 0.0}, by[3];
     mpsi_impulse_warm(&c, &b, none, 1.0, by);
     assert_true(mpsi_impulse_visit(&c, &b, u, by));
-    mps_assert_near(c.push, m * 1.0, 1e-15);
-    mps_assert_near(c.rub[0], -fmin(m * slides[k], 0.3 * m), 1e-15);
+    mps_assert_near(c.normal_impulse, m * 1.0, 1e-15);
+    mps_assert_near(c.tangent_impulse[0], -fmin(m * slides[k], 0.3 * m), 1e-15);
     u[0] += by[0] / m, u[1] += by[1] / m;
     (void)mpsi_impulse_visit(&c, &b, u, by);
     mps_assert_near(fabs(by[0]) + fabs(by[1]), 0.0, 1e-15); /* solved */
     u[1] = 3.0; /* something else throws it off: nothing pulls */
     (void)mpsi_impulse_visit(&c, &b, u, by);
-    mps_assert_near(c.push, 0.0, 0.0);
-    mps_assert_near(c.rub[0], 0.0, 0.0);
+    mps_assert_near(c.normal_impulse, 0.0, 0.0);
+    mps_assert_near(c.tangent_impulse[0], 0.0, 0.0);
     const double last[3] = {-0.5, 1.0, 0.0}, pulls[3] = {0.1, -1.0, 0.0};
     mpsi_impulse_warm(&c, &b, last, 2.0, by);
     mps_assert_near(by[1], 2.0, 1e-15);
@@ -120,11 +120,11 @@ static void shear_has_adhesion_and_strength(void **state) {
     double u[3] = {5.0, -1.0, 0.0}, by[3];
     mpsi_impulse_warm(&c, &b, none, 1.0, by);
     (void)mpsi_impulse_visit(&c, &b, u, by);
-    mps_assert_near(c.push, 2.0, 1e-15);
-    mps_assert_near(c.rub[0], -bears[k], 1e-15);
+    mps_assert_near(c.normal_impulse, 2.0, 1e-15);
+    mps_assert_near(c.tangent_impulse[0], -bears[k], 1e-15);
     u[1] = 3.0; /* lifted off: nothing adheres */
     (void)mpsi_impulse_visit(&c, &b, u, by);
-    mps_assert_near(c.rub[0], 0.0, 0.0);
+    mps_assert_near(c.tangent_impulse[0], 0.0, 0.0);
   }
   mps_body_destroy(&floor);
 }

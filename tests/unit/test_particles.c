@@ -6,8 +6,8 @@
 
 #include <mps/particles.h>
 
-#include <core/fields.h>
-#include <core/particles_internal.h>
+#include <core/particles/fields.h>
+#include <core/particles/particles_internal.h>
 
 static mps_particles *make_set(int32_t dim) {
   mps_particles_def def = mps_particles_defaults();
