@@ -4,7 +4,7 @@
 #include "mpm_held.h"
 #include "test_fixture.h"
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 /* Sum of all forces of the last step but gravity; counts the walls that act. */
 static void held_force(mpm_scene *s, int32_t box, double *sum, int *acts) {

@@ -4,7 +4,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <mps/mpm_energy.h>
 

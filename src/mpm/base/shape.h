@@ -10,7 +10,7 @@
 #ifndef MPSI_MPM_SHAPE_H
 #define MPSI_MPM_SHAPE_H
 
-#include "solver.h"
+#include "mpm_solver.h"
 
 #define MPSI_STENCIL                                                                               \
   64 /* nodes 16 k + 4 j + i; quadratic stencils leave out the fours, 2D k > 0                     \

@@ -2,7 +2,7 @@
  * blocks come with messages as tiles do, and forces at rest go to the ranks that have come to share
  * a block of nodes. Both only where the lists are made anew, after a sort.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

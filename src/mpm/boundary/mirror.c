@@ -1,6 +1,6 @@
 /* mirror.c - see mirror.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

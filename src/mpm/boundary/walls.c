@@ -5,7 +5,7 @@
  * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse across the wall is
  * known once the velocity into it has been taken away, so the impulse along it is the smaller of
  * that times mu and what stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

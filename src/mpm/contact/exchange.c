@@ -5,7 +5,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

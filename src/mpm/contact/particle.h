@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_CONTACT_PARTICLE_H
 #define MPSI_MPM_CONTACT_PARTICLE_H
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 /* False where the particle is not in contact with the body. The state of the particle is that at
  * the beginning of the step. */

@@ -5,7 +5,7 @@
  * have constraints. SPDX-License-Identifier: BSD-3-Clause */
 #include "partners.h"
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

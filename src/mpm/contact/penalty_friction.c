@@ -3,7 +3,7 @@
  * whatever contact. The equations of one particle or node are in src/contact: friction.c has
  * (31)-(34). SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * place on the grid (exchange.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

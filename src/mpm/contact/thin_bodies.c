@@ -1,6 +1,6 @@
 /* thin_bodies.c - see thin_bodies.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

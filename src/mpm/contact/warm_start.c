@@ -1,6 +1,6 @@
 /* warm_start.c - warm-start impulses on several ranks: after a step each rank has those of its own
  * particles and of its contact partners' (partners.h). SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

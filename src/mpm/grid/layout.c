@@ -1,7 +1,7 @@
 /* layout.c - the grid that follows the particles: the blocks of cells that hold particles, and the
  * blocks of nodes that their tiles need. Both lists ascend in z, then y, then x.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include "core/particles/particles_internal.h"
 

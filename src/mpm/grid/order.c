@@ -6,7 +6,7 @@
  * Where the blocks are so far apart that their coordinates do not fit one word, the particles are
  * sorted by two words, the lower first, and blocks are then counted through.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

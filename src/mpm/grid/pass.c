@@ -7,7 +7,7 @@
  * alone goes over the blocks in their order and does for each what it depends on. On several ranks
  * the caller's thread, which alone may call the transport, receives the ghosts' tiles when it finds
  * nothing else to do, while the others work on. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <stdatomic.h>
 

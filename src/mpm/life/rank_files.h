@@ -4,7 +4,7 @@
 #define MPSI_MPM_FILES_H
 
 #include "io/checkpoint.h"
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 /* The file of one rank, from all of them; of a whole file what is this rank's (mpsi_state_of).
  * Collective. */

@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_PARTICLES_H
 #define MPSI_MPM_PARTICLES_H
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #define MPSI_MPM_MOST_PARTICLES INT32_MAX
 

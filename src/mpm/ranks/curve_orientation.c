@@ -4,7 +4,7 @@
 #include "curve_orientation.h"
 
 #include "domain/curve.h"
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* row_order.c - the order in which the rows of all ranks make the whole set (partition.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

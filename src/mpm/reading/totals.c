@@ -1,6 +1,6 @@
 /* totals.c - sums over the particles, the energy budget, and the memory of the grid.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* cut.c - before each step: which blocks have particles with cut supports, and which sum the forces
  * apart from the momenta (see mpsi_cell_block).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 /* Nodes low to high - 1 of a tile. */
 typedef struct box {

@@ -2,7 +2,7 @@
  * (Cundall 1987), viscous damping by the momentum times a rate. Neither acts on components that a
  * boundary prescribes, and both come after all other forces: what boundaries and bodies exert is
  * then as if there were none. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* node_update.c - one block of nodes: emptied before the particles' sums; then velocities without
  * and with the forces, Nakamura (25), (26), (39). SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

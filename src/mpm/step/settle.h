@@ -2,7 +2,7 @@
 #ifndef MPSI_MPM_SETTLE_H
 #define MPSI_MPM_SETTLE_H
 
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 /* mpsi_mpm_take_step; after settling that was cut the particles start from rest. A step that fails
  * has changed nothing (on several ranks they stay at rest). */

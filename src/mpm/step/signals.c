@@ -2,7 +2,7 @@
  * velocities of boundaries at its middle, places of bodies at its end. All are evaluated before
  * anything of the step is done, so that one that refuses leaves the state as it was.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include "signal/signal_internal.h"
 

@@ -2,7 +2,7 @@
  * boundaries are and what they have counted, the forces at rest of absorbing sides, the impulses of
  * contacts from which the next ones begin. Time, bodies and the account of energy come after the
  * laws. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/solver.h"
+#include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
-/* solver.h - the WLS-MPM solver, put together from its parts: each has a header of its own.
+/* mpm_solver.h - the WLS-MPM solver, put together from its parts: each has a header of its own.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_MPM_PRIVATE_H
-#define MPSI_MPM_PRIVATE_H
+#ifndef MPSI_MPM_SOLVER_H
+#define MPSI_MPM_SOLVER_H
 
 #include "core/particles/particles_internal.h"
 #include "mpm/grid/blocks.h"
