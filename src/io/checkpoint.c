@@ -1,8 +1,8 @@
 /* checkpoint.c - all fields of a set in a file, and back, bit for bit.
  *
  * Layout: attributes `format`, `version` and those of header_table at the root; the group `fields`
- * with a dataset [component][particle] of float64 or int64 for each field. Particles are told by
- * `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first brings all of the
+ * with a dataset [component][particle] of float64 or int64 for each field. Particles are identified
+ * by `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first brings all of the
  * file into memory and looks at it; only then does it change the set. SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "checkpoint_private.h"

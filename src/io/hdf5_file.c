@@ -2,8 +2,8 @@
  *
  * Why a driver of our own: HDF5 1.10 does not survive a failed write. It keeps the file registered
  * after its structures are freed, and the program crashes when it exits. This driver keeps the
- * first error to itself and accepts everything that follows, so that HDF5 closes in order; whoever
- * opened the file then asks for the error. It also makes sure of the room for all of a file before
+ * first error to itself and accepts everything that follows, so that HDF5 closes in order; the
+ * caller that opened the file then asks for the error. It also makes sure of the room for all of a file before
  * it changes any of HDF5's tables in it, so that a full disk leaves the former tables whole.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "hdf5_file.h"

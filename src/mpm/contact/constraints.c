@@ -106,8 +106,8 @@ static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const 
   return out;
 }
 
-static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k, const double *x,
-                      const mpsi_foot *foot) {
+static bool may_be_in_contact(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
+                              const double *x, const mpsi_foot *foot) {
   const double half = half_size(mpm, contact, k, foot->normal);
   double surface[3], closing = 0.0;
   (void)x;
@@ -152,7 +152,7 @@ static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cel
     place_of(mpm, k, x);
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
     far = far_by(contact, &foot, x, reach);
-    if (foot.distance <= reach && may_touch(mpm, contact, k, x, &foot))
+    if (foot.distance <= reach && may_be_in_contact(mpm, contact, k, x, &foot))
       out[pair->candidates++] = (int32_t)(k - cells->begin);
   }
 }
@@ -254,8 +254,8 @@ static int by_place(const void *a, const void *b) {
   return (s->body > t->body) - (s->body < t->body);
 }
 
-static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id,
-                        mpsi_constraint *out) {
+static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id,
+                             mpsi_constraint *out) {
   mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
   const mps_contact *contact = mpm->contact.handle[pair->body];
   *out = (mpsi_constraint){.particle = k, .id = id[k], .pair = t, .body = pair->body};
@@ -362,7 +362,7 @@ static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_fo
 }
 
 /* The weights of a constraint, and its mobility. */
-static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
+static void fit_constraint(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
   mpsi_constraint *constraint = &mpm->contact.impulses.constraint[n];
   mpsi_foot_weights f;
   weigh(mpm, cells, &mpm->grid.workers[worker], constraint, &f);
@@ -428,12 +428,12 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
     const int32_t *candidate = all->candidate + pair->first_candidate;
     for (int64_t i = 0; i < pair->candidates; i++)
-      begin_touch(mpm, t, cells->begin + candidate[i], id, &all->constraint[n++]);
+      begin_constraint(mpm, t, cells->begin + candidate[i], id, &all->constraint[n++]);
   }
   qsort(all->constraint + block->first, (size_t)block->count, sizeof *all->constraint, by_place);
   find_states(mpm, cells, block, &mpm->grid.workers[worker]);
   for (n = block->first; n < block->first + block->count; n++) {
-    fit_touch(mpm, cells, worker, n);
+    fit_constraint(mpm, cells, worker, n);
     mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(mpm, constraint->id, constraint->body);
     for (int a = 0; a < 3; a++) constraint->impulse.tangent_impulse[a] = warm ? warm->by[a] : 0.0;

@@ -87,8 +87,8 @@ static int64_t name_nodes(const mps_mpm *mpm, const mpsi_constraint_block *block
   return count;
 }
 
-static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t n,
-                         const int32_t *number, int64_t components, char *to) {
+static char *write_constraint(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t n,
+                              const int32_t *number, int64_t components, char *to) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   const mpsi_constraint *constraint = &all->constraint[n];
   memcpy(to, constraint, sizeof *constraint);
@@ -102,15 +102,15 @@ static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64
   return to;
 }
 
-static char *write_touches(const mps_mpm *mpm, const mpsi_constraint_block *block, head *h,
-                           char *to) {
+static char *write_constraints(const mps_mpm *mpm, const mpsi_constraint_block *block, head *h,
+                               char *to) {
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   int32_t number[2 * PLACES];
   h->nodes = name_nodes(mpm, block, number, (named_node *)to);
   h->constraints = block->count;
   to += h->nodes * (int64_t)sizeof(named_node);
   for (int64_t n = block->first; n < block->first + block->count; n++)
-    to = write_touch(mpm, cells, n, number, h->components, to);
+    to = write_constraint(mpm, cells, n, number, h->components, to);
   return to;
 }
 
@@ -139,7 +139,7 @@ static char *write_block(const mps_mpm *mpm, const mpsi_cell_block *cells,
             .components = cells->mirrors ? 3 : 1};
   memcpy(h.at, at, sizeof h.at);
   char *end = to + sizeof h;
-  if (block) end = write_touches(mpm, block, &h, end);
+  if (block) end = write_constraints(mpm, block, &h, end);
   end = write_areas(mpm, cells, &h, end);
   if (h.constraints == 0 && h.areas == 0) return to;
   h.bytes = end - to;
@@ -261,7 +261,7 @@ static void take_entry(exchange *m, const entry *e, int64_t first) {
   take_areas(m, &e->h, from);
 }
 
-static void join_touches(exchange *m, int64_t slots) {
+static void append_constraints(exchange *m, int64_t slots) {
   mps_mpm *mpm = m->mpm;
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_contact_exchange *r = &mpm->partition->exchange;
@@ -303,7 +303,7 @@ static mps_status join(exchange *m) {
   m->entry = r->list.item;
   read_entries(m);
   if (m->entries > 0) qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_turn);
-  join_touches(m, slots);
+  append_constraints(m, slots);
   return MPS_OK;
 }
 
@@ -311,8 +311,8 @@ static mps_status join(exchange *m) {
 
 /* Blocks of cells in the order of the colours that have constraints, which `next` is the first of,
  * or may have areas. */
-static const mpsi_constraint_block *touches_of(const mpsi_impulses *all, int32_t cells,
-                                               int64_t *next) {
+static const mpsi_constraint_block *constraints_of(const mpsi_impulses *all, int32_t cells,
+                                                   int64_t *next) {
   if (*next == all->block_count || all->block[*next].cells != cells) return NULL;
   return &all->block[(*next)++];
 }
@@ -326,7 +326,7 @@ static int64_t message_bytes(const mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   int64_t bytes = 0, next = 0;
   for (int64_t i = 0; i < grid->cell_count; i++) {
-    const mpsi_constraint_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_constraint_block *block = constraints_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
     if (has_entry(cells, block)) bytes += entry_bytes(mpm, cells, block);
   }
@@ -339,7 +339,7 @@ static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   int64_t next = 0;
   for (int64_t i = 0; i < grid->cell_count; i++) {
-    const mpsi_constraint_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_constraint_block *block = constraints_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
     if (has_entry(cells, block) && cells->sent == sent) to = write_block(mpm, cells, block, to);
   }

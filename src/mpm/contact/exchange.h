@@ -17,7 +17,7 @@
 enum { MPSI_SHARED_NODE, MPSI_SHARED_ACROSS, MPSI_SHARED_AREA }; /* and on, of each body */
 typedef struct mpsi_shared_node {
   int32_t at[3]; /* of the whole grid */
-  int32_t kind;  /* MPSI_MET_..., ACROSS: its values across a thin body (thin_bodies.h) */
+  int32_t kind;  /* MPSI_SHARED_..., ACROSS: its values across a thin body (thin_bodies.h) */
   union {
     double value[4];
     mpsi_area area;

@@ -79,7 +79,7 @@ mps_status mpsi_mpm_agree_alike(mps_mpm *mpm, const char *function, mps_status s
 mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
                                   int32_t count, double *values);
 /* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank;
- * what has become of all before, `status` here, comes first. */
+ * first all agree on `status`, that of this rank. */
 mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
                               const int64_t *ids);
 /* collective_status.c: whether a sum over blocks of nodes counts g here. Not collective. */
