@@ -5,14 +5,14 @@
 #include <mps/experimental.h>
 #include <mps/mps.h>
 
-/* Damping of nodes takes momentum; and beside a side nodes that the fit moves across it have some
- * that no reaction tells, so that only ground that no side has held is looked at. */
+/* Damping of nodes takes momentum. Around an axis the sum of m v_r is no momentum, as radial
+ * directions differ: hoop stress changes it without any force from outside. */
 static void mpm_gravity(mps_mpm *mpm, api_account *account) {
   mps_mpm_def def;
   if (mps_mpm_get_def(mpm, &def) != MPS_OK) return;
   memcpy(account->gravity, def.gravity, sizeof def.gravity);
   account->pushed = account->pushed || def.local_damping != 0.0 || def.viscous_damping != 0.0;
-  for (int c = 0; c < 3; c++) account->pushed = account->pushed || account->impulse[c] != 0.0;
+  account->radial = def.geometry == MPS_MPM_AXISYMMETRIC;
 }
 #define SOLVER_GRAVITY(s, account) mpm_gravity(s, account);
 #define SOLVER_MOMENTUM true

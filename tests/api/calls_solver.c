@@ -108,7 +108,7 @@ static void balance_energy(api *a, const mps_totals *x, const mps_totals *y) {
 
 static void balance_momentum(api *a, const api_account *before, const api_account *after) {
   const mps_totals *x = &before->totals, *y = &after->totals;
-  for (int c = 0; c < 3; c++) {
+  for (int c = after->radial ? 1 : 0; c < 3; c++) {
     const double weight = y->mass * after->gravity[c] * (after->time - before->time);
     const double given = after->impulse[c] - before->impulse[c] + weight;
     const double sizes[] = {x->linear[c], y->linear[c], after->impulse[c], weight,
