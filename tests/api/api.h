@@ -61,7 +61,7 @@ enum {
 
 typedef struct api_part {
   char name[44];
-  bool finite;
+  bool finite, open; /* open: a field that is being written, which may hold anything */
   uint64_t hash;
 } api_part;
 
@@ -111,6 +111,7 @@ typedef struct api {
   int32_t dim;          /* of the scene */
   bool verbose, steady; /* steady: no refused allocations, whose number depends on the threads */
   bool pushed;          /* loads or contacts have been given, whose impulses no boundary tells */
+  bool lost;            /* a callback has returned MPS_ERROR_INTERNAL, which domains keep */
   uint64_t digest;      /* of all statuses and states so far */
   jmp_buf failed;
   char reason[400]; /* what is broken; "" nothing */

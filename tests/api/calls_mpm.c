@@ -315,6 +315,17 @@ static void grid_fill(api *a) {
   (void)api_end(a, mps_grid_fill(g, set));
 }
 
+/* 0 also where the set lacks the field. */
+static int32_t last_component(mps_particles *set, const char *name) {
+  int32_t last = 0;
+  for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
+    mps_field_info info;
+    if (mps_particles_field(set, f, &info) == MPS_OK && strcmp(info.name, name) == 0)
+      last = info.components - 1;
+  }
+  return last;
+}
+
 static void grid_evaluate(api *a) {
   api_begin(a, "mps_grid_evaluate");
   double points[6], values[2 * 16];
@@ -322,7 +333,7 @@ static void grid_evaluate(api *a) {
   api_object *o = api_any(a, API_MPM);
   mps_particles *set = mps_mpm_particles(o->handle);
   const char *field = api_field(a, set);
-  const int32_t component = (int32_t)api_whole(a, "component", -1, 0);
+  const int32_t component = (int32_t)api_whole(a, "component", -1, last_component(set, field));
   api_vector(a, "points", 6, 0.3, 0.5, points);
   if (mps_particles_dim(set) == 2) a->wrong -= a->wrong == 1 && !isfinite(points[2] + points[5]);
   int64_t count = (int64_t)api_below(a, 3);

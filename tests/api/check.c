@@ -131,8 +131,8 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
 
 static void check_status(api *a, mps_status status) {
   if (!is_status(status)) api_broken(a, "returns %d, which is no status", (int)status);
-  if (status == MPS_ERROR_INTERNAL && a->fault_status != status)
-    api_broken(a, "finds itself broken");
+  a->lost = a->lost || (a->faulted && a->fault_status == MPS_ERROR_INTERNAL);
+  if (status == MPS_ERROR_INTERNAL && !a->lost) api_broken(a, "finds itself broken");
   if (status == MPS_OK && a->wrong > 0) api_broken(a, "takes an absurd %s", a->wrong_name);
   if (!a->faulted) return;
   if (a->fault == API_FAULT_STATUS && status != a->fault_status)
@@ -188,6 +188,8 @@ static void look_after(api *a, mps_status status) {
       if (!o->handle) continue;
       const int count = api_look(a, (api_kind)kind, o, parts);
       if (!changes) compare(a, o, parts, count, (api_kind)kind, slot);
+      for (int k = 0; k < count && k < o->part_count; k++)
+        if (parts[k].open) parts[k].finite = o->parts[k].finite; /* as before it was opened */
       if (status == MPS_OK) check_finite(a, o, parts, count, (api_kind)kind, slot);
       for (int k = 0; k < count; k++) a->digest = api_mix(a->digest ^ parts[k].hash);
       memcpy(o->parts, parts, sizeof parts);
@@ -208,8 +210,9 @@ bool api_end(api *a, mps_status status) {
   api_count(a->name, status);
   check_status(a, status);
   if (record) check_record(a, status, record);
+  const bool by_law = a->fault == API_FAULT_STATUS && a->fault_status == status; /* not `faulted` */
   if (status == MPS_ERROR_MEMORY && atomic_load(&a->memory.refused) == 0 && !a->faulted &&
-      a->mood == API_VALID)
+      !by_law && a->mood == API_VALID)
     api_broken(a, "finds no memory where none was refused");
   a->digest = api_mix(a->digest ^ (uint64_t)status);
   look_after(a, status);
