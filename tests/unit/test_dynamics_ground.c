@@ -175,6 +175,28 @@ static void a_refused_material_writes_no_velocities(void **state) {
   mps_material_destroy(&stiff);
 }
 
+/* Totals of a state that the caller has written are those that its motion begins with. */
+static void totals_are_of_the_written_rotations(void **state) {
+  (void)state;
+  for (int rotation = 0; rotation < 2; rotation++) {
+    mps_particles *set = block(context, 5, 5);
+    mps_dynamics_def def = mps_dynamics_defaults();
+    mps_dynamics *d = NULL;
+    mps_totals written, begun;
+    def.dt = DT;
+    def.rotation = rotation;
+    mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
+    mps_assert_ok(context, mps_particles_set(set, "rotation", 0, 0.3));
+    mps_assert_ok(context, mps_dynamics_get_totals(d, &written));
+    mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
+    mps_assert_ok(context, mps_dynamics_get_totals(d, &begun));
+    assert_true(begun.strain > 0.0);
+    mps_assert_near(written.strain, begun.strain, 1e-12 * begun.strain);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
 /* What leads from one material to another is no work of the scheme: the budget stays closed. */
 static void a_material_changes_in_motion(void **state) {
   (void)state;
@@ -778,6 +800,7 @@ int main(void) {
       cmocka_unit_test(a_material_is_what_its_fields_would_be),
       cmocka_unit_test(materials_that_do_not_fit_are_refused),
       cmocka_unit_test(a_refused_material_writes_no_velocities),
+      cmocka_unit_test(totals_are_of_the_written_rotations),
       cmocka_unit_test(a_material_changes_in_motion),
       cmocka_unit_test(the_default_weight_is_that_of_a_handle),
       cmocka_unit_test(uniform_strain_is_exact_inside_for_every_weight),

@@ -265,6 +265,8 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   else if (of_ground)
     dynamics->unread = true; /* another field may follow that goes with it: the step tells */
   if (of_motion && !dynamics->broken) dynamics->rewritten = which;
+  if (of_motion && strcmp(which, "rotation") == 0) /* totals may be asked for before it begins */
+    dynamics->kernels->trig[dynamics->def.rotation](&dynamics->state, 0, dynamics->count);
   if (of_fabric) dynamics->broken = which;
   return status;
 }
