@@ -71,6 +71,7 @@ typedef struct api_object {
   uint64_t serial; /* of all objects ever made; the latest has the highest */
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
   bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
+  bool rewritten;  /* explicit dynamics: its set's motion has been written, and begins anew */
   bool drags;      /* nor need its momentum: it is damped, or driven by displacements */
   int part_count;
   api_part parts[API_PARTS];
@@ -191,6 +192,8 @@ int api_alive(const api *a, api_kind kind);
 api_object *api_adopt(api *a, api_kind kind, void *handle, int context, const api_object *owner);
 /* Stresses have been written, which some laws replace: energies of WLS-MPM need not add up. */
 void api_loosen(api *a);
+/* A field of motion has been written, of any set. */
+void api_rewrite(api *a, const char *field);
 void api_forget(api *a, api_object *object);
 /* Calls the destroy function of the kind. */
 void api_destroy(api_kind kind, void **handle);

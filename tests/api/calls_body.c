@@ -274,7 +274,9 @@ static void body_name_part(api *a) {
   const char *name = good[api_below(a, 3)];
   if (a->mood == API_ABSURD && api_chance(a, 20)) name = "not good", api_wrong(a, "name");
   const int64_t first = api_whole(a, "first", 0, 3);
+  const int before = a->wrong;
   const int64_t count = api_whole(a, "count", 1, 3);
+  if (count == 4) a->wrong = before; /* of the four edges of a box */
   int32_t part = -1;
   (void)api_end(a, mps_body_name_part(body, name, first, count, api_chance(a, 80) ? &part : NULL));
 }

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls_solver.h"
 
+#include <float.h>
 #include <mps/experimental.h>
 #include <mps/mps.h>
 
@@ -108,7 +109,7 @@ static void draw_boundary(api *a, mps_mpm *mpm, mps_mpm_boundary_def *def, int64
   if (def->kind == MPS_MPM_BOUNDARY_FRICTIONAL)
     def->friction = api_real(a, "friction", 0.0, 1e3, 0.3);
   if (def->kind == MPS_MPM_BOUNDARY_ABSORBING && api_chance(a, 50))
-    def->settle = api_real(a, "settle", 0.0, 1e300, 0.01);
+    def->settle = api_real(a, "settle", 0.0, DBL_MAX, 0.01);
 }
 
 static void mpm_add_boundary(api *a) {

@@ -131,6 +131,7 @@ void api_balance(api *a, const api_object *o, const api_account *before, const a
       !(fabs(y->mass + gone - x->mass) <= 1e-9 * fabs(x->mass)))
     api_broken(a, "succeeds, and the mass is %.17g, not %.17g less %.17g", y->mass, x->mass, gone);
   if (after->count != before->count) return;
+  if (o->rewritten) return; /* what is held is put where its boundary is */
   if (!o->loose) balance_energy(a, x, y);
   if (momentum && !o->drags && !a->pushed && !before->pushed && !after->pushed)
     balance_momentum(a, before, after);

@@ -126,6 +126,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
       const api_account last = S##_account(s);                                                     \
       api_balance(a, o, &first, &last, SOLVER_MOMENTUM);                                           \
     }                                                                                              \
+    if (status == MPS_OK) o->rewritten = false;                                                    \
     return api_end(a, status);                                                                     \
   }                                                                                                \
   static void S##_step(api *a) {                                                                   \

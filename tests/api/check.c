@@ -132,7 +132,8 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
 static void check_status(api *a, mps_status status) {
   if (!is_status(status)) api_broken(a, "returns %d, which is no status", (int)status);
   a->lost = a->lost || (a->faulted && a->fault_status == MPS_ERROR_INTERNAL);
-  if (status == MPS_ERROR_INTERNAL && !a->lost) api_broken(a, "finds itself broken");
+  if (status == MPS_ERROR_INTERNAL && a->fault_status != status && !a->lost)
+    api_broken(a, "finds itself broken");
   if (status == MPS_OK && a->wrong > 0) api_broken(a, "takes an absurd %s", a->wrong_name);
   if (!a->faulted) return;
   if (a->fault == API_FAULT_STATUS && status != a->fault_status)
@@ -166,16 +167,27 @@ static void compare(api *a, const api_object *o, const api_part *parts, int coun
       api_broken(a, "changes %s%d's %s", api_kind_names[kind], slot, parts[k].name);
 }
 
-/* What was not finite before, after a step that diverged, is no news. */
+/* The part of that name before the call; the `k`th was most often there. NULL: there was none. */
+static const api_part *former_part(const api_object *o, int k, const char *name) {
+  if (k < o->part_count && strcmp(o->parts[k].name, name) == 0) return &o->parts[k];
+  for (int n = 0; n < o->part_count; n++)
+    if (strcmp(o->parts[n].name, name) == 0) return &o->parts[n];
+  return NULL;
+}
+
+/* What was not finite before, after a step that diverged, is no news; nor is what could not be
+ * read before. */
 static void check_finite(api *a, const api_object *o, const api_part *parts, int count,
                          api_kind kind, int slot) {
   for (int k = 0; k < API_EDITS; k++)
     for (int set = 0; set < API_SLOTS; set++) /* totals of a field that is being written */
       if (a->objects[API_SET][set].edits[k].data) return;
-  for (int k = 0; k < count; k++)
-    if (!parts[k].finite && k < o->part_count && o->parts[k].finite)
+  for (int k = 0; k < count; k++) {
+    const api_part *former = parts[k].finite ? NULL : former_part(o, k, parts[k].name);
+    if (former && former->finite)
       api_broken(a, "succeeds, and %s%d's %s is not finite", api_kind_names[kind], slot,
                  parts[k].name);
+  }
 }
 
 static void look_after(api *a, mps_status status) {
@@ -188,8 +200,10 @@ static void look_after(api *a, mps_status status) {
       if (!o->handle) continue;
       const int count = api_look(a, (api_kind)kind, o, parts);
       if (!changes) compare(a, o, parts, count, (api_kind)kind, slot);
-      for (int k = 0; k < count && k < o->part_count; k++)
-        if (parts[k].open) parts[k].finite = o->parts[k].finite; /* as before it was opened */
+      for (int k = 0; k < count; k++) {
+        const api_part *former = parts[k].open ? former_part(o, k, parts[k].name) : NULL;
+        if (former) parts[k].finite = former->finite; /* as before it was opened */
+      }
       if (status == MPS_OK) check_finite(a, o, parts, count, (api_kind)kind, slot);
       for (int k = 0; k < count; k++) a->digest = api_mix(a->digest ^ parts[k].hash);
       memcpy(o->parts, parts, sizeof parts);
