@@ -241,7 +241,8 @@ static inline mps_elastic_load_def mps_elastic_load_defaults(void) {
   return def;
 }
 
-/** Adds a load to the others; `number` (may be NULL) receives the lowest free number, from 0. */
+/** Adds a load to the others; `number` (may be NULL) receives the lowest free number, from 0. Where
+ *  all loads together are beyond 1e150 N on a particle, what asks for them is MPS_ERROR_NUMERIC. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_add_load(mps_elastic *e,
                                                       const mps_elastic_load_def *def,
                                                       int32_t *number);
@@ -356,7 +357,8 @@ static inline mps_elastic_motion_def mps_elastic_motion_defaults(void) {
   return def;
 }
 
-/** Begins a motion from the fields `displacement`, `velocity` (0 without) and `density`. */
+/** Begins a motion from the fields `displacement`, `velocity` (0 without) and `density`. Beyond 1e100
+ *  m or m/s it is MPS_ERROR_NUMERIC. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_start(mps_elastic *e,
                                                    const mps_elastic_motion_def *def);
 /** Takes `count` (>= 0) steps, and writes `displacement`, `velocity`, `acceleration` and

@@ -32,8 +32,9 @@
 #define MPSI_STENCIL_MAX 64      /* sites of one gradient: a disc of radius < 4 has 45 */
 #define MPSI_ELASTIC_LEAST 1e-30 /* of a positive quantity in SI units */
 #define MPSI_ELASTIC_MOST 1e30
-#define MPSI_ELASTIC_FURTHEST 1e100 /* m, m/s: energies are numbers */
-#define MPSI_ELASTIC_CHUNK 2048     /* particles of one unit of parallel work */
+#define MPSI_ELASTIC_FURTHEST 1e100  /* m, m/s: energies are numbers */
+#define MPSI_ELASTIC_STRONGEST 1e150 /* N on a particle, likewise */
+#define MPSI_ELASTIC_CHUNK 2048      /* particles of one unit of parallel work */
 
 /* Neighbours on the lattice, by offset. */
 typedef struct mpsi_links {

@@ -113,12 +113,12 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
     mpsi_particles_drop_fields(particles, before);
     return status;
   }
-  for (int k = 0; k < 5 && status == MPS_OK; k++) /* may they be written now? */
-    status = mpsi_particles_tell(particles, set_material, names[k], NULL);
   const int64_t all = mps_particles_count(particles);
   double *former = mpsi_alloc(context, all, sizeof *former); /* densities: masses follow */
-  if (status == MPS_OK && !former)
-    status = mpsi_fail_memory(context, set_material, (size_t)all * sizeof *former);
+  if (!former) status = mpsi_fail_memory(context, set_material, (size_t)all * sizeof *former);
+  /* may they be written now? From here on the solver takes them to be written. */
+  for (int k = 0; k < 5 && status == MPS_OK; k++)
+    status = mpsi_particles_tell(particles, set_material, names[k], NULL);
   if (status != MPS_OK) {
     mpsi_free(context, former);
     mpsi_particles_drop_fields(particles, before);

@@ -61,7 +61,7 @@ enum {
 
 typedef struct api_part {
   char name[44];
-  bool finite;
+  bool finite, open; /* open: a field that is being written, which may hold anything */
   uint64_t hash;
 } api_part;
 
@@ -71,6 +71,7 @@ typedef struct api_object {
   uint64_t serial; /* of all objects ever made; the latest has the highest */
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
   bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
+  bool rewritten;  /* explicit dynamics: its set's motion has been written, and begins anew */
   bool drags;      /* nor need its momentum: it is damped, or driven by displacements */
   int part_count;
   api_part parts[API_PARTS];
@@ -111,6 +112,7 @@ typedef struct api {
   int32_t dim;          /* of the scene */
   bool verbose, steady; /* steady: no refused allocations, whose number depends on the threads */
   bool pushed;          /* loads or contacts have been given, whose impulses no boundary tells */
+  bool lost;            /* a callback has returned MPS_ERROR_INTERNAL, which domains keep */
   uint64_t digest;      /* of all statuses and states so far */
   jmp_buf failed;
   char reason[400]; /* what is broken; "" nothing */
@@ -190,6 +192,8 @@ int api_alive(const api *a, api_kind kind);
 api_object *api_adopt(api *a, api_kind kind, void *handle, int context, const api_object *owner);
 /* Stresses have been written, which some laws replace: energies of WLS-MPM need not add up. */
 void api_loosen(api *a);
+/* A field of motion has been written, of any set. */
+void api_rewrite(api *a, const char *field);
 void api_forget(api *a, api_object *object);
 /* Calls the destroy function of the kind. */
 void api_destroy(api_kind kind, void **handle);

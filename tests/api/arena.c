@@ -107,6 +107,13 @@ void api_loosen(api *a) {
   for (int k = 0; k < API_SLOTS; k++) a->objects[API_MPM][k].loose = true;
 }
 
+void api_rewrite(api *a, const char *field) {
+  static const char *const motion[] = {"displacement", "velocity", "rotation", "spin"};
+  for (int f = 0; f < API_COUNT(motion); f++)
+    for (int k = 0; k < API_SLOTS && strcmp(field, motion[f]) == 0; k++)
+      a->objects[API_DYNAMICS][k].rewritten = true;
+}
+
 /* A kind that has no room left loses its oldest object. */
 static api_object *room(api *a, api_kind kind) {
   api_object *oldest = &a->objects[kind][0];

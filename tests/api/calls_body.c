@@ -188,14 +188,15 @@ static void body_set_motion(api *a) {
   const int dim = mps_body_dim(body) == 3 ? 3 : 2;
   mps_body_motion motion = mps_body_motion_defaults();
   motion.struct_size = api_struct_size(a, sizeof motion);
-  const int before = a->wrong;
   if (api_chance(a, 50)) {
     mps_body_state state;
     memset(&state, 0, sizeof state);
     (void)!mps_body_get_state(body, &state);
-    for (int c = 0; c < dim; c++)
+    for (int c = 0; c < dim; c++) {
+      const int before = a->wrong;
       motion.position[c] = api_near(a, "position", state.position[c], 0.02);
-    if (isnan(motion.position[0]) || isnan(motion.position[1])) a->wrong = before;
+      if (isnan(motion.position[c])) a->wrong = before; /* stays where it is */
+    }
   }
   api_vector(a, "velocity", dim, 0.0, 0.2, motion.velocity);
   motion.spin[2] = api_near(a, "spin", 0.0, 0.5);
@@ -208,8 +209,11 @@ static void body_load(api *a) {
   mps_body *body = api_any(a, API_BODY)->handle;
   const int dim = mps_body_dim(body) == 3 ? 3 : 2;
   api_vector(a, "force", dim, 0.0, 50.0, force);
+  const int before = a->wrong;
   moment[2] = api_near(a, "moment", 0.0, 5.0);
-  (void)api_end(a, mps_body_load(body, force, api_chance(a, 80) ? moment : NULL));
+  const bool given = api_chance(a, 80);
+  if (!given) a->wrong = before;
+  (void)api_end(a, mps_body_load(body, force, given ? moment : NULL));
 }
 
 static void body_advance(api *a) {
@@ -270,7 +274,9 @@ static void body_name_part(api *a) {
   const char *name = good[api_below(a, 3)];
   if (a->mood == API_ABSURD && api_chance(a, 20)) name = "not good", api_wrong(a, "name");
   const int64_t first = api_whole(a, "first", 0, 3);
+  const int before = a->wrong;
   const int64_t count = api_whole(a, "count", 1, 3);
+  if (count == 4) a->wrong = before; /* of the four edges of a box */
   int32_t part = -1;
   (void)api_end(a, mps_body_name_part(body, name, first, count, api_chance(a, 80) ? &part : NULL));
 }

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "calls_solver.h"
 
+#include <float.h>
 #include <mps/experimental.h>
 #include <mps/fluid_solver.h>
 #include <mps/mps.h>
@@ -29,9 +30,11 @@ static void fluid_create(api *a) {
   def.viscosity = api_real(a, "viscosity", 0.0, 1e300, api_chance(a, 60) ? 0.0 : 1e-3);
   if (api_chance(a, 10)) def.gravity[1] = 0.0;
   def.measure = api_real(a, "measure", 5e-324, 1e300, 1.0);
-  if (api_chance(a, 40)) def.dt = api_real(a, "dt", 5e-324, 1e300, 2e-3);
+  if (api_chance(a, 40)) def.dt = api_real(a, "dt", 5e-324, DBL_MAX, 2e-3);
   if (isnan(def.dt) && a->wrong && strcmp(a->wrong_name, "dt") == 0) a->wrong--;
+  const int before = a->wrong;
   if (api_chance(a, 20)) def.level = api_optional(a, "level", -1e12, 1e12, 0.6);
+  if (isfinite(def.level)) a->wrong = before;
   def.tolerance = api_real(a, "tolerance", 1e-14, 1e-2, 1e-5);
   if (!a->latest && api_chance(a, 5)) def.kernel = api_maybe(a, API_KERNEL, "kernel");
   if (a->wrong == 1 && strcmp(a->wrong_name, "level") == 0) a->wrong = 0;

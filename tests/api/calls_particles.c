@@ -192,6 +192,7 @@ static void particles_set(api *a) {
   const int before = a->wrong;
   const double value = typical(a, name);
   if (strcmp(name, "stress") == 0) api_loosen(a);
+  api_rewrite(a, name);
   if (isfinite(value)) a->wrong = before; /* each field has a range of its own */
   (void)api_end(a, mps_particles_set(set, api_null(a, "name") ? NULL : name, component, value));
 }
@@ -280,6 +281,7 @@ static void end_edit(api *a, const char *name, bool commit) {
   mps_edit none;
   memset(&none, 0, sizeof none);
   mps_edit *edit = k >= 0 ? &o->edits[k] : &none;
+  if (k >= 0) api_rewrite(a, o->edited[k]);
   if (k >= 0) api_say(a, "\"%s\", ", o->edited[k]);
   if (k < 0) api_wrong(a, "edit");
   if (api_null(a, "edit")) edit = NULL;

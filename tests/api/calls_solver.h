@@ -36,6 +36,7 @@ typedef struct api_account {
   int64_t count;
   double time, removed, impulse[3], gravity[3]; /* s, kg, N s, m/s2 */
   bool pushed;                                  /* forces or damping by fields of the set */
+  bool radial;                                  /* x is a distance from an axis */
   mps_totals totals;
 } api_account;
 /* Whether forces or damping on the particles are fields of the set, and not all 0. */
@@ -125,6 +126,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
       const api_account last = S##_account(s);                                                     \
       api_balance(a, o, &first, &last, SOLVER_MOMENTUM);                                           \
     }                                                                                              \
+    if (status == MPS_OK) o->rewritten = false;                                                    \
     return api_end(a, status);                                                                     \
   }                                                                                                \
   static void S##_step(api *a) {                                                                   \

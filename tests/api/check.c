@@ -131,7 +131,8 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
 
 static void check_status(api *a, mps_status status) {
   if (!is_status(status)) api_broken(a, "returns %d, which is no status", (int)status);
-  if (status == MPS_ERROR_INTERNAL && a->fault_status != status)
+  a->lost = a->lost || (a->faulted && a->fault_status == MPS_ERROR_INTERNAL);
+  if (status == MPS_ERROR_INTERNAL && a->fault_status != status && !a->lost)
     api_broken(a, "finds itself broken");
   if (status == MPS_OK && a->wrong > 0) api_broken(a, "takes an absurd %s", a->wrong_name);
   if (!a->faulted) return;
@@ -166,16 +167,27 @@ static void compare(api *a, const api_object *o, const api_part *parts, int coun
       api_broken(a, "changes %s%d's %s", api_kind_names[kind], slot, parts[k].name);
 }
 
-/* What was not finite before, after a step that diverged, is no news. */
+/* The part of that name before the call; the `k`th was most often there. NULL: there was none. */
+static const api_part *former_part(const api_object *o, int k, const char *name) {
+  if (k < o->part_count && strcmp(o->parts[k].name, name) == 0) return &o->parts[k];
+  for (int n = 0; n < o->part_count; n++)
+    if (strcmp(o->parts[n].name, name) == 0) return &o->parts[n];
+  return NULL;
+}
+
+/* What was not finite before, after a step that diverged, is no news; nor is what could not be
+ * read before. */
 static void check_finite(api *a, const api_object *o, const api_part *parts, int count,
                          api_kind kind, int slot) {
   for (int k = 0; k < API_EDITS; k++)
     for (int set = 0; set < API_SLOTS; set++) /* totals of a field that is being written */
       if (a->objects[API_SET][set].edits[k].data) return;
-  for (int k = 0; k < count; k++)
-    if (!parts[k].finite && k < o->part_count && o->parts[k].finite)
+  for (int k = 0; k < count; k++) {
+    const api_part *former = parts[k].finite ? NULL : former_part(o, k, parts[k].name);
+    if (former && former->finite)
       api_broken(a, "succeeds, and %s%d's %s is not finite", api_kind_names[kind], slot,
                  parts[k].name);
+  }
 }
 
 static void look_after(api *a, mps_status status) {
@@ -188,6 +200,10 @@ static void look_after(api *a, mps_status status) {
       if (!o->handle) continue;
       const int count = api_look(a, (api_kind)kind, o, parts);
       if (!changes) compare(a, o, parts, count, (api_kind)kind, slot);
+      for (int k = 0; k < count; k++) {
+        const api_part *former = parts[k].open ? former_part(o, k, parts[k].name) : NULL;
+        if (former) parts[k].finite = former->finite; /* as before it was opened */
+      }
       if (status == MPS_OK) check_finite(a, o, parts, count, (api_kind)kind, slot);
       for (int k = 0; k < count; k++) a->digest = api_mix(a->digest ^ parts[k].hash);
       memcpy(o->parts, parts, sizeof parts);
@@ -208,8 +224,9 @@ bool api_end(api *a, mps_status status) {
   api_count(a->name, status);
   check_status(a, status);
   if (record) check_record(a, status, record);
+  const bool by_law = a->fault == API_FAULT_STATUS && a->fault_status == status; /* not `faulted` */
   if (status == MPS_ERROR_MEMORY && atomic_load(&a->memory.refused) == 0 && !a->faulted &&
-      a->mood == API_VALID)
+      !by_law && a->mood == API_VALID)
     api_broken(a, "finds no memory where none was refused");
   a->digest = api_mix(a->digest ^ (uint64_t)status);
   look_after(a, status);

@@ -97,7 +97,7 @@ static bool run_sequence(api *a, uint64_t seed, int calls, int threads) {
   a->random = api_mix(seed);
   a->dim = api_chance(a, 75) ? 2 : 3;
   a->digest = seed;
-  a->pushed = false;
+  a->pushed = a->lost = false;
   a->call = 0;
   (void)alarm(SECONDS);
   if (setjmp(a->failed) == 0) {

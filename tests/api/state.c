@@ -35,6 +35,7 @@ static void add(look *l, const char *name, uint64_t hash) {
   snprintf(part->name, sizeof part->name, "%s%.36s", l->prefix, name);
   part->hash = hash;
   part->finite = true;
+  part->open = false;
 }
 
 /* The part that was added last. */
@@ -84,7 +85,9 @@ static void add_field(look *l, mps_particles *set, const char *name, const mps_v
     sum += api_mix(hash);
   }
   add(l, name, sum);
-  if (!finite && !is_open(set, name)) not_finite(l);
+  if (finite) return;
+  l->parts[l->count - 1].open = is_open(set, name);
+  if (!l->parts[l->count - 1].open) not_finite(l);
 }
 
 static void look_set(look *l, mps_particles *set) {

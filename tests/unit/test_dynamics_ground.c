@@ -151,6 +151,52 @@ static void materials_that_do_not_fit_are_refused(void **state) {
   mps_material_destroy(&light);
 }
 
+/* Particles that the call does not concern may have values that the solver refuses: then the call
+ * has written none. */
+static void a_refused_material_writes_no_velocities(void **state) {
+  (void)state;
+  mps_material *stiff = NULL;
+  mps_particles *set = block(context, 4, 4);
+  mps_assert_ok(context, mps_material_linear_elastic(context, 8e7, 0.25, &stiff));
+  mps_dynamics *d = solver_of(set, NULL, NULL);
+  const double shear = value_of(set, "shear_velocity", 3, 0);
+  const double pressure = value_of(set, "pressure_velocity", 3, 0);
+  const int64_t ids[1] = {3};
+  mps_assert_ok(context, write_one(set, "pressure_velocity", 7, 1.1 * shear));
+  mps_assert_fails(context, mps_dynamics_set_material(d, stiff, 1, ids), MPS_ERROR_ARGUMENT,
+                   "pressure_velocity of particle 7");
+  mps_assert_near(value_of(set, "shear_velocity", 3, 0), shear, 0.0);
+  mps_assert_near(value_of(set, "pressure_velocity", 3, 0), pressure, 0.0);
+  mps_assert_ok(context, write_one(set, "pressure_velocity", 7, pressure));
+  mps_assert_ok(context, mps_dynamics_set_material(d, stiff, 1, ids));
+  assert_true(value_of(set, "shear_velocity", 3, 0) != shear);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_material_destroy(&stiff);
+}
+
+/* Totals of a state that the caller has written are those that its motion begins with. */
+static void totals_are_of_the_written_rotations(void **state) {
+  (void)state;
+  for (int rotation = 0; rotation < 2; rotation++) {
+    mps_particles *set = block(context, 5, 5);
+    mps_dynamics_def def = mps_dynamics_defaults();
+    mps_dynamics *d = NULL;
+    mps_totals written, begun;
+    def.dt = DT;
+    def.rotation = rotation;
+    mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
+    mps_assert_ok(context, mps_particles_set(set, "rotation", 0, 0.3));
+    mps_assert_ok(context, mps_dynamics_get_totals(d, &written));
+    mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
+    mps_assert_ok(context, mps_dynamics_get_totals(d, &begun));
+    assert_true(begun.strain > 0.0);
+    mps_assert_near(written.strain, begun.strain, 1e-12 * begun.strain);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
 /* What leads from one material to another is no work of the scheme: the budget stays closed. */
 static void a_material_changes_in_motion(void **state) {
   (void)state;
@@ -753,6 +799,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_material_is_what_its_fields_would_be),
       cmocka_unit_test(materials_that_do_not_fit_are_refused),
+      cmocka_unit_test(a_refused_material_writes_no_velocities),
+      cmocka_unit_test(totals_are_of_the_written_rotations),
       cmocka_unit_test(a_material_changes_in_motion),
       cmocka_unit_test(the_default_weight_is_that_of_a_handle),
       cmocka_unit_test(uniform_strain_is_exact_inside_for_every_weight),

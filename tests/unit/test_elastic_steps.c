@@ -320,6 +320,39 @@ static void external_forces_act_as_loads(void **state) {
   mps_context_destroy(&context);
 }
 
+/* Sums and squares of what is larger are infinite: neither a start nor a step may hand them out. */
+static void loads_and_motions_beyond_numbers_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = clamped(context, NULL);
+  mps_elastic_motion_def def = mps_elastic_motion_defaults();
+  mps_elastic_load_def load = mps_elastic_load_defaults();
+  int32_t number = -1;
+  int64_t size;
+  def.dt = 0.02;
+  start(&b, def.dt);
+  mps_assert_ok(context, mps_elastic_step(b.elastic, 2));
+  load.kind = MPS_ELASTIC_LOAD_GRAVITY;
+  load.force[0] = 1.7e308;
+  mps_assert_ok(context, mps_elastic_add_load(b.elastic, &load, &number));
+  double *before = picture(&b, &size);
+  mps_assert_fails(context, mps_elastic_step(b.elastic, 1), MPS_ERROR_NUMERIC,
+                   "N along x, allowed is up to 1e+150 N");
+  mps_assert_fails(context, mps_elastic_start(b.elastic, &def), MPS_ERROR_NUMERIC,
+                   "N along x, allowed is up to 1e+150 N");
+  assert_same(&b, before);
+  mps_assert_ok(context, mps_elastic_remove_load(b.elastic, number));
+  mpsi_particles_column(b.particles, "displacement", 1)[50] = 1e200;
+  mps_assert_fails(context, mps_elastic_start(b.elastic, &def), MPS_ERROR_NUMERIC,
+                   "particle 50 is beyond double precision");
+  mpsi_particles_column(b.particles, "displacement", 1)[50] = before[50 * 8 + 1];
+  assert_same(&b, before);
+  mps_assert_ok(context, mps_elastic_step(b.elastic, 1));
+  free(before);
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
 /* A bar in tension: facets move as the linear field says. */
 static void facets_come_as_arrays(void **state) {
   (void)state;
@@ -378,6 +411,7 @@ int main(void) {
       cmocka_unit_test(a_run_ends_where_it_was_told),
       cmocka_unit_test(numbers_are_the_lowest_free_ones),
       cmocka_unit_test(external_forces_act_as_loads),
+      cmocka_unit_test(loads_and_motions_beyond_numbers_are_refused),
       cmocka_unit_test(facets_come_as_arrays),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

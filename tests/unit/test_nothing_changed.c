@@ -124,6 +124,9 @@ static mps_status mpm_set_load(scene *s) {
 static mps_status mpm_add_contact(scene *s) {
   return mps_mpm_add_contact(s->mpm, s->other, NULL, NULL);
 }
+static mps_status fields_of_material(scene *s) {
+  return mps_particles_set_material(s->set, s->second, 1500.0, 2, some);
+}
 static mps_status mpm_set_material(scene *s) {
   return mps_mpm_set_material(s->mpm, s->second, 2, some);
 }
@@ -555,6 +558,7 @@ static const row rows[] = {
     {make_mpm, mpm_set_load, "mps_mpm_set_load", false},
     {make_mpm, mpm_add_contact, "mps_mpm_add_contact", false},
     {make_mpm, mpm_set_material, "mps_mpm_set_material", false},
+    {make_mpm, fields_of_material, "mps_particles_set_material", false},
     {make_mpm, mpm_totals, "mps_mpm_get_totals", true},
     {make_mpm, grid_nodes, "mps_grid_get_nodes", true},
     {make_mpm, grid_fill, "mps_grid_fill", true},
@@ -574,6 +578,7 @@ static const row rows[] = {
     {make_dynamics, dynamics_add_load, "mps_dynamics_add_load", false},
     {make_dynamics, dynamics_set_load, "mps_dynamics_set_load", false},
     {make_dynamics, dynamics_set_material, "mps_dynamics_set_material", false},
+    {make_dynamics, fields_of_material, "mps_particles_set_material", false},
     {make_dynamics, dynamics_find_limit, "mps_dynamics_find_limit", false},
     {make_dynamics, dynamics_set_dt, "mps_dynamics_set_dt", false},
     {make_dynamics, remove_some, "mps_particles_remove", false},

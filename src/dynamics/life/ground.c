@@ -19,6 +19,8 @@ static mps_status fail_particle(mps_particles *particles, int64_t k) {
   return MPS_ERROR_ARGUMENT;
 }
 
+static const char *const wave_fields[2] = {"shear_velocity", "pressure_velocity"};
+
 mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *function) {
   mps_context *context = mpsi_particles_context(particles);
   const int64_t n = mps_particles_count(particles);
@@ -164,11 +166,34 @@ static mps_status write_own(mps_dynamics *dynamics, const char *function, mps_st
   return mpsi_domain_agree(dynamics->domain, function, status);
 }
 
+/* The wave velocities of all particles here, to go back to: NULL where there is no memory. */
+static double *keep_velocities(const mps_dynamics *dynamics, const char *function,
+                               mps_status *status) {
+  const int64_t n = mps_particles_count(dynamics->particles);
+  double *kept = mpsi_alloc(dynamics->context, 2 * n, sizeof *kept);
+  if (!kept && *status == MPS_OK)
+    *status = mpsi_fail_memory(dynamics->context, function, (size_t)n * 2 * sizeof *kept);
+  for (int f = 0; kept && f < 2; f++) {
+    const double *column = mpsi_particles_column(dynamics->particles, wave_fields[f], 0);
+    if (column) memcpy(kept + f * n, column, (size_t)n * sizeof *kept);
+  }
+  return kept;
+}
+
+static void put_velocities_back(mps_dynamics *dynamics, const double *kept) {
+  const int64_t n = mps_particles_count(dynamics->particles);
+  for (int f = 0; f < 2; f++) {
+    double *column = mpsi_particles_column(dynamics->particles, wave_fields[f], 0);
+    if (column) memcpy(column, kept + f * n, (size_t)n * sizeof *kept);
+  }
+}
+
 mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material *material,
                                      int64_t count, const int64_t *ids) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
+  double *kept = status == MPS_OK ? keep_velocities(dynamics, __func__, &status) : NULL;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "having a list of ids", ids != NULL);
@@ -176,6 +201,7 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
   mpsi_material_give(&given, material);
   status = mpsi_domain_agree_given(dynamics->domain, __func__, status, &given);
+  const bool agreed = status == MPS_OK;
   if (mpsi_domain_many(dynamics->domain) && ids) {
     status = write_own(dynamics, __func__, status, material, count, ids);
   } else {
@@ -183,7 +209,11 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
       status = mpsi_dynamics_write_material(dynamics->particles, __func__, material, count, ids);
     status = mpsi_domain_agree(dynamics->domain, __func__, status);
   }
-  return status == MPS_OK ? mpsi_dynamics_read_ground(dynamics, __func__) : status;
+  /* other particles may have values that do not do, or those of another rank */
+  if (status == MPS_OK) status = mpsi_dynamics_read_ground(dynamics, __func__);
+  if (status != MPS_OK && agreed) put_velocities_back(dynamics, kept);
+  mpsi_free(dynamics->context, kept);
+  return status;
 }
 
 /* ---- edits ----------------------------------------------------------------------------------- */
@@ -235,6 +265,8 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   else if (of_ground)
     dynamics->unread = true; /* another field may follow that goes with it: the step tells */
   if (of_motion && !dynamics->broken) dynamics->rewritten = which;
+  if (of_motion && strcmp(which, "rotation") == 0) /* totals may be asked for before it begins */
+    dynamics->kernels->trig[dynamics->def.rotation](&dynamics->state, 0, dynamics->count);
   if (of_fabric) dynamics->broken = which;
   return status;
 }

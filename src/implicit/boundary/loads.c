@@ -362,6 +362,20 @@ static mps_status find_scales(mps_elastic *e, const char *function, double t) {
   return mpsi_elastic_settle_given(e, function, status, &list);
 }
 
+/* Of all ranks: all fail or none. */
+static mps_status check_strength(const mps_elastic *e, const char *function) {
+  for (int64_t k = 0; k < e->n * e->dim; k++)
+    if (!(fabs(e->load[k]) <= MPSI_ELASTIC_STRONGEST)) {
+      const mps_status status = mpsi_fail(
+          e->context, function, MPS_ERROR_NUMERIC,
+          "the loads on particle %lld are %g N along %c, allowed is up to %g N",
+          (long long)e->id[k / e->dim], e->load[k], "xyz"[k % e->dim], MPSI_ELASTIC_STRONGEST);
+      mpsi_fail_where(e->context, -1, e->id[k / e->dim]);
+      return status;
+    }
+  return MPS_OK;
+}
+
 mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t) {
   mps_status status = find_scales(e, function, t);
   if (status != MPS_OK) return status;
@@ -376,7 +390,8 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
     }
   }
   status = add_external(e, function);
-  return status == MPS_OK ? mpsi_elastic_complete(e, function, e->load) : status;
+  if (status == MPS_OK) status = mpsi_elastic_complete(e, function, e->load);
+  return status == MPS_OK ? check_strength(e, function) : status;
 }
 
 /* ---- resultants ------------------------------------------------------------------------------ */

@@ -124,6 +124,25 @@ static void set_reaction(mps_elastic *e, const double *held, const double *a) {
   mpsi_elastic_keep_fixed(e, e->reaction);
 }
 
+/* `a` NULL: the accelerations follow from these. */
+static mps_status check_finite(const mps_elastic *e, const char *function, int64_t steps,
+                               const double *u, const double *v, const double *a) {
+  for (int64_t k = 0; k < e->n * e->dim; k++) {
+    const double acceleration = a ? a[k] : 0.0;
+    if (isfinite(acceleration) && fabs(u[k]) <= MPSI_ELASTIC_FURTHEST &&
+        fabs(v[k]) <= MPSI_ELASTIC_FURTHEST)
+      continue;
+    const mps_status status =
+        mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
+                  "the motion of particle %lld is beyond double precision: displacement %g m, "
+                  "velocity %g m/s, acceleration %g m/s2; allowed are %g m and m/s",
+                  (long long)e->id[k / e->dim], u[k], v[k], acceleration, MPSI_ELASTIC_FURTHEST);
+    mpsi_fail_where(e->context, steps, e->id[k / e->dim]);
+    return status;
+  }
+  return MPS_OK;
+}
+
 /* Do all ranks start the same motion? */
 static mps_status settle_motion(mps_elastic *e, const char *function, mps_status status,
                                 const mps_elastic_motion_def *def) {
@@ -173,6 +192,11 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   status = mpsi_elastic_allocate_motion(e, function, m);
   if (status == MPS_OK) status = read_or_zero(e, function, "velocity", m->velocity);
   if (status == MPS_OK) status = read_or_zero(e, function, "displacement", m->next[MPSI_NEXT_U]);
+  if (status == MPS_OK) {
+    mpsi_elastic_impose(e, 0, m->next[MPSI_NEXT_U]);
+    mpsi_elastic_impose(e, 1, m->velocity);
+    status = check_finite(e, function, -1, m->next[MPSI_NEXT_U], m->velocity, NULL);
+  }
   if (status == MPS_OK) exchange(&e->displacement, &m->next[MPSI_NEXT_U]);
   mpsi_elastic_motion *const kept = status == MPS_OK ? e->motion : former;
   mpsi_elastic_motion *const ended = status == MPS_OK ? NULL : e->ended;
@@ -195,8 +219,6 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
   if (status != MPS_OK) mpsi_particles_drop_fields(e->particles, fields);
   if (status == MPS_OK) {
     mpsi_elastic_motion *m = e->motion;
-    mpsi_elastic_impose(e, 0, e->displacement);
-    mpsi_elastic_impose(e, 1, m->velocity);
     memcpy(m->force, e->load, (size_t)(e->n * e->dim) * sizeof *m->force);
     status = mpsi_elastic_find_forces(e, __func__, e->displacement, m->velocity, m->inner, m->held);
     mpsi_elastic_balance(e);
@@ -232,24 +254,6 @@ static mps_status find_right_side(mps_elastic *e, const char *function, double f
   mpsi_elastic_reduce(e, e->work, e->rhs);
   for (int64_t k = 0; k < e->unknowns; k++) e->rhs[k] /= factor;
   return status;
-}
-
-static mps_status check_finite(const mps_elastic *e, const char *function) {
-  const mpsi_elastic_motion *m = e->motion;
-  for (int64_t k = 0; k < e->n * e->dim; k++)
-    if (!isfinite(m->next[MPSI_NEXT_A][k]) ||
-        !(fabs(m->next[MPSI_NEXT_U][k]) <= MPSI_ELASTIC_FURTHEST) ||
-        !(fabs(m->next[MPSI_NEXT_V][k]) <= MPSI_ELASTIC_FURTHEST)) {
-      const mps_status status =
-          mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
-                    "the motion of particle %lld is beyond double precision: displacement %g m, "
-                    "velocity %g m/s, acceleration %g m/s2; allowed are %g m and m/s",
-                    (long long)e->id[k / e->dim], m->next[MPSI_NEXT_U][k], m->next[MPSI_NEXT_V][k],
-                    m->next[MPSI_NEXT_A][k], MPSI_ELASTIC_FURTHEST);
-      mpsi_fail_where(e->context, m->steps, e->id[k / e->dim]);
-      return status;
-    }
-  return MPS_OK;
 }
 
 /* The new state becomes the present one. */
@@ -301,7 +305,7 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
     a1[k] = w / (m->beta * dt * dt);
   }
   mpsi_elastic_impose(e, 2, a1);
-  if ((status = check_finite(e, function)) != MPS_OK) return status;
+  if ((status = check_finite(e, function, m->steps, u1, v1, a1)) != MPS_OK) return status;
   status = mpsi_elastic_find_forces(e, function, u1, v1, m->next[MPSI_NEXT_INNER],
                                     m->next[MPSI_NEXT_HELD]);
   if (status != MPS_OK) return status;
