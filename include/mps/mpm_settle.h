@@ -52,7 +52,7 @@ typedef struct mps_mpm_settled {
  *  mps_mpm_step or mps_mpm_run comes first, the particles stop before it. MPS_ERROR_NUMERIC: not
  *  within `max_steps`, as where ground flows; the particles stay where they are, at rest, and `out`
  *  is written: another call goes on from there. MPS_ERROR_UNSUPPORTED: a body in contact moves
- *  freely. MPS_ERROR_DIVERGED as of mps_mpm_step. */
+ *  freely. MPS_ERROR_STATE: no particles, and so no dt. MPS_ERROR_DIVERGED as of mps_mpm_step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *def,
                                                       mps_mpm_settled *out, size_t size);
 static inline mps_status mps_mpm_settle(mps_mpm *mpm, const mps_mpm_settle_def *def,

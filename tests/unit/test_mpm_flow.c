@@ -4,6 +4,8 @@
 #include "mpm_twins.h"
 #include "test_allocator.h"
 
+#include <mps/mpm_settle.h>
+
 #define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
 
 enum { MOST = 10000 };
@@ -23,6 +25,30 @@ static const double *column(mps_particles *set, const char *name, int32_t compon
 }
 
 /* ---- balances -------------------------------------------------------------------------------- */
+
+/* Without particles nothing bounds the step that follows the limit, and its impulses. */
+static void nothing_settles_where_no_particle_is(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mps_mpm_def def = mps_mpm_defaults();
+  int64_t ids[MOST];
+  mps_reaction side;
+  def.cell = 0.02;
+  def.gravity[1] = -9.81;
+  def.lower[0] = def.lower[1] = 0.0;
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
+  mps_assert_ok(context, mps_particles_remove(s.particles, above(s.particles, -1.0, ids), ids));
+  FAILS(mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "no particles, and nothing bounds dt");
+  FAILS(mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_STATE, "no particles, and nothing bounds dt");
+  assert_int_equal(mps_mpm_steps(s.mpm), 3);
+  mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, MPS_MPM_SIDE_Y_LOWER, &side));
+  assert_true(isfinite(side.impulse[1]) && isfinite(side.work));
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
 
 static void erosion_of_half_a_column_takes_its_mass_and_momentum(void **state) {
   (void)state;
@@ -473,6 +499,7 @@ static void refused_allocations_leave_nothing_behind(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nothing_settles_where_no_particle_is),
       cmocka_unit_test(erosion_of_half_a_column_takes_its_mass_and_momentum),
       cmocka_unit_test(a_fed_column_bears_its_weight),
       cmocka_unit_test(same_bits_on_any_threads),

@@ -36,7 +36,7 @@ static mps_status ask_cancel(mps_mpm *mpm, const char *function) {
                    mpm->run.time);
 }
 
-static mps_status check_bounded(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function) {
   if (isfinite(mps_mpm_dt(mpm))) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "the solver has no particles, and nothing bounds dt: set it, or run to a time");
@@ -56,7 +56,7 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   mpsi_guard_enter(&mpm->run.guard, mpm->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     if (mpm->run.edited) status = mpsi_mpm_apply_edits(mpm, __func__); /* some have left */
-    if (status == MPS_OK) status = check_bounded(mpm, __func__);
+    if (status == MPS_OK) status = mpsi_mpm_check_bounded(mpm, __func__);
     if (status == MPS_OK) status = mpsi_mpm_step_from_settling(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
   }

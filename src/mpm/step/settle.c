@@ -171,7 +171,8 @@ static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) 
 /* One step; the time of the run stands still. */
 static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now) {
   const double time = mpm->run.time;
-  mps_status status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
+  mps_status status = mpsi_mpm_check_bounded(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
   mpm->run.time = time;
   double sums[SUMS];
   if (status == MPS_OK) status = sum_balance(mpm, function, sums);
