@@ -237,6 +237,36 @@ static void sets_materials(void **state) {
   mpm_scene_end(&s);
 }
 
+/* No law tells the stress of what is turned inside out. */
+static void inverted_deformations_are_refused(void **state) {
+  (void)state;
+  mps_material *law = NULL;
+  for (int dim = 2; dim <= 3; dim++) {
+    mps_particles_def def = mps_particles_defaults();
+    const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.3, 0.3, 0.3};
+    mps_mpm_def solver = mps_mpm_defaults();
+    mps_particles *set = NULL;
+    mps_mpm *mpm = NULL;
+    def.dim = dim, def.spacing = 0.1;
+    solver.cell = 0.2;
+    if (dim == 3) solver.geometry = MPS_MPM_SPACE;
+    mps_assert_ok(context, mps_material_neo_hookean(context, 1e6, 0.3, &law));
+    mps_assert_ok(context, mps_particles_create(context, &def, &set));
+    mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+    mps_assert_ok(context, mps_particles_set(set, "density", 0, 1000.0));
+    mps_assert_ok(context, mps_mpm_create(context, set, law, &solver, &mpm));
+    mps_assert_ok(context, mps_particles_set(set, "deformation_gradient", 0, -0.14));
+    mps_assert_fails(context, mps_mpm_step(mpm, 1), MPS_ERROR_STATE,
+                     "particle 0 has the determinant -0.14, must be above 0");
+    assert_int_equal(mps_mpm_steps(mpm), 0);
+    mps_assert_ok(context, mps_particles_set(set, "deformation_gradient", 0, 1.0));
+    mps_assert_ok(context, mps_mpm_step(mpm, 1));
+    mps_mpm_destroy(&mpm);
+    mps_particles_destroy(&set);
+    mps_material_destroy(&law);
+  }
+}
+
 /* A lump that bursts out of the domain is told with id and step, and the solver stops. */
 static void tells_what_left(void **state) {
   (void)state;
@@ -432,12 +462,17 @@ static void variants_are_chosen_first(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(refuses_bad_definitions),  cmocka_unit_test(refuses_bad_sets),
-      cmocka_unit_test(owns_its_bodies),          cmocka_unit_test(sets_materials),
-      cmocka_unit_test(runs_to_the_end),          cmocka_unit_test(tells_what_left),
-      cmocka_unit_test(keeps_on_the_wall),        cmocka_unit_test(viscosity_limits_the_step),
-      cmocka_unit_test(survives_lack_of_memory),  cmocka_unit_test(steady_steps_allocate_nothing),
-      cmocka_unit_test(variants_are_chosen_first)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(inverted_deformations_are_refused),
+                                     cmocka_unit_test(refuses_bad_definitions),
+                                     cmocka_unit_test(refuses_bad_sets),
+                                     cmocka_unit_test(owns_its_bodies),
+                                     cmocka_unit_test(sets_materials),
+                                     cmocka_unit_test(runs_to_the_end),
+                                     cmocka_unit_test(tells_what_left),
+                                     cmocka_unit_test(keeps_on_the_wall),
+                                     cmocka_unit_test(viscosity_limits_the_step),
+                                     cmocka_unit_test(survives_lack_of_memory),
+                                     cmocka_unit_test(steady_steps_allocate_nothing),
+                                     cmocka_unit_test(variants_are_chosen_first)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

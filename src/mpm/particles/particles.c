@@ -224,3 +224,27 @@ mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function) {
   }
   return MPS_OK;
 }
+
+static double determinant(const mps_mpm *mpm, int64_t k) {
+  double F[9];
+  for (int c = 0; c < 9; c++) F[c] = mpm->p.F[c] ? mpm->p.F[c][k] : 0.0;
+  if (mpm->dim == 2) return (F[0] * F[3] - F[1] * F[2]) * F[4];
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+         F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+mps_status mpsi_mpm_check_deformations(const mps_mpm *mpm, const char *function) {
+  for (int64_t k = 0; mpm->p.F[0] && k < mpm->p.count; k++) {
+    const mpsi_law_use *law = &mpm->laws.law[mpm->p.law ? mpm->p.law[k] : 0];
+    const double J = law->needs_deformation ? determinant(mpm, k) : 1.0;
+    if (J > 0.0) continue;
+    const int64_t id = mpsi_particles_integers(mpm->particles, "id")[k];
+    (void)mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                    "deformation_gradient of particle %lld has the determinant %g, must be above "
+                    "0: write all its components at once by mps_particles_edit",
+                    (long long)id, J);
+    mpsi_fail_where(mpm->context, -1, id);
+    return MPS_ERROR_STATE;
+  }
+  return MPS_OK;
+}

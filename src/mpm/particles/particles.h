@@ -26,6 +26,8 @@ mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_lost(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_amounts(const mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function);
+/* Of the particles whose law reads it: what is turned inside out has no stress. */
+mps_status mpsi_mpm_check_deformations(const mps_mpm *mpm, const char *function);
 /* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
 void mpsi_mpm_begin_particles(mps_mpm *mpm);
 /* The volume of a particle that the caller gave none. */

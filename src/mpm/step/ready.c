@@ -17,6 +17,7 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   if (mpm->run.lost) mpm->run.lost = false, mpm->run.edited = true; /* on no rank any more */
   if (!mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_check_deformations(mpm, function);
   if (mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
   status = mpsi_mpm_list_boundaries(mpm, function, status);
