@@ -233,7 +233,7 @@ static void mpm_add_contact(api *a) {
     if (def.method == MPS_CONTACT_METHOD_PENALTY)
       def.penalty = api_optional(a, "penalty", 5e-324, 1e300, 1e5);
     def.offset = api_optional(a, "offset", 0.0, 1e300, 0.05);
-    def.depth = api_optional(a, "depth", 5e-324, 1e300, 0.2);
+    def.depth = api_optional(a, "depth", 5e-324, INFINITY, 0.2);
     if (def.method == MPS_CONTACT_METHOD_IMPULSE) {
       def.adhesion = api_real(a, "adhesion", 0.0, 1e300, 0.0);
       def.strength = api_optional(a, "strength", 5e-324, 1e300, 100.0);
