@@ -70,7 +70,8 @@ typedef struct mps_reaction {
  *  keeps the value that it had at the start, to the error that the solver's header states. */
 typedef struct mps_totals {
   double mass, volume;    /* kg, m3 */
-  double linear[3];       /* kg m/s */
+  double linear[3];       /* kg m/s; around an axis of symmetry [0] is the sum of m v_r, which hoop
+                             stress changes without any force from outside */
   double angular[3];      /* kg m2/s, about the origin, with the particles' own spin */
   double kinetic;         /* J, of the present state, with the particles' own spin */
   double strain;          /* J, recoverable. Explicit and implicit elasticity: of the present state;

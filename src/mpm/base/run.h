@@ -44,6 +44,8 @@ mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function);
 /* ready.c: that, but not in a callback of the solver. */
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
+/* ready.c: a step that follows the limit must have particles. */
+mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function);
 /* block_results.c: what the blocks have found: the largest speed, or the error of a bad
  * particle. */
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);

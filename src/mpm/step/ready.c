@@ -42,3 +42,9 @@ mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   const mps_status status = mpsi_mpm_between_steps(mpm, function);
   return status == MPS_OK ? mpsi_mpm_apply_edits(mpm, function) : status;
 }
+
+mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function) {
+  if (isfinite(mps_mpm_dt(mpm))) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "the solver has no particles, and nothing bounds dt: set it, or run to a time");
+}

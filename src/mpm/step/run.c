@@ -36,12 +36,6 @@ static mps_status ask_cancel(mps_mpm *mpm, const char *function) {
                    mpm->run.time);
 }
 
-mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function) {
-  if (isfinite(mps_mpm_dt(mpm))) return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                   "the solver has no particles, and nothing bounds dt: set it, or run to a time");
-}
-
 mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);

@@ -1,4 +1,4 @@
-/* settle.h - the first step after settling, and what bounds a step. SPDX-License-Identifier:
+/* settle.h - the first step after settling. SPDX-License-Identifier:
  * BSD-3-Clause */
 #ifndef MPSI_MPM_SETTLE_H
 #define MPSI_MPM_SETTLE_H
@@ -8,7 +8,4 @@
 /* mpsi_mpm_take_step; after settling that was cut the particles start from rest. A step that fails
  * has changed nothing (on several ranks they stay at rest). */
 mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, double dt);
-/* run.c: a step that follows the limit must have particles. */
-mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function);
-
 #endif
