@@ -4,8 +4,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "unchanged.h"
 
-SEEN_SOLVER(dynamics)
-
 static mps_context *context;
 
 #define OK(call) mps_assert_ok(context, call)
