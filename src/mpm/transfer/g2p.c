@@ -288,7 +288,8 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
     double v = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) v += v2[k] * v2[k];
     const double c = (moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k];
-    square[k] = (c < 0.0) | !(v <= FASTEST * FASTEST) ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
+    square[k] =
+        ((c < 0.0) | !(v <= FASTEST * FASTEST)) ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
   }
   const bool good = find_largest(n, square, &largest);
   if (largest > cells->speed * cells->speed) cells->speed = sqrt(largest);
