@@ -27,6 +27,7 @@ typedef struct subject {
   mps_dynamics *dynamics;
   mps_elastic *elastic;
   mps_snapshot *then[4];
+  mps_snapshot *fresh; /* of the call under way */
 } subject;
 
 static const double above[2] = {0.11, 0.9}, low[2] = {0.0, 0.0}, high[2] = {0.3, 0.3};
@@ -34,6 +35,12 @@ static const int64_t ids[2] = {3, 11};
 static const char nowhere[] = "/dev/null/checkpoint.h5";
 
 /* ---- calls ----------------------------------------------------------------------------------- */
+
+/* Where a call puts a new snapshot; that of an earlier one is gone. */
+static inline mps_snapshot **fresh(subject *s) {
+  mps_snapshot_destroy(&s->fresh);
+  return &s->fresh;
+}
 
 #define CALL(name, expression)                                                                     \
   static inline mps_status call_##name(subject *s) { return expression; }
@@ -66,7 +73,7 @@ CALL(mpm_set_load, mps_mpm_set_load(s->mpm, 0, NULL))
 CALL(mpm_remove_load, mps_mpm_remove_load(s->mpm, 0))
 CALL(mpm_add_contact, mps_mpm_add_contact(s->mpm, s->body, NULL, NULL))
 CALL(mpm_set_material, mps_mpm_set_material(s->mpm, s->material, 2, ids))
-CALL(mpm_snapshot, mps_mpm_snapshot(s->mpm, &(mps_snapshot *){NULL}))
+CALL(mpm_snapshot, mps_mpm_snapshot(s->mpm, fresh(s)))
 CALL(mpm_rollback, mps_mpm_rollback(s->mpm, s->then[0]))
 CALL(mpm_save, mps_mpm_save(s->mpm, nowhere, NULL))
 CALL(mpm_restore, mps_mpm_restore(s->mpm, nowhere, NULL))
@@ -80,7 +87,7 @@ CALL(fluid_step, mps_fluid_step(s->fluid, 1))
 CALL(fluid_run, mps_fluid_run(s->fluid, mps_fluid_time(s->fluid) + 1e-3, 5, NULL, NULL))
 CALL(fluid_set_dt, mps_fluid_set_dt(s->fluid, 1e-4))
 CALL(fluid_begin_step, mps_fluid_begin_step(s->fluid, 1e-4))
-CALL(fluid_snapshot, mps_fluid_snapshot(s->fluid, &(mps_snapshot *){NULL}))
+CALL(fluid_snapshot, mps_fluid_snapshot(s->fluid, fresh(s)))
 CALL(fluid_rollback, mps_fluid_rollback(s->fluid, s->then[1]))
 CALL(fluid_save, mps_fluid_save(s->fluid, nowhere, NULL))
 CALL(fluid_restore, mps_fluid_restore(s->fluid, nowhere, NULL))
@@ -105,7 +112,7 @@ CALL(dynamics_add_load, mps_dynamics_add_load(s->dynamics, NULL, NULL))
 CALL(dynamics_set_load, mps_dynamics_set_load(s->dynamics, 0, NULL))
 CALL(dynamics_remove_load, mps_dynamics_remove_load(s->dynamics, 0))
 CALL(dynamics_set_material, mps_dynamics_set_material(s->dynamics, s->material, 2, ids))
-CALL(dynamics_snapshot, mps_dynamics_snapshot(s->dynamics, &(mps_snapshot *){NULL}))
+CALL(dynamics_snapshot, mps_dynamics_snapshot(s->dynamics, fresh(s)))
 CALL(dynamics_rollback, mps_dynamics_rollback(s->dynamics, s->then[2]))
 CALL(dynamics_save, mps_dynamics_save(s->dynamics, nowhere, NULL))
 CALL(dynamics_restore, mps_dynamics_restore(s->dynamics, nowhere, NULL))
@@ -133,7 +140,7 @@ CALL(elastic_set_boundary, mps_elastic_set_boundary(s->elastic, 0, NULL))
 CALL(elastic_set_load, mps_elastic_set_load(s->elastic, 0, NULL))
 CALL(elastic_set_dt, mps_elastic_set_dt(s->elastic, 0.1))
 CALL(elastic_set_material, mps_elastic_set_material(s->elastic, s->material, 2, ids))
-CALL(elastic_snapshot, mps_elastic_snapshot(s->elastic, &(mps_snapshot *){NULL}))
+CALL(elastic_snapshot, mps_elastic_snapshot(s->elastic, fresh(s)))
 CALL(elastic_save, mps_elastic_save(s->elastic, nowhere, NULL))
 CALL(elastic_restore, mps_elastic_restore(s->elastic, nowhere, NULL))
 CALL(elastic_analyse, mps_elastic_analyse(s->elastic, &(mps_elastic_estimate){0}))
@@ -292,6 +299,7 @@ static inline mps_status make_solvers(subject *s) {
 
 static inline void forget(subject *s) {
   for (int k = 0; k < 4; k++) mps_snapshot_destroy(&s->then[k]);
+  mps_snapshot_destroy(&s->fresh);
   mps_mpm_destroy(&s->mpm);
   mps_fluid_destroy(&s->fluid);
   mps_dynamics_destroy(&s->dynamics);
