@@ -175,7 +175,7 @@ static void name_course(simulation *sim) {
     snprintf(what, sizeof what, "column_%s", c->name);
   else
     snprintf(what, sizeof what, "column");
-  sim->course = (mpm_course){.saves.lost = sim->course.saves.lost, /* told once, of all columns */
+  sim->course = (mpm_course){.saves.lost = sim->course.saves.lost, /* warned once for all columns */
                              .options = &sim->s.course,
                              .m = &sim->m,
                              .directory = sim->s.out,

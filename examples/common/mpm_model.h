@@ -80,7 +80,7 @@ mps_status mpm_model_series(mpm_model *m, const char *directory, const char *wha
                             mps_recorder **out);
 mps_status mpm_model_frame(mpm_model *m, mps_recorder *series);
 
-/* mps_mpm_run, the bar told where it begins. */
+/* mps_mpm_run, with the progress bar going on from where it is. */
 mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_fn callback,
                              void *user);
 

@@ -212,7 +212,7 @@ mps_status mpsi_domain_agree_max(mps_domain *domain, const char *function, mps_s
     return settle_max(domain, function, status, count, values);
   const mps_error own = *mps_context_error(domain->context);
   status = settle_max(domain, function, status, count, values);
-  const bool left = status == MPS_ERROR_STATE; /* another rank has: that is what is to be told */
+  const bool left = status == MPS_ERROR_STATE; /* another rank has left: all report that */
   return domain->lost != MPS_OK && !left ? report_both(domain, &own) : status;
 }
 

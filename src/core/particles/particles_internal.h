@@ -60,7 +60,7 @@ typedef enum mpsi_use {
 typedef struct mpsi_deal {
   void *self; /* the domain */
   int32_t rank, size;
-  /* What has become of an addition on all ranks, which must be given the same number of particles
+  /* The status of an addition on all ranks, which must be given the same number of particles
    * and the same hash of their places. */
   mps_status (*agree)(void *self, const char *function, mps_status status, int64_t count,
                       uint64_t hash);

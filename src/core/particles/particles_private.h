@@ -125,8 +125,8 @@ bool mpsi_particles_deals(const mps_particles *particles);
 static inline int64_t mpsi_deal_first(const mpsi_deal *deal, int32_t rank, int64_t count) {
   return count / deal->size * rank + count % deal->size * rank / deal->size;
 }
-/* Whether all ranks add the same; `status`: what has become of it here. Of a set that is not dealt
- * `status`. */
+/* Whether all ranks add the same; `status`: of the call so far on this rank, and the answer for a
+ * set that is not in parts. */
 mps_status mpsi_deal_agree(const mps_particles *particles, const char *function, mps_status status,
                            int64_t count, uint64_t hash);
 /* Of lattice sites in order of a fill the part of this rank: intervals along the axis of their
