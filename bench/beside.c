@@ -1,6 +1,6 @@
 /* beside.c - what two threads cost where other programs compute too: wall and processor time of a
  * WLS-MPM step by one thread and by two, in turn. Start as many busy programs beside it as there
- * are processors (docs/verification/wls-mpm.md): threads that wait must give the processor away.
+ * are processors (docs/verification/wls-mpm/speed.md): threads that wait must give the processor away.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 

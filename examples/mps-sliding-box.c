@@ -4,7 +4,7 @@
  * The upper plate comes down 0.45 mm, the rough lower one slides by as much; the sides are smooth.
  * The block is confined: its stress is M ln(1 + e) of the stretch's strain e, with the confined
  * modulus M, and without friction F_y = M |ln(1 - d/H)| L, d = 0.45 mm. Friction
- * adds to it where the block lifts off (docs/verification/wls-mpm.md).
+ * adds to it where the block lifts off (docs/verification/wls-mpm/sliding-box.md).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"

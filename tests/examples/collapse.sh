@@ -1,6 +1,6 @@
 #!/bin/sh
 # collapse.sh DIRECTORY: mps-dam-break against the experiment and at rest; mps-column-collapse
-# against what sand and clay must do. On coarse grids: docs/verification/wls-mpm.md has finer ones.
+# against what sand and clay must do. On coarse grids: docs/verification/wls-mpm/column-collapse.md has finer ones.
 . "$(dirname "$0")/checks.sh"
 
 dam="$1/mps-dam-break --h 0.003571875 --threads 1"

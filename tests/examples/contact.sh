@@ -4,7 +4,7 @@
 . "$(dirname "$0")/checks.sh"
 
 # The block without friction against its closed form by logarithmic strain, 607.14 N, within 0.6 %; with friction against 612.61 N of finite elements of the same
-# block, apart from this library (docs/verification/wls-mpm.md), within 1 %; wherever the grid lies,
+# block, apart from this library (docs/verification/wls-mpm/sliding-box.md), within 1 %; wherever the grid lies,
 # and however the block is turned in it.
 # Then by the springs of the paper, which give way: 1.3 % less.
 for offset in 0.1 0.5 0.75; do

@@ -1,6 +1,6 @@
 #!/bin/sh
 # penetrometer.sh DIRECTORY: mps-penetrometer on coarse grids: space against axisymmetry, the parts'
-# sum, a mesh, a whole model. Finer: docs/verification/wls-mpm.md.
+# sum, a mesh, a whole model. Finer: docs/verification/wls-mpm/penetration.md.
 . "$(dirname "$0")/checks.sh"
 # On four cells a radius of 0.6 of them is a third of the tip's: its edges stay sharp.
 coarse="--h 0.025 --soil 3x3x2.5 --rate 1 --threads 1 --corner 0"

@@ -163,7 +163,7 @@ static double bend(int32_t spline, int cells, int across, double load) {
 }
 
 /* What limits the accuracy far from the start is the number of particles a cell, see
- * docs/verification/wls-mpm.md. */
+ * docs/verification/wls-mpm/waves-and-bending.md. */
 static void the_end_hangs_where_the_elastica_has_it(void **state) {
   (void)state;
   const bool all = getenv("MPS_LONG_TESTS") != NULL;

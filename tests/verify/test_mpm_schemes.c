@@ -1,6 +1,6 @@
 /* test_mpm_schemes.c - the original material point method (Nakamura Table 1) with FLIP and PIC
  * beside WLS: what each keeps, on a rotating disc, a vibrating bar and a column under its weight.
- * docs/verification/wls-mpm.md has the table.
+ * docs/verification/wls-mpm/original-method.md has the table.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"

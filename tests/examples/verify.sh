@@ -1,0 +1,72 @@
+#!/bin/sh
+# verify.sh PROGRAMS VERIFY: scripts/verify runs a case, stores what a program printed, renders the page from that
+# without running anything, and finds a table, a stored number and a program that are wrong.
+set -eu
+programs=$1
+verify=$2
+here=$(mktemp -d)
+trap 'rm -rf "$here"' EXIT
+mkdir -p "$here/docs/cases" "$here/build/examples"
+ln -s "$programs"/mps-* "$here/build/examples/"
+cat >"$here/docs/cases/page.ini" <<'END'
+[slips]
+group = discs
+title = Disc slips
+quantity = path
+command = mps-rolling-disc --fill rings --duration 0.05 --h {r}
+read = x_error_05
+scale = 100
+error = percent
+bar = 1
+values = 0.02 0.01
+cells = 2.5 5
+[relative]
+group = discs
+title = Angle
+command = mps-rolling-disc --fill rings --duration 0.05 --h 0.02
+read = h
+reference = 0.01
+bar = 50
+END
+cat >"$here/docs/page.md" <<'END'
+Text before.
+<!-- results of page: discs -->
+<!-- end of results -->
+Text after.
+END
+call() { "$verify" --docs "$here/docs" --build "$here/build" --out "$here/out" "$@" >"$here/said" 2>&1; }
+fails() { if call "$@"; then echo "$* should have failed"; cat "$here/said"; exit 1; fi; }
+
+call --case slips
+printed=$(sed -n 's/.*"x_error_05": \([^,]*\).*/\1/p' "$here"/out/*0.02/summary.json)
+stored=$(sed -n '/"0.02"/,/}/s/.*"number": \([^,]*\).*/\1/p' "$here/docs/results/page/slips.json")
+awk -v a="$printed" -v b="$stored" 'BEGIN { exit !(b != 0 && (100 * a - b) ^ 2 < (1e-8 * b) ^ 2) }' ||
+  { echo "stored $stored of $printed"; exit 1; }
+grep -q '^| Disc slips | path |.* 0.02: .* %; 0.01: .* %' "$here/docs/page.md"
+grep -q '^Text after' "$here/docs/page.md"
+call --check
+cp "$here/docs/page.md" "$here/whole"
+
+# A run is not needed for the tables, and an error above its bar is a failure of the run.
+echo "Text before.
+<!-- results of page: discs -->
+<!-- end of results -->
+Text after." >"$here/docs/page.md"
+fails --check
+call --render
+cmp "$here/docs/page.md" "$here/whole"
+fails --case relative # 0.02 is 100 % above 0.01
+grep -q 'missed' "$here/docs/page.md"
+call --check
+
+# A table written by hand, a command that has changed since, a case that is gone, a program that fails.
+sed -i 's/Disc slips | path/Disc slips | way/' "$here/docs/page.md"
+fails --check
+call --render
+sed -i 's/--duration 0.05 --h {r}/--duration 0.04 --h {r}/' "$here/docs/cases/page.ini"
+fails --check
+grep -q 'another command' "$here/said"
+fails --case nothing
+sed -i 's/--duration 0.04/--duration 9/' "$here/docs/cases/page.ini"
+fails --case slips
+grep -q 'FAILED' "$here/said"
