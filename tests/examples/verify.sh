@@ -45,6 +45,12 @@ awk -v a="$printed" -v b="$stored" 'BEGIN { exit !(b != 0 && (100 * a - b) ^ 2 <
 grep -q '^| Disc slips | path |.* 0.02: .* %; 0.01: .* %' "$here/docs/page.md"
 grep -q '^Text after' "$here/docs/page.md"
 call --check
+
+# The order is that of the two errors.
+errors=$(sed -n 's/.*"number": \([^,]*\).*/\1/p' "$here/docs/results/page/slips.json" | tr '\n' ' ')
+order=$(awk -F' [|] ' '/Disc slips/ { print $5 }' "$here/docs/page.md")
+echo "errors $errors order $order"
+echo "$errors $order" | awk '{ p = $1 * $2 > 0 ? log($1 / $2) / log(2) : 0; exit !(p == 0 ? $3 == "" : ($3 - p) ^ 2 < 0.0026) }'
 cp "$here/docs/page.md" "$here/whole"
 
 # A run is not needed for the tables, and an error above its bar is a failure of the run.
