@@ -76,3 +76,6 @@ fails --case nothing
 sed -i 's/--duration 0.04/--duration 9/' "$here/docs/cases/page.ini"
 fails --case slips
 grep -q 'FAILED' "$here/said"
+sed -i 's/error = percent/error = per cent/' "$here/docs/cases/page.ini"
+fails --list
+grep -q 'error is per cent, must be one of' "$here/said"
