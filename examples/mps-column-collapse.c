@@ -83,7 +83,7 @@ static mps_status fill(mps_context *context, const settings *s, const column_cas
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, c->aspect * s->width};
   mps_particles_def set = mps_particles_defaults();
   set.spacing = s->h / sqrt((double)s->ppc);
-  mps_status status = mps_particles_create(context, &set, &m->particles);
+  mps_status status = mpm_model_particles(m, context, &set);
   if (status == MPS_OK) status = mps_particles_fill_box(m->particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "stress", 0, 0.0);

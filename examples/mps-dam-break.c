@@ -81,7 +81,7 @@ static mps_status fill(mps_context *context, const settings *s, simulation *sim)
   const double K = DENSITY * speed_of_sound(s) * speed_of_sound(s);
   mps_particles_def set = mps_particles_defaults();
   set.spacing = s->h / sqrt((double)s->ppc);
-  mps_status status = mps_particles_create(context, &set, &sim->m.particles);
+  mps_status status = mpm_model_particles(&sim->m, context, &set);
   mps_particles *water = sim->m.particles;
   if (status == MPS_OK) status = mps_particles_fill_box(water, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(water, "density", 0, DENSITY);

@@ -1,6 +1,7 @@
 /* mps-wave - earthquake wave through a soil column or slope of particles, Yoshida, Figure 2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/output.h"
+#include "common/parts.h"
 #include "common/resume.h"
 #include "wave/field.h"
 #include "wave/files.h"
@@ -42,15 +43,16 @@ static mps_status build_boundaries(const settings *s, simulation *sim) {
   return status;
 }
 
-/* What each rank makes for itself: the whole ground, and what is to be seen of it. */
+/* The ground, in parts unless its free-field columns need all of it on each rank, and what is to be
+ * seen of it. */
 static bool build_ground(app *a, const settings *s, simulation *sim) {
   const column_def def = {.width = s->width,
                           .height = s->height,
                           .radius = s->radius,
                           .ground = &s->ground,
                           .sloped = s->sloped,
-                          .slope = {s->slope[0], s->slope[1], s->slope[2]}};
-  if (!settings_signal(a, s, &sim->signal)) return false;
+                          .slope = {s->slope[0], s->slope[1], s->slope[2]},
+                          .domain = s->sides == SIDES_FREEFIELD ? NULL : a->domain};
   if (!app_check(a, column_create(a->context, &def, &sim->ground))) return false;
   if (!receivers_create(a, &sim->ground, settings_wave(s), s->receivers, &sim->record))
     return false;
@@ -59,8 +61,9 @@ static bool build_ground(app *a, const settings *s, simulation *sim) {
        side <= MPS_DYNAMICS_SIDE_RIGHT && s->sides == SIDES_FREEFIELD; side++)
     if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
   sim->particles = mps_particles_count(particles);
+  if (!app_check(a, parts_sum(def.domain, &sim->particles))) return false;
   sim->so_far = (results_so_far){.s = s, .record = &sim->record, .peaks = &sim->peaks};
-  return field_create(a, s, particles, &sim->peaks);
+  return field_create(a, s, particles, sim->particles, &sim->peaks);
 }
 
 /* The solver, of all ranks together, which leaves each its share of the ground. */
@@ -205,7 +208,8 @@ static int run(app *a, settings *s) {
       a, settings_ground(a, s) && resume_places(a, s->restart, &s->checkpoint, &s->out) &&
              (a->rank > 0 || (output_directory(a, s->out) && summary_reserve(a, s->out))));
   app_leave_at_once(a, ready && !a->domain); /* no hook reaches into building */
-  ready = ready && app_agree(a, files_peek(a, s) && build_ground(a, s, &sim));
+  ready = ready && app_agree(a, files_peek(a, s) && settings_signal(a, s, &sim.signal));
+  ready = ready && app_agree(a, build_ground(a, s, &sim));
   if (ready) sim.duration = find_duration(s, &sim);
   ready = ready && app_agree(a, build_solver(a, s, &sim));
   app_leave_at_once(a, false);

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "column.h"
 
+#include "parts.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -48,7 +50,7 @@ mps_status column_create(mps_context *context, const column_def *def, column *ou
   out->height = (double)out->ny * d;
   mps_particles_def particles = mps_particles_defaults();
   particles.spacing = d;
-  mps_status status = mps_particles_create(context, &particles, &out->particles);
+  mps_status status = parts_create(context, def->domain, &particles, &out->particles);
   if (status == MPS_OK) status = fill(out);
   if (status == MPS_OK) status = set_materials(out);
   if (status != MPS_OK) column_destroy(out);

@@ -6,6 +6,7 @@
 
 #include "layers.h"
 
+#include <mps/domain.h>
 #include <mps/dynamics.h>
 
 typedef struct column_def {
@@ -13,7 +14,8 @@ typedef struct column_def {
   double radius;        /* R, m: spacing D = 2R, cell centred */
   const layers *ground;
   bool sloped;
-  double slope[3]; /* m: the surface falls from `height` at slope[0] to slope[2] at slope[1] */
+  double slope[3];    /* m: the surface falls from `height` at slope[0] to slope[2] at slope[1] */
+  mps_domain *domain; /* each of its ranks makes a part of the particles; NULL: all of them */
 } column_def;
 
 typedef struct column {
@@ -25,7 +27,8 @@ typedef struct column {
   double width, height; /* of the lattice, m */
 } column;
 
-/* Makes the particles with density, velocities and damping of their layers. */
+/* Makes the particles with density, velocities and damping of their layers. Collective where there
+ * is a domain. */
 mps_status column_create(mps_context *context, const column_def *def, column *out);
 void column_destroy(column *c);
 

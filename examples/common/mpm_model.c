@@ -3,6 +3,7 @@
 #include "mpm_model.h"
 
 #include "frame.h"
+#include "parts.h"
 #include "resume.h"
 
 #include <stdlib.h>
@@ -106,19 +107,10 @@ mps_status mpm_model_frame(mpm_model *m, mps_recorder *series) {
   return mpm_model_tell(m, status, 0, NULL);
 }
 
-mps_status mpm_model_sum(mpm_model *m, int64_t *value) {
-  if (!m->a->domain) return MPS_OK;
-  const int32_t ranks = mps_domain_size(m->a->domain);
-  double *each = calloc((size_t)ranks, sizeof *each);
-  mps_status status = agree(m, each ? MPS_OK : MPS_ERROR_MEMORY);
-  if (status == MPS_OK) {
-    each[m->a->rank] = (double)*value;
-    status = mps_domain_max(m->a->domain, ranks, each);
-  }
-  *value = 0;
-  for (int32_t k = 0; status == MPS_OK && k < ranks; k++) *value += (int64_t)each[k];
-  free(each);
-  return status;
+mps_status mpm_model_sum(mpm_model *m, int64_t *value) { return parts_sum(m->a->domain, value); }
+
+mps_status mpm_model_particles(mpm_model *m, mps_context *context, const mps_particles_def *def) {
+  return parts_create(context, m->a->domain, def, &m->particles);
 }
 
 mps_status mpm_counts_note(mpm_model *m, mpm_counts *c, int64_t count, int64_t *most) {

@@ -47,8 +47,11 @@ int mpm_model_run(const options_program *program, int64_t threads, const mpm_mod
                   mpm_model *model, const mpm_model_parts *parts, void *user);
 
 /* ---- several ranks ---------------------------------------------------------------------------
- * Each builds the whole model and keeps its share of it. `build` and `march` are called on all of
- * them; what they return must be the same on all. */
+ * Each builds its part of the particles, and all else of the model. `build` and `march` are called
+ * on all of them; what they return must be the same on all. */
+
+/* Makes the set m->particles, which lies in parts on the ranks. Collective, as its fills are. */
+mps_status mpm_model_particles(mpm_model *m, mps_context *context, const mps_particles_def *def);
 
 /* mps_mpm_create with m->particles and m->material, after `status`, which is that of what a rank
  * makes for itself, such as the particles and bodies: a failure on one rank is one on all, and the

@@ -76,14 +76,14 @@ static mps_status set_stress(mps_particles *set, const settings *s) {
   return mps_particles_set_geostatic(set, &def);
 }
 
-static mps_status make_ground(mps_context *context, const settings *s, mps_particles **set) {
+static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, s->depth};
   mps_particles_def def = mps_particles_defaults();
   def.spacing = s->h / sqrt((double)s->ppc);
-  mps_status status = mps_particles_create(context, &def, set);
-  if (status == MPS_OK) status = mps_particles_fill_box(*set, lo, hi, NULL);
-  if (status == MPS_OK) status = mps_particles_set(*set, "density", 0, s->density);
-  return status == MPS_OK && s->gravity > 0.0 ? set_stress(*set, s) : status;
+  mps_status status = mpm_model_particles(m, context, &def);
+  if (status == MPS_OK) status = mps_particles_fill_box(m->particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
+  return status == MPS_OK && s->gravity > 0.0 ? set_stress(m->particles, s) : status;
 }
 
 static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
@@ -115,7 +115,7 @@ mps_status footing_build(mps_context *context, void *user) {
                              .pass = footing_pass,
                              .user = sim};
   mps_status status = mpm_course_peek(&sim->course, context);
-  if (status == MPS_OK) status = make_ground(context, s, &sim->m.particles);
+  if (status == MPS_OK) status = make_ground(context, s, &sim->m);
   if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;

@@ -137,8 +137,10 @@ static mps_status make_soil(penetrometer *p, pen_run *r) {
   mps_particles_def set = mps_particles_defaults();
   set.dim = dim_of(r);
   set.spacing = s->h / nearbyint(cbrt((double)s->ppc));
-  mps_status status = mps_particles_create(p->context, &set, &r->m.particles);
+  mps_status status = mpm_model_particles(&r->m, p->context, &set);
   if (status == MPS_OK) status = mps_particles_fill_box(r->m.particles, lo, r->size, NULL);
+  r->particles = mps_particles_count(r->m.particles);
+  if (status == MPS_OK) status = mpm_model_sum(&r->m, &r->particles);
   if (status == MPS_OK) status = mps_particles_set(r->m.particles, "density", 0, s->density);
   if (status == MPS_OK) status = set_stress(p, r);
   if (status == MPS_OK) status = keep_places(r);
@@ -269,8 +271,8 @@ static mps_status add_contact(const penetrometer *p, pen_run *r) {
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
+/* A rank may come to have any number of the particles. */
 static mps_status make_room(const penetrometer *p, pen_run *r) {
-  r->particles = mps_particles_count(r->m.particles);
   r->capacity = (int64_t)((p->s.depth + pen_gap(p)) / p->stride) + 2;
   r->row = calloc((size_t)r->capacity, sizeof *r->row);
   r->near = calloc((size_t)r->particles * 3, sizeof *r->near);

@@ -73,7 +73,7 @@ static mps_status make_soil(mps_context *context, pile *p) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, s->height};
   mps_particles_def set = mps_particles_defaults();
   set.spacing = s->h / sqrt((double)s->ppc);
-  mps_status status = mps_particles_create(context, &set, &p->m.particles);
+  mps_status status = mpm_model_particles(&p->m, context, &set);
   if (status == MPS_OK) status = mps_particles_fill_box(p->m.particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(p->m.particles, "density", 0, s->density);
   if (status == MPS_OK) status = set_stress(p);
@@ -156,8 +156,9 @@ mps_status pile_build(mps_context *context, void *user) {
   def.gravity[1] = -PILE_GRAVITY;
   if (status == MPS_OK) status = make_pile(context, p);
   if (status == MPS_OK) status = pile_begin(p);
-  p->particles = mps_particles_count(p->m.particles);
   status = mpm_model_create(&p->m, context, status, &def);
+  p->particles = mps_particles_count(p->m.particles);
+  if (status == MPS_OK) status = mpm_model_sum(&p->m, &p->particles);
   if (status != MPS_OK) return status;
   p->dt = mps_mpm_dt(p->m.mpm);
   status = add_contact(p);

@@ -7,10 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-bool field_create(app *a, const settings *s, mps_particles *particles, field *out) {
+bool field_create(app *a, const settings *s, mps_particles *particles, int64_t count, field *out) {
   *out = (field){.particles = particles};
   if (!s->sloped) return true;
-  out->count = mps_particles_count(particles);
+  out->count = count;
   out->peak = calloc((size_t)out->count, sizeof *out->peak);
   return out->peak ? true : app_no_memory(a);
 }

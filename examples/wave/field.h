@@ -11,8 +11,8 @@ typedef struct field {
   double *peak;             /* |acceleration|, m/s2, by particle id; of others' particles 0 */
 } field;
 
-/* Of the whole set, before a solver shares it among ranks. */
-bool field_create(app *a, const settings *s, mps_particles *particles, field *out);
+/* Of `count` particles of all ranks. */
+bool field_create(app *a, const settings *s, mps_particles *particles, int64_t count, field *out);
 void field_destroy(field *f);
 /* Raises the peaks to the present accelerations. */
 mps_status field_record(field *f);

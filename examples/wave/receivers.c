@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "receivers.h"
 
+#include "common/parts.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,41 +11,59 @@
 
 /* ---- choice of the particles ----------------------------------------------------------------- */
 
-/* Adds component `component` of the particle nearest to (x, depth below the surface there). */
+/* Adds component `component` of the particle nearest to (x, depth below the surface there), whose
+ * place is put into the list. */
 static void add(receivers *r, const column *c, double x, double depth, int32_t component,
-                const char *where) {
-  const double target[2] = {x, column_surface(c, x) - depth};
-  receiver *q = &r->list[r->count++];
-  q->id = mps_particles_nearest(c->particles, target);
-  q->component = component;
-  q->depth = depth;
-  mps_view position;
-  const int64_t i = mps_particles_index(c->particles, q->id);
-  if (i >= 0 && mps_particles_view(c->particles, "position", &position) == MPS_OK)
-    q->depth = column_surface(c, *mps_view_f64(&position, i, 0)) - *mps_view_f64(&position, i, 1);
-  snprintf(q->label, sizeof q->label, "a%c_m_s2_GL-%.4gm%s", component == 0 ? 'x' : 'y', q->depth,
-           where);
+                double *places) {
+  places[2 * r->count] = x, places[2 * r->count + 1] = column_surface(c, x) - depth;
+  r->list[r->count++].component = component;
 }
 
-bool receivers_create(app *a, const column *c, char wave, int64_t n, receivers *out) {
-  *out = (receivers){.particles = c->particles, .column = n};
-  out->list = calloc((size_t)n + 5, sizeof *out->list);
-  out->now = calloc((size_t)n + 6, sizeof *out->now);
-  if (!out->list || !out->now) return app_no_memory(a);
+static void add_all(receivers *r, const column *c, char wave, double *places) {
   const double half = 0.5 * c->spacing;
   const double middle = ((double)(c->nx / 2) + 0.5) * c->spacing;
   const double deepest = column_surface(c, middle) - half;
   const int32_t component = column_component(wave);
-  for (int64_t k = 0; k < n; k++) {
-    const double depth = half + (deepest - half) * (double)k / (double)(n - 1);
-    add(out, c, middle, depth, component, "");
+  for (int64_t k = 0; k < r->column; k++) {
+    const double depth = half + (deepest - half) * (double)k / (double)(r->column - 1);
+    add(r, c, middle, depth, component, places);
   }
-  add(out, c, half, half, component, "_edge");
+  add(r, c, half, half, component, places);
   for (int32_t xy = 0; xy < 2 && c->def.sloped; xy++) {
-    add(out, c, c->def.slope[0], half, xy, "_crest");
-    add(out, c, c->def.slope[1], half, xy, "_toe");
+    add(r, c, c->def.slope[0], half, xy, places);
+    add(r, c, c->def.slope[1], half, xy, places);
   }
-  return true;
+}
+
+static void name(const receivers *r, const column *c, int64_t k, const double *position) {
+  static const char *const beside[] = {"_edge", "_crest", "_toe", "_crest", "_toe"};
+  receiver *q = &r->list[k];
+  q->depth = column_surface(c, position[0]) - position[1];
+  snprintf(q->label, sizeof q->label, "a%c_m_s2_GL-%.4gm%s", q->component == 0 ? 'x' : 'y',
+           q->depth, k < r->column ? "" : beside[k - r->column]);
+}
+
+bool receivers_create(app *a, const column *c, char wave, int64_t n, receivers *out) {
+  const size_t most = (size_t)n + 5;
+  *out = (receivers){.particles = c->particles, .column = n};
+  out->list = calloc(most, sizeof *out->list);
+  out->now = calloc(most + 1, sizeof *out->now);
+  double *places = calloc(most * 4, sizeof *places), *position = places + 2 * most;
+  int64_t *ids = calloc(most, sizeof *ids);
+  const bool room = out->list && out->now && places && ids;
+  bool ok = app_agree(a, room || app_no_memory(a));
+  if (ok) {
+    add_all(out, c, wave, places);
+    ok = app_check(
+        a, parts_nearest(c->def.domain, c->particles, (int32_t)out->count, places, ids, position));
+  }
+  for (int64_t k = 0; ok && k < out->count; k++) {
+    out->list[k].id = ids[k];
+    name(out, c, k, position + 2 * k);
+  }
+  free(places);
+  free(ids);
+  return ok;
 }
 
 void receivers_destroy(receivers *r) {
