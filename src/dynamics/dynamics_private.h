@@ -1,6 +1,7 @@
 /* dynamics_private.h - the members of the explicit MPS solver, and who does what in a step:
  *
  *   structure.c   order, pairs, mesh and arrays: what follows from which particles there are
+ *   batch.c       pairs of a batch of blocks at a time; mesh.c arranges them
  *   present.c     the present state as every part reads it: time, velocity, mass
  *   coefficients.c  what forces need of the ground, particle by particle
  *   ground.c      what the body is made of; fields that the caller edits
@@ -269,8 +270,6 @@ mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const
 
 mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics, const char *function);
 mpsi_dynamics_geometry mpsi_dynamics_present_geometry(const mps_dynamics *dynamics);
-/* Are all offsets whole spacings? */
-bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair);
 mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
                                   mpsi_dynamics_structure *out);
 

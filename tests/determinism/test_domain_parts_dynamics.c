@@ -55,12 +55,13 @@ static void test_two(void **state) { (void)state, compare_teams(compute_two, 0, 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
 typedef struct peaks {
+  double hi[2];            /* m: upper corner of the body */
   int64_t most[TEAM_MOST]; /* bytes */
   mps_status status[TEAM_MOST];
 } peaks;
 
-static mps_status begin_ground(mps_context *own, mps_domain *domain) {
-  const double lo[2] = {0.0, 0.0}, hi[2] = {2000.0, 20.0};
+static mps_status begin_ground(mps_context *own, mps_domain *domain, const double *hi) {
+  const double lo[2] = {0.0, 0.0};
   mps_particles_def def = mps_particles_defaults();
   mps_dynamics_def solver = mps_dynamics_defaults();
   mps_particles *set = NULL;
@@ -91,14 +92,14 @@ static void measure(void *user, team *t, int32_t rank) {
   peak_use(&def, &allocator);
   mps_status status = mps_context_create(&def, &own, NULL, 0);
   TRY(mps_domain_create(own, &domain_def, &domain));
-  TRY(begin_ground(own, t->size > 1 ? domain : NULL));
+  TRY(begin_ground(own, t->size > 1 ? domain : NULL, p->hi));
   mps_domain_destroy(&domain);
   mps_context_destroy(&own);
   p->status[rank] = status, p->most[rank] = allocator.most;
 }
 
-static int64_t most_of(int32_t size) {
-  peaks p = {{0}, {0}};
+static int64_t most_of(int32_t size, double width, double height) {
+  peaks p = {.hi = {width, height}};
   team t;
   int64_t most = 0;
   team_begin(&t, size);
@@ -111,13 +112,17 @@ static int64_t most_of(int32_t size) {
   return most;
 }
 
-static void test_memory(void **state) {
-  (void)state;
-  const int64_t one = most_of(1), four = most_of(4);
-  print_message("40000 particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
-                (long long)one, (long long)four, (double)four / (double)one);
+static void compare_memory(double width, double height) {
+  const int64_t one = most_of(1, width, height), four = most_of(4, width, height);
+  print_message("%g x %g particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
+                width, height, (long long)one, (long long)four, (double)four / (double)one);
   assert_true((double)four < 0.4 * (double)one);
 }
+
+static void test_memory(void **state) { (void)state, compare_memory(2000.0, 20.0); }
+
+/* Here most blocks have neighbours on both sides, of other ranks. */
+static void test_memory_square(void **state) { (void)state, compare_memory(200.0, 200.0); }
 
 /* ---- free-field columns ---------------------------------------------------------------------- */
 
@@ -146,7 +151,7 @@ int main(void) {
       cmocka_unit_test(test_scattered), cmocka_unit_test(test_periodic),
       cmocka_unit_test(test_strip),     cmocka_unit_test(test_two),
       cmocka_unit_test(test_memory),    cmocka_unit_test(test_refused_memory),
-      cmocka_unit_test(test_columns),
+      cmocka_unit_test(test_columns),   cmocka_unit_test(test_memory_square),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

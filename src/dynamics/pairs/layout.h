@@ -34,10 +34,12 @@ bool mpsi_dynamics_layout_order(mps_context *context, const mpsi_dynamics_geomet
 
 /* Finds all pairs of sorted particles: of the body, of each column with its endless copies, and
  * the forces that the column gives to the edge beside it. `pairs` receives an array for
- * mpsi_free. Errors carry `function`. `distinct` receives the number of ordinary pairs. */
+ * mpsi_free. Errors carry `function`. `distinct` receives the number of ordinary pairs. `keep`
+ * NULL: all; else by particle: those pairs of the body alone with an end that is marked. */
 mps_status mpsi_dynamics_layout_pairs(mps_context *context, const char *function,
-                                      const mpsi_dynamics_geometry *geometry, int64_t *count,
-                                      mpsi_dynamics_pair **pairs, int64_t *distinct);
+                                      const mpsi_dynamics_geometry *geometry, const uint8_t *keep,
+                                      int64_t *count, mpsi_dynamics_pair **pairs,
+                                      int64_t *distinct);
 
 /* For each particle of a column (index as sorted) the edge particle of the same row, else -1. */
 mps_status mpsi_dynamics_layout_edges(mps_context *context, const char *function,

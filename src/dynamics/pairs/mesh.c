@@ -1,6 +1,6 @@
 /* mesh.c - arranges the pairs of a body into blocks of runs and scattered pairs (see mesh.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mesh.h"
+#include "batch.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,12 +13,26 @@ typedef struct entry {
   int32_t run;             /* length of the run that starts here; 0: scattered; -1: inside a run */
 } entry;
 
+/* What has been arranged of one batch: blocks `begin` to `end` - 1. Runs and scattered pairs have
+ * numbers from `run_first` and `scattered_first` on. */
+typedef struct batch {
+  int64_t begin, end;
+  int64_t run_first, runs, scattered_first;
+  mpsi_dynamics_pair_run *run;
+  mpsi_dynamics_scattered scattered;
+} batch;
+
+/* One batch under way. */
 typedef struct arrange {
+  mps_context *context;
   mpsi_dynamics_mesh *mesh;
   const mpsi_dynamics_mesh_def *def;
-  const mpsi_dynamics_pair *pair;
+  batch *batch;
+  mpsi_dynamics_pair *pair;
+  int64_t pairs;
   entry *entry;
-  int64_t *first; /* first entry of each block, blocks + 1 */
+  int64_t *first; /* first entry of each of the batch's blocks, one more */
+  int64_t *next;
 } arrange;
 
 /* Which block of this rank has a particle; -1: none. */
@@ -87,26 +101,28 @@ static bool next_piece(const arrange *work, int64_t b, const entry *e, int32_t *
   return true;
 }
 
-/* Counts the runs and scattered pairs of a block. */
+/* Counts the runs and scattered pairs of a block, and in `slot` the pairs of both. */
 static void count_block(const arrange *work, int64_t b) {
   mpsi_dynamics_block *block = &work->mesh->block[b];
-  for (int64_t k = work->first[b]; k < work->first[b + 1]; k++) {
+  const int64_t *first = &work->first[b - work->batch->begin];
+  for (int64_t k = first[0]; k < first[1]; k++) {
     const entry *e = &work->entry[k];
     if (e->run == 0) block->scattered_end += needed(work, b, &e->pair, 0);
     for (int32_t begin = 0, end; e->run > 0 && next_piece(work, b, e, &begin, &end); begin = end)
-      block->run_end++;
+      block->run_end++, block->slot += end - begin;
   }
+  block->slot += block->scattered_end;
 }
 
 /* ---- arranging --------------------------------------------------------------------------------
  */
 
 /* Sorts the entries of one block and marks its runs. */
-static void arrange_block(void *data, int64_t b, int32_t worker) {
+static void arrange_block(void *data, int64_t number, int32_t worker) {
   (void)worker;
   arrange *work = data;
-  entry *e = work->entry + work->first[b];
-  const int64_t n = work->first[b + 1] - work->first[b];
+  entry *e = work->entry + work->first[number];
+  const int64_t n = work->first[number + 1] - work->first[number];
   qsort(e, (size_t)n, sizeof *e, compare);
   for (int64_t k = 0, next; k < n; k = next) {
     for (next = k + 1;
@@ -116,7 +132,7 @@ static void arrange_block(void *data, int64_t b, int32_t worker) {
     if (next - k < SHORTEST_RUN)
       for (int64_t s = k; s < next; s++) e[s].run = 0;
   }
-  count_block(work, b);
+  count_block(work, work->batch->begin + number);
 }
 
 static void coefficients(const mpsi_dynamics_mesh_def *def, double r0x, double r0y, double *kf,
@@ -127,28 +143,30 @@ static void coefficients(const mpsi_dynamics_mesh_def *def, double r0x, double r
 }
 
 /* Copies the marked entries of one block into the run and scattered lists. */
-static void write_block(void *data, int64_t b, int32_t worker) {
+static void write_block(void *data, int64_t number, int32_t worker) {
   (void)worker;
   arrange *work = data;
-  mpsi_dynamics_mesh *mesh = work->mesh;
-  mpsi_dynamics_scattered *list = &mesh->scattered;
-  int64_t r = mesh->block[b].run_begin, s = mesh->block[b].scattered_begin;
-  for (int64_t k = work->first[b]; k < work->first[b + 1]; k++) {
+  batch *out = work->batch;
+  mpsi_dynamics_scattered *list = &out->scattered;
+  const int64_t b = out->begin + number;
+  const mpsi_dynamics_block *block = &work->mesh->block[b];
+  int64_t r = block->run_begin - out->run_first, s = block->scattered_begin - out->scattered_first;
+  for (int64_t k = work->first[number]; k < work->first[number + 1]; k++) {
     const entry *e = &work->entry[k];
     const mpsi_dynamics_pair *p = &e->pair;
     double kf, kc;
     if (e->run < 0) continue;
     coefficients(work->def, p->r0x, p->r0y, &kf, &kc);
     for (int32_t begin = 0, end; e->run > 0 && next_piece(work, b, e, &begin, &end); begin = end)
-      mesh->run[r++] = (mpsi_dynamics_pair_run){.i0 = local(work, p->i + begin),
-                                                .j0 = local(work, p->j + begin),
-                                                .count = end - begin,
-                                                .own_i = p->ti >= 0,
-                                                .own_j = p->tj >= 0,
-                                                .r0x = p->r0x,
-                                                .r0y = p->r0y,
-                                                .kf = kf,
-                                                .kc = kc};
+      out->run[r++] = (mpsi_dynamics_pair_run){.i0 = local(work, p->i + begin),
+                                               .j0 = local(work, p->j + begin),
+                                               .count = end - begin,
+                                               .own_i = p->ti >= 0,
+                                               .own_j = p->tj >= 0,
+                                               .r0x = p->r0x,
+                                               .r0y = p->r0y,
+                                               .kf = kf,
+                                               .kc = kc};
     if (e->run > 0 || !needed(work, b, p, 0)) continue;
     list->i[s] = local(work, p->i);
     list->j[s] = local(work, p->j);
@@ -161,24 +179,19 @@ static void write_block(void *data, int64_t b, int32_t worker) {
   }
 }
 
-/* Hands each pair to the one or two blocks that own its ends. With entry NULL only counts. */
-static void deal(const arrange *work, int64_t count, entry *entries, int64_t *next) {
-  for (int64_t k = 0; k < count; k++) {
+/* Hands each pair to the one or two blocks of the batch that own its ends. Without entries only
+ * counts. */
+static void deal(const arrange *work) {
+  const batch *part = work->batch;
+  for (int64_t k = 0; k < work->pairs; k++) {
     const mpsi_dynamics_pair *p = &work->pair[k];
-    const int64_t bi = slot_of(work, p->ti), bj = slot_of(work, p->tj);
-    if (bi >= 0) {
-      const int64_t at = next[bi]++;
-      if (entries) {
-        entries[at].pair = *p;
-        if (bj != bi) entries[at].pair.tj = -1;
-      }
-    }
-    if (bj >= 0 && bj != bi) {
-      const int64_t at = next[bj]++;
-      if (entries) {
-        entries[at].pair = *p;
-        entries[at].pair.ti = -1;
-      }
+    const int64_t b[2] = {slot_of(work, p->ti), slot_of(work, p->tj)};
+    for (int e = 0; e < 2; e++) {
+      if (b[e] < part->begin || b[e] >= part->end || (e == 1 && b[1] == b[0])) continue;
+      const int64_t at = work->next[b[e] - part->begin]++;
+      if (!work->entry) continue;
+      work->entry[at].pair = *p;
+      if (b[0] != b[1]) *(e == 0 ? &work->entry[at].pair.tj : &work->entry[at].pair.ti) = -1;
     }
   }
 }
@@ -209,21 +222,23 @@ static void place_block(const mpsi_dynamics_mesh_def *def, int64_t b, mpsi_dynam
   block->end = (int32_t)(begin + MPSI_DYN_BLOCK < last ? begin + MPSI_DYN_BLOCK : last);
 }
 
-/* Turns the counts left in run_end and scattered_end into ranges. */
+/* Turns the counts left in run_end, scattered_end and slot into ranges. */
 static void number_blocks(const arrange *work) {
   mpsi_dynamics_mesh *mesh = work->mesh;
-  int64_t runs = 0, scattered = 0;
-  for (int64_t b = 0; b < mesh->blocks + mesh->ghosts; b++) {
+  batch *part = work->batch;
+  part->run_first = mesh->runs, part->scattered_first = mesh->scattered.count;
+  for (int64_t b = part->begin; b < part->end; b++) {
     mpsi_dynamics_block *block = &mesh->block[b];
+    const int64_t slots = block->slot;
     place_block(work->def, b, block);
-    block->slot = work->first[b];
-    block->run_begin = runs;
-    block->scattered_begin = scattered;
-    block->run_end = runs += block->run_end;
-    block->scattered_end = scattered += block->scattered_end;
+    block->slot = mesh->slots;
+    block->run_begin = mesh->runs;
+    block->scattered_begin = mesh->scattered.count;
+    block->run_end = mesh->runs += block->run_end;
+    block->scattered_end = mesh->scattered.count += block->scattered_end;
+    mesh->slots += slots;
   }
-  mesh->runs = runs;
-  mesh->scattered.count = scattered;
+  part->runs = mesh->runs - part->run_first;
 }
 
 /* Whether a block looks at particles of other ranks, which have numbers from `own` on. */
@@ -254,43 +269,124 @@ static bool take_turns(mps_context *context, const mpsi_dynamics_cut *cut,
   return true;
 }
 
-bool mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
-                              const mpsi_dynamics_mesh_def *def, int64_t count,
-                              const mpsi_dynamics_pair *pair) {
+/* ---- batches --------------------------------------------------------------------------------- */
+
+static mps_status find_pairs(arrange *work, mpsi_dynamics_source *source, int64_t *own,
+                             bool *lattice) {
+  const batch *part = work->batch;
+  const int64_t blocks = part->end - part->begin;
+  int64_t distinct = 0;
+  int32_t *block = mpsi_alloc(work->context, blocks, sizeof *block);
+  if (!block) return mpsi_fail_memory(work->context, source->function, (size_t)blocks * 4);
+  for (int64_t k = 0; k < blocks; k++)
+    block[k] = work->def->cut ? work->def->cut->block[part->begin + k] : (int32_t)(part->begin + k);
+  const mps_status status =
+      mpsi_dynamics_source_pairs(source, blocks, block, &work->pairs, &work->pair, &distinct);
+  mpsi_free(work->context, block);
+  if (status != MPS_OK) return status;
+  *lattice = *lattice && mpsi_dynamics_on_lattice(source->g.spacing, work->pairs, work->pair);
+  for (int64_t k = 0; k < distinct; k++) {
+    const int64_t b = slot_of(work, work->pair[k].i);
+    *own += b >= part->begin && b < part->end && b < work->mesh->blocks;
+  }
+  return MPS_OK;
+}
+
+/* False: out of memory. */
+static bool arrange_batch(arrange *work) {
+  batch *part = work->batch;
+  const int64_t blocks = part->end - part->begin;
+  work->first = mpsi_alloc(work->context, blocks + 1, sizeof *work->first);
+  work->next = mpsi_alloc(work->context, blocks + 1, sizeof *work->next);
+  if (!work->first || !work->next) return false;
+  deal(work);
+  for (int64_t b = 0; b < blocks; b++) {
+    work->first[b + 1] = work->first[b] + work->next[b];
+    work->next[b] = work->first[b];
+  }
+  work->entry = mpsi_alloc(work->context, work->first[blocks], sizeof *work->entry);
+  if (!work->entry) return false;
+  deal(work);
+  mpsi_free(work->context, work->pair);
+  work->pair = NULL;
+  mpsi_parallel_for(work->context, blocks, arrange_block, work);
+  number_blocks(work);
+  part->run = mpsi_alloc(work->context, part->runs, sizeof *part->run);
+  if (!part->run || !alloc_scattered(work->context, &part->scattered,
+                                     work->mesh->scattered.count - part->scattered_first))
+    return false;
+  mpsi_parallel_for(work->context, blocks, write_block, work);
+  return true;
+}
+
+static void free_work(arrange *work) {
+  void *parts[] = {work->pair, work->entry, work->first, work->next};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(work->context, parts[k]);
+  work->pair = NULL, work->entry = NULL, work->first = work->next = NULL;
+}
+
+static void free_batch(mps_context *context, batch *part) {
+  mpsi_dynamics_scattered *list = &part->scattered;
+  void *parts[] = {part->run, list->i,   list->j,  list->ti, list->tj,
+                   list->r0x, list->r0y, list->kf, list->kc};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  *part = (batch){0};
+}
+
+/* What the batches have, one behind the other. */
+static bool join(mps_context *context, mpsi_dynamics_mesh *mesh, int64_t batches, batch *part) {
+  mpsi_dynamics_scattered *to = &mesh->scattered;
+  mesh->run = mpsi_alloc(context, mesh->runs, sizeof *mesh->run);
+  if (!mesh->run || !alloc_scattered(context, to, to->count)) return false;
+  for (int64_t k = 0; k < batches; k++) {
+    const mpsi_dynamics_scattered *from = &part[k].scattered;
+    int32_t *const index[4] = {to->i, to->j, to->ti, to->tj};
+    const int32_t *const from_index[4] = {from->i, from->j, from->ti, from->tj};
+    double *const value[4] = {to->r0x, to->r0y, to->kf, to->kc};
+    const double *const from_value[4] = {from->r0x, from->r0y, from->kf, from->kc};
+    const size_t count = (size_t)from->count;
+    memcpy(mesh->run + part[k].run_first, part[k].run, (size_t)part[k].runs * sizeof *mesh->run);
+    for (int c = 0; c < 4; c++) {
+      memcpy(index[c] + part[k].scattered_first, from_index[c], count * sizeof **index);
+      memcpy(value[c] + part[k].scattered_first, from_value[c], count * sizeof **value);
+    }
+    free_batch(context, &part[k]);
+  }
+  return true;
+}
+
+mps_status mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
+                                    const mpsi_dynamics_mesh_def *def, mpsi_dynamics_source *source,
+                                    int64_t *own, bool *lattice) {
   *mesh = (mpsi_dynamics_mesh){0};
+  *own = 0, *lattice = true;
   mesh->blocks = def->cut ? def->cut->blocks
                           : mpsi_dynamics_block_of(def->body, def->body) +
                                 (def->particles - def->body + MPSI_DYN_BLOCK - 1) / MPSI_DYN_BLOCK;
   mesh->ghosts = def->cut ? def->cut->ghosts : 0;
   const int64_t blocks = mesh->blocks + mesh->ghosts;
-  arrange work = {.mesh = mesh, .def = def, .pair = pair};
-  work.first = mpsi_alloc(context, blocks + 1, sizeof(int64_t));
-  int64_t *next = mpsi_alloc(context, blocks + 1, sizeof(int64_t));
+  const int64_t size = mpsi_dynamics_batch_size(source, blocks);
+  const int64_t batches = blocks > 0 ? (blocks + size - 1) / size : 0;
+  batch *part = mpsi_alloc(context, batches, sizeof *part);
   mesh->block = mpsi_alloc(context, blocks, sizeof(mpsi_dynamics_block));
-  bool ok = work.first && next && mesh->block;
-  if (ok) {
-    deal(&work, count, NULL, next);
-    for (int64_t b = 0; b < blocks; b++) {
-      work.first[b + 1] = work.first[b] + next[b];
-      next[b] = work.first[b];
-    }
-    mesh->slots = work.first[blocks];
-    ok = (work.entry = mpsi_alloc(context, mesh->slots, sizeof(entry))) != NULL;
+  bool ok = part && mesh->block;
+  mps_status status = MPS_OK;
+  for (int64_t k = 0; ok && status == MPS_OK && k < batches; k++) {
+    arrange work = {.context = context, .mesh = mesh, .def = def, .batch = &part[k]};
+    part[k].begin = k * size;
+    part[k].end = (k + 1) * size < blocks ? (k + 1) * size : blocks;
+    status = find_pairs(&work, source, own, lattice);
+    ok = status != MPS_OK || arrange_batch(&work);
+    free_work(&work);
   }
-  if (ok) {
-    deal(&work, count, work.entry, next);
-    mpsi_parallel_for(context, blocks, arrange_block, &work);
-    number_blocks(&work);
-    mesh->run = mpsi_alloc(context, mesh->runs, sizeof(mpsi_dynamics_pair_run));
-    ok = mesh->run && alloc_scattered(context, &mesh->scattered, mesh->scattered.count);
-  }
-  if (ok) mpsi_parallel_for(context, blocks, write_block, &work);
-  ok = ok && take_turns(context, def->cut, mesh);
-  mpsi_free(context, work.entry);
-  mpsi_free(context, work.first);
-  mpsi_free(context, next);
-  if (!ok) mpsi_dynamics_mesh_free(context, mesh);
-  return ok;
+  ok = ok && (status != MPS_OK ||
+              (join(context, mesh, batches, part) && take_turns(context, def->cut, mesh)));
+  for (int64_t k = 0; part && k < batches; k++) free_batch(context, &part[k]);
+  mpsi_free(context, part);
+  if (!ok)
+    status = mpsi_fail_memory(context, source->function, (size_t)mesh->slots * sizeof(entry));
+  if (status != MPS_OK) mpsi_dynamics_mesh_free(context, mesh);
+  return status;
 }
 
 void mpsi_dynamics_mesh_free(mps_context *context, mpsi_dynamics_mesh *mesh) {

@@ -88,10 +88,14 @@ static inline int64_t mpsi_dynamics_block_of(int64_t body, int64_t particle) {
                          : body_blocks + (particle - body) / MPSI_DYN_BLOCK;
 }
 
-/* Arranges `count` pairs. False: out of memory (everything released). */
-bool mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
-                              const mpsi_dynamics_mesh_def *def, int64_t count,
-                              const mpsi_dynamics_pair *pair);
+/* Arranges the pairs of the source (batch.h), a batch of blocks at a time. `own` receives how many
+ * ordinary pairs begin at particles of blocks that are this rank's, `lattice` whether all offsets
+ * of pairs are whole spacings. On an error everything is released. */
+struct mpsi_dynamics_source;
+mps_status mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
+                                    const mpsi_dynamics_mesh_def *def,
+                                    struct mpsi_dynamics_source *source, int64_t *own,
+                                    bool *lattice);
 void mpsi_dynamics_mesh_free(mps_context *context, mpsi_dynamics_mesh *mesh);
 
 #endif

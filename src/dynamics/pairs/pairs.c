@@ -69,13 +69,32 @@ static bool make_cloud(mps_context *context, const mpsi_dynamics_geometry *g, cl
   return true;
 }
 
+/* Each pair once; copies only as the far end. */
+static bool wanted(const cloud *points, const uint8_t *keep, int64_t a, int64_t b) {
+  if (b < points->own && b < a) return false;
+  return !keep || keep[a] || keep[points->from[b]];
+}
+
+/* Room for exactly the pairs of the body. */
+static bool make_room(const cloud *points, const uint8_t *keep, const int64_t *offset,
+                      const int64_t *index, pair_list *list) {
+  int64_t count = 0;
+  for (int64_t a = 0; a < points->own; a++)
+    for (int64_t k = offset[a]; k < offset[a + 1]; k++) count += wanted(points, keep, a, index[k]);
+  list->pair = mpsi_alloc(list->context, count, sizeof *list->pair);
+  list->capacity = list->pair ? count : 0;
+  return list->pair != NULL;
+}
+
 static mps_status body_pairs(const mpsi_dynamics_geometry *g, const cloud *points,
-                             const int64_t *offset, const int64_t *index, pair_list *list,
-                             const char *function) {
+                             const uint8_t *keep, const int64_t *offset, const int64_t *index,
+                             pair_list *list, const char *function) {
+  if (!make_room(points, keep, offset, index, list))
+    return mpsi_fail_memory(list->context, function, sizeof(mpsi_dynamics_pair));
   for (int64_t a = 0; a < points->own; a++)
     for (int64_t k = offset[a]; k < offset[a + 1]; k++) {
       const int64_t b = index[k];
-      if (b < points->own && b < a) continue; /* each pair once; copies only as the far end */
+      if (!wanted(points, keep, a, b)) continue;
       const double *x = points->x, *y = points->x + points->count;
       const double dx = snapped(x[a], x[b], g->spacing), dy = snapped(y[a], y[b], g->spacing);
       if (!(dx * dx + dy * dy > 1e-12 * g->spacing * g->spacing))
@@ -88,8 +107,8 @@ static mps_status body_pairs(const mpsi_dynamics_geometry *g, const cloud *point
   return MPS_OK;
 }
 
-static mps_status find_body_pairs(const mpsi_dynamics_geometry *g, pair_list *list,
-                                  const char *function) {
+static mps_status find_body_pairs(const mpsi_dynamics_geometry *g, const uint8_t *keep,
+                                  pair_list *list, const char *function) {
   mps_context *context = list->context;
   cloud points = {0};
   mps_neighbours *lists = NULL;
@@ -112,7 +131,7 @@ static mps_status find_body_pairs(const mpsi_dynamics_geometry *g, pair_list *li
   if (any && status == MPS_OK) {
     const int64_t *offset, *index;
     status = mpsi_as(context, function, mps_neighbours_lists(lists, NULL, &offset, &index));
-    if (status == MPS_OK) status = body_pairs(g, &points, offset, index, list, function);
+    if (status == MPS_OK) status = body_pairs(g, &points, keep, offset, index, list, function);
   }
   mps_neighbours_destroy(&lists);
   mpsi_free(context, points.x);
@@ -221,10 +240,11 @@ mps_status mpsi_dynamics_layout_edges(mps_context *context, const char *function
 }
 
 mps_status mpsi_dynamics_layout_pairs(mps_context *context, const char *function,
-                                      const mpsi_dynamics_geometry *g, int64_t *count,
-                                      mpsi_dynamics_pair **pairs, int64_t *distinct) {
+                                      const mpsi_dynamics_geometry *g, const uint8_t *keep,
+                                      int64_t *count, mpsi_dynamics_pair **pairs,
+                                      int64_t *distinct) {
   pair_list list = {.context = context};
-  mps_status status = find_body_pairs(g, &list, function);
+  mps_status status = find_body_pairs(g, keep, &list, function);
   *distinct = list.count;
   for (int side = 1; status == MPS_OK && side <= 2; side++)
     status = find_column_pairs(g, side, &list, function);

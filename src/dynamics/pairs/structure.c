@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
-#include "layout.h"
+#include "batch.h"
 
 #include <float.h>
 #include <string.h>
@@ -113,31 +113,25 @@ mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function) {
 
 /* ---- pairs, mesh, arrays --------------------------------------------------------------------- */
 
-/* Are all offsets whole spacings? Those of a lattice have been made exact. */
-bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair) {
-  for (int64_t k = 0; k < count; k++)
-    if (pair[k].r0x != nearbyint(pair[k].r0x / spacing) * spacing ||
-        pair[k].r0y != nearbyint(pair[k].r0y / spacing) * spacing)
-      return false;
-  return true;
-}
-
 static mps_status make_mesh(mps_dynamics *dynamics, const char *function,
                             const mpsi_dynamics_geometry *g, mpsi_dynamics_structure *out) {
   mps_context *context = dynamics->context;
-  mpsi_dynamics_pair *pair = NULL;
-  int64_t count = 0;
-  const mps_status status =
-      mpsi_dynamics_layout_pairs(context, function, g, &count, &pair, &out->pairs);
-  if (status != MPS_OK) return status;
-  out->lattice = mpsi_dynamics_on_lattice(g->spacing, count, pair);
   const mpsi_dynamics_mesh_def def = {.kernel = dynamics->kernel,
                                       .density = dynamics->density,
                                       .particles = g->count,
                                       .body = out->body};
-  const bool built = mpsi_dynamics_mesh_build(context, &out->mesh, &def, count, pair);
-  mpsi_free(context, pair);
-  return built ? MPS_OK : mpsi_fail_memory(context, function, (size_t)count * sizeof *pair);
+  double edge[2] = {INFINITY, -INFINITY};
+  for (int64_t k = 0; k < out->body; k++)
+    edge[0] = fmin(edge[0], g->x[k]), edge[1] = fmax(edge[1], g->x[k]);
+  mpsi_dynamics_source source = {
+      .context = context, .function = function, .g = *g, .nears = g->count, .body = out->body};
+  source.g.edge = edge;
+  mps_status status = mpsi_dynamics_source_open(&source);
+  if (status == MPS_OK)
+    status =
+        mpsi_dynamics_mesh_build(context, &out->mesh, &def, &source, &out->pairs, &out->lattice);
+  mpsi_dynamics_source_close(&source);
+  return status;
 }
 
 /* The arrays that are not fields, from one slab; starts staggered so that they do not alias in the

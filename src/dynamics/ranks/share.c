@@ -11,6 +11,7 @@
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
 #include "dynamics/dynamics_private.h"
+#include "dynamics/pairs/batch.h"
 #include "material/material_internal.h"
 
 #include <stdlib.h>
@@ -32,8 +33,6 @@ typedef struct plan {
   double edge[2];      /* x of the body's outermost particles, m */
   int64_t *near;       /* global numbers of those that pairs are looked for among, ascending */
   int64_t nears, near_body;
-  mpsi_dynamics_pair *pair;
-  int64_t pairs;
   uint8_t *present; /* ghosts */
   mpsi_dynamics_cut cut;
   int64_t ghosts;
@@ -44,10 +43,10 @@ typedef struct plan {
 
 static void free_plan(plan *p) {
   mps_context *context = p->dynamics->context;
-  void *parts[] = {p->block,       p->order,     p->x,         p->y,       p->side,
-                   p->near,        p->pair,      p->present,   p->ghost,   p->ghost_rank,
-                   p->ghost_index, p->cut.block, p->cut.begin, p->cut.end, p->cut.slot,
-                   p->cut.local,   p->cut.wanted};
+  void *parts[] = {p->block,      p->order,       p->x,         p->y,
+                   p->side,       p->near,        p->present,   p->ghost,
+                   p->ghost_rank, p->ghost_index, p->cut.block, p->cut.begin,
+                   p->cut.end,    p->cut.slot,    p->cut.local, p->cut.wanted};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
 }
 
@@ -164,12 +163,14 @@ static mps_status find_near(plan *p) {
   return good ? MPS_OK : refused(p, p->count * 8);
 }
 
-/* Pairs among them, in global numbers. */
-static mps_status find_pairs(plan *p, mpsi_dynamics_structure *out, int64_t *edge) {
+/* Edge particles of the free-field columns, in global numbers. */
+static mps_status find_edges(plan *p, int64_t *edge) {
   mps_dynamics *dynamics = p->dynamics;
   mps_context *context = dynamics->context;
+  for (int64_t k = 0; k < p->nears; k++) edge[k] = -1;
+  if (p->count == p->body) return MPS_OK;
   double *at = mpsi_alloc(context, 2 * p->nears, sizeof *at);
-  int64_t *side = mpsi_alloc(context, p->nears, sizeof *side), distinct = 0;
+  int64_t *side = mpsi_alloc(context, p->nears, sizeof *side);
   mps_status status = at && side ? MPS_OK : refused(p, p->nears * 24);
   for (int64_t k = 0; status == MPS_OK && k < p->nears; k++) {
     at[k] = p->x[p->near[k]], at[p->nears + k] = p->y[p->near[k]];
@@ -177,16 +178,7 @@ static mps_status find_pairs(plan *p, mpsi_dynamics_structure *out, int64_t *edg
   }
   mpsi_dynamics_geometry g = mpsi_dynamics_geometry_of(dynamics, p->nears, at, at + p->nears, side);
   g.edge = p->edge;
-  if (status == MPS_OK)
-    status = mpsi_dynamics_layout_pairs(context, p->function, &g, &p->pairs, &p->pair, &distinct);
   if (status == MPS_OK) status = mpsi_dynamics_layout_edges(context, p->function, &g, edge);
-  for (int64_t k = 0; status == MPS_OK && k < p->pairs; k++) {
-    int32_t *const end[4] = {&p->pair[k].i, &p->pair[k].j, &p->pair[k].ti, &p->pair[k].tj};
-    for (int e = 0; e < 4; e++)
-      if (*end[e] >= 0) *end[e] = (int32_t)p->near[*end[e]];
-    const int64_t i = p->pair[k].i;
-    out->pairs += k < distinct && i >= p->first && i < p->last;
-  }
   for (int64_t k = 0; status == MPS_OK && k < p->nears; k++)
     if (edge[k] >= 0) edge[k] = p->near[edge[k]];
   mpsi_free(context, at);
@@ -198,26 +190,58 @@ static mps_status find_pairs(plan *p, mpsi_dynamics_structure *out, int64_t *edg
 
 static bool own(const plan *p, int64_t k) { return (k >= p->first && k < p->last) || k >= p->body; }
 
+/* Marks the ghosts of pairs that act on particles of these blocks: with own particles, those whose
+ * pressure is wanted; with these, those that are present. */
+static mps_status mark(plan *p, mpsi_dynamics_source *source, int64_t blocks, const int32_t *block,
+                       bool second) {
+  int64_t pairs = 0, distinct = 0;
+  mpsi_dynamics_pair *pair = NULL;
+  const mps_status status =
+      mpsi_dynamics_source_pairs(source, blocks, block, &pairs, &pair, &distinct);
+  for (int64_t k = 0; status == MPS_OK && k < pairs; k++) {
+    const int32_t i = pair[k].i, j = pair[k].j;
+    const bool at_i = second ? p->cut.wanted[i] : own(p, i);
+    const bool at_j = second ? p->cut.wanted[j] : own(p, j);
+    uint8_t *marks = second ? p->present : p->cut.wanted;
+    if (at_i && !own(p, j)) marks[j] = 1;
+    if (at_j && !own(p, i)) marks[i] = 1;
+  }
+  mpsi_free(p->dynamics->context, pair);
+  return status;
+}
+
+/* Blocks with an own particle, or with a wanted one. */
+static int64_t list_marked(const plan *p, bool second, int32_t *block) {
+  int64_t blocks = 0, last = -1;
+  for (int64_t k = 0; k < p->count; k++) {
+    const int64_t at = mpsi_dynamics_block_of(p->body, k);
+    if (at != last && (second ? p->cut.wanted[k] != 0 : own(p, k)))
+      block[blocks++] = (int32_t)(last = at);
+  }
+  return blocks;
+}
+
 /* Ghosts whose pressure is wanted: near own particles; and those near them. */
-static mps_status find_ghosts(plan *p) {
+static mps_status find_ghosts(plan *p, mpsi_dynamics_source *source) {
   mps_context *context = p->dynamics->context;
+  const int64_t all = mpsi_dynamics_block_of(p->body, p->count) + 1;
+  int32_t *block = mpsi_alloc(context, all, sizeof *block);
   p->cut.wanted = mpsi_alloc(context, p->count, 1);
   p->present = mpsi_alloc(context, p->count, 1);
-  if (!p->cut.wanted || !p->present) return refused(p, p->count);
-  for (int layer = 0; layer < 2; layer++)
-    for (int64_t k = 0; k < p->pairs; k++) {
-      const int32_t i = p->pair[k].i, j = p->pair[k].j;
-      const bool at_i = layer == 0 ? own(p, i) : p->cut.wanted[i];
-      const bool at_j = layer == 0 ? own(p, j) : p->cut.wanted[j];
-      uint8_t *mark = layer == 0 ? p->cut.wanted : p->present;
-      if (at_i && !own(p, j)) mark[j] = 1;
-      if (at_j && !own(p, i)) mark[i] = 1;
-    }
-  for (int64_t k = 0; k < p->body; k++) {
+  mps_status status =
+      p->cut.wanted && p->present && block ? MPS_OK : refused(p, p->count + all * 4);
+  for (int layer = 0; layer < 2; layer++) {
+    const int64_t blocks = status == MPS_OK ? list_marked(p, layer == 1, block) : 0;
+    const int64_t size = mpsi_dynamics_batch_size(source, blocks);
+    for (int64_t b = 0; status == MPS_OK && b < blocks; b += size)
+      status = mark(p, source, size < blocks - b ? size : blocks - b, block + b, layer == 1);
+  }
+  for (int64_t k = 0; status == MPS_OK && k < p->body; k++) {
     p->present[k] |= p->cut.wanted[k];
     p->ghosts += p->present[k];
   }
-  return MPS_OK;
+  mpsi_free(context, block);
+  return status;
 }
 
 static mps_status number_ghosts(plan *p) {
@@ -305,28 +329,42 @@ static mps_status couple_columns(const plan *p, const int64_t *edge, mpsi_dynami
   return MPS_OK;
 }
 
-static mps_status make_structure(plan *p, mpsi_dynamics_structure *out) {
+static mps_status arrange_pairs(plan *p, mpsi_dynamics_structure *out) {
   mps_dynamics *dynamics = p->dynamics;
   mps_context *context = dynamics->context;
-  int64_t *edge = mpsi_alloc(context, p->nears, sizeof *edge);
-  mps_status status = edge ? find_pairs(p, out, edge) : refused(p, p->nears * 8);
-  if (status == MPS_OK) status = find_ghosts(p);
-  if (status == MPS_OK) status = number_ghosts(p);
-  if (status == MPS_OK) status = list_blocks(p);
   const mpsi_dynamics_mesh_def def = {.kernel = dynamics->kernel,
                                       .density = dynamics->density,
                                       .particles = p->count,
                                       .body = p->body,
                                       .cut = &p->cut};
-  if (status == MPS_OK) {
-    out->lattice = mpsi_dynamics_on_lattice(dynamics->spacing, p->pairs, p->pair);
-    if (!mpsi_dynamics_mesh_build(context, &out->mesh, &def, p->pairs, p->pair))
-      status = refused(p, p->pairs * (int64_t)sizeof *p->pair);
-  }
+  mpsi_dynamics_source source = {
+      .context = context,
+      .function = p->function,
+      .g = mpsi_dynamics_geometry_of(dynamics, p->count, p->x, p->y, p->side),
+      .near = p->near,
+      .nears = p->nears,
+      .body = p->body};
+  source.g.edge = p->edge;
+  mps_status status = mpsi_dynamics_source_open(&source);
+  if (status == MPS_OK) status = find_ghosts(p, &source);
+  if (status == MPS_OK) status = number_ghosts(p);
+  if (status == MPS_OK) status = list_blocks(p);
+  if (status == MPS_OK)
+    status =
+        mpsi_dynamics_mesh_build(context, &out->mesh, &def, &source, &out->pairs, &out->lattice);
+  mpsi_dynamics_source_close(&source);
+  return status;
+}
+
+static mps_status make_structure(plan *p, mpsi_dynamics_structure *out) {
+  mps_dynamics *dynamics = p->dynamics;
+  int64_t *edge = mpsi_alloc(dynamics->context, p->nears, sizeof *edge);
+  mps_status status = edge ? find_edges(p, edge) : refused(p, p->nears * 8);
+  if (status == MPS_OK) status = arrange_pairs(p, out);
   out->count = p->cut.count, out->body = p->last - p->first, out->ghosts = p->ghosts;
   if (status == MPS_OK) status = mpsi_dynamics_allocate(dynamics, p->function, out);
   if (status == MPS_OK) status = couple_columns(p, edge, out);
-  mpsi_free(context, edge);
+  mpsi_free(dynamics->context, edge);
   return status;
 }
 

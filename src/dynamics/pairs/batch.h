@@ -1,0 +1,37 @@
+/* batch.h - the pairs of a body, a batch of its blocks at a time: what is found to arrange one
+ * batch is given back before the next, so that memory holds the arranged pairs and not, beside
+ * them, all neighbour lists and pairs as found.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_DYNAMICS_BATCH_H
+#define MPSI_DYNAMICS_BATCH_H
+
+#include "layout.h"
+
+/* Sorted particles by number, and the bounds of those of each block. */
+typedef struct mpsi_dynamics_source {
+  mps_context *context;
+  const char *function;              /* that errors name */
+  mpsi_dynamics_geometry g;          /* by number; with `edge` where particles are missing */
+  const int64_t *near;               /* numbers of those that are here, ascending; NULL: all */
+  int64_t nears, body;               /* how many; numbers from `body` on are free-field columns */
+  struct mpsi_dynamics_piece *piece; /* by mpsi_dynamics_source_open */
+  int64_t pieces;
+  uint8_t *taken; /* by block: of the batch */
+} mpsi_dynamics_source;
+
+mps_status mpsi_dynamics_source_open(mpsi_dynamics_source *source);
+void mpsi_dynamics_source_close(mpsi_dynamics_source *source);
+
+/* How many of so many blocks make a batch: all of a body with free-field columns. */
+int64_t mpsi_dynamics_batch_size(const mpsi_dynamics_source *source, int64_t blocks);
+
+/* All pairs that act on a particle of these blocks (with columns, all pairs): an array for
+ * mpsi_free. `distinct` of them, the first, are ordinary pairs. */
+mps_status mpsi_dynamics_source_pairs(mpsi_dynamics_source *source, int64_t blocks,
+                                      const int32_t *block, int64_t *count,
+                                      mpsi_dynamics_pair **pairs, int64_t *distinct);
+
+/* Are all offsets whole spacings? Those of a lattice have been made exact. */
+bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair);
+
+#endif
