@@ -5,7 +5,7 @@
  *   present.c     the present state as every part reads it: time, velocity, mass
  *   coefficients.c  what forces need of the ground, particle by particle
  *   ground.c      what the body is made of; fields that the caller edits
- *   share.c       the share of one rank in a body that lies on several
+ *   partition.c   the part of one rank in a body that lies on several
  *   change.c      other particles: what must be made anew when some leave, or come back
  *   removal.c     particles that leave between two steps
  *   begin.c       the initial state, and what the fields show of the present one
@@ -273,13 +273,13 @@ mpsi_dynamics_geometry mpsi_dynamics_present_geometry(const mps_dynamics *dynami
 mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
                                   mpsi_dynamics_structure *out);
 
-/* ---- share.c: of a domain of several ranks; collective ---- */
+/* ---- partition.c: of a domain of several ranks; collective ---- */
 
-/* Keeps this rank's share of the set, which is sorted; the rest is in *former. `status` is what has
- * become of the rank so far. */
-mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function, mps_status status,
-                                    mpsi_dynamics_structure *out, mpsi_storage **former,
-                                    mpsi_backup *backup);
+/* Keeps this rank's part of the set, which is sorted; the rest is in *former. `status` is that of
+ * this rank so far. */
+mps_status mpsi_dynamics_take_partition(mps_dynamics *dynamics, const char *function,
+                                        mps_status status, mpsi_dynamics_structure *out,
+                                        mpsi_storage **former, mpsi_backup *backup);
 /* deal.c: the first particle of a body of so many that rank `rank` has. */
 int64_t mpsi_dynamics_first_of_rank(int64_t body, int64_t rank, int64_t ranks);
 /* deal.c: of a set in parts, which it sorts, what a rank needs of the whole body. Arrays by the
@@ -303,9 +303,9 @@ mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *f
 
 /* ---- files.c: checkpoints of several ranks ---- */
 
-mps_status mpsi_dynamics_save_shares(mps_dynamics *dynamics, const mpsi_state_of *of,
-                                     const char *function, const char *path,
-                                     const mps_checkpoint *info);
+mps_status mpsi_dynamics_save_partitions(mps_dynamics *dynamics, const mpsi_state_of *of,
+                                         const char *function, const char *path,
+                                         const mps_checkpoint *info);
 mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_status status,
                                      mps_snapshot *values);
 

@@ -14,7 +14,7 @@
  *   probe.c     pressure at walls, level of the surface
  *   warn.c      what the model assumes and a step may break
  *   step.c      the order of all this
- *   share.c     ranks of a domain that do it together
+ *   partition.c  ranks of a domain that do it together
  *
  * Indices below `count` are particles, those from `count` on are ghosts. A step works on copies of
  * positions and velocities and writes the particles' fields only when all has gone well.
@@ -191,10 +191,10 @@ typedef enum mpsi_fluid_change {
   MPSI_FLUID_CHANGED_BY_STEP
 } mpsi_fluid_change;
 
-typedef struct mpsi_fluid_loops mpsi_fluid_loops;   /* loops.h */
-typedef struct mpsi_fluid_given mpsi_fluid_given;   /* a load of the caller, loads.c */
-typedef struct mpsi_fluid_share mpsi_fluid_share;   /* share.h */
-typedef struct mpsi_fluid_coarse mpsi_fluid_coarse; /* coarse.h */
+typedef struct mpsi_fluid_loops mpsi_fluid_loops;         /* loops.h */
+typedef struct mpsi_fluid_given mpsi_fluid_given;         /* a load of the caller, loads.c */
+typedef struct mpsi_fluid_partition mpsi_fluid_partition; /* partition.h */
+typedef struct mpsi_fluid_coarse mpsi_fluid_coarse;       /* coarse.h */
 
 struct mps_fluid {
   mps_context *context;
@@ -208,7 +208,7 @@ struct mps_fluid {
   mpsi_fluid_body body[MPSI_FLUID_BODIES];
   int64_t count, ghosts, capacity; /* capacity: of the arrays over particles */
   int64_t own[2];                  /* first, end: the particles that this rank computes */
-  mpsi_fluid_share *share;         /* NULL: all */
+  mpsi_fluid_partition *partition; /* NULL: all */
   /* positions, velocities: particles, then ghosts */
   double *x[2], *u[2], *q, *offset;   /* offset: of a ghost's q from its parent's, Pa */
   int32_t *parent;                    /* of a ghost, by index - count */

@@ -8,15 +8,15 @@
  * boundaries.c  what is prescribed, reactions  facets.c    the surface
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
- * outside.c   a solver of the caller           share.c     a rank's part of the operator
+ * outside.c   a solver of the caller           partition.c  a rank's part of the operator
  * stress.c    stresses, sections, energy       motion.c, motion_state.c, budget.c,
  *                                              renewal.c, modes.c     dynamics
  * change.c    particles that leave, or come back with a former state;  restart.c  that state
  *
  * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
  * sorting the set does not matter. Vectors of free unknowns hold the local directions that no
- * support fixes. What the operator needs of a particle is there for those of the window (share.c)
- * and indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
+ * support fixes. What the operator needs of a particle is there for those of the window
+ * (partition.c) and indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_ELASTIC_PRIVATE_H
 #define MPSI_ELASTIC_PRIVATE_H
 
@@ -47,7 +47,7 @@ typedef struct mpsi_links {
   int64_t *to;        /* to[slot * count + k]: the neighbour of the window's particle, or -1 */
 } mpsi_links;
 
-/* An interval of the order of layers (share.c). */
+/* An interval of the order of layers (partition.c). */
 typedef struct mpsi_span {
   int64_t from, to;
 } mpsi_span;
@@ -234,7 +234,8 @@ struct mps_elastic {
   struct mpsi_elastic_change *change; /* change.c: under way, or NULL */
 };
 
-/* ---- share.c ----------------------------------------------------------------------------------
+/* ---- partition.c
+ * ----------------------------------------------------------------------------------
  */
 /* Where the operator's arrays have particle i of the window. */
 static inline int64_t mpsi_elastic_slot(const mps_elastic *e, int64_t i) {

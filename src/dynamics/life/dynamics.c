@@ -202,7 +202,7 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
                                           NULL);
   if (status == MPS_OK) status = mpsi_dynamics_check_ground(dynamics->particles, function);
   if (mpsi_domain_many(dynamics->domain)) {
-    status = mpsi_dynamics_take_share(dynamics, function, status, &made, former, backup);
+    status = mpsi_dynamics_take_partition(dynamics, function, status, &made, former, backup);
   } else {
     if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics, "mps_dynamics_create");
     if (status == MPS_OK) status = mpsi_dynamics_sort(dynamics, function);

@@ -78,9 +78,9 @@ static mps_status merge(mps_dynamics *dynamics, const char *function, mpsi_value
   return status;
 }
 
-mps_status mpsi_dynamics_save_shares(mps_dynamics *dynamics, const mpsi_state_of *of,
-                                     const char *function, const char *path,
-                                     const mps_checkpoint *info) {
+mps_status mpsi_dynamics_save_partitions(mps_dynamics *dynamics, const mpsi_state_of *of,
+                                         const char *function, const char *path,
+                                         const mps_checkpoint *info) {
   mps_snapshot state = {.context = dynamics->context};
   mps_particles *whole = NULL;
   mps_status status =

@@ -234,7 +234,7 @@ mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
   if (mpsi_domain_many(dynamics->domain))
-    return mpsi_dynamics_save_shares(dynamics, &of, __func__, path, info);
+    return mpsi_dynamics_save_partitions(dynamics, &of, __func__, path, info);
   return mpsi_checkpoint_save(&of, __func__, path, info);
 }
 

@@ -1,7 +1,7 @@
 /* access.c - what the other files ask of the solver object: whether it may be used, whether a step
  * may have a size, its energy; and loops over its particles by all threads.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 mps_status mpsi_fluid_free(mps_fluid *f, const char *function) {
   return mpsi_guard_check(&f->guard, f->context, function);

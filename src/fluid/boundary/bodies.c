@@ -3,7 +3,7 @@
  * normal is linear between them. The body is moved by its caller between steps; the fluid keeps the
  * pose that it had at the last step, and takes the present one as that of the end of the next.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
 
 #include "body/body_internal.h"
@@ -266,7 +266,7 @@ static int free_faces(const mps_fluid *f, int64_t faces) {
 /* Status of all ranks, and whether all give the same body (NULL: none) this number. */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          int32_t kind, const mps_body *body) {
-  if (!f->share) return status;
+  if (!f->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);

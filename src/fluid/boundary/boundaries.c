@@ -1,7 +1,7 @@
 /* boundaries.c - plane walls as the caller gives them: their definitions, what is refused, how they
  * come, change and go.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
 
 #define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
@@ -136,7 +136,7 @@ static mps_status make_alike(mps_fluid *f, const char *function, mps_status stat
                              mpsi_fluid_wall *w) {
   *w = (mpsi_fluid_wall){0};
   if (status == MPS_OK) status = make_wall(f, function, def, number, w);
-  if (f->share) {
+  if (f->partition) {
     mpsi_given given;
     mpsi_given_begin(&given);
     mpsi_give(&given, "number", number);

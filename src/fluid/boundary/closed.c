@@ -11,7 +11,7 @@
  * The space is the intersection of the boundaries' half-planes less the bodies: its area follows
  * from the lengths of the boundaries within the others, by the divergence theorem.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #define ROUNDING 1e-9 /* of the area: its change in a step that counts as none */
 #define STAIRS                                                                                     \

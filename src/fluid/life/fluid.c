@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/pressure/coarse.h"
 #include "fluid/base/loops.h"
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <mps/body.h>
 
@@ -128,7 +128,7 @@ static void release(mps_fluid *f) {
   mps_context *context = f->context;
   mpsi_fluid_drop_solver(f);
   mpsi_fluid_drop_loads(f);
-  mpsi_fluid_share_destroy(f);
+  mpsi_fluid_partition_destroy(f);
   mpsi_fluid_coarse_drop(f);
   void *const parts[] = {f->slab,
                          f->local,
@@ -156,7 +156,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->most_near = 31, f->most_lower = 15;
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);
-  mps_status status = mpsi_fluid_share_create(f, function);
+  mps_status status = mpsi_fluid_partition_create(f, function);
   if (status == MPS_OK && !(mpsi_fluid_coarse_create(f) && mpsi_fluid_reserve(f, f->count)))
     status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
   status = mpsi_fluid_settle(f, function, status);

@@ -1,7 +1,7 @@
 /* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. What follows
  * from the particles' places, their neighbours and the surface, is found again when it is asked
  * for. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include "core/state/state.h"
 #include "io/checkpoint.h"

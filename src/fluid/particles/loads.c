@@ -7,7 +7,7 @@
  * pressure adds to that of the surface point. Its work is taken with the area vector of each
  * particle, -V m/S0: sum w dx adds up to the area of a plane surface exactly, and vanishes inside.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
 
 #include <stdlib.h>
@@ -112,7 +112,7 @@ static mps_status make_load(mps_fluid *f, const char *function, const mps_fluid_
  */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          const mpsi_fluid_given *g) {
-  if (!f->share) return status;
+  if (!f->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);

@@ -1,6 +1,6 @@
 /* look.c - the particles as a step finds them: copies of their fields, their order in memory, who
  * is near them, and the sums over these. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <string.h>
 
@@ -30,7 +30,7 @@ mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function, mps_status
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
   status = mpsi_fluid_settle_alike(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_meet(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_find_halo(f, function);
   if (status == MPS_OK) mpsi_fluid_find_moments(f);
   if (status == MPS_OK) status = mpsi_fluid_lost(f, function);
   f->stale = status != MPS_OK;

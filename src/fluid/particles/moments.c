@@ -16,7 +16,7 @@
  * surface point is the mean of those of their neighbours at the surface, with c = |m|/h too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #define APART 0.12     /* n/n0 */
 #define FEW 0.72       /* n/n0 */

@@ -6,7 +6,7 @@
  * neighbours are near each other too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <string.h>
 

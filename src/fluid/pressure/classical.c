@@ -9,7 +9,7 @@
  * w = re/r - 1, re 2.1 l0 in n and the gradient, 3.1 l0 in the Laplacian, d = 2, and p = 0 where
  * n* < .97 n0. Walls are mirror images here too, with their parent's p.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <mps/experimental.h>
 
@@ -82,7 +82,7 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_sta
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
   status = mpsi_fluid_settle_alike(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_meet(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_find_halo(f, function);
   if (status != MPS_OK) return status;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh);
   mpsi_fluid_tell_looks(f);

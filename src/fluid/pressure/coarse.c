@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "coarse.h"
 #include "fluid/base/loops.h"
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <string.h>
 
@@ -202,7 +202,7 @@ static int64_t end_block(const mps_fluid *f) {
 
 /* Values [first, end) of `count`, which this rank has, to all. */
 static void tell(mps_fluid *f, int64_t count, double *values, int64_t first, int64_t end) {
-  if (!f->share) return;
+  if (!f->partition) return;
   for (int64_t k = 0; k < count; k++)
     if (k < first || k >= end) values[k] = -INFINITY;
   mpsi_fluid_tell_most(f, count, values);

@@ -24,7 +24,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "coarse.h"
 #include "fluid/base/loops.h"
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <string.h>
 

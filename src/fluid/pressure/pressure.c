@@ -10,7 +10,7 @@
  * spacing. Images of particles beyond a wall have their parent's q and an offset that the wall's
  * acceleration a gives, -rho (a . N) times their distance, so they bring no unknowns; particles
  * apart from the rest have no row and no column. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #define DENSITY 0.003       /* k over the excess of n/n0 */
 #define SMALL_EXCESS 0.003  /* of n/n0: below, k falls as its square */

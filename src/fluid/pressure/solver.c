@@ -2,7 +2,7 @@
  * matrix by rows with the ghosts' columns folded into their parents', and what the solver answers,
  * checked. SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <mps/fluid_solver.h>
 
@@ -42,8 +42,8 @@ mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_d
   mps_fluid_solver_def def = defaults;
   if (status == MPS_OK && user_def)
     status = MPSI_DEF_READ(f->context, __func__, mps_fluid_solver_def, user_def, &def);
-  if (status != MPS_OK && !f->share) return status;
-  if (status == MPS_OK && user_def && f->share && !def.rows)
+  if (status != MPS_OK && !f->partition) return status;
+  if (status == MPS_OK && user_def && f->partition && !def.rows)
     status =
         mpsi_fail(f->context, __func__, MPS_ERROR_UNSUPPORTED,
                   "rows is NULL: a fluid of several ranks has its pressure solved by the library, "
@@ -170,10 +170,11 @@ mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
   close_gaps(f);
   mpsi_guard_enter(&f->guard, f->context,
-                   f->share ? "the callback rows of mps_fluid_set_solver"
-                            : "the callback matrix of mps_fluid_set_solver");
-  status = f->share ? o->rows_of_rank(o->user, f->count, f->own[0], rows, o->start, column, value)
-                    : o->matrix(o->user, rows, o->start, column, value);
+                   f->partition ? "the callback rows of mps_fluid_set_solver"
+                                : "the callback matrix of mps_fluid_set_solver");
+  status = f->partition
+               ? o->rows_of_rank(o->user, f->count, f->own[0], rows, o->start, column, value)
+               : o->matrix(o->user, rows, o->start, column, value);
   return mpsi_fluid_settle(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
 }
 

@@ -12,7 +12,7 @@
  * spacing along the wall and the surface for the end of one: it has half the weight, the less the
  * more the water's surface goes along the wall, or the wall is level.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #define REACH 2.1         /* l0 */
 #define LEAST_SUM 0.05    /* of weights: below, there is no water */

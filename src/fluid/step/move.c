@@ -17,7 +17,7 @@
  * 2017); b = max(0, 1 - |G|^2/(.05 s0^2)).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #define SMOOTH 0.6
 #define FREE_SMOOTH 0.18 /* the same without gravity, where the rate is that of the fastest jet */

@@ -1,6 +1,6 @@
 /* step.c - the order of a step, its size, and what goes wrong.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/share.h"
+#include "fluid/ranks/partition.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
-/* share.h - the ranks of a domain (mps/domain.h) that compute a fluid together. Each has all of it:
- * the set, walls, bodies, images. What is found row by row, neighbours, sums over them, rows of the
- * matrix, its factor and iterations, velocities, each rank finds for its particles, whole blocks of
- * the preconditioner (pcg.c), and tells the others what they need:
+/* partition.h - the ranks of a domain (mps/domain.h) that compute a fluid together. Each has all of
+ * it: the set, walls, bodies, images. What is found row by row, neighbours, sums over them, rows of
+ * the matrix, its factor and iterations, velocities, each rank finds for its particles, whole
+ * blocks of the preconditioner (pcg.c), and tells the others what they need:
  *
  *   of the particles that are near others' ones  x, z (at each iteration), m, velocities
  *   of all particles                             state, q, places, velocities, pressures
@@ -12,16 +12,16 @@
  *
  * Without a domain of several ranks nothing of this does anything, and a fluid's own particles are
  * all. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_SHARE_H
-#define MPSI_FLUID_SHARE_H
+#ifndef MPSI_FLUID_PARTITION_H
+#define MPSI_FLUID_PARTITION_H
 
 #include "fluid/fluid_private.h"
 
 #include "domain/domain_internal.h"
 
 /* Of the definition's domain; collective. */
-mps_status mpsi_fluid_share_create(mps_fluid *fluid, const char *function);
-void mpsi_fluid_share_destroy(mps_fluid *fluid);
+mps_status mpsi_fluid_partition_create(mps_fluid *fluid, const char *function);
+void mpsi_fluid_partition_destroy(mps_fluid *fluid);
 
 /* Status of all ranks, as mpsi_domain_agree. Collective, as what follows. */
 mps_status mpsi_fluid_settle(mps_fluid *fluid, const char *function, mps_status status);
@@ -36,10 +36,12 @@ mps_status mpsi_fluid_lost(mps_fluid *fluid, const char *function);
 
 /* Deals the particles to the ranks, in blocks of `block`: fluid->own. Not collective. */
 void mpsi_fluid_deal(mps_fluid *fluid, int64_t block);
-/* After the neighbours have been found: whom of others this rank's particles have among them. */
-mps_status mpsi_fluid_meet(mps_fluid *fluid, const char *function);
+/* After the neighbour search: lists the particles of other ranks that are neighbours of own ones.
+ */
+mps_status mpsi_fluid_find_halo(mps_fluid *fluid, const char *function);
 
-/* Columns of values by particle: from their owners, to those who have them as neighbours. */
+/* Halo exchange of per-particle columns: from their owners to the ranks that have them as
+ * neighbours. */
 #define MPSI_FLUID_SHARED 7 /* columns at most */
 void mpsi_fluid_tell_near(mps_fluid *fluid, int32_t columns, double *const *column);
 /* The same to all. */

@@ -1,4 +1,4 @@
-/* share.c - what a rank has of the operator where ranks solve together (mps/elastic_solver.h).
+/* partition.c - what a rank has of the operator where ranks solve together (mps/elastic_solver.h).
  *
  * The particles are ordered by layers of the lattice across the body's longest axis, by id within
  * one; each rank owns an interval of that order. Neighbours, gradients, stresses, joints and the

@@ -1,9 +1,9 @@
-/* share.c - see share.h.
+/* partition.c - see partition.h.
  *
  * Who is near whom changes with every step, and with it what ranks need of each other. A rank that
  * needs a particle goes on getting it until the set is sorted again: after a few steps hardly any
  * is new, and the way of the messages stays. SPDX-License-Identifier: BSD-3-Clause */
-#include "share.h"
+#include "partition.h"
 
 #include "body/body_internal.h"
 #include "domain/halo.h"
@@ -18,7 +18,7 @@ typedef struct link {
   double *in;     /* MPSI_FLUID_SHARED columns of the guests */
 } link;
 
-struct mpsi_fluid_share {
+struct mpsi_fluid_partition {
   mps_domain *domain;
   mps_status lost;
   int64_t block, blocks;  /* particles a block of the deal */
@@ -34,12 +34,12 @@ static bool is_own(const mps_fluid *f, int64_t i) { return i >= f->own[0] && i <
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-mps_status mpsi_fluid_share_create(mps_fluid *f, const char *function) {
+mps_status mpsi_fluid_partition_create(mps_fluid *f, const char *function) {
   if (!mpsi_domain_many(f->def.domain)) return MPS_OK;
-  f->share = mpsi_alloc(f->context, 1, sizeof *f->share);
+  f->partition = mpsi_alloc(f->context, 1, sizeof *f->partition);
   const mps_status status =
-      f->share ? MPS_OK : mpsi_fail_memory(f->context, function, sizeof *f->share);
-  if (f->share) *f->share = (mpsi_fluid_share){.domain = f->def.domain, .count = -1};
+      f->partition ? MPS_OK : mpsi_fail_memory(f->context, function, sizeof *f->partition);
+  if (f->partition) *f->partition = (mpsi_fluid_partition){.domain = f->def.domain, .count = -1};
   return status;
 }
 
@@ -51,7 +51,7 @@ static void drop_link(mps_fluid *f, link *l) {
 }
 
 static void forget(mps_fluid *f) {
-  mpsi_fluid_share *s = f->share;
+  mpsi_fluid_partition *s = f->partition;
   drop_link(f, &s->all);
   drop_link(f, &s->near);
   drop_link(f, &s->back);
@@ -61,11 +61,11 @@ static void forget(mps_fluid *f) {
   s->count = -1;
 }
 
-void mpsi_fluid_share_destroy(mps_fluid *f) {
-  if (!f->share) return;
+void mpsi_fluid_partition_destroy(mps_fluid *f) {
+  if (!f->partition) return;
   forget(f);
-  mpsi_free(f->context, f->share);
-  f->share = NULL;
+  mpsi_free(f->context, f->partition);
+  f->partition = NULL;
 }
 
 /* ---- errors ---------------------------------------------------------------------------------- */
@@ -101,28 +101,28 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
 mps_status mpsi_fluid_settle_alike(mps_fluid *f, const char *function, mps_status status) {
   mpsi_given list;
   double edited = f->edited;
-  if (!f->share) return status;
+  if (!f->partition) return status;
   give_state(f, &list);
-  status = mpsi_domain_agree_given_max(f->share->domain, function, status, &list, 1, &edited);
+  status = mpsi_domain_agree_given_max(f->partition->domain, function, status, &list, 1, &edited);
   if (status == MPS_OK && edited > 0.0)
-    status = mpsi_domain_settle_particles(f->share->domain, function, status, f->particles);
+    status = mpsi_domain_settle_particles(f->partition->domain, function, status, f->particles);
   if (status == MPS_OK) f->edited = false;
   return status;
 }
 
-static void note(mpsi_fluid_share *s, mps_status status) {
+static void note(mpsi_fluid_partition *s, mps_status status) {
   if (s->lost == MPS_OK) s->lost = status;
 }
 
 mps_status mpsi_fluid_lost(mps_fluid *f, const char *function) {
-  if (!f->share || f->share->lost == MPS_OK) return MPS_OK;
-  return mpsi_fluid_settle(f, function, f->share->lost);
+  if (!f->partition || f->partition->lost == MPS_OK) return MPS_OK;
+  return mpsi_fluid_settle(f, function, f->partition->lost);
 }
 
 /* ---- the deal -------------------------------------------------------------------------------- */
 
 void mpsi_fluid_deal(mps_fluid *f, int64_t block) {
-  mpsi_fluid_share *s = f->share;
+  mpsi_fluid_partition *s = f->partition;
   f->own[0] = 0, f->own[1] = f->count;
   if (!s) return;
   const int64_t ranks = mps_domain_size(s->domain), rank = mps_domain_rank(s->domain);
@@ -134,7 +134,7 @@ void mpsi_fluid_deal(mps_fluid *f, int64_t block) {
   }
 }
 
-static int32_t owner(const mpsi_fluid_share *s, int64_t particle) {
+static int32_t owner(const mpsi_fluid_partition *s, int64_t particle) {
   const int64_t ranks = mps_domain_size(s->domain);
   return (int32_t)(((particle / s->block + 1) * ranks - 1) / s->blocks);
 }
@@ -171,7 +171,7 @@ static mps_status make_link(mps_fluid *f, const char *function, link *l, int64_t
   status = mpsi_fluid_settle(f, function, status);
   const mpsi_halo_def def = {
       .guests = count, .rank = g.rank, .index = g.index, .columns = MPSI_FLUID_SHARED};
-  if (status == MPS_OK) status = mpsi_halo_create(f->share->domain, function, &def, &l->halo);
+  if (status == MPS_OK) status = mpsi_halo_create(f->partition->domain, function, &def, &l->halo);
   mpsi_free(f->context, g.rank);
   mpsi_free(f->context, g.index);
   return status;
@@ -180,7 +180,7 @@ static mps_status make_link(mps_fluid *f, const char *function, link *l, int64_t
 /* `first` is 0: the halo's own column `in`, from which values go to their places. */
 static void copy(mps_fluid *f, link *l, int32_t columns, double *const *column,
                  double *const *into) {
-  mpsi_fluid_share *s = f->share;
+  mpsi_fluid_partition *s = f->partition;
   double *in[MPSI_FLUID_SHARED];
   if (s->lost != MPS_OK) return;
   for (int32_t c = 0; c < columns; c++) in[c] = l->in + c * l->guests;
@@ -196,7 +196,7 @@ typedef bool (*wanted_fn)(const mps_fluid *, int64_t);
 static void list_wanted(const mps_fluid *f, const void *from, guests *g) {
   const wanted_fn wanted = *(const wanted_fn *)from;
   for (int64_t i = 0; i < f->count; i++)
-    if (wanted(f, i)) add_guest(g, i, owner(f->share, i), i);
+    if (wanted(f, i)) add_guest(g, i, owner(f->partition, i), i);
 }
 
 /* The particles that `wanted` picks as guests of a link. */
@@ -210,7 +210,7 @@ static mps_status join(mps_fluid *f, const char *function, link *l, wanted_fn wa
 
 /* To each owner the number of the first of its guests here, and who they are. */
 static mps_status ask_owners(mps_fluid *f, const char *function, mpsi_mailbox *box) {
-  const mpsi_fluid_share *s = f->share;
+  const mpsi_fluid_partition *s = f->partition;
   const link *l = &s->near;
   const int64_t ranks = mps_domain_size(s->domain);
   mps_domain_message *message = mpsi_alloc(f->context, ranks, sizeof *message);
@@ -251,21 +251,21 @@ static mps_status join_back(mps_fluid *f, const char *function) {
   mps_status status = ask_owners(f, function, &box);
   if (status != MPS_OK) return status;
   for (int32_t m = 0; m < box.count; m++) count += box.mail[m].bytes / 8 - 1;
-  status = make_link(f, function, &f->share->back, count, list_asked, &box);
+  status = make_link(f, function, &f->partition->back, count, list_asked, &box);
   mpsi_domain_free_mail(&box);
   return status;
 }
 
-/* ---- who meets whom -------------------------------------------------------------------------- */
+/* ---- halo: neighbours that other ranks own --------------------------------------------------- */
 
 static bool is_foreign(const mps_fluid *f, int64_t i) { return !is_own(f, i); }
 
 static bool is_guest(const mps_fluid *f, int64_t i) {
-  return atomic_load_explicit(&f->share->is_guest[i], memory_order_relaxed);
+  return atomic_load_explicit(&f->partition->is_guest[i], memory_order_relaxed);
 }
 
 static mps_status begin_anew(mps_fluid *f, const char *function) {
-  mpsi_fluid_share *s = f->share;
+  mpsi_fluid_partition *s = f->partition;
   forget(f);
   s->is_guest = mpsi_alloc(f->context, f->count, sizeof *s->is_guest);
   s->mark = mpsi_alloc(f->context, f->count, sizeof *s->mark);
@@ -295,14 +295,14 @@ static void find_guests(void *data, int64_t chunk, int32_t worker) {
     for (int32_t k = 0; k < f->near[i]; k++) {
       const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
       if (is_own(f, j) || is_guest(f, j)) continue;
-      atomic_store_explicit(&f->share->is_guest[j], 1, memory_order_relaxed);
+      atomic_store_explicit(&f->partition->is_guest[j], 1, memory_order_relaxed);
       atomic_store_explicit(&s->more, true, memory_order_relaxed);
     }
   }
 }
 
-mps_status mpsi_fluid_meet(mps_fluid *f, const char *function) {
-  mpsi_fluid_share *s = f->share;
+mps_status mpsi_fluid_find_halo(mps_fluid *f, const char *function) {
+  mpsi_fluid_partition *s = f->partition;
   mps_status status = MPS_OK;
   if (!s) return MPS_OK;
   s->knows_local = false;
@@ -325,24 +325,24 @@ mps_status mpsi_fluid_meet(mps_fluid *f, const char *function) {
 /* ---- what they tell one another -------------------------------------------------------------- */
 
 void mpsi_fluid_tell_near(mps_fluid *f, int32_t columns, double *const *column) {
-  if (f->share) copy(f, &f->share->near, columns, column, column);
+  if (f->partition) copy(f, &f->partition->near, columns, column, column);
 }
 
 void mpsi_fluid_tell_all(mps_fluid *f, int32_t columns, double *const *column) {
-  if (f->share) copy(f, &f->share->all, columns, column, column);
+  if (f->partition) copy(f, &f->partition->all, columns, column, column);
 }
 
 void mpsi_fluid_tell_most(mps_fluid *f, int64_t count, double *values) {
-  if (!f->share) return;
+  if (!f->partition) return;
   for (int64_t k = 0; k < count; k++)
     if (isnan(values[k])) values[k] = INFINITY;
-  note(f->share, mpsi_domain_max(f->share->domain, "mps_fluid", (int32_t)count, values));
-  if (f->share->lost != MPS_OK) memset(values, 0, (size_t)count * sizeof *values);
+  note(f->partition, mpsi_domain_max(f->partition->domain, "mps_fluid", (int32_t)count, values));
+  if (f->partition->lost != MPS_OK) memset(values, 0, (size_t)count * sizeof *values);
 }
 
 /* A sum is on its rank, and less than any number on others; what is none must not be sent. */
 void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
-  if (!f->share) return;
+  if (!f->partition) return;
   const int64_t units = (f->count + unit - 1) / unit;
   double *sums = f->system.sums;
   for (int64_t k = 0; k < 2 * units; k++)
@@ -353,7 +353,7 @@ void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
 /* In scratch columns, which the pressure has not begun to use: z states and numbers, p and q m,
  * r h. */
 void mpsi_fluid_tell_looks(mps_fluid *f) {
-  mpsi_fluid_share *s = f->share;
+  mpsi_fluid_partition *s = f->partition;
   if (!s) return;
   mpsi_fluid_system *y = &f->system;
   for (int64_t i = f->own[0]; i < f->own[1]; i++) {
@@ -380,7 +380,7 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
 }
 
 void mpsi_fluid_tell_local(mps_fluid *f) {
-  mpsi_fluid_share *s = f->share;
+  mpsi_fluid_partition *s = f->partition;
   if (!s || s->knows_local) return;
   mpsi_fluid_system *y = &f->system; /* free after the pressure */
   double *const column[] = {y->p, y->q, y->r, y->z};

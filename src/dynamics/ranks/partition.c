@@ -1,4 +1,4 @@
-/* share.c - the share that one rank has of a body whose particles lie on several ranks.
+/* partition.c - the part that one rank has of a body whose particles lie on several ranks.
  *
  * All ranks begin with the same set, sort it in the same way and cut the body at blocks, or with a
  * set in parts (deal.c): each has
@@ -19,7 +19,7 @@
 
 #define BACK 4 /* columns of one copy, at most */
 
-/* What is known of the whole body while the share is made; arrays by global number. */
+/* What is known of the whole body while the partition is made; arrays by global number. */
 typedef struct plan {
   mps_dynamics *dynamics;
   const char *function;
@@ -452,9 +452,9 @@ static mps_status plan_parts(plan *p, mpsi_backup *backup) {
   return status;
 }
 
-mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function, mps_status status,
-                                    mpsi_dynamics_structure *out, mpsi_storage **former,
-                                    mpsi_backup *backup) {
+mps_status mpsi_dynamics_take_partition(mps_dynamics *dynamics, const char *function,
+                                        mps_status status, mpsi_dynamics_structure *out,
+                                        mpsi_storage **former, mpsi_backup *backup) {
   plan p = {.dynamics = dynamics, .function = function};
   mps_domain *domain = dynamics->domain;
   *out = (mpsi_dynamics_structure){0};
