@@ -132,6 +132,7 @@ static inline mps_status tell(scene *s, int what, result *r) {
   mps_fluid_report report;
   mps_status status = mps_fluid_get_totals(s->fluid, &r->totals);
   for (int b = 0; b < 3; b++) TRY(mps_fluid_get_reaction(s->fluid, b, &r->reaction[b]));
+  if (what == AFLOAT) TRY(mps_fluid_get_body_reaction(s->fluid, 0, &r->reaction[3]));
   if (what != CLASSICAL) TRY(mps_fluid_get_levels(s->fluid, 4, station, r->other));
   double points[12] = {0.1, 0.0, 0.0, 0.5, 0.0, 0.0, 1.1, 0.0, 0.0, 1.7, 0.0, 0.0};
   TRY(mps_fluid_get_pressure(s->fluid, 0, 4, points, r->other + 4));

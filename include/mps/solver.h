@@ -83,6 +83,10 @@ typedef struct mps_totals {
   double work_loads;      /* J, since creation: gravity, tractions, forces on particles */
   double work_boundaries; /* J, since creation */
   double work_bodies;     /* J, since creation: by the bodies in contact */
+  double impulse_loads[3];  /* N s, since creation; of the fluid, else 0: of gravity, loads and
+                               forces on particles */
+  double impulse_scheme[3]; /* N s, since creation; of the fluid, else 0: what the scheme gives to
+                               the particles and takes from no boundary and no body */
 } mps_totals;
 
 /** The state of a solver, in memory: what mps_S_snapshot fills and mps_S_rollback goes back to, bit

@@ -177,6 +177,9 @@ static inline const mpsi_body_source *mpsi_body_mover(const mps_body *body) {
  * particles per part; the body's present forces become the sum over its sources. */
 void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const mpsi_load *load,
                      const int64_t *count);
+/* Adds impulses (N s, N m s) per part that are no forces of a step: the body moves by them when it
+ * moves next. */
+void mpsi_body_strike(mps_body *body, mpsi_body_source *source, const mpsi_load *impulse);
 /* The sum of the reactions of all `parts` (part -1), or that of one. */
 mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
                                   const mps_reaction *reaction, int32_t parts, int32_t part,

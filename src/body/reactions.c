@@ -60,6 +60,24 @@ void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const 
   }
 }
 
+void mpsi_body_strike(mps_body *body, mpsi_body_source *source, const mpsi_load *impulse) {
+  for (int32_t part = 0; part < body->parts; part++) {
+    const mpsi_load *J = &impulse[part];
+    mps_reaction *const account[2] = {&source->reaction[part], &body->reaction[part]};
+    for (int k = 0; k < 2; k++) {
+      account[k]->work -= mpsi_dot3(J->force, body->pose.v) + mpsi_dot3(J->moment, body->pose.spin);
+      for (int c = 0; c < 3; c++) {
+        account[k]->impulse[c] += J->force[c];
+        account[k]->moment_impulse[c] += J->moment[c];
+      }
+    }
+    for (int c = 0; c < 3; c++) {
+      body->pending.force[c] += J->force[c];
+      body->pending.moment[c] += J->moment[c];
+    }
+  }
+}
+
 mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
                                   const mps_reaction *reaction, int32_t parts, int32_t part,
                                   mps_reaction *out) {

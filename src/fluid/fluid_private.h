@@ -10,6 +10,7 @@
  *               whose equation envelope.c solves, or solver.c has it solved
  *   classical.c the classical scheme's own parts of these
  *   move.c      pressure gradient, velocity, guards, positions
+ *   exchange.c  momentum that goes to walls besides the pressure's, and what has no owner
  *   loads.c     forces on particles and pressures on the surface
  *   probe.c     pressure at walls, level of the surface
  *   warn.c      what the model assumes and a step may break
@@ -27,6 +28,7 @@
 #include "core/internal.h"
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
+#include "core/base/exact.h"
 #include "core/base/room.h"
 #include "core/state/state.h"
 
@@ -46,6 +48,21 @@ typedef struct mpsi_fluid_load {
   double force[2], moment, power; /* N; N m about the origin; W */
   int64_t wetted;                 /* points with water */
 } mpsi_fluid_load;
+
+/* What a wall gives to the fluid in a step besides: by collisions and smoothing, see exchange.c. */
+typedef struct mpsi_fluid_struck {
+  double impulse[2], moment, work; /* N s; N m s about the origin; J */
+} mpsi_fluid_struck;
+
+/* Sums of momentum that is exchanged in a step: a row of values for each chunk of particles, see
+ * exchange.c; and since creation what gravity and loads give, and what has no owner, N s. */
+typedef struct mpsi_fluid_exchange {
+  mpsi_room rows, sums; /* double, mpsi_exact */
+  int64_t width;        /* values of a row */
+  int32_t at[32];       /* first value of a wall */
+  double gain[2];       /* N s: of the water in the step */
+  double loads[2], scheme[2];
+} mpsi_fluid_exchange;
 
 /* A wall: a boundary of the caller, or the face of a body. */
 typedef struct mpsi_fluid_wall {
@@ -69,6 +86,7 @@ typedef struct mpsi_fluid_wall {
   double *motion;               /* the memory of all these */
   int64_t first_image, images;  /* ghosts: images of particles here alone, in their order */
   mpsi_fluid_load load, before; /* of the last step or solution; before the step being made */
+  mpsi_fluid_struck struck;     /* of the step being made */
   double impulse[2], moment_impulse, work;
   int64_t removed; /* particles through an open side */
   double removed_mass;
@@ -85,6 +103,7 @@ typedef struct mpsi_fluid_body {
   mpsi_fluid_pose pose, next;
   mpsi_body_source source;
   mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the water, and its points on each part */
+  mpsi_load owed[MPS_BODY_MAX_PARTS];  /* N s, N m s: of collisions, that it has not felt yet */
   int64_t wetted[MPS_BODY_MAX_PARTS];
   bool floats;             /* see afloat.c */
   double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
@@ -269,6 +288,7 @@ struct mps_fluid {
   double energy_before;                /* J, before particles come or go */
   double energy;                       /* J, kinetic and potential at creation */
   double work_boundaries, work_loads;  /* J, since creation */
+  mpsi_fluid_exchange exchange;
 };
 
 /* Runs task(fluid, chunk) for the chunks of `items` items on the executor, of those that are this
@@ -423,6 +443,11 @@ void mpsi_fluid_warn_of_angles(mps_fluid *fluid);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */
+/* exchange.c: room for a step's sums; their values, on all ranks; after all, what has no owner. */
+mps_status mpsi_fluid_begin_exchange(mps_fluid *fluid, const char *function);
+void mpsi_fluid_end_exchange(mps_fluid *fluid);
+void mpsi_fluid_book_momentum(mps_fluid *fluid);
+void mpsi_fluid_drop_exchange(mps_fluid *fluid);
 /* classical.c */
 mps_status mpsi_fluid_classical_look(mps_fluid *fluid, const char *function, mps_status status);
 void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);

@@ -143,11 +143,37 @@ void mpsi_fluid_load_body(const mps_fluid *f, mpsi_fluid_body *own, const double
   }
 }
 
-/* The body feels the step's forces: of one that floats those with which its accelerations agree. */
+/* The impulses (N s) of collisions and smoothing on the body in the step, by parts, about `about`.
+ */
+static void find_struck(const mps_fluid *f, const mpsi_fluid_body *own, const double *about,
+                        mpsi_load *impulse) {
+  const mps_body *body = own->body;
+  for (int k = 0; k < own->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[own->first + k];
+    if (!w->used) continue;
+    mpsi_load *to = &impulse[body->part_of[body->face_of[k]]];
+    const double *of = w->struck.impulse;
+    for (int c = 0; c < 2; c++) to->force[c] -= of[c];
+    to->moment[2] -= w->struck.moment - (about[0] * of[1] - about[1] * of[0]);
+  }
+}
+
+/* The body feels the step's forces: of one that floats those with which its accelerations agree. As
+ * it moves by these, what collisions and smoothing give to it is owed to the next step, in which it
+ * moves the water around it too: without that a light body would be thrown about. */
 static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
+  mpsi_load struck[MPS_BODY_MAX_PARTS] = {0};
+  find_struck(f, own, own->next.x, struck);
   if (!own->floats) mpsi_fluid_load_body(f, own, own->next.x);
   mpsi_body_react(own->body, &own->source, f->dt, own->water, own->wetted);
-  if (own->floats) mpsi_body_advance(own->body, f->dt);
+  mpsi_body_strike(own->body, &own->source, own->owed);
+  memset(own->owed, 0, sizeof own->owed);
+  if (own->floats) {
+    memcpy(own->owed, struck, sizeof struck);
+    mpsi_body_advance(own->body, f->dt);
+  } else {
+    mpsi_body_strike(own->body, &own->source, struck);
+  }
   own->pose = own->floats ? pose_of(own->body) : own->next;
 }
 
@@ -346,16 +372,20 @@ mps_status mps_fluid_get_body_reaction_sized(mps_fluid *f, int32_t number, mps_r
   const mps_status status = check_number(f, "mps_fluid_get_body_reaction", number);
   if (status != MPS_OK) return status;
   const mpsi_fluid_body *body = &f->body[number];
+  const mps_reaction *felt = body->source.reaction;
   mps_reaction r = {0};
+  double sum[2] = {0.0, 0.0};
+  for (int32_t part = 0; part < body->body->parts; part++)
+    for (int c = 0; c < 2; c++) r.impulse[c] += felt[part].impulse[c] + body->owed[part].force[c];
   for (int k = 0; k < body->faces; k++) {
     const mpsi_fluid_wall *w = &f->wall[body->first + k];
-    for (int c = 0; c < 2; c++) r.force[c] -= w->load.force[c], r.impulse[c] -= w->impulse[c];
+    for (int c = 0; c < 2; c++) r.force[c] -= w->load.force[c], sum[c] -= w->impulse[c];
     r.moment[2] -= w->load.moment;
     r.moment_impulse[2] -= w->moment_impulse;
     r.work += w->work;
     r.count += w->load.wetted;
   }
   r.moment[2] -= body->pose.x[0] * r.force[1] - body->pose.x[1] * r.force[0];
-  r.moment_impulse[2] -= body->pose.x[0] * r.impulse[1] - body->pose.x[1] * r.impulse[0];
+  r.moment_impulse[2] -= body->pose.x[0] * sum[1] - body->pose.x[1] * sum[0];
   return mpsi_out_write(f->context, "mps_fluid_get_body_reaction", out, size, &r, sizeof r);
 }

@@ -74,10 +74,12 @@ void mpsi_fluid_add_impulses(mps_fluid *f) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     const mpsi_fluid_load *load = &w->load;
-    for (int c = 0; c < 2; c++) w->impulse[c] += load->force[c] * f->dt;
-    w->moment_impulse += load->moment * f->dt;
-    w->work += load->power * f->dt;
-    f->work_boundaries += load->power * f->dt;
+    const mpsi_fluid_struck *struck = &w->struck;
+    const double work = load->power * f->dt + struck->work;
+    for (int c = 0; c < 2; c++) w->impulse[c] += load->force[c] * f->dt + struck->impulse[c];
+    w->moment_impulse += load->moment * f->dt + struck->moment;
+    w->work += work;
+    f->work_boundaries += work;
   }
 }
 

@@ -128,6 +128,7 @@ static void release(mps_fluid *f) {
   mps_context *context = f->context;
   mpsi_fluid_drop_solver(f);
   mpsi_fluid_drop_loads(f);
+  mpsi_fluid_drop_exchange(f);
   mpsi_fluid_partition_destroy(f);
   mpsi_fluid_coarse_drop(f);
   void *const parts[] = {f->slab,
@@ -290,6 +291,10 @@ mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size
     t.linear[0] += mass * u[i], t.linear[1] += mass * v[i];
     t.angular[2] += mass * (x[i] * v[i] - y[i] * u[i]);
   }
+  for (int c = 0; c < 2; c++) {
+    t.impulse_loads[c] = f->exchange.loads[c];
+    t.impulse_scheme[c] = f->exchange.scheme[c];
+  }
   const double energy = mpsi_fluid_energy(f, &t.kinetic);
   t.strain = energy - t.kinetic;
   t.work_boundaries = f->work_boundaries;
@@ -302,8 +307,9 @@ static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
   return 8 * (13 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
          f->cloud_capacity * (8 * 8) + f->index_room.capacity * 4 + f->w_room.capacity * 4 +
-         f->push_room.capacity * 8 + f->lower_col_room.capacity * 2 + f->lower_room.capacity * 4 +
-         mpsi_fluid_coarse_bytes(f);
+         f->push_room.capacity * 8 + f->exchange.rows.capacity * 8 +
+         f->exchange.sums.capacity * (int64_t)sizeof(mpsi_exact) + f->lower_col_room.capacity * 2 +
+         f->lower_room.capacity * 4 + mpsi_fluid_coarse_bytes(f);
 }
 
 mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {

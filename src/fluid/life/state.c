@@ -43,6 +43,8 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_f64(s, "energy", &f->energy, 1);
   mpsi_state_f64(s, "work_boundaries", &f->work_boundaries, 1);
   mpsi_state_f64(s, "work_loads", &f->work_loads, 1);
+  mpsi_state_f64(s, "impulse_loads", f->exchange.loads, 2);
+  mpsi_state_f64(s, "impulse_scheme", f->exchange.scheme, 2);
   mpsi_state_i64(s, "unknown", &f->unknown, 1);
   mpsi_state_i64(s, "ghosts", &f->report.ghosts, 1);
   mpsi_state_i64(s, "pairs", &f->report.pairs, 1);
@@ -72,6 +74,12 @@ static void list_state(mpsi_state *s, void *solver) {
       continue;
     }
     mpsi_body_list_source(s, f->body[b].body, &f->body[b].source);
+    for (int32_t part = 0; part < f->body[b].body->parts; part++) {
+      mpsi_state_enter(s, "owed%d", part);
+      mpsi_state_f64(s, "force", f->body[b].owed[part].force, 3);
+      mpsi_state_f64(s, "moment", f->body[b].owed[part].moment, 3);
+      mpsi_state_leave(s);
+    }
     if (!f->body[b].floats) {
       mpsi_state_enter(s, "felt");
       mpsi_body_list_account(s, f->body[b].body);

@@ -50,6 +50,8 @@ void mpsi_fluid_tell_all(mps_fluid *fluid, int32_t columns, double *const *colum
 void mpsi_fluid_tell_sums(mps_fluid *fluid, int64_t unit);
 /* The greatest of each value over the ranks, and 0 where the transport has failed. */
 void mpsi_fluid_tell_most(mps_fluid *fluid, int64_t count, double *values);
+/* Sums over all ranks; what they have where the transport has failed is of no use. */
+void mpsi_fluid_tell_exact(mps_fluid *fluid, int32_t count, mpsi_exact *sums);
 /* States, numbers of neighbours and moments m, and who may be in whose zone (moments.c). */
 void mpsi_fluid_tell_looks(mps_fluid *fluid);
 /* fluid->local of all particles, as far as levels and loads use it, for who asks. */

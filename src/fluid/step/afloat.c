@@ -67,7 +67,8 @@ static void masses(const mpsi_fluid_body *body, double length, double *mass) {
 }
 
 /* Forces in a step of dt that the accelerations do not explain. Those of other solvers are the
- * impulses that they have given to the body since it last moved. */
+ * impulses that they have given to the body since it last moved, and collisions with the water have
+ * given theirs in the step before. */
 static void imbalance(const mpsi_fluid_body *own, const double *mass, double length, double dt,
                       double *g) {
   const mps_body *body = own->body;
@@ -76,8 +77,8 @@ static void imbalance(const mpsi_fluid_body *own, const double *mass, double len
         body->load.force[c] + body->def.mass * body->def.gravity[c] + body->pending.force[c] / dt;
   g[2] = (body->load.moment[2] + body->pending.moment[2] / dt) / length;
   for (int32_t part = 0; part < body->parts; part++) {
-    for (int c = 0; c < 2; c++) g[c] += own->water[part].force[c];
-    g[2] += own->water[part].moment[2] / length;
+    for (int c = 0; c < 2; c++) g[c] += own->water[part].force[c] + own->owed[part].force[c] / dt;
+    g[2] += (own->water[part].moment[2] + own->owed[part].moment[2] / dt) / length;
   }
   for (int c = 0; c < 3; c++) g[c] -= mass[c] * own->rate[c];
 }

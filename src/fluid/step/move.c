@@ -18,6 +18,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
+#include "fluid/step/exchange.h"
 
 #define SMOOTH 0.6
 #define FREE_SMOOTH 0.18 /* the same without gravity, where the rate is that of the fastest jet */
@@ -92,17 +93,12 @@ static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
     const int64_t j = index[k], ghost = j - f->count;
     if (ghost < 0 || !(f->flips[ghost] & f->sticky)) continue;
     double stuck[2] = {f->u[0][j], f->u[1][j]};
-    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-      const double *N = f->wall[b].normal;
-      if (!(f->flips[ghost] & f->sticky & UINT32_C(1) << b)) continue;
-      const double across = stuck[0] * N[0] + stuck[1] * N[1];
-      for (int c = 0; c < 2; c++) stuck[c] = 2.0 * across * N[c] - stuck[c];
-    }
+    mpsi_fluid_stick(f, ghost, stuck);
     for (int c = 0; c < 2; c++) v[c] += w[k] * (stuck[c] - f->u[c][j]) / local->n;
   }
 }
 
-static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end) {
+static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double rho = f->def.density, dt = f->dt, nu = f->def.viscosity / rho;
   for (int64_t i = begin; i < end; i++) {
     const mpsi_fluid_local *local = &f->local[i];
@@ -112,11 +108,13 @@ static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end) {
     } else {
       double gradient[2];
       pressure_gradient(f, i, gradient);
-      const double a = smoothing(f, i), share = nu * dt * local->n / local->S;
+      const double share = nu * dt * local->n / local->S, a = fmax(smoothing(f, i) - share, 0.0);
       double v[2] = {0.0, 0.0};
       if (share > 0.0) viscous_rest(f, i, v);
       for (int c = 0; c < 2; c++)
-        u[c] += -dt / rho * gradient[c] + share * v[c] + fmax(a - share, 0.0) * local->rest[c];
+        u[c] += -dt / rho * gradient[c] + share * v[c] + a * local->rest[c];
+      if ((f->company[i] & MPSI_FLUID_NEAR_IMAGES) && a + share > 0.0)
+        mpsi_fluid_exchange_smoothing(f, chunk, i, a, share);
     }
     for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c];
   }
@@ -149,7 +147,7 @@ static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
 }
 
 static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  find_accelerated(f, begin, end);
+  find_accelerated(f, begin, end, chunk);
   limit_speed(f, begin, end, chunk);
 }
 
@@ -193,7 +191,9 @@ static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
       const double approach = (own[0] - v[0]) * dx + (own[1] - v[1]) * dy;
       if (!(approach > 0.0)) continue;
       if (!(r2 < pair2 || approach > IMPACT * mpsi_fluid_rate(f) * r2)) continue;
-      u[0] -= 0.5 * approach * dx / r2, u[1] -= 0.5 * approach * dy / r2;
+      const double dv[2] = {-0.5 * approach * dx / r2, -0.5 * approach * dy / r2};
+      u[0] += dv[0], u[1] += dv[1];
+      if (j >= f->count) mpsi_fluid_exchange_image(f, chunk, j - f->count, i, dv);
       collisions++;
     }
     f->system.r[i] = u[0], f->system.z[i] = u[1];
@@ -249,9 +249,10 @@ static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
  * it: two blocks of 10 x 10 particles that strike ended with .94 of theirs, where .73 is right. */
 static double carried(const mps_fluid *f, int64_t i) { return fmax(1.0 - steepness(f, i), 0.0); }
 
-/* Puts x back to `off` from a wall that is nearer than that, and takes its velocity into the wall.
- */
-static bool keep_off(const mps_fluid *f, const mpsi_fluid_wall *w, double *x, double *u) {
+/* Puts x of particle i back to `off` from a wall that is nearer than that, and takes its velocity
+ * into the wall. */
+static bool keep_off(const mps_fluid *f, int wall, int64_t i, double *x, double *u) {
+  const mpsi_fluid_wall *w = &f->wall[wall];
   const double d = mpsi_fluid_distance(w, w->next.s, x[0], x[1]), off = OFF_WALL * f->l0;
   if (d >= off) return false;
   const double moves = mpsi_fluid_of_wall(w, w->next.u, x[0], x[1]);
@@ -260,19 +261,22 @@ static bool keep_off(const mps_fluid *f, const mpsi_fluid_wall *w, double *x, do
     x[c] += (off - d) * w->normal[c];
     if (into < 0.0) u[c] -= into * w->normal[c];
   }
+  if (into < 0.0)
+    mpsi_fluid_exchange_wall(f, i / MPSI_FLUID_CHUNK, wall, i,
+                             (double[]){-into * w->normal[0], -into * w->normal[1]});
   return true;
 }
 
-static int64_t keep_off_walls(const mps_fluid *f, double *x, double *u) {
+static int64_t keep_off_walls(const mps_fluid *f, int64_t i, double *x, double *u) {
   int64_t pushed = 0;
   for (int b = 0; f->faces && b < MPSI_FLUID_BODIES; b++) {
     double d;
     if (!f->body[b].body) continue;
     const int face = mpsi_fluid_face_of(f, &f->body[b], true, x, &d);
-    if (d < OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, &f->wall[face], x, u);
+    if (d < OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, face, i, x, u);
   }
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
-    if (f->wall[b].used) pushed += keep_off(f, &f->wall[b], x, u);
+    if (f->wall[b].used) pushed += keep_off(f, b, i, x, u);
   return pushed;
 }
 
@@ -283,8 +287,10 @@ static bool finite(const double *x, const double *u) {
 }
 
 static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  const double *before[2];
   int64_t pushed = 0;
-  double far2 = 0.0;
+  double far2 = 0.0, gain[2] = {0.0, 0.0};
+  for (int c = 0; c < 2; c++) before[c] = mpsi_particles_column(f->particles, "velocity", c);
   for (int64_t i = begin; i < end; i++) {
     double shift[2], x[2], u[2];
     find_shift(f, i, shift);
@@ -295,13 +301,17 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
       x[c] = f->x[c][i] + f->dt * (f->u_new[c][i] - (moved ? f->u[c][i] : 0.0)) + shift[c];
       u[c] = f->u_new[c][i] + part * (G[2 * c] * shift[0] + G[2 * c + 1] * shift[1]);
     }
-    pushed += keep_off_walls(f, x, u);
+    pushed += keep_off_walls(f, i, x, u);
     mpsi_fluid_rises(f)[i] = mpsi_fluid_rise(f, i);
     const double way[2] = {x[0] - f->x[0][i], x[1] - f->x[1][i]};
     const double way2 = way[0] * way[0] + way[1] * way[1];
     far2 = finite(x, u) ? mpsi_fluid_larger(way2, far2) : (double)INFINITY;
-    for (int c = 0; c < 2; c++) f->x[c][i] = x[c], f->u[c][i] = u[c];
+    for (int c = 0; c < 2; c++) {
+      f->x[c][i] = x[c], f->u[c][i] = u[c];
+      gain[c] += u[c] - before[c][i];
+    }
   }
+  mpsi_fluid_gain(f, chunk, gain);
   f->system.sums[2 * chunk] = (double)pushed;
   f->system.sums[2 * chunk + 1] = far2;
 }

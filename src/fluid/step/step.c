@@ -108,6 +108,7 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mpsi_fluid_begin_walls(f, dt);
   mpsi_fluid_load_cloud(f);
   status = add_loads(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_begin_exchange(f, function);
   const bool classical = f->classical.gamma > 0.0;
   if (!classical)
     status = mpsi_fluid_look_around(f, function, status);
@@ -127,6 +128,7 @@ static mps_status finish(mps_fluid *f, const char *function) {
   mpsi_fluid_tell_local(f); /* for the work of loads, and for the surface at walls */
   mpsi_fluid_find_velocities(f);
   const int64_t bad = mpsi_fluid_advance(f);
+  mpsi_fluid_end_exchange(f);
   const mps_status lost = mpsi_fluid_lost(f, function);
   if (lost != MPS_OK) return lost;
   if (bad >= 0) return went_wrong(f, function, bad);
@@ -139,6 +141,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   mpsi_fluid_end_walls(f);
   f->stage = MPSI_FLUID_BETWEEN;
   mpsi_fluid_add_impulses(f);
+  mpsi_fluid_book_momentum(f);
   f->work_loads += mpsi_fluid_work_of_loads(f);
   store_cloud(f);
   f->time += f->dt;

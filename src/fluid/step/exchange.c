@@ -1,0 +1,189 @@
+/* exchange.c - momentum of the water that its pressure on walls does not explain.
+ *
+ * What goes to a wall: of a pair of a particle and an image the change of velocity along the
+ * normals of the walls that the image is mirrored at, by smoothing and by collisions; that along a
+ * wall of no slip by the viscosity; and what a particle loses that is put back off a wall. It
+ * becomes part of the wall's impulse, and of a body's; one that floats feels it in the next step.
+ *
+ * What is left has no owner: the gradients of the pressure at the particles sum up to the pressures
+ * along the walls only nearly, smoothing is not the same from both sides of a pair of particles,
+ * and cut velocities and shifts change momentum too. It is found as what the water has gained less
+ * all of the above, gravity and loads.
+ *
+ * Sums are made by chunk, and over chunks without round-off: the same bits on any number of ranks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/step/exchange.h"
+
+#include "fluid/ranks/partition.h"
+
+#include "core/base/exact.h"
+
+#include <string.h>
+
+enum { GAIN = 2, OF_WALL = 4 }; /* values of a row: gain x, y; of each wall x, y, moment, work */
+
+static int64_t chunks_of(const mps_fluid *f) {
+  return (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+}
+
+static double *row_of(const mps_fluid *f, int64_t chunk) {
+  return (double *)f->exchange.rows.item + chunk * f->exchange.width;
+}
+
+static double mass_of(const mps_fluid *f) {
+  return f->def.density * f->l0 * f->l0 * f->def.measure;
+}
+
+mps_status mpsi_fluid_begin_exchange(mps_fluid *f, const char *function) {
+  mpsi_fluid_exchange *e = &f->exchange;
+  e->width = GAIN;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    e->at[b] = (int32_t)e->width;
+    if (f->wall[b].used) e->width += OF_WALL;
+  }
+  const int64_t values = chunks_of(f) * e->width;
+  if (!mpsi_room_ensure(f->context, &e->rows, values, sizeof(double)))
+    return mpsi_fail_memory(f->context, function, (size_t)values * sizeof(double));
+  if (!mpsi_room_ensure(f->context, &e->sums, e->width, sizeof(mpsi_exact)))
+    return mpsi_fail_memory(f->context, function, (size_t)e->width * sizeof(mpsi_exact));
+  memset(e->rows.item, 0, (size_t)values * sizeof(double));
+  return MPS_OK;
+}
+
+void mpsi_fluid_drop_exchange(mps_fluid *f) {
+  mpsi_free(f->context, f->exchange.rows.item);
+  mpsi_free(f->context, f->exchange.sums.item);
+}
+
+/* ---- in the loops over particles ------------------------------------------------------------- */
+
+void mpsi_fluid_exchange_wall(const mps_fluid *f, int64_t chunk, int wall, int64_t i,
+                              const double *dv) {
+  const mpsi_fluid_wall *w = &f->wall[wall];
+  const double x = f->x[0][i], y = f->x[1][i], mass = mass_of(f);
+  const double across = dv[0] * w->normal[0] + dv[1] * w->normal[1];
+  double *sum = row_of(f, chunk) + f->exchange.at[wall];
+  sum[0] += mass * dv[0], sum[1] += mass * dv[1];
+  sum[2] += mass * (x * dv[1] - y * dv[0]);
+  sum[3] += mass * across * mpsi_fluid_of_wall(w, w->mean, x, y);
+}
+
+void mpsi_fluid_exchange_image(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
+                               const double *dv) {
+  for (int b = 0; f->flips[ghost] >> b && b < MPSI_FLUID_WALLS; b++) {
+    if (!(f->flips[ghost] >> b & 1)) continue;
+    const double *N = f->wall[b].normal, across = dv[0] * N[0] + dv[1] * N[1];
+    mpsi_fluid_exchange_wall(f, chunk, b, i, (double[]){across * N[0], across * N[1]});
+  }
+}
+
+void mpsi_fluid_stick(const mps_fluid *f, int64_t ghost, double *u) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const double *N = f->wall[b].normal;
+    if (!(f->flips[ghost] & f->sticky & UINT32_C(1) << b)) continue;
+    const double across = u[0] * N[0] + u[1] * N[1];
+    for (int c = 0; c < 2; c++) u[c] = 2.0 * across * N[c] - u[c];
+  }
+}
+
+/* Of the viscosity's change of velocity what is not along a normal: to the first wall of no slip.
+ */
+static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
+                           const double *dv) {
+  const uint32_t stuck = f->flips[ghost] & f->sticky;
+  double along[2] = {dv[0], dv[1]};
+  int first = 0;
+  if (!stuck) return;
+  while (!(stuck >> first & 1)) first++;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const double *N = f->wall[b].normal;
+    if (!(f->flips[ghost] >> b & 1)) continue;
+    const double across = along[0] * N[0] + along[1] * N[1];
+    for (int c = 0; c < 2; c++) along[c] -= across * N[c];
+  }
+  mpsi_fluid_exchange_wall(f, chunk, first, i, along);
+}
+
+void mpsi_fluid_exchange_smoothing(const mps_fluid *f, int64_t chunk, int64_t i, double smooth,
+                                   double viscous) {
+  const mpsi_fluid_local *local = &f->local[i];
+  const int32_t *index = f->index + f->start[i];
+  const float *w = f->w + f->start[i];
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int64_t j = index[k], ghost = j - f->count;
+    if (ghost < 0) continue;
+    const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+    const double *G = local->gradient, part = w[k] / local->n;
+    double dv[2], stuck[2] = {f->u[0][j], f->u[1][j]};
+    if (viscous > 0.0 && f->sticky) mpsi_fluid_stick(f, ghost, stuck);
+    for (int c = 0; c < 2; c++) {
+      const double linear = f->u[c][i] + G[2 * c] * dx + G[2 * c + 1] * dy;
+      dv[c] = part * (smooth * (f->u[c][j] - linear) + viscous * (stuck[c] - linear));
+      stuck[c] = part * viscous * (stuck[c] - linear);
+    }
+    mpsi_fluid_exchange_image(f, chunk, ghost, i, dv);
+    if (viscous > 0.0) exchange_along(f, chunk, ghost, i, stuck);
+  }
+}
+
+void mpsi_fluid_gain(const mps_fluid *f, int64_t chunk, const double *du) {
+  double *sum = row_of(f, chunk);
+  sum[0] += du[0], sum[1] += du[1];
+}
+
+/* ---- after them ------------------------------------------------------------------------------ */
+
+void mpsi_fluid_end_exchange(mps_fluid *f) {
+  mpsi_fluid_exchange *e = &f->exchange;
+  mpsi_exact *sum = e->sums.item;
+  memset(sum, 0, (size_t)e->width * sizeof *sum);
+  for (int64_t chunk = 0; chunk < chunks_of(f); chunk++) {
+    const int64_t first = chunk * MPSI_FLUID_CHUNK;
+    const double *row = row_of(f, chunk);
+    if (first < f->own[0] || first >= f->own[1]) continue;
+    for (int64_t k = 0; k < e->width; k++)
+      if (row[k] != 0.0) mpsi_exact_add(&sum[k], row[k]);
+  }
+  mpsi_fluid_tell_exact(f, (int32_t)e->width, sum);
+  for (int c = 0; c < 2; c++) e->gain[c] = mass_of(f) * mpsi_exact_value(&sum[c]);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    const mpsi_exact *of = &sum[e->at[b]];
+    if (!w->used) continue;
+    w->struck = (mpsi_fluid_struck){{mpsi_exact_value(&of[0]), mpsi_exact_value(&of[1])},
+                                    mpsi_exact_value(&of[2]),
+                                    mpsi_exact_value(&of[3])};
+  }
+}
+
+/* Impulse (N s) of gravity, loads and the caller's forces in the step. */
+static void find_loads(const mps_fluid *f, double *impulse) {
+  const double mass = mass_of(f);
+  for (int c = 0; c < 2; c++) {
+    double sum = 0.0;
+    for (int64_t i = 0; f->push[0] && i < f->count; i++) sum += f->push[c][i];
+    impulse[c] = mass * f->dt * (sum - f->g * f->up[c] * (double)f->count);
+  }
+}
+
+void mpsi_fluid_book_momentum(mps_fluid *f) {
+  mpsi_fluid_exchange *e = &f->exchange;
+  double loads[2], rest[2];
+  find_loads(f, loads);
+  for (int c = 0; c < 2; c++) {
+    rest[c] = e->gain[c] - loads[c];
+    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+      const mpsi_fluid_wall *w = &f->wall[b];
+      if (w->used) rest[c] -= f->dt * w->load.force[c] + w->struck.impulse[c];
+    }
+    for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+      const mpsi_fluid_body *body = &f->body[b];
+      for (int32_t part = 0; body->body && part < body->body->parts; part++)
+        rest[c] += f->dt * body->water[part].force[c];
+      for (int k = 0; body->body && k < body->faces; k++)
+        if (f->wall[body->first + k].used) rest[c] -= f->wall[body->first + k].struck.impulse[c];
+    }
+    e->loads[c] += loads[c];
+    e->scheme[c] += rest[c];
+  }
+}
