@@ -72,8 +72,8 @@ typedef struct mps_contact_def {
                        pressure, wherever soil is pressed on it; default 0 */
   double strength;  /* Pa, > 0: the most shear stress that it bears, such as alpha times the
                        undrained strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,
-                       over the area that soil covers, of which a curved surface that slides
-                       along itself is counted 13 to 22 % short (docs/theory/contact.md) */
+                       over the area that soil covers: within 3 %, of curved surfaces with a
+                       spacing of more than half a cell a fifth short, with a warning */
   double corner;    /* m, >= 0: radius by which edges and corners of the body are rounded for the
                        particles, so that the grid can show how soil flows round them; less than
                        half of the body's thinnest wall. 0 (default): not at all. Not for

@@ -34,7 +34,16 @@ typedef struct mpsi_foot {
   double normal[3]; /* outward unit vector */
   double at[3];     /* m */
   int64_t face;     /* in the caller's order; 2D: the edge */
+  double narrowing; /* area of the surface for a unit of the parallel surface through the point: the
+                       determinant of the foot as a function of place. 1 at a plane, (R/(R + D))^n
+                       at n curvatures 1/R, 0 where the foot is an edge or a corner */
 } mpsi_foot;
+
+/* The narrowing at a foot on the rim of a plane face, seen along the unit vector `along`: edges
+ * between faces of one plane are none. */
+static inline double mpsi_rim_narrowing(double along_normal) {
+  return fabs(along_normal) > 1.0 - 1e-9 ? 1.0 : 0.0;
+}
 
 /* A force on a part of the surface. */
 typedef struct mpsi_load {

@@ -69,7 +69,7 @@ MPSI_INLINE void neighbour_normal(const mps_body *body, int64_t k, int where, bo
 MPSI_INLINE mpsi_foot polygon_foot(const mps_body *body, const double *x, bool revolved) {
   const nearest best = search(body, x, revolved);
   const int64_t k = best.edge;
-  mpsi_foot f = {.face = body->face_of[k]};
+  mpsi_foot f = {.face = body->face_of[k], .narrowing = 1.0};
   double one[2], two[2];
   edge_normal(body, k, one);
   if (best.where == 0) {
@@ -92,17 +92,19 @@ MPSI_INLINE mpsi_foot polygon_foot(const mps_body *body, const double *x, bool r
     f.normal[0] = sign * dx / d, f.normal[1] = sign * dy / d;
   else
     f.normal[0] = mx / mean, f.normal[1] = my / mean;
+  f.narrowing = mpsi_rim_narrowing(f.normal[0] * one[0] + f.normal[1] * one[1]);
   return f;
 }
 
 /* Disc and sphere. */
 MPSI_INLINE mpsi_foot ball_foot(const mps_body *body, const double *x, int dim) {
-  mpsi_foot f = {.normal = {1.0, 0.0, 0.0}};
+  mpsi_foot f = {.normal = {1.0, 0.0, 0.0}, .narrowing = 1.0};
   const double r = sqrt(x[0] * x[0] + x[1] * x[1] + (dim == 3 ? x[2] * x[2] : 0.0));
   f.distance = r - body->radius;
   for (int c = 0; c < dim; c++) {
     if (r > 0.0) f.normal[c] = x[c] / r;
     f.at[c] = body->radius * f.normal[c];
+    if (c > 0 && r > 0.0) f.narrowing *= body->radius / r;
   }
   return f;
 }
@@ -110,7 +112,7 @@ MPSI_INLINE mpsi_foot ball_foot(const mps_body *body, const double *x, int dim) 
 /* Half plane and half space. */
 static mpsi_foot half_foot(const mps_body *body, const double *x) {
   const double *n = body->normal;
-  mpsi_foot f = {.distance = mpsi_dot3(x, n), .normal = {n[0], n[1], n[2]}};
+  mpsi_foot f = {.distance = mpsi_dot3(x, n), .normal = {n[0], n[1], n[2]}, .narrowing = 1.0};
   for (int c = 0; c < 3; c++) f.at[c] = x[c] - f.distance * n[c];
   return f;
 }
@@ -122,6 +124,7 @@ static mpsi_foot revolution_foot(const mps_body *body, const double *x) {
   const double n[2] = {f.normal[0], f.normal[1]}, at[2] = {f.at[0], f.at[1]};
   f.normal[0] = n[0] * ex, f.normal[1] = n[0] * ey, f.normal[2] = n[1];
   f.at[0] = at[0] * ex, f.at[1] = at[0] * ey, f.at[2] = at[1];
+  if (r > 0.0) f.narrowing *= at[0] / r;
   return f;
 }
 

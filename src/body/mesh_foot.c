@@ -170,7 +170,7 @@ static void feature_normal(const mpsi_mesh *mesh, int64_t t, int where, double *
 
 mpsi_foot mpsi_mesh_foot(const mpsi_mesh *mesh, const double *x) {
   const search s = nearest(mesh, x);
-  mpsi_foot f = {.face = s.triangle};
+  mpsi_foot f = {.face = s.triangle, .narrowing = 1.0};
   double n[3], from[3];
   feature_normal(mesh, s.triangle, s.where, n);
   for (int c = 0; c < 3; c++) {
@@ -187,6 +187,7 @@ mpsi_foot mpsi_mesh_foot(const mpsi_mesh *mesh, const double *x) {
   const bool on = d <= 1e-14 * mesh->size;
   const double *along = on ? n : from, length = sqrt(mpsi_dot3(along, along));
   for (int c = 0; c < 3; c++) f.normal[c] = (on ? 1.0 : sign) * along[c] / length;
+  f.narrowing = mpsi_rim_narrowing(mpsi_dot3(f.normal, mesh->normal + 3 * s.triangle));
   return f;
 }
 

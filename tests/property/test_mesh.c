@@ -229,10 +229,36 @@ static void overlap_and_walls(void **state) {
   mps_body_destroy(&torus);
 }
 
+/* A block's faces do not narrow, on the sides of triangles within them neither; beside its edges
+ * and corners no row of soil is of any surface. */
+static void faces_do_not_narrow(void **state) {
+  (void)state;
+  mps_body *body = make_body(BLOCK, NULL);
+  int flat = 0, edges = 0;
+  for (int p = 0; p < 4000; p++) {
+    double x[3];
+    for (int c = 0; c < 3; c++) {
+      x[c] = uniform(-0.5, 1.5);
+      if (p % 2) x[c] = floor(x[c] * 16.0) / 16.0; /* many above the diagonals */
+    }
+    bool on_rim = false; /* beside a face and an edge: either will do */
+    for (int c = 0; c < 2; c++) on_rim = on_rim || x[c] == 0.0 || x[c] == 0.5 || x[c] == 1.0;
+    if (on_rim || x[2] == 0.0) continue;
+    const mpsi_foot foot = mpsi_body_foot(body, x);
+    if (foot.distance < 1e-3) continue;
+    double most = 0.0;
+    for (int c = 0; c < 3; c++) most = fmax(most, fabs(foot.normal[c]));
+    mps_assert_near(foot.narrowing, most > 1.0 - 1e-12 ? 1.0 : 0.0, 0.0);
+    flat += foot.narrowing == 1.0, edges += foot.narrowing == 0.0;
+  }
+  assert_true(flat > 500 && edges > 500);
+  mps_body_destroy(&body);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(distance_is_the_least), cmocka_unit_test(order_and_place_do_not_matter),
+      cmocka_unit_test(distance_is_the_least),   cmocka_unit_test(order_and_place_do_not_matter),
       cmocka_unit_test(fine_mesh_is_the_sphere), cmocka_unit_test(moves_with_its_frame),
-      cmocka_unit_test(overlap_and_walls)};
+      cmocka_unit_test(overlap_and_walls),       cmocka_unit_test(faces_do_not_narrow)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

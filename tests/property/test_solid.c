@@ -99,6 +99,72 @@ static void solids_of_revolution(void **state) {
   }
 }
 
+/* ---- the foot as a function of place --------------------------------------------------------- */
+
+static mps_body *shape_of(int which) {
+  static const double up[] = {0.6, 0.8, 0.0},
+                      house[] = {-0.5, -0.5, 0.1, -0.5, 0.5, -0.5, 0.5, 0.3, -0.1, 0.6, -0.5, 0.3};
+  mps_body *body = NULL;
+  mps_body_def def = mps_body_defaults();
+  def.position[0] = 0.1, def.rotation[2] = 0.3;
+  mps_status status = MPS_ERROR_ARGUMENT;
+  if (which == 0) status = mps_body_create_disc(context, &def, 0.5, &body);
+  if (which == 1) status = mps_body_create_polygon(context, &def, 6, house, &body);
+  if (which == 2) status = mps_body_create_half_plane(context, &def, up, &body);
+  if (which == 3) status = mps_body_create_half_space(context, &def, up, &body);
+  if (which == 4) status = mps_body_create_sphere(context, &def, 0.5, &body);
+  if (which == 5) status = mps_body_create_revolution(context, &def, 4, pile, &body);
+  if (which == 6) status = mps_body_create_revolution(context, &def, 6, pipe, &body);
+  mps_assert_ok(context, status);
+  return body;
+}
+
+/* How the foot moves with the place along the surface: its determinant, by differences. */
+static double moved_area(const mps_body *body, int dim, const double *x, const double *n) {
+  const double eps = 1e-6;
+  double along[2][3] = {{-n[1], n[0], 0.0}}, m[2][2];
+  if (dim == 3) {
+    const double off[3] = {fabs(n[0]) < 0.7, fabs(n[0]) >= 0.7, 0.0};
+    cross(n, off, along[0]);
+    const double length = sqrt(dot(along[0], along[0]));
+    for (int c = 0; c < 3; c++) along[0][c] /= length;
+    cross(n, along[0], along[1]);
+  }
+  for (int a = 0; a < dim - 1; a++) {
+    double y[3], z[3], by[3];
+    for (int c = 0; c < 3; c++) {
+      y[c] = x[c] + eps * along[a][c];
+      z[c] = x[c] - eps * along[a][c];
+    }
+    const mpsi_foot one = mpsi_body_foot(body, y), two = mpsi_body_foot(body, z);
+    for (int c = 0; c < 3; c++) by[c] = 0.5 * (one.at[c] - two.at[c]) / eps;
+    for (int b = 0; b < dim - 1; b++) m[a][b] = dot(by, along[b]);
+  }
+  return dim == 2 ? m[0][0] : m[0][0] * m[1][1] - m[0][1] * m[1][0];
+}
+
+/* A row of soil parallel to a curved surface is longer than it: `narrowing` says by how much, and
+ * is 0 beside an edge, where the row is of no surface. */
+static void parallel_surfaces_narrow(void **state) {
+  (void)state;
+  for (int k = 0; k < 7; k++) {
+    mps_body *body = shape_of(k);
+    const int dim = mps_body_dim(body);
+    int edges = 0;
+    for (int p = 0; p < 1000; p++) {
+      const double x[3] = {uniform(-1, 1), uniform(-1, 1), dim == 3 ? uniform(-1, 1) : 0.0};
+      const mpsi_foot foot = mpsi_body_foot(body, x);
+      if (foot.distance < 1e-2) continue;
+      const double area = moved_area(body, dim, x, foot.normal);
+      mps_assert_near(foot.narrowing, area, 1e-7);
+      edges += foot.narrowing == 0.0;
+    }
+    print_message("shape %d: %d of 1000 points have their foot on an edge\n", k, edges);
+    assert_int_equal(edges > 0, k == 1 || k > 4);
+    mps_body_destroy(&body);
+  }
+}
+
 /* At the tip of a cone, and above it on the axis, the normal is the axis. */
 static void tip_of_a_cone(void **state) {
   (void)state;
@@ -397,6 +463,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(closed_forms),
       cmocka_unit_test(solids_of_revolution),
+      cmocka_unit_test(parallel_surfaces_narrow),
       cmocka_unit_test(tip_of_a_cone),
       cmocka_unit_test(overlap_in_a_plane),
       cmocka_unit_test(overlap_in_space),

@@ -4,19 +4,25 @@
  * The layer of soil next to the surface is: a particle of volume V at the distance D from the
  * surface stands for the area
  *
- *   a = V w(D),   w = 2/d (1 - D/d) up to d = 4 half sizes or a cell, whose integral is 1,
+ *   a = V J w(D),   w = t^2/d for t = D/d from 0 to 1, (1 - (t - 1)^2)/d from 1 to 2,
  *
- * in axisymmetry brought from its own radius to that of its foot. The area goes by bilinear weights
- * to the corners of the cell of the foot, and from these in equal parts to the constraints within
- * two cells whose normal impulse is positive, by cubic weights: the sum of their areas is that of
- * the surface that soil covers. Sums of a block are made apart and added to the nodes in the order
+ * d being the particles' spacing. J narrows a unit of the parallel surface through the particle to
+ * what it is on the body (mpsi_foot), in axisymmetry by the radii too. The integral of w is 1. Rows
+ * d apart sum up to 1 wherever they begin, since w(D) + w(D + d) = 1/d; where they are pressed
+ * together the sum changes with the square of the strain alone, as w' = 1/d^2 at d/2; and where no
+ * particle is nearer than g, (g/d)^3/3 of the area is lacking. Where 2 d is more than a cell h, for
+ * which tiles have no room, w = 2/h (1 - D/h), which lacks 2 g/h.
+ *
+ * The area goes by bilinear weights to the corners of the cell of the foot, and from these to the
+ * constraints within two cells, by cubic weights times their normal impulses: the sum of their
+ * areas is that of the surface that soil covers. Of constraints that share nodes only the sum of
+ * their normal impulses is determined: with equal parts one that has hardly any could not bear the
+ * shear of its part by friction. Sums of a block are made apart and added to the nodes in the order
  * of the colours; those of other ranks come with their constraints (exchange.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 
 #include <string.h>
-
-#define LAYER 4.0 /* half sizes, at most a cell: two layers of particles */
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
@@ -65,15 +71,27 @@ static mpsi_area *area_under(const mps_mpm *mpm, const mpsi_cell_block *cells, c
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static double layer_of(const mps_mpm *mpm, const mps_contact *contact) {
-  return fmin(LAYER * contact->def.offset, mpm->def.cell);
+/* m: between rows of particles; how far from the surface they stand for a part of it. */
+typedef struct layer {
+  double row, reach;
+} layer;
+
+static layer find_layer(const mps_mpm *mpm) {
+  const double row = mps_particles_spacing(mpm->particles);
+  return (layer){row, fmin(2.0 * row, mpm->def.cell)};
 }
 
-static double area_of(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
-                      const mpsi_foot *foot) {
-  const double deep = layer_of(mpm, contact), distance = fmax(0.0, foot->distance);
-  if (!(distance < deep)) return 0.0;
-  const double area = mpm->p.V[k] * 2.0 / deep * (1.0 - distance / deep);
+/* 1/m: w at the distance D (m) below the reach. */
+static double weight_at(layer l, double distance) {
+  const double t = fmax(0.0, distance) / l.row;
+  if (l.reach < 2.0 * l.row * (1.0 - 1e-9))
+    return 2.0 / l.reach * (1.0 - fmax(0.0, distance) / l.reach);
+  return (t < 1.0 ? t * t : t * (2.0 - t)) / l.row;
+}
+
+static double area_of(const mps_mpm *mpm, layer l, int64_t k, const mpsi_foot *foot) {
+  if (!(foot->distance < l.reach)) return 0.0;
+  const double area = mpm->p.V[k] * foot->narrowing * weight_at(l, foot->distance);
   return mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k] : area;
 }
 
@@ -81,6 +99,7 @@ static double area_of(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
 bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile) {
   const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
   const mps_contact *contact = mpm->contact.handle[pair->body];
+  const layer l = find_layer(mpm);
   double known[3] = {0.0}, distance = -1.0;
   bool any = false;
   if (!mpsi_has_strength(contact)) return false;
@@ -91,12 +110,12 @@ bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *
       x[c] = mpm->p.x[c][k];
       square += (x[c] - known[c]) * (x[c] - known[c]);
     }
-    const double slack = distance - layer_of(mpm, contact);
+    const double slack = distance - l.reach;
     if (slack > 0.0 && square < slack * slack) continue;
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
     memcpy(known, x, sizeof known);
     distance = foot.distance;
-    const double area = area_of(mpm, contact, k, &foot);
+    const double area = area_of(mpm, l, k, &foot);
     if (!(area > 0.0)) continue;
     const around corners = find_around(mpm, cells->at, foot.at, 2);
     for (int n = 0; n < nodes_around(mpm, 2); n++) {
@@ -127,10 +146,6 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
 }
 
 /* ---- constraints ----------------------------------------------------------------------------- */
-
-static bool is_pressed(const mpsi_constraint *constraint) {
-  return constraint->impulse.normal_impulse > 0.0;
-}
 
 /* The nodes around the feet of a block's constraints. */
 static void surround_block(void *data, int64_t unit, int32_t worker) {
@@ -163,12 +178,12 @@ static void count_block(void *data, int64_t unit, int32_t worker) {
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
-    if (!is_pressed(&all->constraint[n])) continue;
-    for (int q = 0; q < all->constraint[n].areas; q++) at[q].node->constraints += at[q].weight;
+    const double normal = all->constraint[n].impulse.normal_impulse;
+    for (int q = 0; q < all->constraint[n].areas && normal > 0.0; q++)
+      at[q].node->normal += at[q].weight * normal;
   }
 }
 
-/* One that was not counted takes the share of one that was. */
 static void share_block(void *data, int64_t unit, int32_t worker) {
   mps_mpm *mpm = data;
   const mpsi_impulses *all = &mpm->contact.impulses;
@@ -181,8 +196,9 @@ static void share_block(void *data, int64_t unit, int32_t worker) {
     double area = 0.0;
     if (!mpsi_has_strength(mpm->contact.handle[constraint->body])) continue;
     for (int q = 0; q < constraint->areas; q++)
-      area += at[q].weight * at[q].node->area /
-              fmax(at[q].node->constraints, is_pressed(constraint) ? 0.0 : 1.0);
+      if (at[q].node->normal > 0.0)
+        area += at[q].weight * constraint->impulse.normal_impulse * at[q].node->area /
+                at[q].node->normal;
     constraint->impulse.adhesion = mpm->run.dt * area * def->adhesion;
     if (!isnan(def->strength)) constraint->impulse.strength = mpm->run.dt * area * def->strength;
   }
@@ -226,7 +242,7 @@ void mpsi_mpm_distribute_areas(mps_mpm *mpm) {
   if (!all->areas) return;
   for (int64_t n = 0; n < all->constraint_count; n++)
     for (int32_t q = 0; q < all->constraint[n].areas; q++)
-      all->around[n * nodes_around(mpm, 4) + q].node->constraints = 0.0;
+      all->around[n * nodes_around(mpm, 4) + q].node->normal = 0.0;
   for (int k = 0; k < MPSI_CORNERS; k++) {
     all->area_first = all->colour[k];
     mpsi_parallel_for(mpm->context, all->colour[k + 1] - all->area_first, count_block, mpm);

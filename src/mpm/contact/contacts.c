@@ -92,6 +92,17 @@ mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_c
   return status;
 }
 
+/* See area.c. */
+static void warn_of_areas(mps_mpm *mpm, const mps_contact *contact) {
+  const double spacing = mps_particles_spacing(mpm->particles);
+  if (!mpsi_has_strength(contact) || 2.0 * spacing <= mpm->def.cell * (1.0 + 1e-9)) return;
+  mpsi_log(
+      mpm->context, MPS_LOG_WARNING,
+      "body %d bears shear by strength or adhesion, and the particles' spacing of %.4g m is more "
+      "than half a cell, %.4g m: on curved surfaces that is a fifth too little",
+      mpm->contact.bodies, spacing, 0.5 * mpm->def.cell);
+}
+
 /* All ranks make the same contact with the same body. */
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 const mps_contact *contact) {
@@ -163,8 +174,8 @@ static void end(void *owner, mps_contact *contact) {
  * receives force and depth, `foot` and `half` where and from which half size (m) its gap counts. By
  * impulses: one that the body has pushed in the last step. */
 static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
-                        int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
-                        double *half) {
+                          int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
+                          double *half) {
   *half = contact->def.offset;
   if (!mpsi_by_impulses(contact)) {
     if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
@@ -257,6 +268,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
     give_up(contact);
     return status;
   }
+  warn_of_areas(mpm, contact);
   mpsi_contact_join(contact);
   mpm->contact.handle[mpm->contact.bodies] = contact;
   mpm->contact.body[mpm->contact.bodies++] = body;

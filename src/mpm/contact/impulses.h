@@ -42,11 +42,11 @@ typedef struct mpsi_warm_impulse {
   double by[3]; /* N s */
 } mpsi_warm_impulse;
 
-/* At a node, for one body: the area that soil covers, and the constraints that bear it (area.c).
- */
+/* At a node, for one body: the area that soil covers, and the normal impulses of the constraints
+ * that bear it (area.c). */
 typedef struct mpsi_area {
-  double area; /* m2, of the measure */
-  double constraints;
+  double area;   /* m2, of the measure */
+  double normal; /* N s, weighted */
 } mpsi_area;
 typedef struct mpsi_area_share {
   mpsi_area *node;
