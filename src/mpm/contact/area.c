@@ -74,7 +74,8 @@ static double area_of(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
   const double deep = layer_of(mpm, contact), distance = fmax(0.0, foot->distance);
   if (!(distance < deep)) return 0.0;
   const double area = mpm->p.V[k] * 2.0 / deep * (1.0 - distance / deep);
-  return mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k] : area;
+  return mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k]
+                                                            : area;
 }
 
 /* Distances change no faster than places: see constraints.c. */

@@ -62,7 +62,7 @@ static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contac
                      "through it; use a cell of at most %.4g m, a thicker wall, or allow it with "
                      "thin = 1",
                      wall, cells, MPSI_THIN_CELLS, wall / MPSI_THIN_CELLS);
-  mpsi_log(mpm->context, MPS_LOG_WARNING,
+  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
            "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it",
            mpm->contact.bodies, wall, cells, MPSI_THIN_CELLS);
   return MPS_OK;
@@ -163,8 +163,8 @@ static void end(void *owner, mps_contact *contact) {
  * receives force and depth, `foot` and `half` where and from which half size (m) its gap counts. By
  * impulses: one that the body has pushed in the last step. */
 static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
-                        int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
-                        double *half) {
+                          int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
+                          double *half) {
   *half = contact->def.offset;
   if (!mpsi_by_impulses(contact)) {
     if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
