@@ -31,11 +31,11 @@ static mps_status begin(mps_context *context, mps_domain *domain, const model *m
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {side, side, side};
   def.dim = m->dim, def.spacing = 1.0;
   solver.cell = 2.0, solver.domain = domain;
-  solver.geometry = m->dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  solver.geometry = m->dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   mps_status status = mps_domain_create_particles(domain, &def, &set);
   if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(set, "density", 0, 1900.0);
-  if (status == MPS_OK) status = mps_material_linear_elastic(context, 6e7, 0.3, &material);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(context, 6e7, 0.3, &material);
   status = mps_domain_agree(domain, status);
   if (status == MPS_OK) status = mps_mpm_create(context, set, material, &solver, &mpm);
   if (status == MPS_OK) status = mps_mpm_step(mpm, 1);
@@ -49,7 +49,7 @@ static void run(void *user, team *t, int32_t rank) {
   mps_domain *domain = NULL;
   mps_context_def def = mps_context_defaults();
   const mps_domain_def domain_def = team_domain_def(t, rank);
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   peak_use(&def, &m->memory[rank]);
   mps_status status = mps_context_create(&def, &context, NULL, 0);
   if (status == MPS_OK) status = mps_domain_create(context, &domain_def, &domain);

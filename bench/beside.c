@@ -37,7 +37,7 @@ static void make_ground(int32_t executor, int32_t threads, int64_t particles, gr
   check(g->context, mps_particles_create(g->context, &set, &block), "particles");
   check(g->context, mps_particles_fill_box(block, low, high, NULL), "fill");
   check(g->context, mps_particles_set(block, "density", 0, 1600.0), "density");
-  check(g->context, mps_material_linear_elastic(g->context, 1e7, 0.3, &soil), "material");
+  check(g->context, mps_material_create_linear_elastic(g->context, 1e7, 0.3, &soil), "material");
   def.cell = 1.0;
   def.gravity[1] = -9.81;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c == 0 ? side : 2.0 * side;
@@ -80,7 +80,7 @@ int main(int argc, char **argv) {
     return 2;
   }
   static const char *name[] = {"openmp", "threads"};
-  static const int32_t executor[] = {MPS_EXECUTOR_OPENMP, MPS_EXECUTOR_THREADS};
+  static const int32_t executor[] = {MPS_CONTEXT_EXECUTOR_OPENMP, MPS_CONTEXT_EXECUTOR_THREADS};
   const int64_t steps = 1 + 20000000 / (2 * particles) / 10 * 10 / 2;
   printf("# executor, ms a step by one thread and by two: wall, processors; two over one\n");
   for (int e = 0; e < 2; e++) {

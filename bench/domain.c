@@ -86,10 +86,11 @@ static void make_dynamics(body *b, mps_domain *domain) {
 static void make_mpm(body *b, mps_domain *domain) {
   mps_mpm_def solver = mps_mpm_defaults();
   solver.cell = 1.0;
-  solver.geometry = mps_particles_dim(b->set) == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  solver.geometry =
+      mps_particles_dim(b->set) == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   solver.domain = domain;
   check(b->context, mps_particles_set(b->set, "velocity", 0, 20.0), "velocity");
-  check(b->context, mps_material_linear_elastic(b->context, 6e7, 0.3, &b->material), "law");
+  check(b->context, mps_material_create_linear_elastic(b->context, 6e7, 0.3, &b->material), "law");
   check(b->context, mps_mpm_create(b->context, b->set, b->material, &solver, &b->mpm), "solver");
 }
 
@@ -247,7 +248,7 @@ int main(int argc, char **argv) {
   mps_context *context = NULL;
   mps_domain *domain = NULL;
   if (steps < TURN || steps > MOST_STEPS) steps = 600;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   check(NULL, mps_context_create(&def, &context, NULL, 0), "context");
   check(context, mps_petsc_domain_create_world(context, &domain), "domain");
   const int32_t ranks = mps_domain_size(domain);

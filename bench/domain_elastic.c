@@ -70,12 +70,12 @@ int main(int argc, char **argv) {
   mps_petsc_solver *solver = NULL;
   mps_context_def def = mps_context_defaults();
   mps_elastic_report report;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   check(NULL, mps_context_create(&def, &p.context, NULL, 0), "context");
   check(p.context, mps_petsc_domain_create_world(p.context, &p.domain), "domain");
   check(p.context,
-        mps_petsc_solver_create_world(p.context, direct ? MPS_PETSC_DIRECT : MPS_PETSC_MULTIGRID,
-                                      &solver),
+        mps_petsc_solver_create_world(
+            p.context, direct ? MPS_PETSC_METHOD_DIRECT : MPS_PETSC_METHOD_MULTIGRID, &solver),
         "solver");
   double most[6] = {peak_memory()};
   double start = seconds();

@@ -30,7 +30,7 @@ static contender contender_create(int64_t columns, int64_t rows, int threads, do
   mps_context_def context_def = mps_context_defaults();
   context_def.threads = threads;
   context_def.instruction_level = isa;
-  if (threads == 1) context_def.executor = MPS_EXECUTOR_SERIAL;
+  if (threads == 1) context_def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   check(NULL, mps_context_create(&context_def, &c.context, text, sizeof text), text);
   mps_particles_def set = mps_particles_defaults();
   set.spacing = 1.0;

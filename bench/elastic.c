@@ -125,7 +125,7 @@ int main(int argc, char **argv) {
   const double plane = argc > 1 ? atof(argv[1]) : 1e6, solid = argc > 2 ? atof(argv[2]) : 1e5;
   const int threads = argc > 3 ? atoi(argv[3]) : 0;
   const double smallest = argc > 4 ? atof(argv[4]) : 1e3;
-  const int solver = argc > 5 ? atoi(argv[5]) : MPS_ELASTIC_AUTO;
+  const int solver = argc > 5 ? atoi(argv[5]) : MPS_ELASTIC_SOLVER_AUTO;
   printf("%3s %9s %8s %8s %7s %7s %7s %8s %8s %8s %8s %8s %8s %6s %6s %6s %6s\n", "", "unknowns",
          "nnz(L)", "flops", "L MB", "CHOLMOD", "own MB", "create", "assemble", "analyse", "factor",
          "solve", "total s", "asm %", "nnz~N^", "flop~", "time~");

@@ -58,7 +58,8 @@ static void solve_by_multigrid(mps_context *context, mps_fluid *fluid, int64_t l
   if (least <= 0 || mps_particles_count(mps_fluid_particles(fluid)) < least) return;
 #ifdef BENCH_PETSC
   mps_petsc_solver *solver = NULL; /* to the end of the program */
-  check(context, mps_petsc_solver_create(context, MPS_PETSC_MULTIGRID, &solver), "multigrid");
+  check(context, mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &solver),
+        "multigrid");
   check(context, mps_petsc_solve_fluid(solver, fluid, least), "multigrid");
 #else
   (void)context, (void)fluid;
@@ -88,7 +89,7 @@ static result measure(int64_t rows, int64_t steps, int32_t threads, bool classic
   def.dt = 0.04 * sqrt(set.spacing / 9.81);
   def.level = 0.3;
   check(context, mps_fluid_create(context, water, &def, &fluid), "fluid");
-  check(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston), "signal");
+  check(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston), "signal");
   add_wall(context, fluid, 0.0, 1, 1.0, NULL);
   add_wall(context, fluid, 0.0, 0, 1.0, piston);
   add_wall(context, fluid, length, 0, -1.0, NULL);

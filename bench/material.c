@@ -28,20 +28,20 @@ static void check(mps_context *context, mps_status status) {
 
 static mps_material *make(mps_context *context, int law) {
   mps_material *material = NULL;
-  mps_von_mises_def mises = mps_von_mises_defaults();
-  mps_drucker_prager_def cone = mps_drucker_prager_defaults();
-  mps_mohr_coulomb_def pyramid = mps_mohr_coulomb_defaults();
-  mps_newtonian_def fluid = mps_newtonian_defaults();
+  mps_material_von_mises_def mises = mps_material_von_mises_defaults();
+  mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
+  mps_material_mohr_coulomb_def pyramid = mps_material_mohr_coulomb_defaults();
+  mps_material_newtonian_def fluid = mps_material_newtonian_defaults();
   mises.young = cone.young = pyramid.young = 1e6;
   mises.yield_stress = 1e3, mises.hardening = 1e5;
   cone.friction = pyramid.friction = 0.6, cone.cohesion = pyramid.cohesion = 100.0;
   fluid.bulk_modulus = 1e6, fluid.viscosity = 1.0;
-  if (law == 0) check(context, mps_material_linear_elastic(context, 1e6, 0.3, &material));
-  if (law == 1) check(context, mps_material_von_mises(context, &mises, &material));
-  if (law == 2) check(context, mps_material_drucker_prager(context, &cone, &material));
-  if (law == 3) check(context, mps_material_mohr_coulomb(context, &pyramid, &material));
-  if (law == 4) check(context, mps_material_neo_hookean(context, 1e6, 0.3, &material));
-  if (law == 5) check(context, mps_material_newtonian(context, &fluid, &material));
+  if (law == 0) check(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
+  if (law == 1) check(context, mps_material_create_von_mises(context, &mises, &material));
+  if (law == 2) check(context, mps_material_create_drucker_prager(context, &cone, &material));
+  if (law == 3) check(context, mps_material_create_mohr_coulomb(context, &pyramid, &material));
+  if (law == 4) check(context, mps_material_create_neo_hookean(context, 1e6, 0.3, &material));
+  if (law == 5) check(context, mps_material_create_newtonian(context, &fluid, &material));
   return material;
 }
 
@@ -92,7 +92,7 @@ static double run(mps_context *context, const mps_material *material, int32_t di
     check(context, mps_material_update(context, material, &block[step % 2]));
   const double spent = seconds() - start;
   int count = 0;
-  for (int k = 0; k < BLOCK; k++) count += (c->flags[k] & MPS_MATERIAL_PLASTIC) != 0;
+  for (int k = 0; k < BLOCK; k++) count += (c->flags[k] & MPS_MATERIAL_FLAG_PLASTIC) != 0;
   *plastic = (double)count / BLOCK;
   return 1e9 * spent / ((double)BLOCK * REPEATS);
 }
@@ -100,7 +100,7 @@ static double run(mps_context *context, const mps_material *material, int32_t di
 int main(void) {
   mps_context *context = NULL;
   mps_context_def def = mps_context_defaults();
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return 1;
   static columns c;
   printf("%-16s %22s %22s\n", "ns/particle", "plane strain (yield)", "3D (yield)");

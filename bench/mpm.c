@@ -1,5 +1,5 @@
-/* create.c - benchmark of the WLS-MPM step: ns per particle-step of the library beside the anchor of
- * mpm_anchor.h, a bare step of the same equations for full supports. All contenders are timed in
+/* create.c - benchmark of the WLS-MPM step: ns per particle-step of the library beside the anchor
+ * of mpm_anchor.h, a bare step of the same equations for full supports. All contenders are timed in
  * turn, in rounds, in one process; minima are compared, so that the ratios hold when the machine's
  * speed drifts.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -105,12 +105,13 @@ typedef struct contender {
 /* Drucker-Prager of the waves' order of stress, so that particles yield in part. */
 static mps_material *make_material(mps_context *context, kind k) {
   mps_material *material = NULL;
-  mps_drucker_prager_def cone = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
   cone.young = YOUNG, cone.poisson = POISSON, cone.friction = 0.5, cone.cohesion = 500.0;
   if (k == DRUCKER_PRAGER)
-    check(context, mps_material_drucker_prager(context, &cone, &material), "material");
+    check(context, mps_material_create_drucker_prager(context, &cone, &material), "material");
   else
-    check(context, mps_material_linear_elastic(context, YOUNG, POISSON, &material), "material");
+    check(context, mps_material_create_linear_elastic(context, YOUNG, POISSON, &material),
+          "material");
   return material;
 }
 
@@ -170,13 +171,13 @@ static contender contender_create(int dim, int spline, kind k, int64_t side) {
   char text[256] = "";
   mps_context_def context_def = mps_context_defaults();
   context_def.threads = k == TWO_THREADS ? 2 : 1;
-  if (k != TWO_THREADS) context_def.executor = MPS_EXECUTOR_SERIAL;
+  if (k != TWO_THREADS) context_def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   check(NULL, mps_context_create(&context_def, &c.context, text, sizeof text), text);
   c.material = make_material(c.context, k);
   fill(&c, dim, k, side);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 1.0;
-  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.spline = spline;
   if (k == MIXED) /* 2D: four walls and the body; 3D: a floor. Either way about 5 % at 1e5 */
     for (size_t d = 0; d < sizeof def.lower / sizeof *def.lower && (int)d < dim; d++) {
@@ -203,8 +204,8 @@ static void contender_destroy(contender *c) {
 static double particle_bytes(contender *c) {
   double bytes = 0.0;
   for (int32_t f = 0; f < mps_particles_field_count(c->particles); f++) {
-    mps_field_info info;
-    check(c->context, mps_particles_field(c->particles, f, &info), "field");
+    mps_particles_field_info info;
+    check(c->context, mps_particles_get_field_info(c->particles, f, &info), "field");
     bytes += 8.0 * info.components;
   }
   return bytes;

@@ -104,7 +104,7 @@ static mps_status fill(mps_context *context, const settings *s, const column_cas
 static mps_status build_case(simulation *sim, const column_case *c) {
   const settings *s = &sim->s;
   mpm_model *m = &sim->m;
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = s->cone;
   law.young = s->young, law.poisson = s->poisson;
   law.friction = c->phi * PI / 180.0;
@@ -117,7 +117,8 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   if (!isnan(s->bed_friction)) def.lower[1] = -4.0 * s->h; /* room below the rigid bed */
   def.gravity[1] = -G;
   mps_status status = fill(sim->context, s, c, m);
-  if (status == MPS_OK) status = mps_material_drucker_prager(sim->context, &law, &m->material);
+  if (status == MPS_OK)
+    status = mps_material_create_drucker_prager(sim->context, &law, &m->material);
   const double up[2] = {0.0, 1.0};
   if (status == MPS_OK && !isnan(s->bed_friction))
     status = mps_body_create_half_plane(sim->context, NULL, up, &m->body[0]);

@@ -106,7 +106,7 @@ static mps_status fill(mps_context *context, const settings *s, simulation *sim)
 
 mps_status dam_mpm_build(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
-  mps_newtonian_def law = mps_newtonian_defaults();
+  mps_material_newtonian_def law = mps_material_newtonian_defaults();
   law.state = s->state;
   law.bulk_modulus = DENSITY * speed_of_sound(s) * speed_of_sound(s);
   law.viscosity = s->viscosity;
@@ -119,7 +119,7 @@ mps_status dam_mpm_build(mps_context *context, simulation *sim) {
   def.upper[0] = s->rest ? s->base : s->tank * s->base;
   def.gravity[1] = -G;
   mps_status status = fill(context, s, sim);
-  if (status == MPS_OK) status = mps_material_newtonian(context, &law, &sim->m.material);
+  if (status == MPS_OK) status = mps_material_create_newtonian(context, &law, &sim->m.material);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK) status = mps_experimental_mpm_transfer(sim->m.mpm, s->transfer);
   if (status == MPS_OK && s->bed == NO_SLIP)

@@ -158,7 +158,7 @@ static mps_status build(mps_context *context, void *user) {
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = make_particles(context, s, sim);
   if (status == MPS_OK)
-    status = mps_material_linear_elastic(context, s->young, s->poisson, &sim->m.material);
+    status = mps_material_create_linear_elastic(context, s->young, s->poisson, &sim->m.material);
   if (status == MPS_OK) status = make_rigid(context, s, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->body != BODY_SLOPE)

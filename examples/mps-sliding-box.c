@@ -53,7 +53,7 @@ static double confined_modulus(const settings *s) {
 static mps_status stroke(mps_context *context, double start, mps_signal **out) {
   const double t[] = {start, start + RAMP, start + STROKE - RAMP, start + STROKE};
   const double v[] = {0.0, SPEED, SPEED, 0.0};
-  return mps_signal_table(context, MPS_SIGNAL_VELOCITY, 4, t, v, out);
+  return mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 4, t, v, out);
 }
 
 /* A vector of the upright block as it lies in the grid. */
@@ -153,7 +153,7 @@ static mps_status build(mps_context *context, void *user) {
   if (status == MPS_OK) status = fill(context, s, &sim->m.particles);
   if (status == MPS_OK) status = mps_particles_set(sim->m.particles, "density", 0, s->density);
   if (status == MPS_OK)
-    status = mps_material_linear_elastic(context, s->young, s->poisson, &sim->m.material);
+    status = mps_material_create_linear_elastic(context, s->young, s->poisson, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
   def.spline = s->spline + 2;

@@ -158,7 +158,7 @@ typedef struct bisection_bar {
   double runs; /* expected */
 } bisection_bar;
 
-static void draw_bisection(void *user, const mps_progress *p) {
+static void draw_bisection(void *user, const mps_context_progress *p) {
   const bisection_bar *b = user;
   char text[32];
   snprintf(text, sizeof text, "run %lld", (long long)p->step);

@@ -118,13 +118,14 @@ CALL(dynamics_save, mps_dynamics_save(s->dynamics, nowhere, NULL))
 CALL(dynamics_restore, mps_dynamics_restore(s->dynamics, nowhere, NULL))
 
 CALL(elastic_solve, mps_elastic_solve(s->elastic))
-CALL(elastic_stress, mps_elastic_stress(s->elastic))
-CALL(elastic_energy, mps_elastic_energy(s->elastic, &(double){0.0}, NULL))
-CALL(elastic_section, mps_elastic_section(s->elastic, 0, 0.2, NULL, (double[3]){0.0}, NULL))
+CALL(elastic_stress, mps_elastic_update_stress(s->elastic))
+CALL(elastic_energy, mps_elastic_get_energy(s->elastic, &(double){0.0}, NULL))
+CALL(elastic_section, mps_elastic_get_section(s->elastic, 0, 0.2, NULL, (double[3]){0.0}, NULL))
 CALL(elastic_start, mps_elastic_start(s->elastic, NULL))
 CALL(elastic_step, mps_elastic_step(s->elastic, 1))
 CALL(elastic_run, mps_elastic_run(s->elastic, 1.0, 5, NULL, NULL))
-CALL(elastic_load_resultant, mps_elastic_load_resultant(s->elastic, NULL, (double[3]){0.0}, NULL))
+CALL(elastic_load_resultant,
+     mps_elastic_get_load_resultant(s->elastic, NULL, (double[3]){0.0}, NULL))
 CALL(elastic_add_boundary, mps_elastic_add_boundary(s->elastic, NULL, NULL))
 CALL(elastic_remove_boundary, mps_elastic_remove_boundary(s->elastic, 0))
 CALL(elastic_add_load, mps_elastic_add_load(s->elastic, NULL, NULL))
@@ -283,7 +284,7 @@ static inline mps_status make_solvers(subject *s) {
   mps_dynamics_def def = mps_dynamics_defaults();
   mps_elastic_def body = mps_elastic_defaults();
   mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
-  mps_status status = mps_material_linear_elastic(s->own, 1e6, 0.3, &s->material);
+  mps_status status = mps_material_create_linear_elastic(s->own, 1e6, 0.3, &s->material);
   TRY(make_mpm_and_fluid(s));
   def.domain = body.domain = s->domain;
   def.material = body.material = s->material;

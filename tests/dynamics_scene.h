@@ -91,7 +91,7 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
                                         mps_dynamics *dynamics, int what, int32_t *base) {
   mps_signal *signal = NULL;
   int32_t number;
-  mps_status status = mps_signal_user(own, ramp, NULL, &signal);
+  mps_status status = mps_signal_create_user(own, ramp, NULL, &signal);
   if (domain) status = mps_domain_agree(domain, status);
   mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
   boundary.lower[0] = boundary.lower[1] = -INFINITY;

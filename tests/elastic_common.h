@@ -86,7 +86,7 @@ static inline mps_status test_pressure(mps_elastic *e, int64_t count, const int6
   return mps_elastic_add_load(e, &def, NULL);
 }
 static inline mps_status test_traction_fn(mps_elastic *e, int64_t count, const int64_t *facets,
-                                          mps_traction_fn function, void *user) {
+                                          mps_elastic_traction_fn function, void *user) {
   mps_elastic_load_def def = mps_elastic_load_defaults();
   def.kind = MPS_ELASTIC_LOAD_FUNCTION;
   def.ids = facets;
@@ -268,7 +268,7 @@ static inline test_body cantilever_make(mps_context *context, cantilever *c, int
                                         const mps_elastic_def *def, test_method method) {
   const double spacing = c->height / ny;
   c->length = (nx - 0.5) * spacing;
-  const int strain = def->state == MPS_ELASTIC_PLANE_STRAIN;
+  const int strain = def->state == MPS_ELASTIC_STATE_PLANE_STRAIN;
   c->young = strain ? 1.0 / (1.0 - c->nu * c->nu) : 1.0;
   c->poisson = strain ? c->nu / (1.0 - c->nu) : c->nu;
   test_body b = {.context = context, .dim = 2};

@@ -43,7 +43,7 @@ static inline void cantilever_hold(mps_context *c, cantilever *w) {
   const double low[2] = {-9.0, -1e-6}, high[2] = {9.0, 1e-6};
   mps_elastic_def def = mps_elastic_defaults();
   mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
-  def.state = MPS_ELASTIC_PLANE_STRAIN;
+  def.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
   mps_assert_ok(c, mps_elastic_create(c, w->wall, &def, &w->elastic));
   mps_assert_ok(c, mps_particles_select_box(w->wall, low, high, ROOM, ids, &count));
   mps_assert_ok(c, mps_elastic_cut(w->elastic, 1, -1, count, ids));

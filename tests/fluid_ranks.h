@@ -45,7 +45,7 @@ static inline mps_domain *def_domain(const scene *s) {
 }
 
 static inline mps_status add_float(mps_context *own, scene *s) {
-  mps_status status = mps_signal_sine(own, 1.0, 0.3, 0.0, &s->piston);
+  mps_status status = mps_signal_create_sine(own, 1.0, 0.3, 0.0, &s->piston);
   mps_domain *domain = def_domain(s);
   mps_body_def body = mps_body_defaults();
   const double xy[] = {-0.2, -0.1, 0.2, -0.1, 0.2, 0.1, -0.2, 0.1};

@@ -40,7 +40,7 @@ static inline void held_load(mpm_scene *s, mps_signal *signal, int32_t *loads) {
 static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def *from, int32_t *box,
                                         int32_t *loads) {
   const int32_t geometry = from->geometry;
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double lo[] = {0.1, 0.0, 0.0}, hi[] = {dim == 3 ? 0.42 : 0.9, dim == 3 ? 0.16 : 0.4, 0.08};
   const double v0[] = {0.02, -0.03, 0.01};
   const double plane[] = {0.05, -0.3, 0.2, -0.05};
@@ -62,7 +62,7 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   def.gravity[0] = 1.0, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, 20.0, 0.0005, 0.3, &signal));
+  mps_assert_ok(context, mps_signal_create_sine(context, 20.0, 0.0005, 0.3, &signal));
   for (int c = 0; c < dim; c += 2) {
     mpm_scene_side(&s, 2 * c, MPS_MPM_BOUNDARY_FRICTIONAL, 0.3);
     mpm_scene_side(&s, 2 * c + 1, MPS_MPM_BOUNDARY_ABSORBING, 0.0);

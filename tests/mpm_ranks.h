@@ -59,9 +59,9 @@ static inline mps_status make_set(mps_context *own, mps_domain *domain, int what
 
 /* Plastic in part of it. */
 static inline mps_status add_soil(mps_context *own, mps_domain *domain, scene *s) {
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.young = 2e6, law.poisson = 0.25, law.friction = 0.5, law.cohesion = 2e3;
-  mps_status status = mps_material_drucker_prager(own, &law, &s->material[1]);
+  mps_status status = mps_material_create_drucker_prager(own, &law, &s->material[1]);
   int64_t ids[900];
   for (int64_t k = 0; k < 900; k++) ids[k] = 100 + k;
   if (domain) status = mps_domain_agree(domain, status);
@@ -82,7 +82,7 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain, in
   const int64_t ids[5] = {7, 1203, 44, 900, 1101}, loaded[4] = {350, 351, 352, 1190};
   mps_signal *signal = NULL;
   int32_t number;
-  mps_status status = mps_signal_user(own, swing, NULL, &signal);
+  mps_status status = mps_signal_create_user(own, swing, NULL, &signal);
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.3));
   TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER,
@@ -117,9 +117,9 @@ static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   mps_mpm_def def = mps_mpm_defaults();
   def.domain = domain;
   const bool space = dim_of(what) == 3;
-  def.geometry = what == RING || what == CONE ? MPS_MPM_AXISYMMETRIC
-                 : space                      ? MPS_MPM_SPACE
-                                              : MPS_MPM_PLANE_STRAIN;
+  def.geometry = what == RING || what == CONE ? MPS_MPM_GEOMETRY_AXISYMMETRIC
+                 : space                      ? MPS_MPM_GEOMETRY_SPACE
+                                              : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.spline = space ? 2 : 3;
   def.cell = space ? 0.08 : what == WIDE ? 0.02 : 0.04;
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
@@ -196,7 +196,7 @@ static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int wh
 static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
   const mps_mpm_def def = scene_def(domain, what);
   mps_status status = make_set(own, RANKS_IN_PARTS ? domain : NULL, what, &s->set);
-  TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s->material[0]));
+  TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
   if (status == MPS_OK && what != SLIDE && what < PRESS)

@@ -23,7 +23,7 @@ static inline mpm_scene mpm_scene_begin_in(mps_context *context, int32_t dim, do
   def.spacing = spacing;
   def.origin[0] = x, def.origin[1] = y;
   mps_assert_ok(context, mps_particles_create(context, &def, &s.particles));
-  mps_assert_ok(context, mps_material_linear_elastic(context, young, 0.3, &s.material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, young, 0.3, &s.material));
   return s;
 }
 

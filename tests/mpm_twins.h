@@ -27,11 +27,11 @@ typedef struct change {
 static const change none = {.spacing = 0.01, .cell = 0.02, .bodies = BODIES};
 
 static inline mps_status make_material(mps_context *context, const change *c, mps_material **out) {
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.young = 1e6, law.poisson = 0.3;
   law.friction = 0.5, law.cohesion = 200.0;
-  if (c->elastic) return mps_material_linear_elastic(context, 1e6, 0.3, out);
-  return mps_material_drucker_prager(context, &law, out);
+  if (c->elastic) return mps_material_create_linear_elastic(context, 1e6, 0.3, out);
+  return mps_material_create_drucker_prager(context, &law, out);
 }
 
 static inline mps_status make_free_body(mps_context *context, int32_t dim, mps_body **out) {
@@ -55,7 +55,8 @@ static inline mps_status make_driven_body(mps_context *context, int32_t dim, con
   mps_signal *rise = NULL;
   mps_body_def def = mps_body_defaults();
   def.position[1] = dim == 3 ? 0.075 : 0.05;
-  mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &rise);
+  mps_status status =
+      mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &rise);
   if (status != MPS_OK) return status;
   status = dim == 3        ? mps_body_create_half_space(context, &def, up, out)
            : c->half_plane ? mps_body_create_disc(context, &def, 0.05, out)
@@ -84,7 +85,7 @@ static inline mps_status make_set(mps_context *context, int32_t dim, const chang
 
 static inline mps_status try_build(mps_context *context, int32_t geometry, const change *c,
                                    scene *out) {
-  const int32_t dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int32_t dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   *out = (scene){.s = {.context = context}};
   mpm_scene *s = &out->s;
   mps_mpm_def def = mps_mpm_defaults();
@@ -122,11 +123,11 @@ static inline scene build(mps_context *context, int32_t geometry, const change *
 /* ---- comparing ------------------------------------------------------------------------------- */
 
 static inline void same_fields(scene *a, scene *b) {
-  mps_field_info info;
+  mps_particles_field_info info;
   assert_int_equal(mps_particles_field_count(a->s.particles),
                    mps_particles_field_count(b->s.particles));
   for (int32_t f = 0; f < mps_particles_field_count(a->s.particles); f++) {
-    mps_assert_ok(a->s.context, mps_particles_field(a->s.particles, f, &info));
+    mps_assert_ok(a->s.context, mps_particles_get_field_info(a->s.particles, f, &info));
     mps_view va = mpm_scene_view(&a->s, info.name), vb = mpm_scene_view(&b->s, info.name);
     for (int64_t c = 0; c < va.shape[1]; c++)
       for (int64_t k = 0; k < va.shape[0]; k++)

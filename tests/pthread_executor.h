@@ -13,7 +13,7 @@
 #define PTHREAD_EXECUTOR_MAX 16
 
 typedef struct pthread_executor_job {
-  mps_task_fn task;
+  mps_context_task_fn task;
   void *data;
   int64_t count;
   _Atomic int64_t next;    /* the next unit nobody has taken */
@@ -32,8 +32,9 @@ static void *pthread_executor_worker(void *argument) {
   return NULL;
 }
 
-/* An mps_parallel_for_fn; `user` is the address of the number of threads (int32_t). */
-static inline void pthread_executor(void *user, int64_t count, mps_task_fn task, void *data) {
+/* An mps_context_parallel_for_fn; `user` is the address of the number of threads (int32_t). */
+static inline void pthread_executor(void *user, int64_t count, mps_context_task_fn task,
+                                    void *data) {
   const int32_t threads = *(const int32_t *)user;
   pthread_executor_job job = {.task = task, .data = data, .count = count};
   pthread_t ids[PTHREAD_EXECUTOR_MAX];
@@ -46,7 +47,7 @@ static inline void pthread_executor(void *user, int64_t count, mps_task_fn task,
 /* A definition that uses it; *threads (1..16) must outlive the context. */
 static inline mps_context_def pthread_executor_def(int32_t *threads) {
   mps_context_def def = test_context_defaults();
-  def.executor = MPS_EXECUTOR_CALLER;
+  def.executor = MPS_CONTEXT_EXECUTOR_CALLER;
   def.threads = *threads;
   def.parallel_for = pthread_executor;
   def.parallel_user = threads;

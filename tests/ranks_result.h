@@ -48,8 +48,8 @@ static inline mps_status keep(mps_particles *set, result *r) {
   const int32_t fields = mps_particles_field_count(set);
   if (fields > RESULT_FIELDS) return MPS_ERROR_INTERNAL;
   for (int32_t f = 0; f < fields; f++) {
-    mps_field_info info;
-    TRY(mps_particles_field(set, f, &info));
+    mps_particles_field_info info;
+    TRY(mps_particles_get_field_info(set, f, &info));
     if (status != MPS_OK) break;
     snprintf(r->field[f].name, sizeof r->field[f].name, "%s", info.name);
     r->field[f].components = info.components;

@@ -24,7 +24,7 @@ static inline void run_rank(void *user, team *t, int32_t rank) {
   mps_context_def def = test_context_defaults();
   mps_context *own = NULL;
   mps_domain *domain = NULL;
-  def.executor = s->threads > 1 ? MPS_EXECUTOR_THREADS : MPS_EXECUTOR_SERIAL;
+  def.executor = s->threads > 1 ? MPS_CONTEXT_EXECUTOR_THREADS : MPS_CONTEXT_EXECUTOR_SERIAL;
   def.threads = s->threads;
   s->allocator[rank].refuse_at = rank == 1 ? s->refuse : 0;
   if (s->threads == 1) test_allocator_use(&def, &s->allocator[rank]);
@@ -52,7 +52,7 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
     int32_t ranks, threads;
   } teams[] = {{2, 1}, {3, 2}, {7, 3}, {15, 1}, {1, 1}, {4, 1}};
   result alone = {.count = 0};
-  mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_ok(serial, run(serial, NULL, what, length, &alone));
   mps_context_destroy(&serial);
   for (int k = 0; k < (test_quick() ? 2 : few ? 4 : 6); k++) {
@@ -113,7 +113,7 @@ typedef struct troubled {
 static inline void run_troubled(void *user, team *t, int32_t rank) {
   troubled *s = user;
   mps_domain *domain = NULL;
-  mps_context *own = team_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_domain_def def = team_domain_def(t, rank);
   s->status[rank] = mps_domain_create(own, &def, &domain);
   if (s->status[rank] == MPS_OK) s->status[rank] = s->run(own, domain, s->what, rank);

@@ -125,7 +125,7 @@ static inline mps_dynamics *paper_column(mps_context *context, double radius, do
   soil_hold(context, *particles, dynamics, held, -1.0, -1.0, width, D);
   int64_t count;
   int64_t *base = soil_select(context, *particles, -1.0, -1.0, width, D, &count);
-  mps_assert_ok(context, mps_signal_ricker(context, 4.0, 0.25, 1.0, &ricker));
+  mps_assert_ok(context, mps_signal_create_ricker(context, 4.0, 0.25, 1.0, &ricker));
   mps_assert_ok(context, soil_add_driven(dynamics, wave == 'S' ? 0 : 1, ricker, 1.0, count, base));
   mps_signal_destroy(&ricker);
   free(base);

@@ -34,7 +34,7 @@ static inline void test_allocator_use(mps_context_def *def, test_allocator *allo
 /* A serial context on `allocator`, which must outlive it; NULL when its own memory is refused. */
 static inline mps_context *test_allocator_context(test_allocator *allocator) {
   mps_context_def def = test_context_defaults();
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   test_allocator_use(&def, allocator);
   mps_context *own = NULL;
   const mps_status status = mps_context_create(&def, &own, NULL, 0);

@@ -9,7 +9,7 @@ static mps_context *context;
 
 static int make_context(void **state) {
   (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   return 0;
 }
 

@@ -20,8 +20,8 @@ static inline uint64_t seen_set(mps_context *own, mps_particles *set) {
   const uint64_t epoch = mps_particles_epoch(set);
   uint64_t hash = digest_add(DIGEST_START, &epoch);
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-    mps_field_info info;
-    mps_assert_ok(own, mps_particles_field(set, f, &info));
+    mps_particles_field_info info;
+    mps_assert_ok(own, mps_particles_get_field_info(set, f, &info));
     const char *const names[2] = {info.name, NULL};
     const uint64_t values = digest_fields(own, set, names);
     hash = seen_bytes(hash, info.name, strlen(info.name));
@@ -35,9 +35,9 @@ static inline uint64_t seen_values(mps_context *own, mps_particles *set) {
   const int64_t count = mps_particles_count(set);
   uint64_t hash = digest_add(DIGEST_START, &count);
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-    mps_field_info info;
+    mps_particles_field_info info;
     mps_view view;
-    mps_assert_ok(own, mps_particles_field(set, f, &info));
+    mps_assert_ok(own, mps_particles_get_field_info(set, f, &info));
     mps_assert_ok(own, mps_particles_view(set, info.name, &view));
     hash = seen_bytes(hash, info.name, strlen(info.name));
     for (int64_t id = 0, found = 0; found < count; id++) {

@@ -17,7 +17,8 @@ static bool particle_error(app *a, const beam *problem, const q4 *reference, int
                            int method, double *error) {
   elastic_method how = {.def = mps_elastic_defaults(), .published = method != 0};
   model m;
-  how.def.state = problem->plane_strain ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
+  how.def.state =
+      problem->plane_strain ? MPS_ELASTIC_STATE_PLANE_STRAIN : MPS_ELASTIC_STATE_PLANE_STRESS;
   if (method == 2) how.def.radius_ratio = 2.1;
   const bool done = model_solve(a, problem, reference, nx, ny, &how, &m);
   *error = m.tip_error;

@@ -111,10 +111,10 @@ static bool find_errors(model *m) {
   m->stress_error = sqrt(wrong / all);
   double load[3];
   mps_reaction reaction[2]; /* of the two components of the wall */
-  if (!app_check(m->a, mps_elastic_load_resultant(m->elastic, NULL, load, NULL)) ||
+  if (!app_check(m->a, mps_elastic_get_load_resultant(m->elastic, NULL, load, NULL)) ||
       !app_check(m->a, mps_elastic_get_reaction(m->elastic, 0, &reaction[0])) ||
       !app_check(m->a, mps_elastic_get_reaction(m->elastic, 1, &reaction[1])) ||
-      !app_check(m->a, mps_elastic_energy(m->elastic, &m->energy, NULL)))
+      !app_check(m->a, mps_elastic_get_energy(m->elastic, &m->energy, NULL)))
     return false;
   m->equilibrium = hypot(load[0] + reaction[0].force[0], load[1] + reaction[1].force[1]) /
                    hypot(load[0], load[1]);
@@ -132,7 +132,7 @@ bool model_solve(app *a, const beam *problem, const q4 *reference, int64_t nx, i
   return app_agree(a, make_particles(out)) &&
          elastic_make(a, out->particles, method, &out->elastic) && support_and_load(out, method) &&
          app_check(a, mps_elastic_solve(out->elastic)) &&
-         app_check(a, mps_elastic_stress(out->elastic)) &&
+         app_check(a, mps_elastic_update_stress(out->elastic)) &&
          app_check(a, mps_elastic_get_report(out->elastic, &out->report)) && find_errors(out);
 }
 

@@ -28,7 +28,7 @@ static void note_warning(app *a, const char *message) {
 
 static void print_warning(void *user, int32_t level, const char *message) {
   app *a = user;
-  if (level == MPS_LOG_WARNING && !a->no_warnings) note_warning(a, message);
+  if (level == MPS_CONTEXT_LOG_WARNING && !a->no_warnings) note_warning(a, message);
 }
 
 static bool make_context(app *a, int64_t threads) {
@@ -52,7 +52,7 @@ static bool join(app *a, int64_t threads) {
   mps_context *early = NULL;
   mps_domain *first = NULL;
   char why[512];
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   bool ok = mps_context_create(&def, &early, why, sizeof why) == MPS_OK &&
             ranks_join(early, &first, why, sizeof why);
   if (!ok) app_error(a, "%s", why);

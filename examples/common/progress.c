@@ -125,7 +125,7 @@ void progress_by_clock(progress *bar, double seconds, const char *text) {
 
 /* ---- hooks ----------------------------------------------------------------------------------- */
 
-void progress_hook(void *user, const mps_progress *p) {
+void progress_hook(void *user, const mps_context_progress *p) {
   progress *bar = user;
   char text[96];
   const bool part = bar->to > bar->from;

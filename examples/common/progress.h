@@ -54,7 +54,7 @@ void progress_leave_at_once(const char *line, const char *part, const char *whol
 void progress_by_clock(progress *bar, double seconds, const char *text);
 
 /* Hooks of a context; `user` is the progress (cancel: not used). */
-void progress_hook(void *user, const mps_progress *p);
+void progress_hook(void *user, const mps_context_progress *p);
 int32_t progress_cancel_hook(void *user);
 
 #endif

@@ -150,7 +150,7 @@ bool ranks_solve_elastic(mps_context *context, mps_elastic *elastic, void **solv
   if (!load("mps_petsc_solver_create_world", &create, why, size) ||
       !load("mps_petsc_solve_elastic", &solve, why, size))
     return false;
-  const int32_t multigrid = 0; /* MPS_PETSC_MULTIGRID */
+  const int32_t multigrid = 0; /* MPS_PETSC_METHOD_MULTIGRID */
   mps_status status = *solver ? MPS_OK : create(context, multigrid, solver);
   if (status == MPS_OK) status = solve(*solver, elastic);
   if (status != MPS_OK)

@@ -72,7 +72,7 @@ static mps_status set_load(strip *s, bool first) {
 mps_status strip_make(mps_context *context, const strip_def *def, strip *out) {
   *out = (strip){.def = *def};
   mps_elastic_def elastic = mps_elastic_defaults();
-  elastic.state = MPS_ELASTIC_PLANE_STRAIN;
+  elastic.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
   elastic.blas_threads = 1; /* the same bits for every number of threads */
   elastic.domain = def->domain;
   mps_status status = fill(context, def, &out->set);

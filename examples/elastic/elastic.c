@@ -14,7 +14,7 @@ elastic_settings elastic_settings_defaults(void) {
 
 elastic_method elastic_settings_method(const elastic_settings *s) {
   mps_elastic_def def = mps_elastic_defaults();
-  def.state = s->state == 1 ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
+  def.state = s->state == 1 ? MPS_ELASTIC_STATE_PLANE_STRAIN : MPS_ELASTIC_STATE_PLANE_STRESS;
   def.alpha = s->alpha;
   def.radius_ratio = s->radius_ratio;
   return (elastic_method){.def = def, .published = s->method == 1, .constant = s->divisor == 1};
@@ -30,7 +30,8 @@ bool elastic_make(app *a, mps_particles *particles, const elastic_method *method
                                            a->context, particles, &def, method->constant, out))
                         : app_check(a, mps_elastic_create(a->context, particles, &def, out));
   if (!made || !a->domain) return made;
-  return ranks_solve_elastic(a->context, *out, &a->equations, why, sizeof why) || app_error(a, "%s", why);
+  return ranks_solve_elastic(a->context, *out, &a->equations, why, sizeof why) ||
+         app_error(a, "%s", why);
 }
 
 double elastic_seconds(double particles) { return 1e-4 * particles * pow(1e-5 * particles, 0.17); }
@@ -77,7 +78,7 @@ bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count
 }
 
 bool elastic_pull(app *a, mps_elastic *elastic, int64_t count, const int64_t *facets,
-                  mps_traction_fn traction, void *user) {
+                  mps_elastic_traction_fn traction, void *user) {
   mps_elastic_load_def def = mps_elastic_load_defaults();
   def.kind = MPS_ELASTIC_LOAD_FUNCTION;
   def.ids = facets;

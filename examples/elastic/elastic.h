@@ -41,7 +41,7 @@ bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count
                   const int64_t *ids, const double *values);
 /* Tractions by a function on `count` facets. */
 bool elastic_pull(app *a, mps_elastic *elastic, int64_t count, const int64_t *facets,
-                  mps_traction_fn traction, void *user);
+                  mps_elastic_traction_fn traction, void *user);
 const char *elastic_method_name(const elastic_settings *s);
 
 /* Rows of an option table. */

@@ -11,7 +11,7 @@
 enum { FOOTING_SAMPLES = 120, FOOTING_SETTLED = 30, VON_MISES = 0, DRUCKER_PRAGER = 1 };
 
 typedef struct settings {
-  int model, cone;        /* VON_MISES or DRUCKER_PRAGER; mps_cone */
+  int model, cone;        /* VON_MISES or DRUCKER_PRAGER; mps_material_cone */
   double width, depth;    /* m, of the half model */
   double phi, psi;        /* degrees */
   double cohesion, young; /* Pa */

@@ -47,7 +47,8 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
   sim->t_end = s->settlement / speed + 0.5 * sim->ramp;
   const double t[] = {0.0, sim->ramp, sim->t_end + 1.0}, v[] = {0.0, speed, speed};
   mps_signal *down = NULL;
-  mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, t, v, &down);
+  mps_status status =
+      mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &down);
   mps_body_def def = mps_body_defaults();
   const double height = s->half_width;
   def.position[1] = s->depth + 0.5 * height;
@@ -68,7 +69,7 @@ static mps_status add_contact(const settings *s, simulation *sim) {
 
 /* Ground at rest under its own weight, (57). */
 static mps_status set_stress(mps_particles *set, const settings *s) {
-  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
+  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
   mps_geostatic_def def = mps_geostatic_defaults();
   def.layers = &layer, def.layer_count = 1;
   def.gravity = s->gravity;
@@ -88,16 +89,16 @@ static mps_status make_ground(mps_context *context, const settings *s, mpm_model
 
 static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
   if (s->model == VON_MISES) {
-    mps_von_mises_def law = mps_von_mises_defaults();
+    mps_material_von_mises_def law = mps_material_von_mises_defaults();
     law.young = s->young, law.poisson = s->poisson;
     law.yield_stress = sqrt(3.0) * s->cohesion; /* (54) */
-    return mps_material_von_mises(context, &law, out);
+    return mps_material_create_von_mises(context, &law, out);
   }
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = s->cone;
   law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
   law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE;
-  return mps_material_drucker_prager(context, &law, out);
+  return mps_material_create_drucker_prager(context, &law, out);
 }
 
 mps_status footing_build(mps_context *context, void *user) {

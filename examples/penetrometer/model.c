@@ -61,8 +61,8 @@ const char *pen_check(penetrometer *p) {
   p->stride = fmin(0.2 * s->h, s->depth / 200.0);
   p->t_end = (pen_gap(p) + s->depth) / s->rate;
   p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
-  p->run[0].geometry = s->no_space ? MPS_MPM_AXISYMMETRIC : MPS_MPM_SPACE;
-  p->run[1].geometry = MPS_MPM_AXISYMMETRIC;
+  p->run[0].geometry = s->no_space ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_SPACE;
+  p->run[1].geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   return NULL;
 }
 
@@ -74,24 +74,24 @@ static void find_size(const penetrometer *p, pen_run *r) {
   const double in_diameters[3] = {0.5 * s->width, 0.5 * s->breadth, s->height};
   for (int c = 0; c < 3; c++) r->size[c] = s->h * ceil(in_diameters[c] * s->diameter / s->h - 1e-6);
   r->factor = s->model == PEN_QUARTER ? 4.0 : 1.0;
-  if (r->geometry == MPS_MPM_SPACE) return;
+  if (r->geometry == MPS_MPM_GEOMETRY_SPACE) return;
   r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PEN_PI) / s->h);
   r->size[1] = r->size[2];
   r->factor = 1.0;
 }
 
-static int dim_of(const pen_run *r) { return r->geometry == MPS_MPM_SPACE ? 3 : 2; }
+static int dim_of(const pen_run *r) { return r->geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2; }
 
 /* Lower end of the box across axis c: on the axis where the model is cut there. */
 static double lower_of(const penetrometer *p, const pen_run *r, int c) {
-  const bool whole = r->geometry == MPS_MPM_SPACE && p->s.model == PEN_WHOLE;
+  const bool whole = r->geometry == MPS_MPM_GEOMETRY_SPACE && p->s.model == PEN_WHOLE;
   return whole && c < 2 ? -r->size[c] : 0.0;
 }
 
 /* The weight above, and nu/(1 - nu) of it sideways. */
 static mps_status set_stress(const penetrometer *p, pen_run *r) {
   const pen_settings *s = &p->s;
-  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
+  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
   mps_geostatic_def def = mps_geostatic_defaults();
   if (s->gravity == 0.0) return MPS_OK;
   def.layers = &layer, def.layer_count = 1;
@@ -115,19 +115,20 @@ static mps_status keep_places(pen_run *r) {
 
 static mps_status make_law(mps_context *context, const pen_settings *s, mps_material **out) {
   const double young = s->young, radian = PEN_PI / 180.0;
-  if (s->law == PEN_ELASTIC) return mps_material_linear_elastic(context, young, s->poisson, out);
+  if (s->law == PEN_ELASTIC)
+    return mps_material_create_linear_elastic(context, young, s->poisson, out);
   if (s->law == PEN_CLAY) {
-    mps_von_mises_def clay = mps_von_mises_defaults();
+    mps_material_von_mises_def clay = mps_material_von_mises_defaults();
     clay.young = young, clay.poisson = s->poisson;
     clay.yield_stress = sqrt(3.0) * s->cohesion; /* Nakamura (54) */
-    return mps_material_von_mises(context, &clay, out);
+    return mps_material_create_von_mises(context, &clay, out);
   }
-  mps_drucker_prager_def sand = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def sand = mps_material_drucker_prager_defaults();
   sand.cone = MPS_MATERIAL_CONE_INSCRIBED;
   sand.young = young, sand.poisson = s->poisson;
   sand.friction = s->phi * radian, sand.dilation = s->psi * radian;
   sand.cohesion = s->cohesion;
-  return mps_material_drucker_prager(context, &sand, out);
+  return mps_material_create_drucker_prager(context, &sand, out);
 }
 
 static mps_status make_soil(penetrometer *p, pen_run *r) {
@@ -176,7 +177,7 @@ static mps_status make_cone(penetrometer *p, const pen_run *r, const mps_body_de
   const double R = pen_radius(p), z = pen_shoulder(p), L = 2.0 * (p->s.depth + p->s.diameter) + z;
   const double half[8] = {0.0, 0.0, R, z, R, L, 0.0, L};
   const double whole[10] = {0.0, 0.0, R, z, R, L, -R, L, -R, z};
-  mps_status status = r->geometry == MPS_MPM_SPACE
+  mps_status status = r->geometry == MPS_MPM_GEOMETRY_SPACE
                           ? mps_body_create_revolution(p->context, def, 4, half, out)
                           : mps_body_create_polygon(p->context, def, 5, whole, out);
   if (status == MPS_OK) status = mps_body_name_part(*out, "tip", 0, 1, NULL);
@@ -186,7 +187,7 @@ static mps_status make_cone(penetrometer *p, const pen_run *r, const mps_body_de
 static mps_status make_sphere(penetrometer *p, const pen_run *r, mps_body_def *def,
                               mps_body **out) {
   def->position[dim_of(r) - 1] += pen_radius(p);
-  const mps_status status = r->geometry == MPS_MPM_SPACE
+  const mps_status status = r->geometry == MPS_MPM_GEOMETRY_SPACE
                                 ? mps_body_create_sphere(p->context, def, pen_radius(p), out)
                                 : mps_body_create_disc(p->context, def, pen_radius(p), out);
   return status == MPS_OK ? mps_body_name_part(*out, "tip", 0, 1, NULL) : status;
@@ -237,7 +238,7 @@ static double penalty_of(const penetrometer *p, const pen_run *r) {
   const double spacing = mps_particles_spacing(r->m.particles), dt = mps_mpm_dt(r->m.mpm);
   const double limit = p->s.density * spacing * spacing / (dt * dt);
   const double k = STIFFNESS * fmin(mps_material_wave_modulus(r->m.material), limit);
-  return r->geometry == MPS_MPM_SPACE ? k * spacing : k;
+  return r->geometry == MPS_MPM_GEOMETRY_SPACE ? k * spacing : k;
 }
 
 static mps_status make_tip(penetrometer *p, pen_run *r) {
@@ -247,7 +248,8 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   mps_body **body = &r->m.body[0];
   mps_body_def def = mps_body_defaults();
   def.position[up] = r->size[up] + pen_gap(p);
-  mps_status status = mps_signal_table(p->context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
+  mps_status status =
+      mps_signal_create_table(p->context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_STL)

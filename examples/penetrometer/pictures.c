@@ -25,7 +25,7 @@ static void plot_curve(output *f, const char *file, int column, double unit, con
 
 static bool draw_force(app *a, const penetrometer *p) {
   const bool clay = p->s.law == PEN_CLAY, hertz = p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE;
-  const bool space = p->run[0].geometry == MPS_MPM_SPACE;
+  const bool space = p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE;
   const double unit = clay ? PEN_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion : 1e3;
   output f;
   if (!plot_open(&f, a, p->s.out, "force", 1000, 680)) return false;
@@ -136,11 +136,11 @@ static bool draw_section(app *a, const penetrometer *p) {
   const double R = pen_radius(p);
   const double side = fmin(p->run[0].size[0], fmax(3.0 * R, p->s.depth));
   const double top = 0.6 * fmin(R, p->s.depth) + 2.0 * p->s.h;
-  const double bottom =
-      -fmin(p->run[0].size[p->run[0].geometry == MPS_MPM_SPACE ? 2 : 1], p->s.depth + 3.0 * R);
+  const double bottom = -fmin(p->run[0].size[p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1],
+                              p->s.depth + 3.0 * R);
   const bool both =
-      p->runs == 2 || (p->run[0].geometry == MPS_MPM_SPACE && p->s.model == PEN_WHOLE);
-  const bool axial = p->run[0].geometry != MPS_MPM_SPACE;
+      p->runs == 2 || (p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE && p->s.model == PEN_WHOLE);
+  const bool axial = p->run[0].geometry != MPS_MPM_GEOMETRY_SPACE;
   const double left = both || axial ? -side : 0.0, right = axial ? 0.0 : side;
   const double pixels = 600.0, scale = pixels / (top - bottom);
   const int panel = (int)(scale * (right - left)), width = 2 * (panel + 210), height = 800;

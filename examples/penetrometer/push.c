@@ -10,7 +10,7 @@
 #define INSIDE 1e-6     /* cells: deeper below the surface counts as inside the tip */
 #define VOLUME_EVERY 10 /* steps */
 
-static int up_of(const pen_run *r) { return r->geometry == MPS_MPM_SPACE ? 2 : 1; }
+static int up_of(const pen_run *r) { return r->geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1; }
 
 /* The reference point moves as the lowest point does. */
 double pen_depth(const penetrometer *p, const pen_run *r) {
@@ -84,7 +84,7 @@ static mps_status read_impulses(const pen_run *r, double *up) {
   up[PEN_TOTAL] = up[PEN_TIP] = r->factor * reaction.impulse[up_of(r)];
   up[PEN_SHAFT] = 0.0;
   for (int k = 0; k < 2 && status == MPS_OK; k++) {
-    const int32_t part = mps_body_part(r->m.body[0], names[k]);
+    const int32_t part = mps_body_find_part(r->m.body[0], names[k]);
     if (part < 0) continue;
     status = mps_body_get_reaction(r->m.body[0], part, &reaction);
     up[k] = r->factor * reaction.impulse[up_of(r)];

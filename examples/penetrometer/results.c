@@ -79,7 +79,7 @@ static void write_settings(output *f, const penetrometer *p) {
   const pen_settings *s = &p->s;
   json_text(f, "tip", tips[s->tip]);
   json_text(f, "law", laws[s->law]);
-  json_text(f, "geometry", p->run[0].geometry == MPS_MPM_SPACE ? "space" : "axisymmetric");
+  json_text(f, "geometry", p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? "space" : "axisymmetric");
   json_number(f, "h", s->h);
   json_number(f, "diameter", s->diameter);
   json_number(f, "rate", s->rate);
@@ -87,7 +87,8 @@ static void write_settings(output *f, const penetrometer *p) {
   if (s->alpha > 0.0) json_number(f, "alpha", s->alpha);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(f, "corner", s->corner);
   json_number(f, "half_width", p->run[0].size[0]);
-  json_number(f, "soil_height", p->run[0].size[p->run[0].geometry == MPS_MPM_SPACE ? 2 : 1]);
+  json_number(f, "soil_height",
+              p->run[0].size[p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1]);
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) json_number(f, "penalty", p->run[0].penalty);
   json_number(f, "dt", p->run[0].dt);
 }
@@ -129,7 +130,7 @@ static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
   const double q = m->force[PEN_TIP] / base_area(p);
   if (isfinite(m->force[PEN_TOTAL]))
     printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
-           r->geometry == MPS_MPM_SPACE ? "space" : "axisymmetric", pen_reached(r),
+           r->geometry == MPS_MPM_GEOMETRY_SPACE ? "space" : "axisymmetric", pen_reached(r),
            m->force[PEN_TOTAL], m->force[PEN_TIP], m->force[PEN_SHAFT], 1e-3 * q);
   if (p->s.law == PEN_CLAY && isfinite(q)) printf(" = %.4g c", q / p->s.cohesion);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE && m->hertz > 0.0)

@@ -109,7 +109,7 @@ static mps_status read_impulses(pile *p, double *up) {
   for (int k = 0; k < PILE_PARTS; k++) {
     mps_reaction r;
     const mps_status status =
-        mps_body_get_reaction(p->m.body[0], mps_body_part(p->m.body[0], names[k]), &r);
+        mps_body_get_reaction(p->m.body[0], mps_body_find_part(p->m.body[0], names[k]), &r);
     if (status != MPS_OK) return status;
     up[k] = r.impulse[1];
     up[PILE_TOTAL] += up[k];

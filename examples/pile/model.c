@@ -14,13 +14,13 @@
 /* ---- settings -------------------------------------------------------------------------------- */
 
 static const struct {
-  mps_cone cone;
+  mps_material_cone cone;
   const char *name;
 } cones[] = {{MPS_MATERIAL_CONE_INSCRIBED, "inscribed"},
              {MPS_MATERIAL_CONE_CIRCUMSCRIBED, "circumscribed"},
              {MPS_MATERIAL_CONE_PLANE_STRAIN, "planestrain"}};
 
-mps_cone pile_cone(const pile_settings *s) { return cones[s->cone].cone; }
+mps_material_cone pile_cone(const pile_settings *s) { return cones[s->cone].cone; }
 const char *pile_cone_name(const pile_settings *s) { return cones[s->cone].name; }
 
 static bool whole_cells(double length, double h) {
@@ -60,7 +60,7 @@ const char *pile_check(pile_settings *s) {
 static mps_status set_stress(pile *p) {
   const pile_settings *s = &p->s;
   p->k0 = isnan(s->k0) ? s->poisson / (1.0 - s->poisson) : s->k0;
-  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = p->k0};
+  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = p->k0};
   mps_geostatic_def def = mps_geostatic_defaults();
   def.layers = &layer, def.layer_count = 1;
   def.gravity = PILE_GRAVITY;
@@ -77,12 +77,12 @@ static mps_status make_soil(mps_context *context, pile *p) {
   if (status == MPS_OK) status = mps_particles_fill_box(p->m.particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(p->m.particles, "density", 0, s->density);
   if (status == MPS_OK) status = set_stress(p);
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = pile_cone(s);
   law.young = s->young, law.poisson = s->poisson;
   law.friction = s->phi * PILE_PI / 180.0, law.dilation = s->psi * PILE_PI / 180.0;
   law.cohesion = s->cohesion;
-  if (status == MPS_OK) status = mps_material_drucker_prager(context, &law, &p->m.material);
+  if (status == MPS_OK) status = mps_material_create_drucker_prager(context, &law, &p->m.material);
   return status;
 }
 
@@ -106,7 +106,8 @@ static mps_status make_pile(mps_context *context, pile *p) {
   mps_signal *down = NULL;
   mps_body_def def = mps_body_defaults();
   def.position[1] = s->height + s->h;
-  mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
+  mps_status status =
+      mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 6, corner, &p->m.body[0]);
   for (int k = 0; k < PILE_PARTS && status == MPS_OK; k++)
     status = mps_body_name_part(p->m.body[0], part[k].name, part[k].edge, part[k].edges, NULL);
@@ -147,7 +148,7 @@ mps_status pile_build(mps_context *context, void *user) {
   mps_status status = s->restart ? pile_peek(context, p) : MPS_OK;
   if (status == MPS_OK) status = make_soil(context, p);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_AXISYMMETRIC;
+  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   def.cell = s->h;
   def.spline = s->spline + 2;
   def.courant = s->courant;

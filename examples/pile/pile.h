@@ -83,7 +83,7 @@ typedef struct pile {
 
 /* ---- model.c --------------------------------------------------------------------------------- */
 
-mps_cone pile_cone(const pile_settings *s);
+mps_material_cone pile_cone(const pile_settings *s);
 const char *pile_cone_name(const pile_settings *s);
 /* Reads `soil`, and tells why the settings cannot be run; NULL where they can. */
 const char *pile_check(pile_settings *s);

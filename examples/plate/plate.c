@@ -196,7 +196,7 @@ bool plate_solve(app *a, const plate_def *def, const elastic_method *method, pla
   return app_agree(a, make_particles(out)) &&
          elastic_make(a, out->particles, method, &out->elastic) && support_and_load(out, method) &&
          app_check(a, mps_elastic_solve(out->elastic)) &&
-         app_check(a, mps_elastic_stress(out->elastic)) &&
+         app_check(a, mps_elastic_update_stress(out->elastic)) &&
          app_check(a, mps_elastic_get_report(out->elastic, &out->report)) && find_errors(out);
 }
 

@@ -24,7 +24,7 @@ static mps_status make_fluid(app *a, seawall *w) {
   if (status == MPS_OK && s->disturb > 0.0)
     status = waves_disturb(w->water, s->disturb * s->spacing, (uint64_t)s->seed);
   if (status == MPS_OK)
-    status = mps_signal_user(context, waves_move_piston, &w->motion, &w->piston);
+    status = mps_signal_create_user(context, waves_move_piston, &w->motion, &w->piston);
   def.domain = a->domain;
   status = app_settle(a, status);
   if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);

@@ -50,10 +50,10 @@ static const double nodes[6] = {LENGTH, 0.0, 0.0, LENGTH, FOOT + HEIGHT, 0.0}; /
 
 static mps_status make_sand(mps_context *context, sea *s) {
   const double lo[] = {LENGTH - 0.25, -SAND}, hi[] = {LENGTH + 0.4, 0.0};
-  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = 0.43};
+  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.43};
   mps_particles_def set = mps_particles_defaults();
   mps_geostatic_def rest = mps_geostatic_defaults();
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   mps_mpm_def def = mps_mpm_defaults();
   set.spacing = 0.5 * CELL;
   rest.layers = &layer, rest.layer_count = 1, rest.gravity = G, rest.surface = 0.0;
@@ -64,7 +64,7 @@ static mps_status make_sand(mps_context *context, sea *s) {
   if (status == MPS_OK) status = mps_particles_fill_box(s->sand, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(s->sand, "density", 0, 1600.0);
   if (status == MPS_OK) status = mps_particles_set_geostatic(s->sand, &rest);
-  if (status == MPS_OK) status = mps_material_drucker_prager(context, &law, &s->material);
+  if (status == MPS_OK) status = mps_material_create_drucker_prager(context, &law, &s->material);
   return status == MPS_OK ? mps_mpm_create(context, s->sand, s->material, &def, &s->mpm) : status;
 }
 
@@ -100,7 +100,7 @@ static mps_status make_water(mps_context *context, sea *s) {
   mps_status status = mps_particles_create(context, &set, &s->water);
   if (status == MPS_OK) status = mps_particles_fill_box(s->water, lo, hi, NULL);
   if (status == MPS_OK) status = mps_fluid_create(context, s->water, &def, &s->fluid);
-  if (status == MPS_OK) status = mps_signal_sine(context, 1.0, 0.01, 0.0, &s->piston);
+  if (status == MPS_OK) status = mps_signal_create_sine(context, 1.0, 0.01, 0.0, &s->piston);
   if (status == MPS_OK) status = add_wall(s, 0.0, 0.0, 1.0);
   if (status == MPS_OK) status = add_wall(s, 0.0, 1.0, 0.0);
   if (status == MPS_OK) status = add_wall(s, LENGTH, -1.0, 0.0);
@@ -126,7 +126,7 @@ static mps_status read_front(sea *s, double *displacement, double *velocity) {
  * otherwise. */
 static mps_status load(sea *s, double push, double moment) {
   const double force[3] = {push, 0.0, 0.0}, turn[3] = {0.0, 0.0, moment};
-  return mps_body_load(s->caisson, force, turn);
+  return mps_body_set_load(s->caisson, force, turn);
 }
 
 static mps_status run_sand(sea *s, double span) {

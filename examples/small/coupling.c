@@ -34,9 +34,9 @@ static mps_status make_bar(mps_context *context, double more, double force, bar 
   if (status == MPS_OK) status = mps_particles_fill_box(b->set, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_select_box(b->set, end, hi, 2, b->ends, &count);
   mps_material *stuff = NULL, *heavy = NULL;
-  if (status == MPS_OK) status = mps_material_linear_elastic(context, young, 0.0, &stuff);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, 0.0, &stuff);
   if (status == MPS_OK) status = mps_particles_set_material(b->set, stuff, density, 0, NULL);
-  if (status == MPS_OK) status = mps_material_linear_elastic(context, young, 0.0, &heavy);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, 0.0, &heavy);
   if (status == MPS_OK)
     status = mps_particles_set_material(b->set, heavy, density + more, count, b->ends);
   mps_material_destroy(&stuff);

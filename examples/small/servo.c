@@ -35,7 +35,7 @@ static mps_status make(mps_context *context, test *t) {
   mps_status status = mps_particles_create(context, &of_soil, &t->soil);
   if (status == MPS_OK) status = mps_particles_fill_box(t->soil, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(t->soil, "density", 0, density);
-  if (status == MPS_OK) status = mps_material_linear_elastic(context, young, poisson, &sand);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, poisson, &sand);
   if (status == MPS_OK) status = mps_mpm_create(context, t->soil, sand, &def, &t->mpm);
   mps_material_destroy(&sand);
   /* wider than the column, so that its corners touch nothing */

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* umat.f90, as gfortran names it. Its arguments are those of mps_umat_fn. */
+/* umat.f90, as gfortran names it. Its arguments are those of mps_material_umat_fn. */
 extern void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *spd,
                   double *scd, double *rpl, double *ddsddt, double *drplde, double *drpldt,
                   const double *stran, const double *dstran, const double *time,
@@ -28,16 +28,16 @@ static const double young = 2e8, poisson = 0.3, yield = 1e6, hardening = 2e7; /*
 static mps_status make_laws(mps_context *context, mps_material **fortran, mps_material **own) {
   static const char *const names[] = {"plastic_strain"};
   const double props[4] = {young, poisson, yield, hardening};
-  mps_umat_def def = mps_umat_defaults();
+  mps_material_umat_def def = mps_material_umat_defaults();
   def.umat = umat_;
   def.name = "metal";
   def.props = props, def.props_count = 4;
   def.statev_names = names, def.statev_count = 1; /* the field "metal.plastic_strain" */
   def.wave_modulus = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-  mps_von_mises_def same = mps_von_mises_defaults();
+  mps_material_von_mises_def same = mps_material_von_mises_defaults();
   same.young = young, same.poisson = poisson, same.yield_stress = yield, same.hardening = hardening;
-  mps_status status = mps_material_umat(context, &def, fortran);
-  return status == MPS_OK ? mps_material_von_mises(context, &same, own) : status;
+  mps_status status = mps_material_create_umat(context, &def, fortran);
+  return status == MPS_OK ? mps_material_create_von_mises(context, &same, own) : status;
 }
 
 /* One particle in pure shear; the error of stress and plastic strain. */

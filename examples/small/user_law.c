@@ -72,12 +72,12 @@ int main(void) {
   mps_material *salt = NULL;
   mps_material_point point;
   if (mps_context_create(NULL, &context, NULL, 0) != MPS_OK) return 1;
-  mps_user_law_def def = mps_user_law_defaults();
+  mps_material_user_def def = mps_material_user_defaults();
   def.update = update, def.user = &c;
   def.name = "salt"; /* in a set, the history is the field "salt.creep_strain" */
   def.history = history, def.history_count = 1;
   def.wave_modulus = c.bulk + 4.0 / 3.0 * c.shear;
-  if (mps_material_user(context, &def, &salt) != MPS_OK ||
+  if (mps_material_create_user(context, &def, &salt) != MPS_OK ||
       mps_material_point_init(context, salt, &point) != MPS_OK)
     return failed(context);
   /* a quick shear to tau0, then rest */

@@ -75,10 +75,10 @@ static mps_status try_dt(search *s, double dt, bool *stable) {
     mps_context_clear_error(context);
     status = MPS_OK;
   }
-  const mps_progress progress = {.task = "bisection",
-                                 .step = s->result->runs,
-                                 .time = (double)s->result->runs,
-                                 .fraction = NAN};
+  const mps_context_progress progress = {.task = "bisection",
+                                         .step = s->result->runs,
+                                         .time = (double)s->result->runs,
+                                         .fraction = NAN};
   if (s->def->hook) s->def->hook(s->def->user, &progress);
   return status;
 }

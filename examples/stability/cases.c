@@ -58,7 +58,8 @@ static mps_status build(const machine *with, const method *m, const stability_ca
   solver.domain = with->domain;
   mps_signal *pulse = NULL;
   mps_status status = column_create(context, &def, c);
-  if (status == MPS_OK) status = mps_signal_ricker(context, FREQUENCY, PEAK_TIME, 1.0, &pulse);
+  if (status == MPS_OK)
+    status = mps_signal_create_ricker(context, FREQUENCY, PEAK_TIME, 1.0, &pulse);
   if (with->domain) status = mps_domain_agree(with->domain, status);
   if (status == MPS_OK) status = mps_dynamics_create(context, c->particles, &solver, dynamics);
   if (status == MPS_OK && m->torque == 1)
@@ -78,7 +79,7 @@ static mps_status find_linear(const method *m, mps_dynamics *dynamics, stability
 }
 
 static mps_status find_stepping(const machine *with, const method *m, mps_dynamics *dynamics,
-                                stability_case *x, mps_progress_fn hook, void *user) {
+                                stability_case *x, mps_context_progress_fn hook, void *user) {
   bisection_def def = bisection_defaults();
   bisection found;
   char why[160];
@@ -104,8 +105,8 @@ static void find_printed(stability_case *x) {
     x->table2 = limit_fit_dt(&printed, x->radius, x->velocity, x->damping);
 }
 
-static void find(const machine *with, const method *m, stability_case *x, mps_progress_fn hook,
-                 void *user) {
+static void find(const machine *with, const method *m, stability_case *x,
+                 mps_context_progress_fn hook, void *user) {
   mps_dynamics *dynamics = NULL;
   column c = {0};
   x->linear = x->stepping = x->unstable = x->table2 = NAN;
@@ -131,7 +132,7 @@ static void find(const machine *with, const method *m, stability_case *x, mps_pr
 void case_find(const method *m, stability_case *x) {
   mps_context_def def = mps_context_defaults();
   machine alone = {NULL, NULL};
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.threads = 1;
   def.cancel = progress_cancel_hook;
   x->status = mps_context_create(&def, &alone.context, x->why, sizeof x->why);
@@ -140,7 +141,7 @@ void case_find(const method *m, stability_case *x) {
   mps_context_destroy(&alone.context);
 }
 
-void case_find_together(app *a, const method *m, stability_case *x, mps_progress_fn hook,
+void case_find_together(app *a, const method *m, stability_case *x, mps_context_progress_fn hook,
                         void *user) {
   const machine all = {a->context, a->domain};
   find(&all, m, x, hook, user);

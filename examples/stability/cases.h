@@ -45,7 +45,7 @@ double case_vp(const stability_case *x);
 void case_find(const method *m, stability_case *out);
 /* The same with the threads and ranks of the program, which compute the case together. `hook` is
  * told of each run of the bisection. */
-void case_find_together(app *a, const method *m, stability_case *out, mps_progress_fn hook,
+void case_find_together(app *a, const method *m, stability_case *out, mps_context_progress_fn hook,
                         void *user);
 
 #endif

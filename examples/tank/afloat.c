@@ -36,7 +36,7 @@ mps_status tank_launch(tank_model *m) {
   int32_t number;
   mps_status status = mps_fluid_add_body(m->fluid, m->box, MPS_FLUID_BOUNDARY_SLIP, &number);
   if (status == MPS_OK) status = mps_fluid_float_body(m->fluid, number, 1);
-  return status == MPS_OK ? mps_body_load(m->box, load, NULL) : status;
+  return status == MPS_OK ? mps_body_set_load(m->box, load, NULL) : status;
 }
 
 bool tank_in_box(const tank_settings *s, double x, double y) {

@@ -92,7 +92,7 @@ mps_status tank_make_structure(mps_context *context, tank_model *m) {
   const mps_status status = m->s.kind == TANK_PLATE ? make_plate(m) : make_spring(m);
   if (status != MPS_OK) return status;
   def.size = m->structure.shapes;
-  def.method = def.size > 1 ? MPS_COUPLING_QUASI_NEWTON : MPS_COUPLING_AITKEN;
+  def.method = def.size > 1 ? MPS_COUPLING_METHOD_QUASI_NEWTON : MPS_COUPLING_METHOD_AITKEN;
   def.floor = 1e-4 * WAVES_G; /* what the solution of the pressures leaves open */
   m->structure.room = (def.columns + 4) * (1 + 2 * def.size);
   m->structure.memory = calloc((size_t)m->structure.room, sizeof(double));

@@ -75,7 +75,7 @@ static mps_status add_walls(mps_context *context, tank_model *m) {
   mps_status status = MPS_OK;
   m->motion = (waves_piston){m->s.amplitude, m->s.period, m->s.ramp};
   if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
-    status = mps_signal_user(context, waves_move_piston, &m->motion, &m->piston);
+    status = mps_signal_create_user(context, waves_move_piston, &m->motion, &m->piston);
   if (tank_is_coupled(&m->s)) status = tank_make_structure(context, m);
   status = app_settle(m->a, status);
   if (status == MPS_OK) status = add_bed(m);

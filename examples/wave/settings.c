@@ -219,13 +219,13 @@ bool settings_ground(app *a, settings *s) {
 
 bool settings_signal(app *a, const settings *s, mps_signal **out) {
   if (s->ricker)
-    return app_check(a,
-                     mps_signal_ricker(a->context, s->frequency, s->peak_time, s->amplitude, out));
+    return app_check(
+        a, mps_signal_create_ricker(a->context, s->frequency, s->peak_time, s->amplitude, out));
   mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = s->baseline;
   def.scale = s->scale * unit_factor[s->unit];
   def.format = s->unit == UNIT_FILE ? MPS_SIGNAL_RECORD_AUTO : MPS_SIGNAL_RECORD_CSV;
-  return app_check(a, mps_signal_record(a->context, s->input, &def, out));
+  return app_check(a, mps_signal_create_record(a->context, s->input, &def, out));
 }
 
 mps_dynamics_def settings_dynamics(const settings *s, double width) {

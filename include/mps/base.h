@@ -11,7 +11,7 @@
 #include <string.h>
 
 #define MPS_VERSION_MAJOR 0
-#define MPS_VERSION_MINOR 2
+#define MPS_VERSION_MINOR 3
 #define MPS_VERSION_PATCH 0
 
 #if defined(__GNUC__) || defined(__clang__)
@@ -68,7 +68,7 @@ MPS_API int32_t mps_version_number(void);
 
 /* The one table of optional parts: X(name, value, text). */
 #define MPS_FEATURE_TABLE(X)                                                                       \
-  X(OPENMP, 1, "OpenMP: MPS_EXECUTOR_OPENMP")                                                      \
+  X(OPENMP, 1, "OpenMP: MPS_CONTEXT_EXECUTOR_OPENMP")                                              \
   X(HDF5, 2, "HDF5: recorders, checkpoints, saving of solvers")                                    \
   X(CHOLMOD, 3, "CHOLMOD: implicit elasticity")                                                    \
   X(ARPACK, 4, "ARPACK: eigenmodes of implicit elasticity")                                        \

@@ -26,16 +26,16 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_body mps_body;
 
-typedef enum mps_body_kind {
-  MPS_BODY_MOTION_PRESCRIBED = 0, /* by the signals of mps_body_drive, or mps_body_set_motion */
-  MPS_BODY_MOTION_FREE = 1        /* by forces, with mass and inertia */
-} mps_body_kind;
+typedef enum mps_body_motion_kind {
+  MPS_BODY_MOTION_DRIVEN = 0, /* by the signals of mps_body_drive, or mps_body_set_motion */
+  MPS_BODY_MOTION_FREE = 1    /* by forces, with mass and inertia */
+} mps_body_motion_kind;
 
 /* Vectors have three components in 2D too: what turns or leaves the plane (position[2], rotation[0]
  * and [1], velocity[2], spin[0] and [1], gravity[2], inertia[0] and [1]) must then be 0. */
 typedef struct mps_body_def {
   uint32_t struct_size;
-  int32_t motion;     /* mps_body_kind, default PRESCRIBED */
+  int32_t motion;     /* mps_body_motion_kind, default PRESCRIBED */
   double position[3]; /* m, at most 1e9: of the reference point at time 0 */
   double rotation[3]; /* rad, rotation vector (axis times angle) from the body's frame to space at
                          time 0; 2D: [2] is the angle, anticlockwise */
@@ -171,8 +171,8 @@ MPS_API MPS_NODISCARD mps_status mps_body_set_motion(mps_body *body, const mps_b
 
 /** A load on a free body from now on: force[3] (N) at the reference point, moment[3] (N m), both in
  *  space; NULL is zero. In 2D force[2], moment[0] and moment[1] must be 0. */
-MPS_API MPS_NODISCARD mps_status mps_body_load(mps_body *body, const double *force,
-                                               const double *moment);
+MPS_API MPS_NODISCARD mps_status mps_body_set_load(mps_body *body, const double *force,
+                                                   const double *moment);
 /** Moves the body on by dt (s, > 0): a prescribed one to where its signals are, a free one under
  *  gravity, load, damping and the impulses that solvers have given to it since it last moved
  *  (velocity first, then position). A body that a solver moves is MPS_ERROR_STATE; one that would
@@ -203,7 +203,7 @@ typedef struct mps_body_totals {
   double angular[3];    /* kg m2/s, about the origin of space, with the body's own spin */
   double kinetic;       /* J */
   double work_contacts; /* J, since creation, by the particles on the body */
-  double work_loads;    /* J, since creation: gravity and mps_body_load */
+  double work_loads;    /* J, since creation: gravity and mps_body_set_load */
   double dissipated;    /* J, since creation: damping, and in 3D the small error of the rotation's
                            splitting, of either sign */
 } mps_body_totals;
@@ -237,7 +237,7 @@ MPS_API MPS_NODISCARD mps_status mps_body_name_part(mps_body *body, const char *
 /** How many parts the surface has, "rest" included; 0 for NULL. */
 MPS_API int32_t mps_body_part_count(const mps_body *body);
 /** Number of the part `name`, or -1. */
-MPS_API int32_t mps_body_part(const mps_body *body, const char *name);
+MPS_API int32_t mps_body_find_part(const mps_body *body, const char *name);
 
 /** What all solvers exert on one part of the body, or on the whole body (`part` -1): the sum of
  *  their contacts and of the water around it; `count` is the number of particles in contact, and of

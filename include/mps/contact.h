@@ -100,7 +100,8 @@ MPS_API void mps_contact_destroy(mps_contact **contact);
 /** The body; NULL for NULL. Lives at least as long as the contact. */
 MPS_API mps_body *mps_contact_body(const mps_contact *contact);
 
-/** What the particles of this solver do to part `part` of the body (mps_body_part), or to all of it
+/** What the particles of this solver do to part `part` of the body (mps_body_find_part), or to all
+ * of it
  *  (-1); `work` is that of the body's surface on the particles. */
 MPS_API MPS_NODISCARD mps_status mps_contact_get_reaction_sized(mps_contact *contact, int32_t part,
                                                                 mps_reaction *out, size_t size);

@@ -26,70 +26,73 @@ typedef struct mps_error {
 } mps_error;
 
 /** Allocates `size` bytes aligned to `alignment` (a power of two, at least 64), or NULL. */
-typedef void *(*mps_alloc_fn)(void *user, size_t size, size_t alignment);
-/** Releases what mps_alloc_fn returned; never called with NULL. */
-typedef void (*mps_free_fn)(void *user, void *memory);
+typedef void *(*mps_context_alloc_fn)(void *user, size_t size, size_t alignment);
+/** Releases what mps_context_alloc_fn returned; never called with NULL. */
+typedef void (*mps_context_free_fn)(void *user, void *memory);
 
 /** One unit of work. `worker` is in [0, workers) and unique among the units running at once. */
-typedef void (*mps_task_fn)(void *task, int64_t index, int32_t worker);
+typedef void (*mps_context_task_fn)(void *task, int64_t index, int32_t worker);
 /** A caller's own executor: runs task(task_data, i, worker) once for each i in [0, count), in any
  *  order and concurrently, and returns when all are done. It is tried when the context is created.
  *  A unit with a worker or index out of range is left out: the call, or the next step of a solver,
  *  is then MPS_ERROR_STATE. */
-typedef void (*mps_parallel_for_fn)(void *user, int64_t count, mps_task_fn task, void *task_data);
+typedef void (*mps_context_parallel_for_fn)(void *user, int64_t count, mps_context_task_fn task,
+                                            void *task_data);
 
-typedef enum mps_executor_kind {
-  MPS_EXECUTOR_SERIAL = 0, /* the calling thread only */
-  MPS_EXECUTOR_OPENMP = 1, /* `threads` OpenMP threads: for programs that use OpenMP themselves. How
-                              its threads wait is the program's choice (OMP_WAIT_POLICY); by
-                              default they spin, which costs much where other programs compute */
-  MPS_EXECUTOR_CALLER = 2, /* parallel_for below */
-  MPS_EXECUTOR_THREADS = 3 /* `threads`, with the calling thread, of the context's own: they start
-                              with the first loop, and sleep when they have waited for some
+typedef enum mps_context_executor {
+  MPS_CONTEXT_EXECUTOR_SERIAL = 0, /* the calling thread only */
+  MPS_CONTEXT_EXECUTOR_OPENMP =
+      1, /* `threads` OpenMP threads: for programs that use OpenMP themselves. How
+    its threads wait is the program's choice (OMP_WAIT_POLICY); by
+    default they spin, which costs much where other programs compute */
+  MPS_CONTEXT_EXECUTOR_CALLER = 2, /* parallel_for below */
+  MPS_CONTEXT_EXECUTOR_THREADS = 3 /* `threads`, with the calling thread, of the context's own: they
+                              start with the first loop, and sleep when they have waited for some
                               microseconds. All signals are blocked in them. They run where the
                               thread that starts them may: OMP_PROC_BIND in the environment binds
                               that to one processor, which they then share */
-} mps_executor_kind;
+} mps_context_executor;
 
-typedef enum mps_log_level {
-  MPS_LOG_WARNING = 0,
-  MPS_LOG_INFO = 1,
-  MPS_LOG_DEBUG = 2
-} mps_log_level;
+typedef enum mps_context_log_level {
+  MPS_CONTEXT_LOG_WARNING = 0,
+  MPS_CONTEXT_LOG_INFO = 1,
+  MPS_CONTEXT_LOG_DEBUG = 2
+} mps_context_log_level;
 
-typedef void (*mps_log_fn)(void *user, int32_t level, const char *message);
+typedef void (*mps_context_log_fn)(void *user, int32_t level, const char *message);
 
 /** What a progress hook is told. */
-typedef struct mps_progress {
+typedef struct mps_context_progress {
   const char *task; /* short name of what is running */
   int64_t step;
   double time, time_end; /* s */
   double fraction;       /* 0..1 */
-} mps_progress;
-typedef void (*mps_progress_fn)(void *user, const mps_progress *progress);
+} mps_context_progress;
+typedef void (*mps_context_progress_fn)(void *user, const mps_context_progress *progress);
 /** Return non-zero to stop the running call with MPS_ERROR_CANCELLED. */
-typedef int32_t (*mps_cancel_fn)(void *user);
+typedef int32_t (*mps_context_cancel_fn)(void *user);
 
 /** Definition of a context; always start from mps_context_def_init or mps_context_defaults. */
 typedef struct mps_context_def {
   uint32_t struct_size;
-  int32_t executor; /* mps_executor_kind; default THREADS */
+  int32_t executor; /* mps_context_executor; default THREADS */
   int32_t threads;  /* 1..1024; 0 (default): all processors the process may use */
   /** x86-64 level of the inner loops of all that is made from the context: 1 (the plain build, on
    *  other processors the only one), 3 (AVX2) or 4 (AVX-512); 0 (default): the highest that
    *  processor and build have. Results are the same bit for bit for every level, but for WLS-MPM,
    *  whose loops use fused multiply-adds where a level has them: there last bits differ. */
   int32_t instruction_level;
-  mps_parallel_for_fn parallel_for; /* for MPS_EXECUTOR_CALLER, with `threads` workers */
+  mps_context_parallel_for_fn
+      parallel_for; /* for MPS_CONTEXT_EXECUTOR_CALLER, with `threads` workers */
   void *parallel_user;
-  mps_alloc_fn alloc; /* both or neither of alloc and free */
-  mps_free_fn free;
+  mps_context_alloc_fn alloc; /* both or neither of alloc and free */
+  mps_context_free_fn free;
   void *memory_user;
-  mps_log_fn log; /* default NULL: the library never prints */
+  mps_context_log_fn log; /* default NULL: the library never prints */
   void *log_user;
-  mps_progress_fn progress;
+  mps_context_progress_fn progress;
   void *progress_user;
-  mps_cancel_fn cancel;
+  mps_context_cancel_fn cancel;
   void *cancel_user;
 } mps_context_def;
 
@@ -128,9 +131,10 @@ MPS_API mps_status mps_context_set_error(mps_context *context, mps_status status
 
 /** Replace a hook and its `user`; NULL: none. Not while a function of the context or of its objects
  *  runs in another thread. */
-MPS_API void mps_context_set_log(mps_context *context, mps_log_fn log, void *user);
-MPS_API void mps_context_set_progress(mps_context *context, mps_progress_fn progress, void *user);
-MPS_API void mps_context_set_cancel(mps_context *context, mps_cancel_fn cancel, void *user);
+MPS_API void mps_context_set_log(mps_context *context, mps_context_log_fn log, void *user);
+MPS_API void mps_context_set_progress(mps_context *context, mps_context_progress_fn progress,
+                                      void *user);
+MPS_API void mps_context_set_cancel(mps_context *context, mps_context_cancel_fn cancel, void *user);
 
 /** x86-64 level of the inner loops in use: 1, 3 or 4. */
 MPS_API int32_t mps_context_instruction_level(const mps_context *context);
@@ -141,7 +145,7 @@ MPS_API int32_t mps_context_threads(const mps_context *context);
 /** Runs task(data, i, worker) for i in [0, count) on the context's executor and waits. The task
  *  must not use this context or its objects except to read them. */
 MPS_API MPS_NODISCARD mps_status mps_context_parallel_for(mps_context *context, int64_t count,
-                                                          mps_task_fn task, void *data);
+                                                          mps_context_task_fn task, void *data);
 
 MPS_EXTERN_C_END
 #endif

@@ -25,10 +25,10 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_coupling mps_coupling;
 
 typedef enum mps_coupling_method {
-  MPS_COUPLING_QUASI_NEWTON = 0, /* IQN-ILS: from what earlier repeats have shown, by least squares
-                                    (Degroote, Bathe and Vierendeels 2009) */
-  MPS_COUPLING_AITKEN = 1,       /* one factor for all values; right for one value */
-  MPS_COUPLING_CONSTANT = 2      /* `relaxation` at each repeat */
+  MPS_COUPLING_METHOD_QUASI_NEWTON = 0, /* IQN-ILS: from what earlier repeats have shown, by least
+                                    squares (Degroote, Bathe and Vierendeels 2009) */
+  MPS_COUPLING_METHOD_AITKEN = 1,       /* one factor for all values; right for one value */
+  MPS_COUPLING_METHOD_CONSTANT = 2      /* `relaxation` at each repeat */
 } mps_coupling_method;
 
 typedef struct mps_coupling_def {

@@ -41,21 +41,21 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_elastic mps_elastic;
 
 typedef enum mps_elastic_state {
-  MPS_ELASTIC_PLANE_STRESS = 0, /* lambda = nu E / (1 - nu^2) */
-  MPS_ELASTIC_PLANE_STRAIN = 1  /* lambda = nu E / ((1 + nu)(1 - 2 nu)), as in 3D */
+  MPS_ELASTIC_STATE_PLANE_STRESS = 0, /* lambda = nu E / (1 - nu^2) */
+  MPS_ELASTIC_STATE_PLANE_STRAIN = 1  /* lambda = nu E / ((1 + nu)(1 - 2 nu)), as in 3D */
 } mps_elastic_state;
 
 typedef enum mps_elastic_solver {
-  MPS_ELASTIC_AUTO = 0, /* LLT where the factor fits `memory_limit`, else CG */
-  MPS_ELASTIC_LLT = 1,  /* supernodal Cholesky */
-  MPS_ELASTIC_LDLT = 2, /* simplicial LDL^T */
-  MPS_ELASTIC_CG = 3    /* conjugate gradients with a symmetric Gauss-Seidel preconditioner */
+  MPS_ELASTIC_SOLVER_AUTO = 0, /* LLT where the factor fits `memory_limit`, else CG */
+  MPS_ELASTIC_SOLVER_LLT = 1,  /* supernodal Cholesky */
+  MPS_ELASTIC_SOLVER_LDLT = 2, /* simplicial LDL^T */
+  MPS_ELASTIC_SOLVER_CG = 3 /* conjugate gradients with a symmetric Gauss-Seidel preconditioner */
 } mps_elastic_solver;
 
 typedef enum mps_elastic_ordering {
-  MPS_ELASTIC_ORDER_BEST = 0, /* AMD and METIS are tried, the smaller factor is kept */
-  MPS_ELASTIC_ORDER_AMD = 1,
-  MPS_ELASTIC_ORDER_METIS = 2
+  MPS_ELASTIC_ORDERING_BEST = 0, /* AMD and METIS are tried, the smaller factor is kept */
+  MPS_ELASTIC_ORDERING_AMD = 1,
+  MPS_ELASTIC_ORDERING_METIS = 2
 } mps_elastic_ordering;
 
 typedef struct mps_elastic_def {
@@ -214,18 +214,18 @@ typedef enum mps_elastic_load_kind {
 
 /** Traction (dim values, Pa, 0 on entry) at the surface point x (dim values, m) with outward
  * normal. A status other than MPS_OK ends the call, which returns it. */
-typedef mps_status (*mps_traction_fn)(void *user, const double *x, const double *normal,
-                                      double *traction);
+typedef mps_status (*mps_elastic_traction_fn)(void *user, const double *x, const double *normal,
+                                              double *traction);
 
 typedef struct mps_elastic_load_def {
   uint32_t struct_size;
   int32_t kind;       /* mps_elastic_load_kind, default BODY */
   const int64_t *ids; /* particles or facets, read by the call */
   int64_t id_count;
-  const double *values;     /* read by the call: 3 a particle or facet, PRESSURE 1; NULL: `force`,
-                               PRESSURE force[0], for each */
-  double force[3];          /* as the kind says; finite, default 0 */
-  mps_traction_fn function; /* FUNCTION: asked by this call only */
+  const double *values; /* read by the call: 3 a particle or facet, PRESSURE 1; NULL: `force`,
+                           PRESSURE force[0], for each */
+  double force[3];      /* as the kind says; finite, default 0 */
+  mps_elastic_traction_fn function; /* FUNCTION: asked by this call only */
   void *user;
   mps_signal *signal[3]; /* by component, PRESSURE signal[0]: its displacement, as a number, at the
                             time of the solution or at the end of the step; NULL (default): 1. Kept
@@ -252,8 +252,8 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_set_load(mps_elastic *e, int32_t nu
 MPS_API MPS_NODISCARD mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number);
 /** Resultant of the present loads and of `external_force`: force (3 values, N) and moment (3, N m,
  *  about `about`, 3 values, NULL: the origin). Either may be NULL. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_load_resultant(mps_elastic *e, const double *about,
-                                                            double *force, double *moment);
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_load_resultant(mps_elastic *e, const double *about,
+                                                                double *force, double *moment);
 
 /* ---- statics --------------------------------------------------------------------------------- */
 /** What the solution takes, known before it is made. */
@@ -307,17 +307,17 @@ static inline mps_status mps_elastic_get_report(const mps_elastic *e, mps_elasti
 /** Writes strain and stress of the present displacement to the fields `strain` and `stress`
  *  (components xx, yy, zz, xy and in 3D zx, yz; shear strain is tensorial), the principal stresses,
  *  largest first, to `principal`, and the von Mises stress to `von_mises`. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_stress(mps_elastic *e);
+MPS_API MPS_NODISCARD mps_status mps_elastic_update_stress(mps_elastic *e);
 /** Force (3 values, N) and moment (3, N m, about `about`, 3 values, NULL: origin) that the part of
  *  the body with x[axis] > position exerts on the rest, from the static balance of the rest's
  *  particles: normal force N, shear Q and bending moment M of the section. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position,
-                                                     const double *about, double *force,
-                                                     double *moment);
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_section(mps_elastic *e, int32_t axis,
+                                                         double position, const double *about,
+                                                         double *force, double *moment);
 /** Strain energy (J) now; `stabilising` (may be NULL) receives its part in the stabilising pairs.
  */
-MPS_API MPS_NODISCARD mps_status mps_elastic_energy(mps_elastic *e, double *strain,
-                                                    double *stabilising);
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(mps_elastic *e, double *strain,
+                                                        double *stabilising);
 /** Sums over the body. Since the motion began, or of the last static solution, which counts as
  *  loaded in proportion from rest, so that the work of the loads is half of load times
  * displacement. Works in a step are means of the forces before and after it times the displacement,
@@ -357,8 +357,8 @@ static inline mps_elastic_motion_def mps_elastic_motion_defaults(void) {
   return def;
 }
 
-/** Begins a motion from the fields `displacement`, `velocity` (0 without) and `density`. Beyond 1e100
- *  m or m/s it is MPS_ERROR_NUMERIC. */
+/** Begins a motion from the fields `displacement`, `velocity` (0 without) and `density`. Beyond
+ * 1e100 m or m/s it is MPS_ERROR_NUMERIC. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_start(mps_elastic *e,
                                                    const mps_elastic_motion_def *def);
 /** Takes `count` (>= 0) steps, and writes `displacement`, `velocity`, `acceleration` and

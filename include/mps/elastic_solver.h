@@ -26,9 +26,10 @@
 
 MPS_EXTERN_C_BEGIN
 
-typedef enum mps_elastic_outside {
-  MPS_ELASTIC_OUTSIDE = 4 /* mps_elastic_report.solver: what mps_elastic_set_solver has put in */
-} mps_elastic_outside;
+typedef enum mps_elastic_solver_foreign {
+  MPS_ELASTIC_SOLVER_FOREIGN =
+      4 /* mps_elastic_report.solver: what mps_elastic_set_solver has put in */
+} mps_elastic_solver_foreign;
 
 /** The matrix, or the part of its rows that this process has. Row first + i has the columns
  *  column[start[i]] to column[start[i + 1] - 1], ascending, with the diagonal and both halves. */

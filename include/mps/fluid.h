@@ -203,10 +203,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *
 /** Takes body `number` out of the water, between steps; MPS_ERROR_ARGUMENT: there is none. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
 /** `floats` 1: from now on the fluid moves the body in each of its steps, such that the water's
- *  pressure, the body's mass, gravity and load (mps_body_load), and the impulses of other solvers
- *  since its last step agree, however light it is. It feels no boundary: keep it from the ground. 0
- *  (as after mps_fluid_add_body): the caller or another solver moves it, by the forces of the last
- *  step, which is unstable where it is lighter than the water that it accelerates.
+ *  pressure, the body's mass, gravity and load (mps_body_set_load), and the impulses of other
+ * solvers since its last step agree, however light it is. It feels no boundary: keep it from the
+ * ground. 0 (as after mps_fluid_add_body): the caller or another solver moves it, by the forces of
+ * the last step, which is unstable where it is lighter than the water that it accelerates.
  *  MPS_ERROR_ARGUMENT: the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE: another solver
  *  moves it. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, int32_t number,

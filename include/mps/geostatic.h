@@ -16,34 +16,34 @@ MPS_EXTERN_C_BEGIN
 
 /** A layer of ground. Layers follow the surface: depths are vertical ones below it. Frozen layout.
  */
-typedef struct mps_soil_layer {
+typedef struct mps_geostatic_layer {
   double thickness; /* m, 1e-9 to 1e9; infinite allowed for the lowest */
   double k0;        /* horizontal over vertical stress, >= 0; elastic ground held at its sides:
                        nu/(1 - nu) */
   double density;   /* kg/m3, 1e-9 to 1e9; 0: that of the field `density` of the particles whose
                        centres lie   in the layer, which must be one value */
-} mps_soil_layer;
+} mps_geostatic_layer;
 
 /** Writes the level (m) of the surface above or below the position x (m, as many values as the set
  *  has dimensions; the vertical one is that of the particle). Another status than MPS_OK ends the
  *  call, which returns it. */
-typedef mps_status (*mps_level_fn)(void *user, const double *x, double *level);
+typedef mps_status (*mps_geostatic_level_fn)(void *user, const double *x, double *level);
 
 typedef struct mps_geostatic_def {
   uint32_t struct_size;
-  int32_t layer_count;          /* >= 1; no default */
-  const mps_soil_layer *layers; /* from the surface downwards; no default */
-  double gravity;               /* m/s2, > 0, downwards; default 9.81 */
-  double surcharge;             /* Pa, >= 0, load on the surface; default 0 */
-  int32_t vertical;             /* axis that points up: 0, 1, 2, or -1 (default) for the last of the
-                                   set: y in 2D, z in 3D */
-  int32_t surface_points;       /* >= 2 with `surface_line`, else 0 (default) */
+  int32_t layer_count;               /* >= 1; no default */
+  const mps_geostatic_layer *layers; /* from the surface downwards; no default */
+  double gravity;                    /* m/s2, > 0, downwards; default 9.81 */
+  double surcharge;                  /* Pa, >= 0, load on the surface; default 0 */
+  int32_t vertical;       /* axis that points up: 0, 1, 2, or -1 (default) for the last of the
+                             set: y in 2D, z in 3D */
+  int32_t surface_points; /* >= 2 with `surface_line`, else 0 (default) */
   /** The surface, by one of three: */
   double surface;             /* m, level of a flat one; NaN (default): half a spacing above the
                                  highest particle */
   const double *surface_line; /* 2D: x0, y0, x1, y1, ..., x ascending; beyond the ends level. Not
                                  where x is the vertical */
-  mps_level_fn surface_level;
+  mps_geostatic_level_fn surface_level;
   void *user; /* passed to `surface_level` */
 } mps_geostatic_def;
 
@@ -67,13 +67,14 @@ MPS_API MPS_NODISCARD mps_status mps_particles_set_geostatic(mps_particles *part
 
 /** Writes the stress (Pa) at the position x (m): xx, yy, zz, xy in 2D, and zx, yz in 3D, which are
  *  zero on entry. Another status than MPS_OK ends the call, which returns it. */
-typedef mps_status (*mps_stress_fn)(void *user, const double *x, double *stress);
+typedef mps_status (*mps_geostatic_stress_fn)(void *user, const double *x, double *stress);
 
 /** Sets the stress of every particle by the caller's function, adding the field where the set lacks
  *  it. MPS_ERROR_ARGUMENT for a stress that is not finite, or the status that the function returns;
  *  then nothing is changed. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set_stress(mps_particles *particles,
-                                                          mps_stress_fn stress, void *user);
+                                                          mps_geostatic_stress_fn stress,
+                                                          void *user);
 
 MPS_EXTERN_C_END
 #endif

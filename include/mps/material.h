@@ -19,8 +19,8 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_material mps_material;
 
 /** What a law did to a particle in this step: bits of the column `flags`. */
-#define MPS_MATERIAL_PLASTIC 1 /* the trial stress was outside the yield surface */
-#define MPS_MATERIAL_APEX 2    /* at the limit of tension, or a gap between grains is open */
+#define MPS_MATERIAL_FLAG_PLASTIC 1 /* the trial stress was outside the yield surface */
+#define MPS_MATERIAL_FLAG_APEX 2    /* at the limit of tension, or a gap between grains is open */
 
 /** A block of particles as a law sees it: columns of `count` doubles, each contiguous. */
 typedef struct mps_material_block {
@@ -73,15 +73,17 @@ static inline mps_material_block mps_material_block_defaults(void) {
  * MPS_ERROR_MEMORY. */
 
 /** Linear elastic, Jaumann rate. */
-MPS_API MPS_NODISCARD mps_status mps_material_linear_elastic(mps_context *context, double young,
-                                                             double poisson, mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_create_linear_elastic(mps_context *context,
+                                                                    double young, double poisson,
+                                                                    mps_material **out);
 /** Compressible neo-Hookean solid, for large elastic strain; needs the deformation gradient.
  *  sigma = G/J (F F^T - 1) + lambda/2 (J - 1/J) 1. */
-MPS_API MPS_NODISCARD mps_status mps_material_neo_hookean(mps_context *context, double young,
-                                                          double poisson, mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_create_neo_hookean(mps_context *context, double young,
+                                                                 double poisson,
+                                                                 mps_material **out);
 
 /** von Mises: sqrt(3 J2) = yield_stress + hardening * plastic_strain, associated. */
-typedef struct mps_von_mises_def {
+typedef struct mps_material_von_mises_def {
   uint32_t struct_size;
   uint32_t reserved;
   double young;        /* Pa, > 0; no default */
@@ -89,34 +91,34 @@ typedef struct mps_von_mises_def {
   double yield_stress; /* Pa, in uniaxial tension, > 0; no default. Plane strain with cohesion c:
                           sqrt(3) c, Nakamura (54) */
   double hardening;    /* Pa per plastic strain, >= 0; default 0 */
-} mps_von_mises_def;
+} mps_material_von_mises_def;
 
 /** How the cone of Drucker and Prager meets the hexagonal pyramid of Mohr and Coulomb. All have its
  *  apex; the flow potential is the same kind of cone for the angle of dilation. */
-typedef enum mps_cone {
+typedef enum mps_material_cone {
   MPS_MATERIAL_CONE_PLANE_STRAIN = 0,  /* the same strength in plane strain, whatever the dilation;
                                  where  that equals the friction: Nakamura (56) */
   MPS_MATERIAL_CONE_CIRCUMSCRIBED = 1, /* outer cone, through the edges of triaxial compression */
   MPS_MATERIAL_CONE_INSCRIBED =
       2, /* inner cone, the largest that stays inside: always Nakamura (56) */
   MPS_MATERIAL_CONE_EXTENSION = 3 /* through the edges of triaxial extension */
-} mps_cone;
+} mps_material_cone;
 
 /** Drucker-Prager: sqrt(J2) + alpha I1 = kappa, Nakamura (55), perfectly plastic. */
-typedef struct mps_drucker_prager_def {
+typedef struct mps_material_drucker_prager_def {
   uint32_t struct_size;
-  int32_t cone;    /* mps_cone, default MPS_MATERIAL_CONE_PLANE_STRAIN */
+  int32_t cone;    /* mps_material_cone, default MPS_MATERIAL_CONE_PLANE_STRAIN */
   double young;    /* Pa, > 0; no default */
   double poisson;  /* default 0.3 */
   double friction; /* rad, angle phi, 0 <= phi < pi/2; no default */
   double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0. Associated: phi */
   double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
   double tension;  /* Pa, largest mean stress I1/3, >= 0; default infinity: up to the apex */
-} mps_drucker_prager_def;
+} mps_material_drucker_prager_def;
 
 /** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), perfectly plastic, with a cut-off
  *  s1 <= T (Rankine) whose flow is normal to it. */
-typedef struct mps_mohr_coulomb_def {
+typedef struct mps_material_mohr_coulomb_def {
   uint32_t struct_size;
   uint32_t reserved;
   double young;    /* Pa, > 0; no default */
@@ -125,23 +127,23 @@ typedef struct mps_mohr_coulomb_def {
   double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0 */
   double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
   double tension;  /* Pa, T, largest principal stress, >= 0; default infinity: up to the apex */
-} mps_mohr_coulomb_def;
+} mps_material_mohr_coulomb_def;
 
 /** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */
-typedef enum mps_state_equation {
+typedef enum mps_material_state_equation {
   MPS_MATERIAL_STATE_LINEAR = 0, /* p = K (r - 1) */
   MPS_MATERIAL_STATE_TAIT = 1    /* p = K/7 (r^7 - 1) */
-} mps_state_equation;
+} mps_material_state_equation;
 
 /** Weakly compressible Newtonian fluid: sigma = -p 1 + 2 viscosity dev(d). */
-typedef struct mps_newtonian_def {
+typedef struct mps_material_newtonian_def {
   uint32_t struct_size;
-  int32_t state;       /* mps_state_equation, default MPS_MATERIAL_STATE_TAIT */
+  int32_t state;       /* mps_material_state_equation, default MPS_MATERIAL_STATE_TAIT */
   double bulk_modulus; /* Pa, K = rho0 c^2 > 0; no default */
   double viscosity;    /* Pa s, >= 0; default 0 */
   int32_t no_tension;  /* 1: p >= 0, and the volume does not grow beyond V0; default 0 */
   int32_t reserved;
-} mps_newtonian_def;
+} mps_material_newtonian_def;
 
 /** A law of the caller's own. Called once a block, by several threads at once; reads `gradient` and
  *  writes `stress`, `history` and `flags` (zero on entry). `deformation` and `volume_ratio` are
@@ -153,7 +155,7 @@ typedef struct mps_newtonian_def {
  * for that (8 bytes for each component of the fields that a step writes). */
 typedef mps_status (*mps_material_fn)(void *user, const mps_material_block *block);
 
-typedef struct mps_user_law_def {
+typedef struct mps_material_user_def {
   uint32_t struct_size;
   int32_t history_count;      /* 0..1024; default 0 */
   mps_material_fn update;     /* no default */
@@ -170,7 +172,7 @@ typedef struct mps_user_law_def {
   /** K > 0 and G >= 0 at zero strain, Pa. The size of a particle in contact follows its stress by
    *  them. Default 0, 0: not stated; K + 4G/3 is the wave modulus then, and nu 1/4. */
   double bulk_modulus, shear_modulus;
-} mps_user_law_def;
+} mps_material_user_def;
 
 /** An Abaqus UMAT, as a C function or as a Fortran subroutine (`umat_` of gfortran): for each
  *  particle one call with Abaqus' arguments, in Abaqus' order and conventions. NDI = 3; NSHR and
@@ -178,23 +180,21 @@ typedef struct mps_user_law_def {
  *  12, 13, 23); shear strains are engineering ones; matrices are stored by columns, as Fortran has
  *  them. Integers are of 32 bits (not -fdefault-integer-8), reals of 64. docs/materials.md says
  * what each argument holds. `cmname_length` is the hidden length of CMNAME, 80. */
-typedef void (*mps_umat_fn)(double *stress, double *statev, double *ddsdde, double *sse,
-                            double *spd, double *scd, double *rpl, double *ddsddt, double *drplde,
-                            double *drpldt, const double *stran, const double *dstran,
-                            const double *time, const double *dtime, const double *temp,
-                            const double *dtemp, const double *predef, const double *dpred,
-                            const char *cmname, const int32_t *ndi, const int32_t *nshr,
-                            const int32_t *ntens, const int32_t *nstatv, const double *props,
-                            const int32_t *nprops, const double *coords, const double *drot,
-                            double *pnewdt, const double *celent, const double *dfgrd0,
-                            const double *dfgrd1, const int32_t *noel, const int32_t *npt,
-                            const int32_t *layer, const int32_t *kspt, const int32_t *kstep,
-                            const int32_t *kinc, size_t cmname_length);
+typedef void (*mps_material_umat_fn)(
+    double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,
+    double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,
+    const double *dstran, const double *time, const double *dtime, const double *temp,
+    const double *dtemp, const double *predef, const double *dpred, const char *cmname,
+    const int32_t *ndi, const int32_t *nshr, const int32_t *ntens, const int32_t *nstatv,
+    const double *props, const int32_t *nprops, const double *coords, const double *drot,
+    double *pnewdt, const double *celent, const double *dfgrd0, const double *dfgrd1,
+    const int32_t *noel, const int32_t *npt, const int32_t *layer, const int32_t *kspt,
+    const int32_t *kstep, const int32_t *kinc, size_t cmname_length);
 
-/** Head of a UMAT in C, its arguments by Abaqus' names in lower case; in its body MPS_UMAT_UNUSED
- *  keeps a compiler from warning of those that it does not use:
- *    static MPS_UMAT(spring) { MPS_UMAT_UNUSED; stress[0] += props[0] * dstran[0]; } */
-#define MPS_UMAT(name)                                                                             \
+/** Head of a UMAT in C, its arguments by Abaqus' names in lower case; in its body
+ * MPS_MATERIAL_UMAT_UNUSED keeps a compiler from warning of those that it does not use: static
+ * MPS_MATERIAL_UMAT(spring) { MPS_MATERIAL_UMAT_UNUSED; stress[0] += props[0] * dstran[0]; } */
+#define MPS_MATERIAL_UMAT(name)                                                                    \
   void name(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd, \
             double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,      \
             const double *dstran, const double *time, const double *dtime, const double *temp,     \
@@ -204,7 +204,7 @@ typedef void (*mps_umat_fn)(double *stress, double *statev, double *ddsdde, doub
             double *pnewdt, const double *celent, const double *dfgrd0, const double *dfgrd1,      \
             const int32_t *noel, const int32_t *npt, const int32_t *layer, const int32_t *kspt,    \
             const int32_t *kstep, const int32_t *kinc, size_t cmname_length)
-#define MPS_UMAT_UNUSED                                                                            \
+#define MPS_MATERIAL_UMAT_UNUSED                                                                   \
   ((void)stress, (void)statev, (void)ddsdde, (void)sse, (void)spd, (void)scd, (void)rpl,           \
    (void)ddsddt, (void)drplde, (void)drpldt, (void)stran, (void)dstran, (void)time, (void)dtime,   \
    (void)temp, (void)dtemp, (void)predef, (void)dpred, (void)cmname, (void)ndi, (void)nshr,        \
@@ -212,10 +212,10 @@ typedef void (*mps_umat_fn)(double *stress, double *statev, double *ddsdde, doub
    (void)celent, (void)dfgrd0, (void)dfgrd1, (void)noel, (void)npt, (void)layer, (void)kspt,       \
    (void)kstep, (void)kinc, (void)cmname_length)
 
-typedef struct mps_umat_def {
+typedef struct mps_material_umat_def {
   uint32_t struct_size;
   int32_t statev_count;            /* NSTATV: 0 (default) to 1000 */
-  mps_umat_fn umat;                /* no default */
+  mps_material_umat_fn umat;       /* no default */
   const char *name;                /* CMNAME, as of a user's law; default "umat" */
   const double *props;             /* PROPS, copied, finite */
   int32_t props_count;             /* NPROPS, >= 0; default 0 */
@@ -229,53 +229,53 @@ typedef struct mps_umat_def {
                                       of history; 0: zero */
   int32_t reserved;
   double bulk_modulus, shear_modulus; /* Pa, at zero strain, as of a user's law; default 0, 0 */
-} mps_umat_def;
+} mps_material_umat_def;
 
-MPS_API mps_status mps_von_mises_def_init(mps_von_mises_def *def, size_t size);
-MPS_API mps_status mps_drucker_prager_def_init(mps_drucker_prager_def *def, size_t size);
-MPS_API mps_status mps_mohr_coulomb_def_init(mps_mohr_coulomb_def *def, size_t size);
-MPS_API mps_status mps_newtonian_def_init(mps_newtonian_def *def, size_t size);
-MPS_API mps_status mps_user_law_def_init(mps_user_law_def *def, size_t size);
-MPS_API mps_status mps_umat_def_init(mps_umat_def *def, size_t size);
+MPS_API mps_status mps_material_von_mises_def_init(mps_material_von_mises_def *def, size_t size);
+MPS_API mps_status mps_material_drucker_prager_def_init(mps_material_drucker_prager_def *def,
+                                                        size_t size);
+MPS_API mps_status mps_material_mohr_coulomb_def_init(mps_material_mohr_coulomb_def *def,
+                                                      size_t size);
+MPS_API mps_status mps_material_newtonian_def_init(mps_material_newtonian_def *def, size_t size);
+MPS_API mps_status mps_material_user_def_init(mps_material_user_def *def, size_t size);
+MPS_API mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size);
 
 #define MPS_MATERIAL_DEFAULTS(law)                                                                 \
-  static inline mps_##law##_def mps_##law##_defaults(void) {                                       \
-    mps_##law##_def def;                                                                           \
+  static inline mps_material_##law##_def mps_material_##law##_defaults(void) {                     \
+    mps_material_##law##_def def;                                                                  \
     memset(&def, 0, sizeof def);                                                                   \
-    if (mps_##law##_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;                     \
+    if (mps_material_##law##_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;            \
     return def;                                                                                    \
   }
 MPS_MATERIAL_DEFAULTS(von_mises)
 MPS_MATERIAL_DEFAULTS(drucker_prager)
 MPS_MATERIAL_DEFAULTS(mohr_coulomb)
 MPS_MATERIAL_DEFAULTS(newtonian)
-MPS_MATERIAL_DEFAULTS(user_law)
+MPS_MATERIAL_DEFAULTS(user)
 MPS_MATERIAL_DEFAULTS(umat)
 
 /** The laws of the definitions above. Constants are copied. MPS_ERROR_ARGUMENT names the constant
  * that is out of range. */
-MPS_API MPS_NODISCARD mps_status mps_material_von_mises(mps_context *context,
-                                                        const mps_von_mises_def *def,
-                                                        mps_material **out);
-MPS_API MPS_NODISCARD mps_status mps_material_drucker_prager(mps_context *context,
-                                                             const mps_drucker_prager_def *def,
-                                                             mps_material **out);
-MPS_API MPS_NODISCARD mps_status mps_material_mohr_coulomb(mps_context *context,
-                                                           const mps_mohr_coulomb_def *def,
-                                                           mps_material **out);
-MPS_API MPS_NODISCARD mps_status mps_material_newtonian(mps_context *context,
-                                                        const mps_newtonian_def *def,
-                                                        mps_material **out);
-MPS_API MPS_NODISCARD mps_status mps_material_user(mps_context *context,
-                                                   const mps_user_law_def *def, mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_create_von_mises(
+    mps_context *context, const mps_material_von_mises_def *def, mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_create_drucker_prager(
+    mps_context *context, const mps_material_drucker_prager_def *def, mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_create_mohr_coulomb(
+    mps_context *context, const mps_material_mohr_coulomb_def *def, mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_create_newtonian(
+    mps_context *context, const mps_material_newtonian_def *def, mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_create_user(mps_context *context,
+                                                          const mps_material_user_def *def,
+                                                          mps_material **out);
 
 /** A law by a UMAT. It is a user's law: threads call the UMAT at once, for different particles, so
  * it must not write to anything but its arguments (in Fortran no SAVE, COMMON or DATA that changes,
- * and gfortran -frecursive); for one that does, make the context with MPS_EXECUTOR_SERIAL. It
- * refuses a particle, MPS_ERROR_NUMERIC, when the UMAT sets PNEWDT below 1 or when a stress or a
- * state variable is not finite. Errors as of mps_material_user. */
-MPS_API MPS_NODISCARD mps_status mps_material_umat(mps_context *context, const mps_umat_def *def,
-                                                   mps_material **out);
+ * and gfortran -frecursive); for one that does, make the context with MPS_CONTEXT_EXECUTOR_SERIAL.
+ * It refuses a particle, MPS_ERROR_NUMERIC, when the UMAT sets PNEWDT below 1 or when a stress or a
+ * state variable is not finite. Errors as of mps_material_create_user. */
+MPS_API MPS_NODISCARD mps_status mps_material_create_umat(mps_context *context,
+                                                          const mps_material_umat_def *def,
+                                                          mps_material **out);
 
 /** Releases and nulls; accepts NULL. Solvers that use the material keep their own reference. */
 MPS_API void mps_material_destroy(mps_material **material);

@@ -41,9 +41,9 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_mpm mps_mpm;
 typedef enum mps_mpm_geometry {
-  MPS_MPM_PLANE_STRAIN = 0,
-  MPS_MPM_AXISYMMETRIC = 1, /* x = r >= 0, y = z */
-  MPS_MPM_SPACE = 2         /* three dimensions */
+  MPS_MPM_GEOMETRY_PLANE_STRAIN = 0,
+  MPS_MPM_GEOMETRY_AXISYMMETRIC = 1, /* x = r >= 0, y = z */
+  MPS_MPM_GEOMETRY_SPACE = 2         /* three dimensions */
 } mps_mpm_geometry;
 
 /** Which speed bounds the step besides that of viscous laws, rho h^2/(4 dim viscosity). */

@@ -7,14 +7,14 @@
  *   set.spacing = 0.1;
  *   auto sand = mps::create(context, mps_particles_create, set);
  *   mps::call(sand, mps_particles_set, "density", 0, 1800.0);
- *   auto law = mps::create(context, mps_material_linear_elastic, 1e7, 0.3);
+ *   auto law = mps::create(context, mps_material_create_linear_elastic, 1e7, 0.3);
  *   auto solver = mps::create(context, mps_mpm_create, sand, law, def);
  *   mps::run(solver, mps_mpm_run, 1.0, 100, [](mps_mpm *s) { ... });
  *   mps_totals totals = mps::get<mps_totals>(solver, mps_mpm_get_totals);
  *   for (auto v = mps::view(sand, "velocity"); ...) ... v(i, 0) ...
  *
- * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::callback. A function
- * that is given to C without it must not throw: C has no way to unwind a step.
+ * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::callback. A
+ * function that is given to C without it must not throw: C has no way to unwind a step.
  *
  * Arguments are those of the C function, with a struct in place of a pointer to it and a handle in
  * place of its object. The context must outlive the handles that were made from it, as it does when
@@ -113,8 +113,8 @@ MPS_CPP_HANDLE(domain)
 #undef MPS_CPP_HANDLE
 
 namespace detail {
-/* Exceptions of callbacks on their way through C, the first one of each context: the callback may have
- * run on another thread than the call that it ends. */
+/* Exceptions of callbacks on their way through C, the first one of each context: the callback may
+ * have run on another thread than the call that it ends. */
 class thrown {
 public:
   static void keep(const mps_context *context) noexcept {
@@ -154,7 +154,8 @@ private:
 };
 } // namespace detail
 
-/** Throws what a mps::callback of the context has thrown, or mps::error where `status` is not MPS_OK.
+/** Throws what a mps::callback of the context has thrown, or mps::error where `status` is not
+ * MPS_OK.
  */
 inline void check(const mps_context *context, mps_status status) {
   detail::thrown::rethrow(context);
@@ -162,9 +163,9 @@ inline void check(const mps_context *context, mps_status status) {
 }
 
 /** A C++ function as a callback of the library: `C` is its type in the headers (mps_material_fn,
- *  mps_signal_fn, mps_log_fn ...), `f` takes what stands behind `user` there and returns the same, or
- *  nothing for MPS_OK. What it throws ends the call of the library and comes out of it, if that is made
- *  by the functions of this header. The callback must live as long as what calls it.
+ *  mps_signal_fn, mps_context_log_fn ...), `f` takes what stands behind `user` there and returns
+ * the same, or nothing for MPS_OK. What it throws ends the call of the library and comes out of it,
+ * if that is made by the functions of this header. The callback must live as long as what calls it.
  *
  *   mps::callback<mps_material_fn> update(context, [&](const mps_material_block *block) { ... });
  *   def.update = update.function();

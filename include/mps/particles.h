@@ -82,12 +82,12 @@ MPS_API MPS_NODISCARD mps_status mps_particles_fill_ball(mps_particles *particle
 /** Writes to *inside, 0 on entry, 1 where a particle is wanted at position x (m, dim values). Any
  *  status but MPS_OK ends the call, which returns it with a record and adds nothing. Must not use
  *  the set. */
-typedef mps_status (*mps_predicate_fn)(void *user, const double *x, int32_t *inside);
+typedef mps_status (*mps_particles_predicate_fn)(void *user, const double *x, int32_t *inside);
 /** Lattice sites in the box [lo, hi) that inside(user, x, ...) wants. */
 MPS_API MPS_NODISCARD mps_status mps_particles_fill_where(mps_particles *particles,
                                                           const double *lo, const double *hi,
-                                                          mps_predicate_fn inside, void *user,
-                                                          int64_t *added);
+                                                          mps_particles_predicate_fn inside,
+                                                          void *user, int64_t *added);
 
 /** Removes `count` particles, by their ids (all different). The others keep their ids and the order
  *  among them; the lattice sites of those removed stay taken. On an error nothing has changed.
@@ -99,14 +99,14 @@ MPS_API MPS_NODISCARD mps_status mps_particles_remove(mps_particles *particles, 
 /* ---- fields -------------------------------------------------------------------------------- */
 
 /** Description of a field. Strings live as long as the particle set. */
-typedef struct mps_field_info {
+typedef struct mps_particles_field_info {
   const char *name;
   const char *unit;
   const char *meaning;
   mps_dtype dtype;
   int32_t components;
   uint32_t flags; /* MPS_VIEW_READONLY where only the library writes */
-} mps_field_info;
+} mps_particles_field_info;
 
 /** Adds a field, zero filled. A name of the library's field table (docs/fields.md) gets its
  *  documented type; there `components` must be 0 or the table's. Any other name
@@ -143,12 +143,14 @@ MPS_API MPS_NODISCARD mps_status mps_particles_set(mps_particles *particles, con
 /** How many fields the set has, `id` and `position` counted. */
 MPS_API int32_t mps_particles_field_count(const mps_particles *particles);
 /** Describes field `index` (0 to the count - 1, in order of addition). */
-MPS_API MPS_NODISCARD mps_status mps_particles_field_sized(const mps_particles *particles,
-                                                           int32_t index, mps_field_info *out,
-                                                           size_t size);
-MPS_NODISCARD static inline mps_status mps_particles_field(const mps_particles *particles,
-                                                           int32_t index, mps_field_info *out) {
-  return mps_particles_field_sized(particles, index, out, sizeof *out);
+MPS_API MPS_NODISCARD mps_status mps_particles_get_field_info_sized(const mps_particles *particles,
+                                                                    int32_t index,
+                                                                    mps_particles_field_info *out,
+                                                                    size_t size);
+MPS_NODISCARD static inline mps_status mps_particles_get_field_info(const mps_particles *particles,
+                                                                    int32_t index,
+                                                                    mps_particles_field_info *out) {
+  return mps_particles_get_field_info_sized(particles, index, out, sizeof *out);
 }
 
 /* ---- selection ----------------------------------------------------------------------------- */

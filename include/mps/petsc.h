@@ -46,10 +46,10 @@ mps_petsc_domain_create(mps_context *context, MPI_Comm communicator, mps_domain 
 typedef struct mps_petsc_solver mps_petsc_solver;
 
 typedef enum mps_petsc_method {
-  MPS_PETSC_MULTIGRID = 0, /* conjugate gradients with an algebraic multigrid (GAMG): iterations
-                              hardly grow with the size. A multigrid serves for several equations,
-                              as long as it is good enough */
-  MPS_PETSC_DIRECT = 1     /* a Cholesky factor by MUMPS for every equation */
+  MPS_PETSC_METHOD_MULTIGRID = 0, /* conjugate gradients with an algebraic multigrid (GAMG):
+                              iterations hardly grow with the size. A multigrid serves for several
+                              equations, as long as it is good enough */
+  MPS_PETSC_METHOD_DIRECT = 1     /* a Cholesky factor by MUMPS for every equation */
 } mps_petsc_method;
 
 /** Makes a solver (mps_petsc_method) of this process alone, for one fluid or one body at a time.

@@ -1,8 +1,8 @@
 /* mps/signal.h - functions of time: displacement u(t), velocity v(t) and acceleration a(t).
  *
  * A signal is immutable after creation: it may be shared by objects, contexts and threads (one of
- * the caller's own, mps_signal_user, as far as its function may). Before its first instant a signal
- * is at rest: v = a = 0, and u is 0, or what a table begins with.
+ * the caller's own, mps_signal_create_user, as far as its function may). Before its first instant a
+ * signal is at rest: v = a = 0, and u is 0, or what a table begins with.
  *
  * What lies before t = 0 displaces nothing at the start: tables of velocities and accelerations are
  * integrated so that u(0) = 0 when they begin before t = 0, and u = 0 at their first sample
@@ -20,9 +20,9 @@ typedef struct mps_signal mps_signal;
 
 /** What the samples of a table or record are. */
 typedef enum mps_signal_quantity {
-  MPS_SIGNAL_DISPLACEMENT = 0, /* m */
-  MPS_SIGNAL_VELOCITY = 1,     /* m/s */
-  MPS_SIGNAL_ACCELERATION = 2  /* m/s2 */
+  MPS_SIGNAL_QUANTITY_DISPLACEMENT = 0, /* m */
+  MPS_SIGNAL_QUANTITY_VELOCITY = 1,     /* m/s */
+  MPS_SIGNAL_QUANTITY_ACCELERATION = 2  /* m/s2 */
 } mps_signal_quantity;
 
 /** Baseline correction of an accelerogram, made before it is integrated. T is its length, and v its
@@ -45,20 +45,21 @@ typedef enum mps_signal_baseline {
  *  first instant is t = 0: there the wavelet already moves a little, by exp(-c tp^2) relative to
  *  its peak (fc = 4 Hz, tp = 0.25 s: 5.2e-5), so choose tp of one period 1/fc or more.
  *  `frequency` fc (Hz, 1e-9 to 1e9), `peak_time` tp (s, >= 0), `amplitude` (m/s2, finite). */
-MPS_API MPS_NODISCARD mps_status mps_signal_ricker(mps_context *context, double frequency,
-                                                   double peak_time, double amplitude,
-                                                   mps_signal **out);
+MPS_API MPS_NODISCARD mps_status mps_signal_create_ricker(mps_context *context, double frequency,
+                                                          double peak_time, double amplitude,
+                                                          mps_signal **out);
 /** u(t) = amplitude sin(2 pi f t + phase) for t >= 0 (and its derivatives), all 0 before: u, v or
  *  a jumps at t = 0, by what the phase says. f (Hz, 1e-9 to 1e9), amplitude (m, finite), phase
  *  (rad, finite). */
-MPS_API MPS_NODISCARD mps_status mps_signal_sine(mps_context *context, double frequency,
-                                                 double amplitude, double phase, mps_signal **out);
+MPS_API MPS_NODISCARD mps_status mps_signal_create_sine(mps_context *context, double frequency,
+                                                        double amplitude, double phase,
+                                                        mps_signal **out);
 /** u(t) rises from 0 at t = start (s, finite) to `amplitude` (m, finite) at t = start + duration
  *  (s, > 0) along the quintic with zero end velocity and acceleration, amplitude
  *  (10 x^3 - 15 x^4 + 6 x^5) with x = (t - start)/duration, and stays there. */
-MPS_API MPS_NODISCARD mps_status mps_signal_ramp(mps_context *context, double start,
-                                                 double duration, double amplitude,
-                                                 mps_signal **out);
+MPS_API MPS_NODISCARD mps_status mps_signal_create_ramp(mps_context *context, double start,
+                                                        double duration, double amplitude,
+                                                        mps_signal **out);
 /** Table of `count` (2 to 2147483646) finite samples of `quantity` (MPS_SIGNAL_...) at strictly
  *  increasing `times` (s); both arrays have `count` elements and are copied. Accelerations are
  *  linear between samples and integrated exactly from v = 0 at the first sample; velocities are
@@ -67,9 +68,9 @@ MPS_API MPS_NODISCARD mps_status mps_signal_ramp(mps_context *context, double st
  *  later; displacements are a natural cubic spline. Before the table: at rest at the first
  *  displacement. After it: acceleration 0, and velocity 0 for a table of displacements, the
  *  last velocity otherwise. MPS_ERROR_NUMERIC when the motion overflows. */
-MPS_API MPS_NODISCARD mps_status mps_signal_table(mps_context *context, int32_t quantity,
-                                                  int64_t count, const double *times,
-                                                  const double *values, mps_signal **out);
+MPS_API MPS_NODISCARD mps_status mps_signal_create_table(mps_context *context, int32_t quantity,
+                                                         int64_t count, const double *times,
+                                                         const double *values, mps_signal **out);
 
 /** The motion at time t (s, finite), by the caller: motion[0] displacement (m), motion[1] velocity
  *  (m/s), motion[2] acceleration (m/s2), all finite. Whatever uses the signal calls it on the
@@ -80,8 +81,8 @@ typedef mps_status (*mps_signal_fn)(void *user, double t, double motion[3]);
 /** A motion computed by the caller's function: a servo, another code, a formula. `user` is handed
  *  to `fn` and must live as long as the signal and all that use it. It spans all times, and its
  *  peak acceleration is not known (NaN). */
-MPS_API MPS_NODISCARD mps_status mps_signal_user(mps_context *context, mps_signal_fn fn, void *user,
-                                                 mps_signal **out);
+MPS_API MPS_NODISCARD mps_status mps_signal_create_user(mps_context *context, mps_signal_fn fn,
+                                                        void *user, mps_signal **out);
 
 /** Format of a recorded motion. */
 typedef enum mps_signal_record_format {
@@ -122,16 +123,16 @@ static inline mps_signal_record_def mps_signal_record_defaults(void) {
  *  `def` NULL: the defaults. MPS_ERROR_IO when the file cannot be read, MPS_ERROR_FORMAT with
  *  "path:line: reason" when it is malformed (bad number, non-finite value, fewer or more samples
  *  than announced, time not increasing). The host's locale does not matter. */
-MPS_API MPS_NODISCARD mps_status mps_signal_record(mps_context *context, const char *path,
-                                                   const mps_signal_record_def *def,
-                                                   mps_signal **out);
+MPS_API MPS_NODISCARD mps_status mps_signal_create_record(mps_context *context, const char *path,
+                                                          const mps_signal_record_def *def,
+                                                          mps_signal **out);
 
 /** Releases and nulls; accepts NULL. Objects that use the signal keep their own reference. */
 MPS_API void mps_signal_destroy(mps_signal **signal);
 
 /** Displacement (m), velocity (m/s) and acceleration (m/s2) at time t (s). NaN when t is not
  *  finite or the caller's function refuses, 0 when signal is NULL. Thread safe, but for
- *  mps_signal_user. */
+ *  mps_signal_create_user. */
 MPS_API double mps_signal_displacement(const mps_signal *signal, double t);
 MPS_API double mps_signal_velocity(const mps_signal *signal, double t);
 MPS_API double mps_signal_acceleration(const mps_signal *signal, double t);

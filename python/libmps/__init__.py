@@ -6,7 +6,7 @@
     sand = context.particles_create(spacing=0.1)
     sand.fill_box([0, 0], [1, 1])
     sand.set("density", 0, 1800.0)
-    law = context.material_linear_elastic(1e7, 0.3)
+    law = context.material_create_linear_elastic(1e7, 0.3)
     solver = context.mpm_create(sand, law, cell=0.2, gravity=[0, -9.81, 0])
     solver.run(0.1, 10, lambda s: print(s.time()))
     print(sand["velocity"].mean(axis=0), solver.get_totals().kinetic)

@@ -13,13 +13,13 @@ Every array of the headers stands here: tests/python looks for missing ones."""
 
 #: name of the function: {parameter: length}
 FUNCTIONS = {
-    "mps_signal_table": {"times": "count", "values": "count"},
+    "mps_signal_create_table": {"times": "count", "values": "count"},
     "mps_body_create_polygon": {"xy": "2 * vertices"},
     "mps_body_create_half_plane": {"normal": "2"},
     "mps_body_create_half_space": {"normal": "3"},
     "mps_body_create_revolution": {"rz": "2 * vertices"},
     "mps_body_create_mesh": {"xyz": "3 * vertices", "corner": "3 * triangles"},
-    "mps_body_load": {"force": "3", "moment": "3"},
+    "mps_body_set_load": {"force": "3", "moment": "3"},
     "mps_body_distance": {"x": "dim * count", "distance": "count", "normal": "dim * count",
                           "foot": "dim * count", "face": "count"},
     "mps_contact_get_particles": {"ids": "capacity", "gap": "capacity", "normal": "3 * capacity",
@@ -46,10 +46,10 @@ FUNCTIONS = {
     "mps_elastic_cut": {"ids": "count"},
     "mps_elastic_select_facets": {"lo": "dim", "hi": "dim", "facets": "capacity"},
     "mps_elastic_get_facets": {"facets": "count"},
-    "mps_elastic_load_resultant": {"about": "3", "force": "3", "moment": "3"},
+    "mps_elastic_get_load_resultant": {"about": "3", "force": "3", "moment": "3"},
     "mps_elastic_solve_cases": {"loads": "3 * count * particles",
                                 "displacements": "3 * count * particles"},
-    "mps_elastic_section": {"about": "3", "force": "3", "moment": "3"},
+    "mps_elastic_get_section": {"about": "3", "force": "3", "moment": "3"},
     "mps_elastic_modes": {"omega": "count", "shapes": "3 * count * particles"},
     "mps_fluid_set_wall_motion": {"displacement": "max(1, nodes(number))",
                                   "velocity": "max(1, nodes(number))"},
@@ -65,8 +65,8 @@ FUNCTIONS = {
 
 #: name of the struct: {member: length}
 STRUCTS = {
-    "mps_user_law_def": {"history": "history_count", "history_initial": "history_count"},
-    "mps_umat_def": {"props": "props_count", "statev_names": "statev_count",
+    "mps_material_user_def": {"history": "history_count", "history_initial": "history_count"},
+    "mps_material_umat_def": {"props": "props_count", "statev_names": "statev_count",
                      "statev_initial": "statev_count"},
     "mps_dynamics_boundary_def": {"ids": "id_count"},
     "mps_dynamics_load_def": {"ids": "id_count"},

@@ -93,7 +93,7 @@ static mps_status check_free(mps_context *context, const char *function, const m
 static mps_status check_motion(mps_context *context, const char *function, const mps_body_def *d,
                                int32_t dim) {
   if (d->motion == MPS_BODY_MOTION_FREE) return check_free(context, function, d, dim);
-  if (d->motion != MPS_BODY_MOTION_PRESCRIBED)
+  if (d->motion != MPS_BODY_MOTION_DRIVEN)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "motion is %d, allowed are 0 (prescribed) and 1 (free)", d->motion);
   double unused = d->mass != 0.0 ? d->mass : d->damping[0] != 0.0 ? d->damping[0] : d->damping[1];

@@ -53,7 +53,7 @@ void mpsi_body_give_state(mpsi_given *list, const mps_body *body) {
 }
 
 void mpsi_body_give_ahead(mpsi_given *list, const mps_body *body) {
-  if (body->def.motion != MPS_BODY_MOTION_PRESCRIBED || body->outside) return;
+  if (body->def.motion != MPS_BODY_MOTION_DRIVEN || body->outside) return;
   mpsi_give_vector(list, "the body's next position", MPSI_MOTIONS, body->ahead.at);
   mpsi_give_vector(list, "the body's next velocity", MPSI_MOTIONS, body->ahead.rate);
 }

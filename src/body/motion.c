@@ -81,7 +81,7 @@ static void find_spin(const mps_body *body, double *spin) {
 
 void mpsi_body_begin(mps_body *body) {
   const mps_body_def *def = &body->def;
-  if (def->motion == MPS_BODY_MOTION_PRESCRIBED) {
+  if (def->motion == MPS_BODY_MOTION_DRIVEN) {
     mpsi_course rest = {{0}, {0}}; /* without signals */
     for (int c = 0; c < 3; c++) rest.at[c] = def->position[c], rest.at[3 + c] = def->rotation[c];
     follow(body, &rest);
@@ -184,7 +184,7 @@ static void spin_in_space(mps_body *body, const mpsi_load *contact, double dt) {
 mps_status mpsi_body_look_ahead(mps_body *body, const char *function, int32_t number, double dt) {
   mpsi_signal_use use = used_by(body, function);
   use.number = number;
-  if (body->def.motion != MPS_BODY_MOTION_PRESCRIBED || body->outside) return MPS_OK;
+  if (body->def.motion != MPS_BODY_MOTION_DRIVEN || body->outside) return MPS_OK;
   return find_courses(body, use, -1, body->time + dt, &body->ahead);
 }
 
@@ -192,7 +192,7 @@ void mpsi_body_advance(mps_body *body, double dt) {
   body->time += dt;
   memcpy(body->middle_v, body->pose.v, sizeof body->middle_v);
   memcpy(body->middle_spin, body->pose.spin, sizeof body->middle_spin);
-  if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) {
+  if (body->def.motion == MPS_BODY_MOTION_DRIVEN) {
     if (body->outside)
       coast(body, dt);
     else
@@ -252,9 +252,9 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
   if (!isfinite(factor))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "factor is %g, must be finite",
                      factor);
-  if (body->def.motion != MPS_BODY_MOTION_PRESCRIBED)
+  if (body->def.motion != MPS_BODY_MOTION_DRIVEN)
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
-                     "a free body follows no signal: use mps_body_load");
+                     "a free body follows no signal: use mps_body_set_load");
   mpsi_signal_use use = used_by(body, __func__);
   mpsi_course course;
   mps_status status = find_courses(body, use, component, body->time, &course);
@@ -345,7 +345,7 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
 
 /* ---- loads ----------------------------------------------------------------------------------- */
 
-mps_status mps_body_load(mps_body *body, const double *force, const double *moment) {
+mps_status mps_body_set_load(mps_body *body, const double *force, const double *moment) {
   if (!body) return MPS_ERROR_ARGUMENT;
   mpsi_load load = {{0}, {0}};
   if (force) memcpy(load.force, force, sizeof load.force);

@@ -128,7 +128,7 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
                      "first is %lld and count %lld, allowed are 0 to %lld and 1 to %lld",
                      (long long)first, (long long)count, (long long)body->faces - 1,
                      (long long)body->faces);
-  int32_t number = mps_body_part(body, name);
+  int32_t number = mps_body_find_part(body, name);
   if (number < 0) {
     if (body->parts == MPS_BODY_MAX_PARTS)
       return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
@@ -144,7 +144,7 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
 
 int32_t mps_body_part_count(const mps_body *body) { return body ? body->parts : 0; }
 
-int32_t mps_body_part(const mps_body *body, const char *name) {
+int32_t mps_body_find_part(const mps_body *body, const char *name) {
   for (int32_t k = 0; body && name && k < body->parts; k++)
     if (strcmp(body->names[k], name) == 0) return k;
   return -1;

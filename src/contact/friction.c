@@ -9,7 +9,7 @@
  * `along`) lose their relative velocity by the reduced mass m M/(m + M). */
 static double stick_share(const mps_body *body, int dim, double contact_mass, const double *x,
                           const double *along) {
-  if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) return 1.0;
+  if (body->def.motion == MPS_BODY_MOTION_DRIVEN) return 1.0;
   const double *R = body->pose.R;
   const double r[3] = {x[0] - body->pose.x[0], x[1] - body->pose.x[1], x[2] - body->pose.x[2]};
   const double arm[3] = {r[1] * along[2] - r[2] * along[1], r[2] * along[0] - r[0] * along[2],

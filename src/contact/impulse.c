@@ -40,7 +40,7 @@ static void spin_by(const mps_body *body, const double *m, double *spin) {
 
 void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double dt) {
   const mps_body_def *def = &body->def;
-  *b = (mpsi_impulse_body){.body = body, .free = def->motion != MPS_BODY_MOTION_PRESCRIBED};
+  *b = (mpsi_impulse_body){.body = body, .free = def->motion != MPS_BODY_MOTION_DRIVEN};
   memcpy(b->v, body->pose.v, sizeof b->v);
   memcpy(b->spin, body->pose.spin, sizeof b->spin);
   for (int k = 0; k < 2; k++) b->left[k] = b->free ? 1.0 / (1.0 + dt * def->damping[k]) : 1.0;
@@ -56,7 +56,7 @@ void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double 
 }
 
 double mpsi_impulse_mobility(const mps_body *body, const double *x, const double *along) {
-  if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) return 0.0;
+  if (body->def.motion == MPS_BODY_MOTION_DRIVEN) return 0.0;
   double r[3], arm[3], spin[3];
   for (int c = 0; c < 3; c++) r[c] = x[c] - body->pose.x[c];
   mpsi_cross3(r, along, arm);

@@ -116,7 +116,7 @@ int32_t mpsi_context_level(const mps_context *context);
 /* MPS_ERROR_STATE once the caller's executor has given a worker or an index out of range. */
 mps_status mpsi_executor_check(mps_context *context, const char *function);
 /* As mps_context_parallel_for, without argument checks. Never fails. */
-void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data);
+void mpsi_parallel_for(mps_context *context, int64_t count, mps_context_task_fn task, void *data);
 /* Whether the threads are the library's or OpenMP's: a unit may then wait for others that run at
  * the same time. A caller's executor may run units one after the other. */
 bool mpsi_executor_is_own(const mps_context *context);

@@ -30,7 +30,8 @@ static mps_status check_def(mps_context *context, const mps_coupling_def *d) {
     double value;
     bool good;
   } checks[] = {
-      {"method", "0, 1 or 2", d->method, d->method >= 0 && d->method <= MPS_COUPLING_CONSTANT},
+      {"method", "0, 1 or 2", d->method,
+       d->method >= 0 && d->method <= MPS_COUPLING_METHOD_CONSTANT},
       {"size", "1 to 2^31", (double)d->size, d->size >= 1 && d->size <= INT64_C(1) << 31},
       {"relaxation", "in (0, 1]", d->relaxation, d->relaxation > 0.0 && d->relaxation <= 1.0},
       {"tolerance", "in (0, 1)", d->tolerance, d->tolerance > 0.0 && d->tolerance < 1.0},
@@ -148,9 +149,9 @@ static void update_factor(mps_coupling *c) {
 
 static void improve(mps_coupling *c) {
   const bool again = c->repeats > 1;
-  if (c->def.method == MPS_COUPLING_CONSTANT) {
+  if (c->def.method == MPS_COUPLING_METHOD_CONSTANT) {
     relax(c, c->def.relaxation);
-  } else if (c->def.method == MPS_COUPLING_AITKEN) {
+  } else if (c->def.method == MPS_COUPLING_METHOD_AITKEN) {
     if (again) update_factor(c);
     relax(c, c->factor);
   } else {

@@ -54,12 +54,12 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
             .runs = mpsi_particles_runs(particles, domain->def.rank, NULL),
             .made = mpsi_particles_made(particles),
             .spacing = mps_particles_spacing(particles)};
-  mps_field_info info;
+  mps_particles_field_info info;
   mps_view view;
   mps_status status = check_choice(domain, function, particles, chosen);
   *bytes = (int64_t)sizeof h + h.runs * (int64_t)sizeof(mpsi_row_run);
   for (int32_t f = 0; status == MPS_OK && f < all; f++) {
-    status = mpsi_as(domain->context, function, mps_particles_field(particles, f, &info));
+    status = mpsi_as(domain->context, function, mps_particles_get_field_info(particles, f, &info));
     if (status != MPS_OK || !is_chosen(chosen, f, info.name)) continue;
     h.fields++;
     *bytes += (int64_t)sizeof(field_head) + info.components * h.particles * 8;
@@ -72,7 +72,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
   mpsi_particles_runs(particles, domain->def.rank, (mpsi_row_run *)at);
   at += h.runs * (int64_t)sizeof(mpsi_row_run);
   for (int32_t f = 0; status == MPS_OK && f < all; f++) {
-    status = mpsi_as(domain->context, function, mps_particles_field(particles, f, &info));
+    status = mpsi_as(domain->context, function, mps_particles_get_field_info(particles, f, &info));
     if (status == MPS_OK && !is_chosen(chosen, f, info.name)) continue;
     if (status == MPS_OK)
       status = mpsi_as(domain->context, function, mps_particles_view(particles, info.name, &view));

@@ -77,8 +77,8 @@ mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mp
   if (deal) {
     uint64_t fields = MPSI_HASH;
     for (int32_t f = 0; f < mps_particles_field_count(particles); f++) {
-      mps_field_info info = {.name = ""};
-      if (mps_particles_field(particles, f, &info) != MPS_OK) continue;
+      mps_particles_field_info info = {.name = ""};
+      if (mps_particles_get_field_info(particles, f, &info) != MPS_OK) continue;
       fields = mpsi_hash(fields, info.name, strlen(info.name) + 1);
       fields = mpsi_hash(fields, &info.components, sizeof info.components);
     }
@@ -106,8 +106,8 @@ typedef struct departure {
 static int32_t list_columns(mps_particles *set, void **column) {
   int32_t columns = 0;
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-    mps_field_info info = {.name = ""};
-    if (mps_particles_field(set, f, &info) != MPS_OK) continue;
+    mps_particles_field_info info = {.name = ""};
+    if (mps_particles_get_field_info(set, f, &info) != MPS_OK) continue;
     for (int32_t c = 0; c < info.components; c++, columns++)
       if (column)
         column[columns] = info.dtype.code == 0 ? (void *)mpsi_particles_integers(set, info.name)

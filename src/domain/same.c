@@ -50,9 +50,9 @@ mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function
                                         mps_particles *particles) {
   uint64_t hash = MPSI_HASH;
   for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
-    mps_field_info info;
+    mps_particles_field_info info;
     mps_view view;
-    if (mps_particles_field(particles, f, &info) != MPS_OK ||
+    if (mps_particles_get_field_info(particles, f, &info) != MPS_OK ||
         mps_particles_view(particles, info.name, &view) != MPS_OK)
       continue;
     hash = mpsi_hash(hash, info.name, strlen(info.name));

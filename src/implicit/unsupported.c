@@ -154,8 +154,8 @@ mps_status mps_elastic_remove_load(mps_elastic *elastic, int32_t number) {
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_load_resultant(mps_elastic *elastic, const double *about, double *force,
-                                      double *moment) {
+mps_status mps_elastic_get_load_resultant(mps_elastic *elastic, const double *about, double *force,
+                                          double *moment) {
   (void)elastic;
   (void)about;
   (void)force;
@@ -192,13 +192,13 @@ mps_status mps_elastic_get_report_sized(const mps_elastic *elastic, mps_elastic_
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_stress(mps_elastic *elastic) {
+mps_status mps_elastic_update_stress(mps_elastic *elastic) {
   (void)elastic;
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_section(mps_elastic *elastic, int32_t axis, double position,
-                               const double *about, double *force, double *moment) {
+mps_status mps_elastic_get_section(mps_elastic *elastic, int32_t axis, double position,
+                                   const double *about, double *force, double *moment) {
   (void)elastic;
   (void)axis;
   (void)position;
@@ -208,7 +208,7 @@ mps_status mps_elastic_section(mps_elastic *elastic, int32_t axis, double positi
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_energy(mps_elastic *elastic, double *strain, double *stabilising) {
+mps_status mps_elastic_get_energy(mps_elastic *elastic, double *strain, double *stabilising) {
   (void)elastic;
   (void)strain;
   (void)stabilising;

@@ -2,8 +2,8 @@
  *
  * Layout: attributes `format`, `version` and those of header_table at the root; the group `fields`
  * with a dataset [component][particle] of float64 or int64 for each field. Particles are identified
- * by `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first brings all of the
- * file into memory and looks at it; only then does it change the set. SPDX-License-Identifier:
+ * by `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first brings all of
+ * the file into memory and looks at it; only then does it change the set. SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "checkpoint_private.h"
 #include "replace.h"
@@ -55,7 +55,7 @@ static mps_status read_info(mps_context *context, const char *function, const mp
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-static bool write_field(hid_t group, const mps_field_info *info, const mps_view *view) {
+static bool write_field(hid_t group, const mps_particles_field_info *info, const mps_view *view) {
   const hsize_t size[2] = {(hsize_t)view->shape[1], (hsize_t)view->shape[0]};
   const hid_t type = mpsi_h5_number_type(info->dtype.code == 0);
   const hid_t target = H5Screate_simple(2, size, NULL),
@@ -78,9 +78,9 @@ static bool write_fields(hid_t root, mps_particles *particles) {
   const hid_t group = H5Gcreate2(root, "fields", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   bool good = group >= 0;
   for (int32_t k = 0; good && k < mps_particles_field_count(particles); k++) {
-    mps_field_info info;
+    mps_particles_field_info info;
     mps_view view;
-    good = mps_particles_field(particles, k, &info) == MPS_OK &&
+    good = mps_particles_get_field_info(particles, k, &info) == MPS_OK &&
            mps_particles_view(particles, info.name, &view) == MPS_OK &&
            write_field(group, &info, &view);
   }
@@ -354,9 +354,10 @@ static mps_status match_ids(reading *r) {
   return MPS_OK;
 }
 
-static bool find_info(const mps_particles *particles, const char *name, mps_field_info *out) {
+static bool find_info(const mps_particles *particles, const char *name,
+                      mps_particles_field_info *out) {
   for (int32_t k = 0; k < mps_particles_field_count(particles); k++)
-    if (mps_particles_field(particles, k, out) == MPS_OK && strcmp(out->name, name) == 0)
+    if (mps_particles_get_field_info(particles, k, out) == MPS_OK && strcmp(out->name, name) == 0)
       return true;
   return false;
 }
@@ -367,7 +368,7 @@ static mps_status match_shapes(const reading *r, mps_particles *trial) {
   for (int32_t k = 0; k < r->values.fields.count; k++) {
     const mpsi_value *field = &r->values.fields.item[k];
     const bool integer = field->type == MPSI_STATE_I64;
-    mps_field_info info;
+    mps_particles_field_info info;
     if (!find_info(r->particles, field->name, &info)) {
       const mps_status status = mps_particles_add_field(trial, field->name, field->columns);
       if (status == MPS_ERROR_MEMORY) return mpsi_fail_memory(r->context, r->function, 1);

@@ -214,9 +214,9 @@ int64_t mps_recorder_frames(const mps_recorder *recorder) {
 
 /* Finds a field of the set, and how it goes to the file. */
 static bool find_field(const mps_particles *particles, const char *name, recorded_field *out) {
-  mps_field_info info;
+  mps_particles_field_info info;
   for (int32_t k = 0; k < mps_particles_field_count(particles); k++) {
-    if (mps_particles_field(particles, k, &info) != MPS_OK || strcmp(info.name, name) != 0)
+    if (mps_particles_get_field_info(particles, k, &info) != MPS_OK || strcmp(info.name, name) != 0)
       continue;
     /* vectors have three components in VTK */
     const bool vector = info.components == 2 && mps_particles_dim(particles) == 2;
@@ -250,10 +250,11 @@ static mps_status choose_fields(mps_recorder *recorder, const mps_recorder_def *
     return mpsi_fail_memory(context, function, (size_t)all * sizeof *recorder->fields);
   *widest = 3;
   for (int64_t k = -1; k < count; k++) {
-    mps_field_info info = {.name = "id"};
+    mps_particles_field_info info = {.name = "id"};
     if (k >= 0 && def->fields)
       info.name = def->fields[k];
-    else if (k >= 0 && mps_particles_field(recorder->particles, (int32_t)k, &info) != MPS_OK)
+    else if (k >= 0 &&
+             mps_particles_get_field_info(recorder->particles, (int32_t)k, &info) != MPS_OK)
       continue;
     recorded_field field;
     if (!info.name)

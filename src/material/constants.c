@@ -69,7 +69,7 @@ double mpsi_law_wave_modulus(const mpsi_law *law) { return law->bulk + 4.0 / 3.0
 
 /* Slope of the cone that matches an angle; for the plane strain cone's flow the inscribed one,
  * which in plane strain flows with just that angle of dilation. */
-static double slope(mps_cone cone, double angle) {
+static double slope(mps_material_cone cone, double angle) {
   const double sine = sin(angle);
   switch (cone) {
   case MPS_MATERIAL_CONE_CIRCUMSCRIBED:
@@ -88,7 +88,7 @@ static double plane_strain_slope(double sine, double flow) {
   return sine / (3.0 * (sqrt(1.0 - 3.0 * flow * flow) + flow * sine));
 }
 
-void mpsi_law_add_cone(mpsi_law *law, mps_cone cone, double friction, double dilation,
+void mpsi_law_add_cone(mpsi_law *law, mps_material_cone cone, double friction, double dilation,
                        double cohesion, double tension) {
   const double sine = sin(friction);
   law->alpha_flow = slope(cone, dilation);

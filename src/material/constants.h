@@ -17,7 +17,7 @@ mps_status mpsi_check_friction(mps_context *context, const char *function, doubl
 
 mpsi_law mpsi_law_elastic(double young, double poisson);
 /* Adds the cones of yield and flow, and the limit of tension. */
-void mpsi_law_add_cone(mpsi_law *law, mps_cone cone, double friction, double dilation,
+void mpsi_law_add_cone(mpsi_law *law, mps_material_cone cone, double friction, double dilation,
                        double cohesion, double tension);
 double mpsi_law_wave_modulus(const mpsi_law *law);
 

@@ -4,23 +4,23 @@
 
 #include <stdio.h>
 
-static const mps_von_mises_def von_mises_defaults = {.poisson = 0.3};
-static const mps_drucker_prager_def drucker_prager_defaults = {
+static const mps_material_von_mises_def von_mises_defaults = {.poisson = 0.3};
+static const mps_material_drucker_prager_def drucker_prager_defaults = {
     .cone = MPS_MATERIAL_CONE_PLANE_STRAIN, .poisson = 0.3, .friction = NAN, .tension = INFINITY};
-static const mps_mohr_coulomb_def mohr_coulomb_defaults = {
+static const mps_material_mohr_coulomb_def mohr_coulomb_defaults = {
     .poisson = 0.3, .friction = NAN, .tension = INFINITY};
-static const mps_newtonian_def newtonian_defaults = {.state = MPS_MATERIAL_STATE_TAIT};
-static const mps_user_law_def user_law_defaults = {.name = "user", .turns_stress = 1};
+static const mps_material_newtonian_def newtonian_defaults = {.state = MPS_MATERIAL_STATE_TAIT};
+static const mps_material_user_def user_defaults = {.name = "user", .turns_stress = 1};
 
 #define DEF_INIT(name)                                                                             \
-  mps_status mps_##name##_def_init(mps_##name##_def *def, size_t size) {                           \
-    return MPSI_DEF_INIT(mps_##name##_def, def, size, &name##_defaults);                           \
+  mps_status mps_material_##name##_def_init(mps_material_##name##_def *def, size_t size) {         \
+    return MPSI_DEF_INIT(mps_material_##name##_def, def, size, &name##_defaults);                  \
   }
 DEF_INIT(von_mises)
 DEF_INIT(drucker_prager)
 DEF_INIT(mohr_coulomb)
 DEF_INIT(newtonian)
-DEF_INIT(user_law)
+DEF_INIT(user)
 
 /* A material of the library's own; its columns of history are fields of the table, one for all
  * laws.
@@ -51,27 +51,27 @@ static mps_status check_out(mps_context *context, const char *function, mps_mate
   return MPS_OK;
 }
 
-mps_status mps_material_linear_elastic(mps_context *context, double young, double poisson,
-                                       mps_material **out) {
+mps_status mps_material_create_linear_elastic(mps_context *context, double young, double poisson,
+                                              mps_material **out) {
   const mpsi_elastic_def def = {.young = young, .poisson = poisson};
   const mps_status status = check_out(context, __func__, out);
   return status == MPS_OK ? create(context, __func__, MPSI_LAW_LINEAR_ELASTIC, &def, out) : status;
 }
 
-mps_status mps_material_neo_hookean(mps_context *context, double young, double poisson,
-                                    mps_material **out) {
+mps_status mps_material_create_neo_hookean(mps_context *context, double young, double poisson,
+                                           mps_material **out) {
   const mpsi_elastic_def def = {.young = young, .poisson = poisson};
   const mps_status status = check_out(context, __func__, out);
   return status == MPS_OK ? create(context, __func__, MPSI_LAW_NEO_HOOKEAN, &def, out) : status;
 }
 
 #define CREATE(name, KIND)                                                                         \
-  mps_status mps_material_##name(mps_context *context, const mps_##name##_def *user_def,           \
-                                 mps_material **out) {                                             \
-    mps_##name##_def def = name##_defaults;                                                        \
+  mps_status mps_material_create_##name(                                                           \
+      mps_context *context, const mps_material_##name##_def *user_def, mps_material **out) {       \
+    mps_material_##name##_def def = name##_defaults;                                               \
     mps_status status = check_out(context, __func__, out);                                         \
     if (status == MPS_OK)                                                                          \
-      status = MPSI_DEF_READ(context, __func__, mps_##name##_def, user_def, &def);                 \
+      status = MPSI_DEF_READ(context, __func__, mps_material_##name##_def, user_def, &def);        \
     return status == MPS_OK ? create(context, __func__, KIND, &def, out) : status;                 \
   }
 CREATE(von_mises, MPSI_LAW_VON_MISES)
@@ -82,7 +82,7 @@ CREATE(newtonian, MPSI_LAW_NEWTONIAN)
 /* ---- a user's law ---------------------------------------------------------------------------- */
 
 mps_status mpsi_material_make_user(mps_context *context, const char *function,
-                                   const mps_user_law_def *def, mps_material **out) {
+                                   const mps_material_user_def *def, mps_material **out) {
   const mpsi_law_type *type = &mpsi_law_types[MPSI_LAW_USER];
   mpsi_law law = {.has_moduli = false};
   const mps_status status = type->define(context, function, def, &law);
@@ -103,10 +103,11 @@ mps_status mpsi_material_make_user(mps_context *context, const char *function,
   return MPS_OK;
 }
 
-mps_status mps_material_user(mps_context *context, const mps_user_law_def *user_def,
-                             mps_material **out) {
-  mps_user_law_def def = user_law_defaults;
+mps_status mps_material_create_user(mps_context *context, const mps_material_user_def *user_def,
+                                    mps_material **out) {
+  mps_material_user_def def = user_defaults;
   mps_status status = check_out(context, __func__, out);
-  if (status == MPS_OK) status = MPSI_DEF_READ(context, __func__, mps_user_law_def, user_def, &def);
+  if (status == MPS_OK)
+    status = MPSI_DEF_READ(context, __func__, mps_material_user_def, user_def, &def);
   return status == MPS_OK ? mpsi_material_make_user(context, __func__, &def, out) : status;
 }

@@ -41,7 +41,7 @@ static mps_status check_layers(const geostatic *g) {
                      "layer_count is %d%s, must be >= 1", (int)d->layer_count,
                      d->layers ? "" : " and layers is NULL");
   for (int32_t k = 0; k < d->layer_count; k++) {
-    const mps_soil_layer *layer = &d->layers[k];
+    const mps_geostatic_layer *layer = &d->layers[k];
     const bool lowest = k == d->layer_count - 1;
     if (!mpsi_in_range(MPSI_RANGE_LENGTH, layer->thickness) &&
         !(lowest && layer->thickness == INFINITY))
@@ -277,7 +277,8 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
 }
 
 /* Asks the caller's function, of one particle after the other: s[6 k + c]. */
-static mps_status ask_stress(const geostatic *g, mps_stress_fn fn, void *user, double *s) {
+static mps_status ask_stress(const geostatic *g, mps_geostatic_stress_fn fn, void *user,
+                             double *s) {
   static const char function[] = "mps_particles_set_stress";
   for (int64_t k = 0; k < g->count; k++) {
     double x[3] = {0.0};
@@ -293,7 +294,8 @@ static mps_status ask_stress(const geostatic *g, mps_stress_fn fn, void *user, d
   return MPS_OK;
 }
 
-mps_status mps_particles_set_stress(mps_particles *particles, mps_stress_fn fn, void *user) {
+mps_status mps_particles_set_stress(mps_particles *particles, mps_geostatic_stress_fn fn,
+                                    void *user) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   geostatic g = {.set = particles, .context = mpsi_particles_context(particles)};
   if (!fn) return mpsi_fail(g.context, __func__, MPS_ERROR_ARGUMENT, "stress is NULL");

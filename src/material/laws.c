@@ -39,7 +39,7 @@ MPSI_INLINE meridian return_von_mises(const mpsi_law *law, double p, double q, d
   return (meridian){.p = p,
                     .q = q - drop,
                     .plastic = drop * (PER_ROOT3 / law->shear),
-                    .flags = f > 0.0 ? MPS_MATERIAL_PLASTIC : 0};
+                    .flags = f > 0.0 ? MPS_MATERIAL_FLAG_PLASTIC : 0};
 }
 
 /* The cone q + 3 alpha p = kappa up to the limit of tension p = tension, where its radius is
@@ -62,13 +62,13 @@ MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double
   const bool open = gap > 0.0 && closed > 0.0, tears = p_cone > law->tension;
   const double p_new = open ? p_open : at_most(p_cone, law->tension);
   const double q_new = at_most(q, open ? radius : at_least(q_cone, law->q_tension));
-  const int64_t yields = f > 0.0 ? MPS_MATERIAL_PLASTIC : 0;
+  const int64_t yields = f > 0.0 ? MPS_MATERIAL_FLAG_PLASTIC : 0;
   return (meridian){.p = p_new,
                     .q = q_new,
                     .plastic = (q - q_new) * (PER_ROOT3 / law->shear),
                     .opened = open || tears ? (p - p_new) * law->per_bulk : -gap,
-                    .flags =
-                        tears || gap > 0.0 ? MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX : yields};
+                    .flags = tears || gap > 0.0 ? MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX
+                                                : yields};
 }
 
 /* ---- laws of the Jaumann rate -----------------------------------------------------------------
@@ -108,7 +108,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law 
                                               a candidate. No stress exceeds p + 2 q/sqrt(3). */
         const double over =
             at_least(q + 3.0 * law.alpha * p - law.kappa, p + (2.0 * PER_ROOT3) * q - law.cut);
-        flag = ((over > 0.0) | (gap[k] > 0.0)) ? MPS_MATERIAL_PLASTIC : 0;
+        flag = ((over > 0.0) | (gap[k] > 0.0)) ? MPS_MATERIAL_FLAG_PLASTIC : 0;
       } else {
         const meridian m = yields == MISES ? return_von_mises(&law, p, q, strain[k])
                                            : return_drucker_prager(&law, p, q, gap[k]);
@@ -280,7 +280,7 @@ MPSI_INLINE void fluid_loop(const int geometry, const bool tait, const mpsi_law 
                         .zx = drag * d.zx};
     volume[k] = v;
     mpsi_put_stress(geometry, &columns, k, s);
-    flags[k] = torn ? MPS_MATERIAL_APEX : 0;
+    flags[k] = torn ? MPS_MATERIAL_FLAG_APEX : 0;
   }
 }
 

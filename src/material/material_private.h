@@ -74,9 +74,9 @@ struct mps_material {
 mps_material *mpsi_material_new(mps_context *context, const char *function,
                                 const mpsi_law_type *type, const char *name, int32_t history_count);
 
-/* mps_material_user of a definition that is complete. */
+/* mps_material_create_user of a definition that is complete. */
 mps_status mpsi_material_make_user(mps_context *context, const char *function,
-                                   const mps_user_law_def *def, mps_material **out);
+                                   const mps_material_user_def *def, mps_material **out);
 /* What a user's law must not have written: describes the first value that is not finite in
  * block->message, its particle in *block->refused. */
 mps_status mpsi_check_results(const mps_material_block *block, int32_t history_count);

@@ -100,16 +100,16 @@ static int64_t return_to_pyramid(const mpsi_law *law, double *s) {
                            s[2] - flow * d.smallest};
   if (plane[0] >= plane[1] && plane[1] >= plane[2]) {
     for (int i = 0; i < 3; i++) s[i] = plane[i];
-    return MPS_MATERIAL_PLASTIC;
+    return MPS_MATERIAL_FLAG_PLASTIC;
   }
   /* Past which edge did the plane's return go? Right: the two smaller stresses, compression. */
   if (plane[1] < plane[2])
     return_to_edge(law, 0.5 * (d.middle + d.smallest), d.largest, true, s, 1, 2, 0);
   else
     return_to_edge(law, 0.5 * (d.largest + d.middle), d.smallest, false, s, 0, 1, 2);
-  if (s[0] >= s[1] && s[1] >= s[2]) return MPS_MATERIAL_PLASTIC;
+  if (s[0] >= s[1] && s[1] >= s[2]) return MPS_MATERIAL_FLAG_PLASTIC;
   s[0] = s[1] = s[2] = law->apex;
-  return MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX;
+  return MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX;
 }
 
 /* To the cut-off alone: s1 = T, or s1 = s2 = T, or all three. A unit of its flow along a stress
@@ -158,7 +158,7 @@ static int64_t return_principal(const mpsi_law *law, double *s) {
     for (int i = 0; i < 3; i++) s[i] = cut[i];
   else
     return_to_brim(law, s);
-  return MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX;
+  return MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX;
 }
 
 /* Increment of plastic strain: the deviator lost is 2 G de. */
@@ -208,14 +208,14 @@ static void hold_open(const mpsi_law *law, double mean, double *s) {
 static int64_t return_with_gap(const mpsi_law *law, double *s, double *gap, double *opened) {
   const double mean = (s[0] + s[1] + s[2]) / 3.0, closed = mean + law->bulk * *gap;
   const bool open = *gap > 0.0 && closed > 0.0;
-  int64_t flags = MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX;
+  int64_t flags = MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX;
   if (open) {
     hold_open(law, mean, s);
   } else {
     for (int i = 0; i < 3; i++) s[i] += law->bulk * *gap;
     const int64_t yields = return_principal(law, s);
     *opened = -*gap;
-    if (!(yields & MPS_MATERIAL_APEX)) {
+    if (!(yields & MPS_MATERIAL_FLAG_APEX)) {
       if (*gap == 0.0) return yields;
       *gap = 0.0;
       return flags;

@@ -20,7 +20,7 @@ mps_status mpsi_define_neo_hookean(mps_context *context, const char *function, c
 
 mps_status mpsi_define_von_mises(mps_context *context, const char *function, const void *values,
                                  mpsi_law *law) {
-  const mps_von_mises_def *def = values;
+  const mps_material_von_mises_def *def = values;
   mps_status status = mpsi_check_elastic(context, function, def->young, def->poisson);
   if (status == MPS_OK)
     status =
@@ -42,7 +42,7 @@ static mps_status check_tension(mps_context *context, const char *function, doub
 }
 
 static mps_status check_drucker_prager(mps_context *context, const char *function,
-                                       const mps_drucker_prager_def *def) {
+                                       const mps_material_drucker_prager_def *def) {
   if (def->cone < MPS_MATERIAL_CONE_PLANE_STRAIN || def->cone > MPS_MATERIAL_CONE_EXTENSION)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "cone is %d, must be 0 (plane strain), 1 (circumscribed), 2 (inscribed) or 3 "
@@ -56,18 +56,18 @@ static mps_status check_drucker_prager(mps_context *context, const char *functio
 
 mps_status mpsi_define_drucker_prager(mps_context *context, const char *function,
                                       const void *values, mpsi_law *law) {
-  const mps_drucker_prager_def *def = values;
+  const mps_material_drucker_prager_def *def = values;
   const mps_status status = check_drucker_prager(context, function, def);
   if (status != MPS_OK) return status;
   *law = mpsi_law_elastic(def->young, def->poisson);
-  mpsi_law_add_cone(law, (mps_cone)def->cone, def->friction, def->dilation, def->cohesion,
+  mpsi_law_add_cone(law, (mps_material_cone)def->cone, def->friction, def->dilation, def->cohesion,
                     def->tension);
   return MPS_OK;
 }
 
 mps_status mpsi_define_mohr_coulomb(mps_context *context, const char *function, const void *values,
                                     mpsi_law *law) {
-  const mps_mohr_coulomb_def *def = values;
+  const mps_material_mohr_coulomb_def *def = values;
   mps_status status = mpsi_check_elastic(context, function, def->young, def->poisson);
   if (status == MPS_OK)
     status = mpsi_check_friction(context, function, def->friction, def->dilation, def->cohesion);
@@ -85,7 +85,7 @@ mps_status mpsi_define_mohr_coulomb(mps_context *context, const char *function, 
 }
 
 static mps_status check_newtonian(mps_context *context, const char *function,
-                                  const mps_newtonian_def *def) {
+                                  const mps_material_newtonian_def *def) {
   if (def->state != MPS_MATERIAL_STATE_LINEAR && def->state != MPS_MATERIAL_STATE_TAIT)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "state is %d, must be 0 (linear) or 1 (Tait)", (int)def->state);
@@ -101,7 +101,7 @@ static mps_status check_newtonian(mps_context *context, const char *function,
 
 mps_status mpsi_define_newtonian(mps_context *context, const char *function, const void *values,
                                  mpsi_law *law) {
-  const mps_newtonian_def *def = values;
+  const mps_material_newtonian_def *def = values;
   const mps_status status = check_newtonian(context, function, def);
   if (status != MPS_OK) return status;
   *law = (mpsi_law){.bulk = def->bulk_modulus,

@@ -18,7 +18,7 @@ _Static_assert(STATEV_MOST + KEPT <= MPSI_MATERIAL_COLUMNS, "columns of a law");
 #define CMNAME_LENGTH 80
 
 typedef struct umat_law {
-  mps_umat_fn call;
+  mps_material_umat_fn call;
   char name[CMNAME_LENGTH]; /* padded with blanks */
   double temperature, length;
   int32_t statev_count, props_count;
@@ -26,10 +26,11 @@ typedef struct umat_law {
   double props[]; /* props_count, and behind them, for comparison, temperature and length */
 } umat_law;
 
-static const mps_umat_def umat_defaults = {.name = "umat", .length = 1.0, .keeps_strain = 1};
+static const mps_material_umat_def umat_defaults = {
+    .name = "umat", .length = 1.0, .keeps_strain = 1};
 
-mps_status mps_umat_def_init(mps_umat_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_umat_def, def, size, &umat_defaults);
+mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_material_umat_def, def, size, &umat_defaults);
 }
 
 /* ---- arguments --------------------------------------------------------------------------------
@@ -171,7 +172,8 @@ static mps_status update(void *user, const mps_material_block *block) {
 /* ---- creation ---------------------------------------------------------------------------------
  */
 
-static mps_status check_umat(mps_context *context, const char *function, const mps_umat_def *def) {
+static mps_status check_umat(mps_context *context, const char *function,
+                             const mps_material_umat_def *def) {
   if (!def->umat) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "umat is NULL");
   if (def->keeps_strain != 0 && def->keeps_strain != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "keeps_strain is %d, must be 0 or 1",
@@ -192,7 +194,7 @@ static mps_status check_umat(mps_context *context, const char *function, const m
   return mpsi_check_range(context, function, "length", def->length, MPSI_RANGE_LENGTH);
 }
 
-static void fill_law(const mps_umat_def *def, umat_law *law) {
+static void fill_law(const mps_material_umat_def *def, umat_law *law) {
   law->call = def->umat;
   memset(law->name, ' ', sizeof law->name);
   memcpy(law->name, def->name, strlen(def->name)); /* a name has at most 47 characters */
@@ -208,12 +210,12 @@ static void fill_law(const mps_umat_def *def, umat_law *law) {
 }
 
 /* The user's law that `update` is, with its columns of history: checks what is common to both. */
-static mps_status make_law(mps_context *context, const char *function, const mps_umat_def *def,
-                           mps_material **out) {
+static mps_status make_law(mps_context *context, const char *function,
+                           const mps_material_umat_def *def, mps_material **out) {
   const char *names[STATEV_MOST + KEPT];
   char numbered[STATEV_MOST][24];
   double initial[STATEV_MOST + KEPT] = {0.0};
-  mps_user_law_def law = mps_user_law_defaults();
+  mps_material_user_def law = mps_material_user_defaults();
   law.history_count = def->statev_count + (def->keeps_strain ? KEPT : STRAIN);
   law.update = update;
   law.name = def->name;
@@ -235,14 +237,14 @@ static mps_status make_law(mps_context *context, const char *function, const mps
   return mpsi_material_make_user(context, function, &law, out);
 }
 
-mps_status mps_material_umat(mps_context *context, const mps_umat_def *user_def,
-                             mps_material **out) {
+mps_status mps_material_create_umat(mps_context *context, const mps_material_umat_def *user_def,
+                                    mps_material **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_umat_def def = umat_defaults;
+  mps_material_umat_def def = umat_defaults;
   mps_material *material = NULL;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_umat_def, user_def, &def);
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_material_umat_def, user_def, &def);
   if (status == MPS_OK) status = check_umat(context, __func__, &def);
   if (status == MPS_OK) status = make_law(context, __func__, &def, &material);
   if (status != MPS_OK) return status;

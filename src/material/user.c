@@ -11,7 +11,7 @@ static bool is_name(const char *name) {
 }
 
 static mps_status check_history(mps_context *context, const char *function,
-                                const mps_user_law_def *def) {
+                                const mps_material_user_def *def) {
   if (def->history_count < 0 || def->history_count > MPSI_MATERIAL_COLUMNS)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "history_count is %d, must be 0..%d",
                      (int)def->history_count, MPSI_MATERIAL_COLUMNS);
@@ -38,7 +38,7 @@ static mps_status check_history(mps_context *context, const char *function,
 }
 
 static mps_status check_user_law(mps_context *context, const char *function,
-                                 const mps_user_law_def *def) {
+                                 const mps_material_user_def *def) {
   if (!def->update) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "update is NULL");
   if (!def->name || !is_name(def->name))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -57,7 +57,7 @@ static mps_status check_user_law(mps_context *context, const char *function,
 
 /* K and G, where the definition states them, and K + 4G/3, which it need not state then. */
 static mps_status check_moduli(mps_context *context, const char *function,
-                               const mps_user_law_def *def) {
+                               const mps_material_user_def *def) {
   const double least = def->bulk_modulus + 4.0 / 3.0 * def->shear_modulus;
   if (def->bulk_modulus == 0.0 && def->shear_modulus == 0.0)
     return mpsi_check_range(context, function, "wave modulus", def->wave_modulus,
@@ -79,7 +79,7 @@ static mps_status check_moduli(mps_context *context, const char *function,
 
 mps_status mpsi_define_user(mps_context *context, const char *function, const void *values,
                             mpsi_law *law) {
-  const mps_user_law_def *def = values;
+  const mps_material_user_def *def = values;
   mps_status status = check_user_law(context, function, def);
   if (status == MPS_OK) status = check_moduli(context, function, def);
   if (status != MPS_OK) return status;

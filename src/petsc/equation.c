@@ -66,7 +66,7 @@ static bool configure(mps_petsc_solver *s) {
   PC pc;
   PetscReal weak = s->modes > 0 ? WEAK_OF_BODIES : WEAK;
   bool good = KSPCreate(s->comm, &s->ksp) == 0 && KSPGetPC(s->ksp, &pc) == 0;
-  if (s->method == MPS_PETSC_DIRECT)
+  if (s->method == MPS_PETSC_METHOD_DIRECT)
     good = good && KSPSetType(s->ksp, KSPPREONLY) == 0 && PCSetType(pc, PCCHOLESKY) == 0 &&
            PCFactorSetMatSolverType(pc, MATSOLVERMUMPS) == 0;
   else {
@@ -114,7 +114,7 @@ static mps_status check(mps_context *context, const char *function, int32_t meth
   if (!out) return mps_context_set_error(context, MPS_ERROR_ARGUMENT, function, "out is NULL");
   *out = NULL;
   snprintf(line, sizeof line, "method is %d, allowed are 0 and 1", method);
-  if (method != MPS_PETSC_MULTIGRID && method != MPS_PETSC_DIRECT)
+  if (method != MPS_PETSC_METHOD_MULTIGRID && method != MPS_PETSC_METHOD_DIRECT)
     return mps_context_set_error(context, MPS_ERROR_ARGUMENT, function, line);
   const mps_status status = mpsi_petsc_enter();
   return status == MPS_OK
@@ -321,7 +321,7 @@ static mps_status solve(mps_petsc_solver *s, double tolerance, int64_t *iteratio
   PetscInt count = 0;
   bool converged = false;
   mps_status status = MPS_OK;
-  if (s->fresh || (s->method == MPS_PETSC_MULTIGRID && s->first_count > 0)) {
+  if (s->fresh || (s->method == MPS_PETSC_METHOD_MULTIGRID && s->first_count > 0)) {
     status = iterate(s, true, tolerance, s->fresh ? MOST : patience, &count, &converged);
     *iterations += count;
     if (status != MPS_OK || converged) return status;

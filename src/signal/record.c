@@ -7,7 +7,7 @@
 static const mps_signal_record_def record_defaults = {
     .struct_size = sizeof(mps_signal_record_def),
     .format = MPS_SIGNAL_RECORD_AUTO,
-    .quantity = MPS_SIGNAL_ACCELERATION,
+    .quantity = MPS_SIGNAL_QUANTITY_ACCELERATION,
     .baseline = MPS_SIGNAL_BASELINE_LINEAR,
     .scale = 1.0,
 };
@@ -75,13 +75,13 @@ static mps_status make_signal(mpsi_text *text, const mps_signal_record_def *def,
                           samples->count == 1 ? "1 sample" : "no samples");
   if ((status = scale_samples(text, samples, def->scale)) != MPS_OK) return status;
   const bool csv = format == MPS_SIGNAL_RECORD_CSV;
-  const int32_t quantity = csv ? def->quantity : (int32_t)MPS_SIGNAL_ACCELERATION;
-  if (quantity == MPS_SIGNAL_ACCELERATION)
+  const int32_t quantity = csv ? def->quantity : (int32_t)MPS_SIGNAL_QUANTITY_ACCELERATION;
+  if (quantity == MPS_SIGNAL_QUANTITY_ACCELERATION)
     status = condition(text, samples, def);
   else if (def->taper > 0.0)
     status = mpsi_fail(text->context, text->function, MPS_ERROR_ARGUMENT,
                        "taper is %g s, must be 0 for a record of %s", def->taper,
-                       quantity == MPS_SIGNAL_VELOCITY ? "velocities" : "displacements");
+                       quantity == MPS_SIGNAL_QUANTITY_VELOCITY ? "velocities" : "displacements");
   if (status != MPS_OK) return status;
   return mpsi_signal_from_table(text->context, text->function, quantity, samples->count,
                                 samples->times, samples->values, out);
@@ -105,7 +105,8 @@ static mps_status check_def(mps_context *context, const char *function,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "format is %d, allowed are 0 (recognised), 1 (AT2), 2 (K-NET), 3 (CSV)",
                      def->format);
-  if (def->quantity < MPS_SIGNAL_DISPLACEMENT || def->quantity > MPS_SIGNAL_ACCELERATION)
+  if (def->quantity < MPS_SIGNAL_QUANTITY_DISPLACEMENT ||
+      def->quantity > MPS_SIGNAL_QUANTITY_ACCELERATION)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "quantity is %d, allowed are 0 (displacement), 1 (velocity), 2 (acceleration)",
                      def->quantity);
@@ -123,8 +124,8 @@ static mps_status check_def(mps_context *context, const char *function,
   return MPS_OK;
 }
 
-mps_status mps_signal_record(mps_context *context, const char *path,
-                             const mps_signal_record_def *def, mps_signal **out) {
+mps_status mps_signal_create_record(mps_context *context, const char *path,
+                                    const mps_signal_record_def *def, mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;

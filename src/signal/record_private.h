@@ -27,7 +27,8 @@ mps_status mpsi_knet_read(mpsi_text *text, mpsi_samples *samples);
 bool mpsi_csv_matches(mpsi_text text);
 mps_status mpsi_csv_read(mpsi_text *text, mpsi_samples *samples);
 
-/* The signal of a text: mps_signal_record without the file. `def` is checked; NULL *out before. */
+/* The signal of a text: mps_signal_create_record without the file. `def` is checked; NULL *out
+ * before. */
 mps_status mpsi_record_signal(mpsi_text *text, const mps_signal_record_def *def, mps_signal **out);
 
 #endif

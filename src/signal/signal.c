@@ -189,8 +189,8 @@ static mps_status check_frequency(mps_context *context, const char *function, do
                    frequency, FREQUENCY_MIN, FREQUENCY_MAX);
 }
 
-mps_status mps_signal_ricker(mps_context *context, double frequency, double peak_time,
-                             double amplitude, mps_signal **out) {
+mps_status mps_signal_create_ricker(mps_context *context, double frequency, double peak_time,
+                                    double amplitude, mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
@@ -214,8 +214,8 @@ mps_status mps_signal_ricker(mps_context *context, double frequency, double peak
   return MPS_OK;
 }
 
-mps_status mps_signal_sine(mps_context *context, double frequency, double amplitude, double phase,
-                           mps_signal **out) {
+mps_status mps_signal_create_sine(mps_context *context, double frequency, double amplitude,
+                                  double phase, mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
@@ -239,8 +239,8 @@ mps_status mps_signal_sine(mps_context *context, double frequency, double amplit
   return MPS_OK;
 }
 
-mps_status mps_signal_ramp(mps_context *context, double start, double duration, double amplitude,
-                           mps_signal **out) {
+mps_status mps_signal_create_ramp(mps_context *context, double start, double duration,
+                                  double amplitude, mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
@@ -273,7 +273,8 @@ mps_status mps_signal_ramp(mps_context *context, double start, double duration, 
 
 /* ---- the caller's own ------------------------------------------------------------------------ */
 
-mps_status mps_signal_user(mps_context *context, mps_signal_fn fn, void *user, mps_signal **out) {
+mps_status mps_signal_create_user(mps_context *context, mps_signal_fn fn, void *user,
+                                  mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;

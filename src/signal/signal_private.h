@@ -36,7 +36,7 @@ struct mps_signal {
 /* An empty signal of one owner, or NULL after recording that memory is short. */
 mps_signal *mpsi_signal_new(mps_context *context, const char *function);
 
-/* As mps_signal_table, on behalf of the public `function`; context and out are valid. */
+/* As mps_signal_create_table, on behalf of the public `function`; context and out are valid. */
 mps_status mpsi_signal_from_table(mps_context *context, const char *function, int32_t quantity,
                                   int64_t count, const double *times, const double *values,
                                   mps_signal **out);

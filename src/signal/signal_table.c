@@ -115,7 +115,7 @@ static mps_status fit_displacements(mps_context *context, const char *function, 
 
 static mps_status check_table(mps_context *context, const char *function, int32_t quantity,
                               int64_t count, const double *times, const double *values) {
-  if (quantity < MPS_SIGNAL_DISPLACEMENT || quantity > MPS_SIGNAL_ACCELERATION)
+  if (quantity < MPS_SIGNAL_QUANTITY_DISPLACEMENT || quantity > MPS_SIGNAL_QUANTITY_ACCELERATION)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "quantity is %d, allowed are 0 (displacement), 1 (velocity), 2 (acceleration)",
                      quantity);
@@ -153,9 +153,9 @@ static mps_status check_finite(mps_context *context, const char *function, const
 static mps_status fill_knots(mps_context *context, const char *function, int32_t quantity,
                              mpsi_knot *knots, int64_t count, const double *values) {
   mps_status status = MPS_OK;
-  if (quantity == MPS_SIGNAL_ACCELERATION)
+  if (quantity == MPS_SIGNAL_QUANTITY_ACCELERATION)
     integrate_accelerations(knots, count, values);
-  else if (quantity == MPS_SIGNAL_VELOCITY)
+  else if (quantity == MPS_SIGNAL_QUANTITY_VELOCITY)
     integrate_velocities(knots, count, values);
   else
     status = fit_displacements(context, function, knots, count, values);
@@ -183,10 +183,10 @@ mps_status mpsi_signal_from_table(mps_context *context, const char *function, in
   signal->at = table_at;
   signal->start = times[0];
   signal->end = times[count - 1];
-  signal->coast = quantity == MPS_SIGNAL_DISPLACEMENT ? 0.0 : signal->knots[count - 1].v;
+  signal->coast = quantity == MPS_SIGNAL_QUANTITY_DISPLACEMENT ? 0.0 : signal->knots[count - 1].v;
   signal->count = count;
   signal->knots_per_second = (double)(count - 1) / (signal->end - signal->start);
-  if (quantity != MPS_SIGNAL_DISPLACEMENT && signal->start < 0.0) {
+  if (quantity != MPS_SIGNAL_QUANTITY_DISPLACEMENT && signal->start < 0.0) {
     const double before = table_at(signal, 0.0).u; /* displaces nothing at t = 0 */
     for (int64_t i = 0; i < count; i++) signal->knots[i].u -= before;
   }
@@ -196,8 +196,8 @@ mps_status mpsi_signal_from_table(mps_context *context, const char *function, in
   return MPS_OK;
 }
 
-mps_status mps_signal_table(mps_context *context, int32_t quantity, int64_t count,
-                            const double *times, const double *values, mps_signal **out) {
+mps_status mps_signal_create_table(mps_context *context, int32_t quantity, int64_t count,
+                                   const double *times, const double *values, mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;

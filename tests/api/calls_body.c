@@ -204,7 +204,7 @@ static void body_set_motion(api *a) {
 }
 
 static void body_load(api *a) {
-  api_begin(a, "mps_body_load");
+  api_begin(a, "mps_body_set_load");
   double force[3] = {0}, moment[3] = {0};
   mps_body *body = api_any(a, API_BODY)->handle;
   const int dim = mps_body_dim(body) == 3 ? 3 : 2;
@@ -213,7 +213,7 @@ static void body_load(api *a) {
   moment[2] = api_near(a, "moment", 0.0, 5.0);
   const bool given = api_chance(a, 80);
   if (!given) a->wrong = before;
-  (void)api_end(a, mps_body_load(body, force, given ? moment : NULL));
+  (void)api_end(a, mps_body_set_load(body, force, given ? moment : NULL));
 }
 
 static void body_advance(api *a) {
@@ -282,9 +282,9 @@ static void body_name_part(api *a) {
 }
 
 static void body_part(api *a) {
-  api_begin(a, "mps_body_part");
+  api_begin(a, "mps_body_find_part");
   const mps_body *body = api_any(a, API_BODY)->handle;
-  const int32_t part = mps_body_part(body, api_null(a, "name") ? NULL : "tip");
+  const int32_t part = mps_body_find_part(body, api_null(a, "name") ? NULL : "tip");
   if (part < -1 || part >= 16) api_broken(a, "part %d", part);
   api_end_query(a);
 }
@@ -306,14 +306,14 @@ static const api_call calls[] = {
     {"mps_body_dim", 1, API_BODY, query_body_dim},
     {"mps_body_drive", 3, API_BODY, body_drive},
     {"mps_body_set_motion", 3, API_BODY, body_set_motion},
-    {"mps_body_load", 3, API_BODY, body_load},
+    {"mps_body_set_load", 3, API_BODY, body_load},
     {"mps_body_advance", 4, API_BODY, body_advance},
     {"mps_body_get_state_sized", 1, API_BODY, body_get_state_sized},
     {"mps_body_get_totals_sized", 1, API_BODY, body_get_totals_sized},
     {"mps_body_get_reaction_sized", 2, API_BODY, body_get_reaction_sized},
     {"mps_body_distance", 4, API_BODY, body_distance},
     {"mps_body_name_part", 2, API_BODY, body_name_part},
-    {"mps_body_part", 1, API_BODY, body_part},
+    {"mps_body_find_part", 1, API_BODY, body_part},
     {"mps_body_part_count", 1, API_BODY, query_body_part_count},
 };
 const api_table api_body_calls = API_TABLE(calls);

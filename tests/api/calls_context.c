@@ -19,12 +19,12 @@ static void context_create(api *a) {
   mps_context_def def = mps_context_defaults();
   api_hooks(a, &def);
   def.threads = a->threads;
-  def.executor = a->threads > 1 ? MPS_EXECUTOR_THREADS : MPS_EXECUTOR_SERIAL;
+  def.executor = a->threads > 1 ? MPS_CONTEXT_EXECUTOR_THREADS : MPS_CONTEXT_EXECUTOR_SERIAL;
   def.struct_size = api_struct_size(a, sizeof def);
   if (a->mood == API_ABSURD) {
     def.executor = api_chance(a, 70) ? def.executor : api_choice(a, "executor", 4);
-    if (def.executor == MPS_EXECUTOR_CALLER) api_wrong(a, "parallel_for");
-    if (def.executor == MPS_EXECUTOR_OPENMP) def.executor = MPS_EXECUTOR_SERIAL;
+    if (def.executor == MPS_CONTEXT_EXECUTOR_CALLER) api_wrong(a, "parallel_for");
+    if (def.executor == MPS_CONTEXT_EXECUTOR_OPENMP) def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
     if (api_chance(a, 20)) def.threads = -1, api_wrong(a, "threads");
     if (api_chance(a, 10)) def.instruction_level = 2, api_wrong(a, "instruction_level");
     if (api_chance(a, 10)) def.free = NULL, api_wrong(a, "free");
@@ -98,7 +98,7 @@ static void context_parallel_for(api *a) {
   int64_t count = api_chance(a, 10) ? 0 : (int64_t)api_below(a, 50);
   if (a->mood == API_ABSURD && api_chance(a, 30)) count = -1, api_wrong(a, "count");
   api_say(a, "%d, ", (int)count);
-  const mps_task_fn task = api_null(a, "task") ? NULL : count_unit;
+  const mps_context_task_fn task = api_null(a, "task") ? NULL : count_unit;
   if (count == 0) a->wrong = a->wrong && !context;
   const mps_status status = mps_context_parallel_for(context, count, task, &sum);
   if (status == MPS_OK && count > 0 && atomic_load(&sum) != count * (count + 1) / 2)

@@ -208,14 +208,14 @@ static void elastic_set_load(api *a) {
 }
 
 static void elastic_load_resultant(api *a) {
-  api_begin(a, "mps_elastic_load_resultant");
+  api_begin(a, "mps_elastic_get_load_resultant");
   double about[3] = {0}, force[3] = {0}, moment[3] = {0};
   api_object *o = api_any(a, API_ELASTIC);
   api_vector(a, "about", 3, 0.0, 1.0, about);
   if (a->wrong == 1 && !isfinite(about[2]) && isfinite(about[0] + about[1])) a->wrong = !o->handle;
   api_run_solver(a, API_ELASTIC, o);
   const mps_status status =
-      mps_elastic_load_resultant(o->handle, about, force, api_chance(a, 80) ? moment : NULL);
+      mps_elastic_get_load_resultant(o->handle, about, force, api_chance(a, 80) ? moment : NULL);
   if (status == MPS_OK && !isfinite(force[0] + force[1] + force[2])) api_broken(a, "not finite");
   a->reads = true;
   (void)api_end(a, status);
@@ -305,29 +305,30 @@ static void elastic_get_report_sized(api *a) {
 }
 
 static void elastic_stress(api *a) {
-  api_begin(a, "mps_elastic_stress");
-  (void)api_end(a, mps_elastic_stress(api_any(a, API_ELASTIC)->handle));
+  api_begin(a, "mps_elastic_update_stress");
+  (void)api_end(a, mps_elastic_update_stress(api_any(a, API_ELASTIC)->handle));
 }
 
 static void elastic_section(api *a) {
-  api_begin(a, "mps_elastic_section");
+  api_begin(a, "mps_elastic_get_section");
   double force[3] = {0}, moment[3] = {0};
   api_object *o = api_any(a, API_ELASTIC);
   const int32_t axis = (int32_t)api_whole(a, "axis", 0, a->dim - 1);
   if (a->wrong == 1 && axis == 2) a->wrong = !o->handle;
   const double position = api_near(a, "position", 0.2, 0.2);
   if (isinf(position)) a->wrong = axis < 0 || axis > 2 || !o->handle;
-  const mps_status status = mps_elastic_section(o->handle, axis, position, NULL, force, moment);
+  const mps_status status = mps_elastic_get_section(o->handle, axis, position, NULL, force, moment);
   if (status == MPS_OK && !isfinite(force[0] + moment[2])) api_broken(a, "not finite");
   a->reads = true;
   (void)api_end(a, status);
 }
 
 static void elastic_energy(api *a) {
-  api_begin(a, "mps_elastic_energy");
+  api_begin(a, "mps_elastic_get_energy");
   double strain = NAN, stabilising = NAN;
   mps_elastic *e = api_any(a, API_ELASTIC)->handle;
-  const mps_status status = mps_elastic_energy(e, &strain, api_chance(a, 80) ? &stabilising : NULL);
+  const mps_status status =
+      mps_elastic_get_energy(e, &strain, api_chance(a, 80) ? &stabilising : NULL);
   if (status == MPS_OK && !isfinite(strain)) api_broken(a, "energy %g", strain);
   a->reads = true;
   (void)api_end(a, status);
@@ -408,7 +409,7 @@ static const api_call calls[] = {
     {"mps_elastic_set_boundary", 2, API_ELASTIC, elastic_set_boundary},
     {"mps_elastic_add_load", 4, API_ELASTIC, elastic_add_load},
     {"mps_elastic_set_load", 2, API_ELASTIC, elastic_set_load},
-    {"mps_elastic_load_resultant", 2, API_ELASTIC, elastic_load_resultant},
+    {"mps_elastic_get_load_resultant", 2, API_ELASTIC, elastic_load_resultant},
     {"mps_elastic_facet_count", 1, API_ELASTIC, query_elastic_facet_count},
     {"mps_elastic_select_facets", 1, API_ELASTIC, elastic_select_facets},
     {"mps_elastic_get_facets_sized", 2, API_ELASTIC, elastic_get_facets_sized},
@@ -416,9 +417,9 @@ static const api_call calls[] = {
     {"mps_elastic_solve", 6, API_ELASTIC, elastic_solve},
     {"mps_elastic_solve_cases", 2, API_ELASTIC, elastic_solve_cases},
     {"mps_elastic_get_report_sized", 1, API_ELASTIC, elastic_get_report_sized},
-    {"mps_elastic_stress", 3, API_ELASTIC, elastic_stress},
-    {"mps_elastic_section", 1, API_ELASTIC, elastic_section},
-    {"mps_elastic_energy", 1, API_ELASTIC, elastic_energy},
+    {"mps_elastic_update_stress", 3, API_ELASTIC, elastic_stress},
+    {"mps_elastic_get_section", 1, API_ELASTIC, elastic_section},
+    {"mps_elastic_get_energy", 1, API_ELASTIC, elastic_energy},
     {"mps_elastic_modes", 1, API_ELASTIC, elastic_modes},
     {"mps_elastic_start", 6, API_ELASTIC, elastic_start},
     {"mps_elastic_set_solver", 1, API_ELASTIC, elastic_set_solver},

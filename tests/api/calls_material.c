@@ -14,53 +14,55 @@ static bool made_material(api *a, mps_status status, mps_material **made) {
 }
 
 static void material_linear_elastic(api *a) {
-  api_begin(a, "mps_material_linear_elastic");
+  api_begin(a, "mps_material_create_linear_elastic");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
   const double young = api_real(a, "young", YOUNG), poisson = api_real(a, "poisson", POISSON);
-  (void)made_material(
-      a, mps_material_linear_elastic(context, young, poisson, api_null(a, "out") ? NULL : &made),
-      &made);
+  (void)made_material(a,
+                      mps_material_create_linear_elastic(context, young, poisson,
+                                                         api_null(a, "out") ? NULL : &made),
+                      &made);
 }
 
 static void material_neo_hookean(api *a) {
-  api_begin(a, "mps_material_neo_hookean");
+  api_begin(a, "mps_material_create_neo_hookean");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
   const double young = api_real(a, "young", YOUNG), poisson = api_real(a, "poisson", POISSON);
   (void)made_material(
-      a, mps_material_neo_hookean(context, young, poisson, api_null(a, "out") ? NULL : &made),
+      a,
+      mps_material_create_neo_hookean(context, young, poisson, api_null(a, "out") ? NULL : &made),
       &made);
 }
 
-API_INIT(von_mises_def)
-API_INIT(drucker_prager_def)
-API_INIT(mohr_coulomb_def)
-API_INIT(newtonian_def)
-API_INIT(user_law_def)
-API_INIT(umat_def)
+API_INIT(material_von_mises_def)
+API_INIT(material_drucker_prager_def)
+API_INIT(material_mohr_coulomb_def)
+API_INIT(material_newtonian_def)
+API_INIT(material_user_def)
+API_INIT(material_umat_def)
 API_INIT(material_block)
 
 static void material_von_mises(api *a) {
-  api_begin(a, "mps_material_von_mises");
+  api_begin(a, "mps_material_create_von_mises");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
-  mps_von_mises_def def = mps_von_mises_defaults();
+  mps_material_von_mises_def def = mps_material_von_mises_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   def.young = api_real(a, "young", YOUNG);
   def.poisson = api_real(a, "poisson", POISSON);
   def.yield_stress = api_real(a, "yield_stress", 5e-324, 1e18, 1e4);
   def.hardening = api_real(a, "hardening", 0.0, 1e18, 0.0);
-  (void)made_material(a, mps_material_von_mises(context, api_null(a, "def") ? NULL : &def, &made),
-                      &made);
+  (void)made_material(
+      a, mps_material_create_von_mises(context, api_null(a, "def") ? NULL : &def, &made), &made);
 }
 
 static void material_drucker_prager(api *a) {
-  api_begin(a, "mps_material_drucker_prager");
+  api_begin(a, "mps_material_create_drucker_prager");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
-  mps_drucker_prager_def def;
-  mps_drucker_prager_def_init(&def, sizeof def);
+  mps_material_drucker_prager_def def;
+  mps_material_drucker_prager_def_init(&def, sizeof def);
   def.struct_size = api_struct_size(a, sizeof def);
   def.cone = api_choice(a, "cone", 4);
   def.young = api_real(a, "young", YOUNG);
@@ -72,15 +74,16 @@ static void material_drucker_prager(api *a) {
   if (def.friction == nextafter(1.5707963, 2.0) || def.dilation == nextafter(1.5707963, 2.0))
     a->wrong = 0;
   (void)made_material(
-      a, mps_material_drucker_prager(context, &def, api_null(a, "out") ? NULL : &made), &made);
+      a, mps_material_create_drucker_prager(context, &def, api_null(a, "out") ? NULL : &made),
+      &made);
 }
 
 static void material_mohr_coulomb(api *a) {
-  api_begin(a, "mps_material_mohr_coulomb");
+  api_begin(a, "mps_material_create_mohr_coulomb");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
-  mps_mohr_coulomb_def def;
-  mps_mohr_coulomb_def_init(&def, sizeof def);
+  mps_material_mohr_coulomb_def def;
+  mps_material_mohr_coulomb_def_init(&def, sizeof def);
   def.struct_size = api_struct_size(a, sizeof def);
   def.young = api_real(a, "young", YOUNG);
   def.poisson = api_real(a, "poisson", POISSON);
@@ -91,21 +94,21 @@ static void material_mohr_coulomb(api *a) {
   if (def.friction == nextafter(1.5707963, 2.0) || def.dilation == nextafter(1.5707963, 2.0))
     a->wrong = 0;
   (void)made_material(
-      a, mps_material_mohr_coulomb(context, &def, api_null(a, "out") ? NULL : &made), &made);
+      a, mps_material_create_mohr_coulomb(context, &def, api_null(a, "out") ? NULL : &made), &made);
 }
 
 static void material_newtonian(api *a) {
-  api_begin(a, "mps_material_newtonian");
+  api_begin(a, "mps_material_create_newtonian");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
-  mps_newtonian_def def = mps_newtonian_defaults();
+  mps_material_newtonian_def def = mps_material_newtonian_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   def.state = api_choice(a, "state", 2);
   def.bulk_modulus = api_real(a, "bulk_modulus", 5e-324, 1e18, 1e6);
   def.viscosity = api_real(a, "viscosity", 0.0, 1e18, api_chance(a, 50) ? 0.0 : 1.0);
   def.no_tension = (int32_t)api_below(a, 2);
-  (void)made_material(a, mps_material_newtonian(context, &def, api_null(a, "out") ? NULL : &made),
-                      &made);
+  (void)made_material(
+      a, mps_material_create_newtonian(context, &def, api_null(a, "out") ? NULL : &made), &made);
 }
 
 /* ---- the caller's own ------------------------------------------------------------------------ */
@@ -131,11 +134,11 @@ static mps_status law(void *user, const mps_material_block *block) {
 }
 
 static void material_user(api *a) {
-  api_begin(a, "mps_material_user");
+  api_begin(a, "mps_material_create_user");
   static const char *const columns[] = {"age", "b_2"}, *const bad[] = {"age", "no good"};
   mps_material *made = NULL;
   mps_context *context = api_context(a);
-  mps_user_law_def def = mps_user_law_defaults();
+  mps_material_user_def def = mps_material_user_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   def.history_count = (int32_t)api_least(a, "history_count", 0, 2);
   const double initial[] = {api_near(a, "initial", 0.0, 1.0), 2.0};
@@ -151,7 +154,7 @@ static void material_user(api *a) {
   def.needs_deformation = (int32_t)api_below(a, 2);
   if (api_chance(a, 30)) def.name = "my_law";
   if (a->mood == API_ABSURD && api_chance(a, 10)) def.name = "my law", api_wrong(a, "name");
-  (void)made_material(a, mps_material_user(context, &def, api_null(a, "out") ? NULL : &made),
+  (void)made_material(a, mps_material_create_user(context, &def, api_null(a, "out") ? NULL : &made),
                       &made);
 }
 
@@ -176,10 +179,10 @@ static void umat(double *stress, double *statev, double *ddsdde, double *sse, do
 }
 
 static void material_umat(api *a) {
-  api_begin(a, "mps_material_umat");
+  api_begin(a, "mps_material_create_umat");
   mps_material *made = NULL;
   mps_context *context = api_context(a);
-  mps_umat_def def = mps_umat_defaults();
+  mps_material_umat_def def = mps_material_umat_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   const double props[] = {api_near(a, "props", 0.0, 1.0)};
   def.props = props;
@@ -191,7 +194,7 @@ static void material_umat(api *a) {
   def.temperature = api_near(a, "temperature", 300.0, 10.0);
   def.keeps_strain = (int32_t)api_below(a, 2);
   def.needs_deformation = (int32_t)api_below(a, 2);
-  (void)made_material(a, mps_material_umat(context, &def, api_null(a, "out") ? NULL : &made),
+  (void)made_material(a, mps_material_create_umat(context, &def, api_null(a, "out") ? NULL : &made),
                       &made);
 }
 
@@ -325,21 +328,21 @@ static void material_point(api *a) {
 }
 
 static const api_call calls[] = {
-    {"mps_material_linear_elastic", 6, API_CONTEXT, material_linear_elastic},
-    {"mps_material_neo_hookean", 2, API_CONTEXT, material_neo_hookean},
-    {"mps_von_mises_def_init", 1, API_NOTHING, init_von_mises_def},
-    {"mps_drucker_prager_def_init", 1, API_NOTHING, init_drucker_prager_def},
-    {"mps_mohr_coulomb_def_init", 1, API_NOTHING, init_mohr_coulomb_def},
-    {"mps_newtonian_def_init", 1, API_NOTHING, init_newtonian_def},
-    {"mps_user_law_def_init", 1, API_NOTHING, init_user_law_def},
-    {"mps_umat_def_init", 1, API_NOTHING, init_umat_def},
+    {"mps_material_create_linear_elastic", 6, API_CONTEXT, material_linear_elastic},
+    {"mps_material_create_neo_hookean", 2, API_CONTEXT, material_neo_hookean},
+    {"mps_material_von_mises_def_init", 1, API_NOTHING, init_material_von_mises_def},
+    {"mps_material_drucker_prager_def_init", 1, API_NOTHING, init_material_drucker_prager_def},
+    {"mps_material_mohr_coulomb_def_init", 1, API_NOTHING, init_material_mohr_coulomb_def},
+    {"mps_material_newtonian_def_init", 1, API_NOTHING, init_material_newtonian_def},
+    {"mps_material_user_def_init", 1, API_NOTHING, init_material_user_def},
+    {"mps_material_umat_def_init", 1, API_NOTHING, init_material_umat_def},
     {"mps_material_block_init", 1, API_NOTHING, init_material_block},
-    {"mps_material_von_mises", 2, API_CONTEXT, material_von_mises},
-    {"mps_material_drucker_prager", 2, API_CONTEXT, material_drucker_prager},
-    {"mps_material_mohr_coulomb", 2, API_CONTEXT, material_mohr_coulomb},
-    {"mps_material_newtonian", 2, API_CONTEXT, material_newtonian},
-    {"mps_material_user", 3, API_CONTEXT, material_user},
-    {"mps_material_umat", 2, API_CONTEXT, material_umat},
+    {"mps_material_create_von_mises", 2, API_CONTEXT, material_von_mises},
+    {"mps_material_create_drucker_prager", 2, API_CONTEXT, material_drucker_prager},
+    {"mps_material_create_mohr_coulomb", 2, API_CONTEXT, material_mohr_coulomb},
+    {"mps_material_create_newtonian", 2, API_CONTEXT, material_newtonian},
+    {"mps_material_create_user", 3, API_CONTEXT, material_user},
+    {"mps_material_create_umat", 2, API_CONTEXT, material_umat},
     {"mps_material_destroy", 1, API_MATERIAL, destroy_material_destroy},
     {"mps_material_name", 1, API_MATERIAL, query_material_name},
     {"mps_material_wave_modulus", 1, API_MATERIAL, query_material_wave_modulus},

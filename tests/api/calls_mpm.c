@@ -13,7 +13,7 @@ static void mpm_gravity(mps_mpm *mpm, api_account *account) {
   if (mps_mpm_get_def(mpm, &def) != MPS_OK) return;
   memcpy(account->gravity, def.gravity, sizeof def.gravity);
   account->pushed = account->pushed || def.local_damping != 0.0 || def.viscous_damping != 0.0;
-  account->radial = def.geometry == MPS_MPM_AXISYMMETRIC;
+  account->radial = def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
 }
 #define SOLVER_GRAVITY(s, account) mpm_gravity(s, account);
 #define SOLVER_MOMENTUM true
@@ -47,7 +47,9 @@ static void mpm_create(api *a) {
   mps_mpm_def def = mps_mpm_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   const int dim = mps_particles_dim(set) == 3 ? 3 : 2;
-  def.geometry = dim == 3 ? MPS_MPM_SPACE : api_chance(a, 25) ? MPS_MPM_AXISYMMETRIC : 0;
+  def.geometry = dim == 3            ? MPS_MPM_GEOMETRY_SPACE
+                 : api_chance(a, 25) ? MPS_MPM_GEOMETRY_AXISYMMETRIC
+                                     : 0;
   if (a->mood == API_ABSURD && api_chance(a, 10)) def.geometry = api_choice(a, "geometry", 3);
   draw_choices(a, &def);
   def.cell = api_real(a, "cell", 5e-324, 1e300, 0.2);
@@ -56,11 +58,11 @@ static void mpm_create(api *a) {
     if (a->latest || api_chance(a, 80)) def.lower[c] = -0.4;
     if (a->latest || api_chance(a, 60)) def.upper[c] = 1.2;
   }
-  if (def.geometry == MPS_MPM_AXISYMMETRIC) def.lower[0] = 0.0;
+  if (def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) def.lower[0] = 0.0;
   api_say(a, "lower = {%g, %g}, upper = {%g, %g}, ", def.lower[0], def.lower[1], def.upper[0],
           def.upper[1]);
   if (api_chance(a, 20)) def.measure = api_real(a, "measure", 5e-324, 1e300, 1.0);
-  if (dim == 3 || isnan(def.measure) || def.geometry == MPS_MPM_AXISYMMETRIC)
+  if (dim == 3 || isnan(def.measure) || def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
     a->wrong *= isfinite(def.cell);
   if (api_chance(a, 80)) def.gravity[dim - 1] = -9.81;
   if (!a->latest && api_chance(a, 30)) def.dt = api_real(a, "dt", 5e-324, 1e300, 1e-3);
@@ -320,8 +322,8 @@ static void grid_fill(api *a) {
 static int32_t last_component(mps_particles *set, const char *name) {
   int32_t last = 0;
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-    mps_field_info info;
-    if (mps_particles_field(set, f, &info) == MPS_OK && strcmp(info.name, name) == 0)
+    mps_particles_field_info info;
+    if (mps_particles_get_field_info(set, f, &info) == MPS_OK && strcmp(info.name, name) == 0)
       last = info.components - 1;
   }
   return last;

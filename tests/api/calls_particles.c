@@ -198,13 +198,13 @@ static void particles_set(api *a) {
 }
 
 static void particles_field_sized(api *a) {
-  api_begin(a, "mps_particles_field_sized");
+  api_begin(a, "mps_particles_get_field_info_sized");
   const mps_particles *set = api_any(a, API_SET)->handle;
   const int32_t most = mps_particles_field_count(set);
   const int32_t index = (int32_t)api_whole(a, "index", 0, most > 0 ? most - 1 : 0);
-  API_SIZED(a, mps_field_info, size, out);
+  API_SIZED(a, mps_particles_field_info, size, out);
   const mps_status status =
-      mps_particles_field_sized(set, index, api_null(a, "out") ? NULL : out, size);
+      mps_particles_get_field_info_sized(set, index, api_null(a, "out") ? NULL : out, size);
   API_SIZED_END(a, status, size, out, true);
 }
 
@@ -351,7 +351,7 @@ static mps_status flat(void *user, const double *x, double *level) {
 static void particles_set_geostatic(api *a) {
   api_begin(a, "mps_particles_set_geostatic");
   mps_particles *set = api_any(a, API_SET)->handle;
-  mps_soil_layer layers[3];
+  mps_geostatic_layer layers[3];
   const double line[] = {0.0, 1.0, 0.5, 1.1, 1.0, 1.2};
   mps_geostatic_def def = mps_geostatic_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
@@ -421,7 +421,7 @@ static const api_call calls[] = {
     {"mps_particles_abandon", 4, API_SET, particles_abandon},
     {"mps_particles_set", 8, API_SET, particles_set},
     {"mps_particles_field_count", 1, API_SET, query_particles_field_count},
-    {"mps_particles_field_sized", 2, API_SET, particles_field_sized},
+    {"mps_particles_get_field_info_sized", 2, API_SET, particles_field_sized},
     {"mps_particles_select_box", 3, API_SET, particles_select_box},
     {"mps_particles_index", 2, API_SET, particles_index},
     {"mps_particles_nearest", 2, API_SET, particles_nearest},

@@ -10,43 +10,43 @@
 #include <stdlib.h>
 
 static void signal_ricker(api *a) {
-  api_begin(a, "mps_signal_ricker");
+  api_begin(a, "mps_signal_create_ricker");
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
   const double frequency = api_real(a, "frequency", 1e-9, 1e9, 20.0);
   const double peak = api_real(a, "peak_time", 0.0, DBL_MAX, 0.05);
   const double amplitude = api_near(a, "amplitude", 0.0, 1.0);
-  const mps_status status =
-      mps_signal_ricker(context, frequency, peak, amplitude, api_null(a, "out") ? NULL : &made);
+  const mps_status status = mps_signal_create_ricker(context, frequency, peak, amplitude,
+                                                     api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
 static void signal_sine(api *a) {
-  api_begin(a, "mps_signal_sine");
+  api_begin(a, "mps_signal_create_sine");
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
   const double frequency = api_real(a, "frequency", 1e-9, 1e9, 10.0);
   const double amplitude = api_near(a, "amplitude", 0.0, 0.01);
   const double phase = api_near(a, "phase", 0.0, 3.0);
-  const mps_status status =
-      mps_signal_sine(context, frequency, amplitude, phase, api_null(a, "out") ? NULL : &made);
+  const mps_status status = mps_signal_create_sine(context, frequency, amplitude, phase,
+                                                   api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
 static void signal_ramp(api *a) {
-  api_begin(a, "mps_signal_ramp");
+  api_begin(a, "mps_signal_create_ramp");
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
   const double start = api_near(a, "start", 0.0, 0.1);
   const double duration = api_real(a, "duration", 5e-324, DBL_MAX, 0.5);
   const double amplitude = api_near(a, "amplitude", 0.0, 0.01);
-  const mps_status status =
-      mps_signal_ramp(context, start, duration, amplitude, api_null(a, "out") ? NULL : &made);
+  const mps_status status = mps_signal_create_ramp(context, start, duration, amplitude,
+                                                   api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
 static void signal_table(api *a) {
-  api_begin(a, "mps_signal_table");
+  api_begin(a, "mps_signal_create_table");
   double times[6], values[6];
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
@@ -59,8 +59,8 @@ static void signal_table(api *a) {
     values[k] = api_near(a, "", 0.0, 0.01);
   }
   const bool none = api_null(a, "times");
-  const mps_status status = mps_signal_table(context, quantity, count, none ? NULL : times, values,
-                                             api_null(a, "out") ? NULL : &made);
+  const mps_status status = mps_signal_create_table(context, quantity, count, none ? NULL : times,
+                                                    values, api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
@@ -71,11 +71,12 @@ static mps_status motion(void *user, double t, double values[3]) {
 }
 
 static void signal_user(api *a) {
-  api_begin(a, "mps_signal_user");
+  api_begin(a, "mps_signal_create_user");
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
   const mps_signal_fn fn = api_null(a, "fn") ? NULL : motion;
-  const mps_status status = mps_signal_user(context, fn, a, api_null(a, "out") ? NULL : &made);
+  const mps_status status =
+      mps_signal_create_user(context, fn, a, api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
@@ -99,7 +100,7 @@ static void write_record(api *a, const char *path) {
 }
 
 static void signal_record(api *a) {
-  api_begin(a, "mps_signal_record");
+  api_begin(a, "mps_signal_create_record");
   char path[300];
   mps_signal *made = NULL;
   mps_context *context = api_context(a);
@@ -109,7 +110,7 @@ static void signal_record(api *a) {
     def.format = api_choice(a, "format", 4);
     def.quantity = api_choice(a, "quantity", 3);
     def.baseline = api_choice(a, "baseline", 5);
-    if (def.quantity != MPS_SIGNAL_ACCELERATION && def.baseline < 0) a->wrong = 0;
+    if (def.quantity != MPS_SIGNAL_QUANTITY_ACCELERATION && def.baseline < 0) a->wrong = 0;
     def.scale = api_near(a, "scale", 1.0, 0.5);
     def.taper = api_real(a, "taper", 0.0, 1e300, 0.01);
     a->wrong = 0; /* some are not read with others */
@@ -121,8 +122,8 @@ static void signal_record(api *a) {
     api_wrong(a, "path");
   }
   const bool none = api_null(a, "path");
-  const mps_status status =
-      mps_signal_record(context, none ? NULL : path, &def, api_null(a, "out") ? NULL : &made);
+  const mps_status status = mps_signal_create_record(context, none ? NULL : path, &def,
+                                                     api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_SIGNAL, made, NULL);
 }
 
@@ -243,13 +244,13 @@ static void coupling_memory(api *a) {
 }
 
 static const api_call calls[] = {
-    {"mps_signal_ricker", 2, API_CONTEXT, signal_ricker},
-    {"mps_signal_sine", 3, API_CONTEXT, signal_sine},
-    {"mps_signal_ramp", 2, API_CONTEXT, signal_ramp},
-    {"mps_signal_table", 3, API_CONTEXT, signal_table},
-    {"mps_signal_user", 4, API_CONTEXT, signal_user},
+    {"mps_signal_create_ricker", 2, API_CONTEXT, signal_ricker},
+    {"mps_signal_create_sine", 3, API_CONTEXT, signal_sine},
+    {"mps_signal_create_ramp", 2, API_CONTEXT, signal_ramp},
+    {"mps_signal_create_table", 3, API_CONTEXT, signal_table},
+    {"mps_signal_create_user", 4, API_CONTEXT, signal_user},
     {"mps_signal_record_def_init", 1, API_NOTHING, init_signal_record_def},
-    {"mps_signal_record", 2, API_CONTEXT, signal_record},
+    {"mps_signal_create_record", 2, API_CONTEXT, signal_record},
     {"mps_signal_destroy", 1, API_SIGNAL, destroy_signal_destroy},
     {"mps_signal_displacement", 2, API_SIGNAL, signal_values},
     {"mps_signal_velocity", 0, API_SIGNAL, signal_values},

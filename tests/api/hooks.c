@@ -156,7 +156,7 @@ static void write_log(void *user, int32_t level, const char *message) {
   hook(user);
 }
 
-static void show_progress(void *user, const mps_progress *progress) {
+static void show_progress(void *user, const mps_context_progress *progress) {
   api *a = user;
   if (!(progress->fraction >= 0.0 && progress->fraction <= 1.0) || !progress->task)
     api_broken(a, "progress %g of a task", progress->fraction);

@@ -197,10 +197,10 @@ static const char *const no_names[] = {
 
 const char *api_field(api *a, mps_particles *set) {
   const char *name = names[api_below(a, API_COUNT(names))];
-  mps_field_info info;
+  mps_particles_field_info info;
   const int32_t count = mps_particles_field_count(set);
   if (count > 0 && api_chance(a, 50) &&
-      mps_particles_field(set, (int32_t)api_below(a, (uint32_t)count), &info) == MPS_OK)
+      mps_particles_get_field_info(set, (int32_t)api_below(a, (uint32_t)count), &info) == MPS_OK)
     name = info.name;
   if (turn(a)) {
     name = no_names[api_below(a, API_COUNT(no_names))];

@@ -100,8 +100,8 @@ static void look_set(look *l, mps_particles *set) {
     order = fold(order, (uint64_t)*mps_view_i64(&ids, i, 0));
   add(l, "order", order);
   for (int32_t k = 0; k < mps_particles_field_count(set); k++) {
-    mps_field_info info;
-    if (mps_particles_field(set, k, &info) == MPS_OK) add_field(l, set, info.name, &ids);
+    mps_particles_field_info info;
+    if (mps_particles_get_field_info(set, k, &info) == MPS_OK) add_field(l, set, info.name, &ids);
   }
 }
 

@@ -128,10 +128,15 @@ static void particles(api *a) {
 }
 
 static void scene_mpm(api *a) {
-  static const char *const laws[] = {
-      "mps_material_linear_elastic", "mps_material_linear_elastic", "mps_material_neo_hookean",
-      "mps_material_von_mises",      "mps_material_drucker_prager", "mps_material_mohr_coulomb",
-      "mps_material_newtonian",      "mps_material_user",           "mps_material_umat"};
+  static const char *const laws[] = {"mps_material_create_linear_elastic",
+                                     "mps_material_create_linear_elastic",
+                                     "mps_material_create_neo_hookean",
+                                     "mps_material_create_von_mises",
+                                     "mps_material_create_drucker_prager",
+                                     "mps_material_create_mohr_coulomb",
+                                     "mps_material_create_newtonian",
+                                     "mps_material_create_user",
+                                     "mps_material_create_umat"};
   particles(a);
   set_field(a, "density", 1000.0);
   api_do(a, laws[api_below(a, API_COUNT(laws))]);
@@ -175,8 +180,8 @@ void api_scene(api *a) {
   a->latest = true;
   a->mood = API_VALID;
   api_do(a, "mps_context_create");
-  if (api_chance(a, 40)) api_do(a, "mps_signal_sine");
-  if (api_chance(a, 40)) api_do(a, "mps_signal_user");
+  if (api_chance(a, 40)) api_do(a, "mps_signal_create_sine");
+  if (api_chance(a, 40)) api_do(a, "mps_signal_create_user");
   scenes[api_below(a, API_COUNT(scenes))](a);
   a->latest = false;
 }

@@ -24,7 +24,7 @@ static void test_strip(void **state) {
 static void test_unstable(void **state) {
   (void)state;
   result one = {0}, steps = {0};
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   compare_teams(compute, UNSTABLE, WHOLE_RUN, false);
   mps_assert_ok(own, compute(own, NULL, UNSTABLE, WHOLE_RUN, &one));
   mps_assert_ok(own, compute(own, NULL, UNSTABLE, SHORT_RUN, &steps));
@@ -49,7 +49,7 @@ static void run_half(void *user, team *t, int32_t rank) {
   cut_run *c = user;
   result *r = &c->rank[rank];
   mps_domain *domain = NULL;
-  mps_context *own = team_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_domain_def def = team_domain_def(t, rank);
   r->status = mps_domain_create(own, &def, &domain);
   if (r->status == MPS_OK)
@@ -77,7 +77,7 @@ static void drop_halves(cut_run *c, int32_t size) {
 static void compare_cut(int what) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   result alone = {0}, on = {0};
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_ok(own, compute_halves(own, NULL, what, FIRST_HALF | SECOND_HALF, NULL, &alone));
   int64_t *seen = calloc((size_t)alone.count, sizeof *seen);
   cut_run first = {.what = what, .halves = FIRST_HALF};
@@ -188,7 +188,8 @@ static mps_status define_otherwise(mps_context *own, mps_dynamics *dynamics, int
   const double times[3] = {0.0, 0.1, 0.2}, values[3] = {0.0, 1.0, rank == 1 ? 0.51 : 0.5};
   const int64_t ids[2] = {17, rank == 1 ? 19 : 18};
   mps_signal *signal = NULL;
-  mps_status status = mps_signal_table(own, MPS_SIGNAL_DISPLACEMENT, 3, times, values, &signal);
+  mps_status status =
+      mps_signal_create_table(own, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 3, times, values, &signal);
   load.kind = MPS_DYNAMICS_LOAD_BODY;
   load.acceleration[0] = what == OTHER_LOAD ? 1.0 + rank : 1.0;
   if (what == OTHER_SIGNAL) load.signal[0] = signal;
@@ -208,7 +209,8 @@ static mps_status step_with_signal(mps_context *own, mps_dynamics *dynamics, int
   mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   const int64_t id = 17;
   mps_signal *signal = NULL;
-  mps_status status = mps_signal_user(own, what == SIGNAL_FAILS ? failing : differing, u, &signal);
+  mps_status status =
+      mps_signal_create_user(own, what == SIGNAL_FAILS ? failing : differing, u, &signal);
   load.kind = MPS_DYNAMICS_LOAD_BODY;
   load.acceleration[0] = 1.0;
   base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;

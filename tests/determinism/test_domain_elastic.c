@@ -141,9 +141,9 @@ static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset
   push.kind = MPS_ELASTIC_LOAD_PRESSURE;
   mps_signal *signal = NULL;
   mps_status status = MPS_OK;
-  if (what == SIGNAL_FAILS) status = mps_signal_user(own, failing, u, &signal);
+  if (what == SIGNAL_FAILS) status = mps_signal_create_user(own, failing, u, &signal);
   if (what == SIGNAL_DIFFERS || what == FACTOR_DIFFERS)
-    status = mps_signal_user(own, differing, u, &signal);
+    status = mps_signal_create_user(own, differing, u, &signal);
   if (what != FACTOR_DIFFERS) held.signal[0] = signal;
   if (what == FACTOR_DIFFERS) weight.signal[1] = signal;
   const int32_t rank = u->domain ? mps_domain_rank(u->domain) : 0;
@@ -171,9 +171,9 @@ static mps_status ask(mps_elastic *elastic, double *out) {
   double *values = calloc((size_t)facets * 6, sizeof *values);
   const mps_elastic_facet_arrays arrays = {.displacement = values, .velocity = values + 3 * facets};
   mps_status status = values ? MPS_OK : MPS_ERROR_MEMORY;
-  TRY(mps_elastic_stress(elastic));
-  TRY(mps_elastic_energy(elastic, &out[0], &out[1]));
-  TRY(mps_elastic_section(elastic, 1, 0.4, NULL, out + 2, out + 5));
+  TRY(mps_elastic_update_stress(elastic));
+  TRY(mps_elastic_get_energy(elastic, &out[0], &out[1]));
+  TRY(mps_elastic_get_section(elastic, 1, 0.4, NULL, out + 2, out + 5));
   TRY(mps_elastic_get_facets(elastic, facets, NULL, &arrays));
   for (int64_t k = 0; status == MPS_OK && k < 6 * facets; k++) out[8 + k % 12] += values[k];
   free(values);
@@ -313,7 +313,7 @@ static void load_scales(void *user, team *t, int32_t rank) {
   mps_particles *set = NULL;
   mps_elastic *elastic = NULL;
   upset u = {.domain = NULL};
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.alloc = weigh, def.free = unweigh, def.memory_user = s;
   mps_status status = mps_context_create(&def, &own, NULL, 0);
   TRY(mps_domain_create(own, &domain_def, &u.domain));

@@ -54,7 +54,7 @@ static void test_checkpoint(void **state) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   const int64_t count = steps(12);
   result half = {0}, whole = {0}, on = {0};
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_ok(own, begin(own, NULL, COLLAPSE, count, &half));
   mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &whole));
   remove(CHECKPOINT);
@@ -138,8 +138,8 @@ static mps_status define_otherwise(mps_context *own, scene *s, int what, int32_t
   const double right = what == OTHER_BODY && rank == 2 ? 0.41 : 0.4;
   const double corner[8] = {0.2, 0.6, right, 0.6, right, 0.7, 0.2, 0.7};
   const mps_body_def def = mps_body_defaults();
-  mps_status status =
-      mps_signal_sine(own, 1.0, what == OTHER_SIGNAL ? 0.01 + 0.001 * rank : 0.01, 0.0, &signal);
+  mps_status status = mps_signal_create_sine(
+      own, 1.0, what == OTHER_SIGNAL ? 0.01 + 0.001 * rank : 0.01, 0.0, &signal);
   TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.6, 0.0, -1.0, 0.0, signal));
   mps_signal_destroy(&signal);
   TRY(mps_body_create_polygon(own, &def, 4, corner, &body));

@@ -90,7 +90,7 @@ static void run_half(result_fn *half, int32_t size, int what, int64_t steps,
 static void compare_cut(int what, int64_t steps) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   result half = {0}, whole = {0}, on = {0};
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_ok(own, compute_half(own, NULL, what, steps, NULL, CHECKPOINT, &half));
   mps_assert_ok(own, go_on(own, NULL, what, steps, &whole));
   run_half(go_on, 3, what, steps, &whole);
@@ -145,7 +145,7 @@ static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) 
   mps_mpm_def def = scene_def(domain, SLIDE);
   def.upper[0] = 1.24, def.dt = NAN; /* as far as it may: a tenth of a cell past the wall */
   mps_status status = make_set(own, NULL, SLIDE, &s->set);
-  TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s->material[0]));
+  TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
   TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_FREE, 0.0));
@@ -303,7 +303,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   if (what == OTHER_DT) def.dt = 1e-5 * (1.0 + rank);
   mps_status status = make_set(own, NULL, SLIDE, &s.set);
   if (what == OTHER_SET && rank == 1) TRY(mps_particles_set(s.set, "density", 0, 2000.0));
-  TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s.material[0]));
+  TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s.material[0]));
   mps_contact_def contact = mps_contact_defaults();
   mps_body_def box = mps_body_defaults(); /* the soil runs into it */
   box.position[0] = 1.32, box.position[1] = 0.6;

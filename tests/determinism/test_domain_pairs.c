@@ -15,7 +15,7 @@ typedef struct pairs {
 
 static void run_pairs(void *user, team *t, int32_t rank) {
   pairs *p = user;
-  subject s = {.own = team_context(MPS_EXECUTOR_SERIAL, 1)};
+  subject s = {.own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1)};
   const mps_domain_def def = team_domain_def(t, rank);
   mps_status status = mps_domain_create(s.own, &def, &s.domain);
   TRY(make_solvers(&s));

@@ -98,7 +98,7 @@ static mps_status begin_wide(mps_context *own, mps_domain *domain) {
   scene s = {.set = NULL};
   mps_status status = make_set(own, domain, WIDE, &s.set);
   mps_mpm_def def = scene_def(domain, WIDE);
-  TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s.material[0]));
+  TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s.material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s.set, s.material[0], &def, &s.mpm));
   TRY(mps_mpm_step(s.mpm, 2));
@@ -113,7 +113,7 @@ static void measure(void *user, team *t, int32_t rank) {
   mps_domain *domain = NULL;
   mps_context_def def = test_context_defaults();
   const mps_domain_def domain_def = team_domain_def(t, rank);
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   peak_use(&def, &allocator);
   mps_status status = mps_context_create(&def, &own, NULL, 0);
   TRY(mps_domain_create(own, &domain_def, &domain));
@@ -172,7 +172,7 @@ static mps_status refused(mps_context *own, mps_domain *domain, int what, int64_
   }
   if (what == FIELDS && odd) TRY(mps_particles_add_field(set, "stress", 0));
   TRY(mps_particles_set(set, "density", 0, what == CONSTANTS && odd ? 1001.0 : 1000.0));
-  TRY(mps_material_linear_elastic(own, 1e6, 0.3, &material));
+  TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &material));
   mps_mpm_def solver = mps_mpm_defaults();
   solver.cell = 0.2;
   if (what != ALONE) solver.domain = domain;

@@ -88,7 +88,7 @@ static void measure(void *user, team *t, int32_t rank) {
   mps_domain *domain = NULL;
   mps_context_def def = test_context_defaults();
   const mps_domain_def domain_def = team_domain_def(t, rank);
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   peak_use(&def, &allocator);
   mps_status status = mps_context_create(&def, &own, NULL, 0);
   TRY(mps_domain_create(own, &domain_def, &domain));

@@ -123,11 +123,11 @@ static mps_status make_mpm(subject *s, plan *p, mps_domain *domain, bool odd) {
   mps_status status = fill(s, 2, 0.04, width, height);
   const double young = uniform(p, 2e5, 2e6) * (other == 0 ? 1.001 : 1.0);
   if (pick(p, 2)) {
-    TRY(mps_material_linear_elastic(s->own, young, 0.3, &s->material));
+    TRY(mps_material_create_linear_elastic(s->own, young, 0.3, &s->material));
   } else {
-    mps_drucker_prager_def law = mps_drucker_prager_defaults();
+    mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
     law.young = young, law.poisson = 0.3, law.friction = 0.5, law.cohesion = 1e3;
-    TRY(mps_material_drucker_prager(s->own, &law, &s->material));
+    TRY(mps_material_create_drucker_prager(s->own, &law, &s->material));
   }
   def.domain = domain;
   def.cell = h, def.spline = 2 + (pick(p, 2) + (other == 1)) % 2;
@@ -186,13 +186,13 @@ static mps_status make_dynamics(subject *s, plan *p, mps_domain *domain, bool od
   mps_signal *signal = NULL;
   mps_status status = fill(s, 2, 0.1, uniform(p, 6.0, 10.0), uniform(p, 3.0, 6.0));
   if (other == 1) TRY(mps_particles_set(s->set, "density", 0, 1000.5));
-  TRY(mps_material_linear_elastic(s->own, other == 0 ? 2e7 : 1e7, 0.25, &s->material));
+  TRY(mps_material_create_linear_elastic(s->own, other == 0 ? 2e7 : 1e7, 0.25, &s->material));
   def.domain = domain, def.material = s->material;
   def.rotation = (pick(p, 2) + (other == 2)) % 2;
   TRY(mps_dynamics_create(s->own, s->set, &def, &s->dynamics));
   floor.lower[0] = -1.0, floor.upper[0] = 20.0;
   floor.lower[1] = -1.0, floor.upper[1] = other == 3 ? 0.2 : 0.1;
-  TRY(mps_signal_user(s->own, shake, other == 4 ? &any : NULL, &signal));
+  TRY(mps_signal_create_user(s->own, shake, other == 4 ? &any : NULL, &signal));
   if (shaken || other == 4) {
     floor.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
     floor.dofs = MPS_DOF_X | MPS_DOF_Y, floor.signal[0] = signal;
@@ -386,7 +386,7 @@ static mps_status compute(mps_context *own, mps_domain *domain, int seed, int64_
 
 static void check_alike(const plan *p, ranks *s) {
   result alone = {.count = 0};
-  mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   alone.status = compute(serial, NULL, (int)p->seed, 0, &alone);
   if (alone.status == MPS_OK && !(alone.omega < 1e-10))
     fail_msg("seed %d: the momentum is off by %g of what moves", (int)p->seed, alone.omega);

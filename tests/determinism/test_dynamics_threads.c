@@ -24,7 +24,7 @@ static mps_status run(const setting *s, uint64_t *hash) {
   def.executor = s->executor;
   def.threads = s->threads;
   def.instruction_level = s->isa;
-  if (s->executor == MPS_EXECUTOR_CALLER) {
+  if (s->executor == MPS_CONTEXT_EXECUTOR_CALLER) {
     def.parallel_for = pthread_executor;
     def.parallel_user = &threads;
   }
@@ -57,7 +57,7 @@ static mps_status run(const setting *s, uint64_t *hash) {
     int64_t count;
     int64_t *base = soil_select(context, particles, -10.0, -1.0, 1000.0, 1.0, &count);
     mps_signal *ricker = NULL;
-    mps_assert_ok(context, mps_signal_ricker(context, 4.0, 0.05, 1.0, &ricker));
+    mps_assert_ok(context, mps_signal_create_ricker(context, 4.0, 0.05, 1.0, &ricker));
     mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
     boundary.signal[0] = ricker;
     mps_assert_ok(context, soil_add_viscous(dynamics, &boundary, count, base));
@@ -85,7 +85,7 @@ static mps_status run(const setting *s, uint64_t *hash) {
 
 static void same_bits(const setting *settings, int count, bool damped) {
   uint64_t first = 0;
-  setting reference = {MPS_EXECUTOR_SERIAL, 1, 0, damped};
+  setting reference = {MPS_CONTEXT_EXECUTOR_SERIAL, 1, 0, damped};
   assert_int_equal(run(&reference, &first), MPS_OK);
   for (int k = 0; k < count; k++) {
     setting s = settings[k];
@@ -106,19 +106,19 @@ static void same_bits(const setting *settings, int count, bool damped) {
 static void every_number_of_threads(void **state) {
   (void)state;
   static const setting settings[] = {
-      {MPS_EXECUTOR_OPENMP, 3, 0, false},  {MPS_EXECUTOR_CALLER, 2, 0, false},
-      {MPS_EXECUTOR_THREADS, 3, 0, false}, {MPS_EXECUTOR_THREADS, 2, 0, false},
-      {MPS_EXECUTOR_OPENMP, 1, 0, false},  {MPS_EXECUTOR_OPENMP, 2, 0, false},
-      {MPS_EXECUTOR_OPENMP, 8, 0, false},  {MPS_EXECUTOR_CALLER, 3, 0, false}};
+      {MPS_CONTEXT_EXECUTOR_OPENMP, 3, 0, false},  {MPS_CONTEXT_EXECUTOR_CALLER, 2, 0, false},
+      {MPS_CONTEXT_EXECUTOR_THREADS, 3, 0, false}, {MPS_CONTEXT_EXECUTOR_THREADS, 2, 0, false},
+      {MPS_CONTEXT_EXECUTOR_OPENMP, 1, 0, false},  {MPS_CONTEXT_EXECUTOR_OPENMP, 2, 0, false},
+      {MPS_CONTEXT_EXECUTOR_OPENMP, 8, 0, false},  {MPS_CONTEXT_EXECUTOR_CALLER, 3, 0, false}};
   same_bits(settings, test_quick() ? 3 : 8, false);
   same_bits(settings, test_quick() ? 3 : 8, true);
 }
 
 static void every_instruction_set(void **state) {
   (void)state;
-  static const setting settings[] = {{MPS_EXECUTOR_SERIAL, 1, 1, false},
-                                     {MPS_EXECUTOR_SERIAL, 1, 3, false},
-                                     {MPS_EXECUTOR_SERIAL, 1, 4, false}};
+  static const setting settings[] = {{MPS_CONTEXT_EXECUTOR_SERIAL, 1, 1, false},
+                                     {MPS_CONTEXT_EXECUTOR_SERIAL, 1, 3, false},
+                                     {MPS_CONTEXT_EXECUTOR_SERIAL, 1, 4, false}};
   same_bits(settings, 3, false);
   same_bits(settings, 3, true);
 }

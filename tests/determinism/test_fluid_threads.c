@@ -12,7 +12,7 @@ static uint64_t run(const mps_context_def *def) {
   mps_signal *piston = NULL;
   char text[256];
   if (mps_context_create(def, &context, text, sizeof text) != MPS_OK) fail_msg("%s", text);
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.3, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.3, 0.0, &piston));
   tank t = tank_make(context, 2.0, 1.0, 0.02, piston, 2e-3);
   mps_assert_ok(context, mps_fluid_step(t.fluid, test_quick() ? 20 : 80));
   uint64_t hash = digest_fields(context, t.water, names);
@@ -29,7 +29,7 @@ static uint64_t run(const mps_context_def *def) {
 static void threads_change_nothing(void **state) {
   (void)state;
   mps_context_def def = mps_context_defaults();
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   const uint64_t expected = run(&def);
   for (int32_t threads = 2; threads <= 5; threads += 3) {
     def = pthread_executor_def(&threads);

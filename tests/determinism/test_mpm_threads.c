@@ -79,7 +79,7 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_SPACE;
+  def.geometry = MPS_MPM_GEOMETRY_SPACE;
   def.cell = 0.02;
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
@@ -110,7 +110,7 @@ static mpm_scene slide_in_space(mps_context *context) {
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_SPACE;
+  def.geometry = MPS_MPM_GEOMETRY_SPACE;
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
   mps_body *floor = NULL;
@@ -146,8 +146,8 @@ static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
 enum { HELD = 1024, SLAB = 2048 };
 
 static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int options) {
-  mps_context_def def =
-      executor == MPS_EXECUTOR_CALLER ? pthread_executor_def(&threads) : test_context_defaults();
+  mps_context_def def = executor == MPS_CONTEXT_EXECUTOR_CALLER ? pthread_executor_def(&threads)
+                                                                : test_context_defaults();
   def.executor = executor;
   def.threads = threads;
   mps_context *context = NULL;
@@ -155,10 +155,11 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int
   mps_body *disc = NULL;
   mps_body_state b = {0};
   uint64_t forces = 0;
-  mpm_scene s = options & HELD              ? hold(context, geometry, &forces)
-                : options & SLAB            ? slide_in_space(context)
-                : geometry == MPS_MPM_SPACE ? fall_in_space(context, options)
-                                            : fall(context, geometry, options, false, &disc);
+  mpm_scene s = options & HELD   ? hold(context, geometry, &forces)
+                : options & SLAB ? slide_in_space(context)
+                : geometry == MPS_MPM_GEOMETRY_SPACE
+                    ? fall_in_space(context, options)
+                    : fall(context, geometry, options, false, &disc);
   if (disc) mps_assert_ok(context, mps_body_get_state(disc, &b));
   assert_true(!disc || b.velocity[0] > -2.9); /* it has hit */
   uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
@@ -171,9 +172,10 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int
 
 /* One serial thread against `count` other numbers on all executors. */
 static void same_bits(int32_t geometry, int options, int count, const int32_t *threads) {
-  const uint64_t first = hash_of(MPS_EXECUTOR_SERIAL, 1, geometry, options);
+  const uint64_t first = hash_of(MPS_CONTEXT_EXECUTOR_SERIAL, 1, geometry, options);
   for (int k = 0; k < count; k++)
-    for (int32_t executor = MPS_EXECUTOR_OPENMP; executor <= MPS_EXECUTOR_THREADS; executor++) {
+    for (int32_t executor = MPS_CONTEXT_EXECUTOR_OPENMP; executor <= MPS_CONTEXT_EXECUTOR_THREADS;
+         executor++) {
       const uint64_t hash = hash_of(executor, threads[k], geometry, options);
       if (hash == 0)
         print_message("executor %d is missing here: not compared\n", executor);
@@ -189,30 +191,30 @@ static int numbers(int most) { return getenv("MPS_TEST_LEVEL") || test_quick() ?
 
 static void every_number_of_threads(void **state) {
   (void)state;
-  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++)
+  for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++)
     same_bits(geometry, 0, numbers(4), threads);
 }
 
 static void options_too(void **state) {
   (void)state;
-  same_bits(MPS_MPM_AXISYMMETRIC, BY_CELL, 1, threads);
-  same_bits(MPS_MPM_PLANE_STRAIN, BY_NODES, 1, threads);
-  same_bits(MPS_MPM_SPACE, BY_NODES, 1, threads);
-  for (int32_t geometry = 0; geometry < MPS_MPM_SPACE; geometry++)
+  same_bits(MPS_MPM_GEOMETRY_AXISYMMETRIC, BY_CELL, 1, threads);
+  same_bits(MPS_MPM_GEOMETRY_PLANE_STRAIN, BY_NODES, 1, threads);
+  same_bits(MPS_MPM_GEOMETRY_SPACE, BY_NODES, 1, threads);
+  for (int32_t geometry = 0; geometry < MPS_MPM_GEOMETRY_SPACE; geometry++)
     same_bits(geometry, FIN, numbers(4), threads);
-  same_bits(MPS_MPM_PLANE_STRAIN, STANDARD, 1, threads);
-  same_bits(MPS_MPM_SPACE, STANDARD | BY_CELL, 1, threads);
-  same_bits(MPS_MPM_PLANE_STRAIN, HELD, numbers(4), threads);
-  same_bits(MPS_MPM_SPACE, HELD, numbers(4), threads);
-  same_bits(MPS_MPM_SPACE, SLAB, numbers(2), threads);
+  same_bits(MPS_MPM_GEOMETRY_PLANE_STRAIN, STANDARD, 1, threads);
+  same_bits(MPS_MPM_GEOMETRY_SPACE, STANDARD | BY_CELL, 1, threads);
+  same_bits(MPS_MPM_GEOMETRY_PLANE_STRAIN, HELD, numbers(4), threads);
+  same_bits(MPS_MPM_GEOMETRY_SPACE, HELD, numbers(4), threads);
+  same_bits(MPS_MPM_GEOMETRY_SPACE, SLAB, numbers(2), threads);
 }
 
 static void any_order_of_particles(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_body *disc[2] = {NULL};
-  mpm_scene a = fall(context, MPS_MPM_PLANE_STRAIN, 0, false, &disc[0]);
-  mpm_scene b = fall(context, MPS_MPM_PLANE_STRAIN, 0, true, &disc[1]);
+  mpm_scene a = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, false, &disc[0]);
+  mpm_scene b = fall(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 0, true, &disc[1]);
   const int64_t count = mps_particles_count(a.particles);
   mps_view xa = mpm_scene_view(&a, "position"), xb = mpm_scene_view(&b, "position");
   for (int64_t id = 0; id < count; id++) {
@@ -260,7 +262,7 @@ static void any_history_of_sorts(void **state) {
   (void)state;
   enum { MOST = 2000 };
   static double start[MOST][STATE_VALUES], end[2][MOST][STATE_VALUES];
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double centre[] = {0.11, 0.1};
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, 0.001, 1e6);
   mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.1, NULL));

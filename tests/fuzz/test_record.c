@@ -41,7 +41,8 @@ static bool check_text(const char *data, size_t size, uint32_t options) {
   if (!context) BROKEN("no context");
   mps_signal_record_def def = mps_signal_record_defaults();
   def.format = (int32_t)(options % 4 == 0 ? options / 4 % 4 : 0); /* mostly recognised */
-  def.quantity = options / 16 % 4 == 0 ? (int32_t)(options / 64 % 3) : MPS_SIGNAL_ACCELERATION;
+  def.quantity =
+      options / 16 % 4 == 0 ? (int32_t)(options / 64 % 3) : MPS_SIGNAL_QUANTITY_ACCELERATION;
   def.baseline = (int32_t)(options / 256 % 5);
   mpsi_text text;
   mps_signal *signal = NULL;

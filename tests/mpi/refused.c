@@ -66,11 +66,11 @@ int main(int argc, char **argv) {
   mps_petsc_solver *solver = NULL;
   mps_particles *set = NULL;
   mps_elastic *elastic = NULL;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   mps_status status = mps_context_create(&def, &context, NULL, 0);
   if (status == MPS_OK) status = mps_petsc_domain_create_world(context, &domain);
   if (status == MPS_OK)
-    status = mps_petsc_solver_create_world(context, MPS_PETSC_MULTIGRID, &solver);
+    status = mps_petsc_solver_create_world(context, MPS_PETSC_METHOD_MULTIGRID, &solver);
   if (status == MPS_OK) status = build(context, domain, solver, &set, &elastic);
   if (status != MPS_OK) {
     fprintf(stderr, "refused: %s\n", mps_context_error(context)->message);

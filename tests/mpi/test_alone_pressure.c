@@ -19,7 +19,7 @@ static tank waves(int rows, double tolerance) {
   tank_fill(context, t.water, 0.5, 0.25, NULL, NULL);
   mps_assert_ok(context, mps_particles_append(t.water, 1, drop));
   mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston));
   tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
   tank_wall(context, t.fluid, 0.5, 0.0, -1.0, 0.0, NULL);
@@ -35,7 +35,7 @@ static double force_on_the_wall(tank *t) {
 
 static void moves_the_water_as_the_library_does(void **state) {
   (void)state;
-  for (int32_t method = MPS_PETSC_MULTIGRID; method <= MPS_PETSC_DIRECT; method++) {
+  for (int32_t method = MPS_PETSC_METHOD_MULTIGRID; method <= MPS_PETSC_METHOD_DIRECT; method++) {
     mps_petsc_solver *solver = NULL;
     tank own = waves(20, 1e-12), other = waves(20, 1e-10);
     assert_int_equal(mps_petsc_solver_create(context, method, &solver), MPS_OK);
@@ -75,7 +75,7 @@ static void a_larger_fluid_takes_hardly_more_iterations(void **state) {
   (void)state;
   mps_petsc_solver *solver = NULL;
   int64_t small[2], large[2], own[2];
-  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_MULTIGRID, &solver), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &solver), MPS_OK);
   iterations(20, solver, &small[0], &small[1]);
   iterations(80, solver, &large[0], &large[1]);
   iterations(80, NULL, &own[0], &own[1]);
@@ -94,8 +94,8 @@ static void going_back_is_exact(void **state) {
   mps_petsc_solver *solver = NULL, *fresh = NULL;
   mps_snapshot *start = NULL;
   tank t = waves(20, 1e-8);
-  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_MULTIGRID, &solver), MPS_OK);
-  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_MULTIGRID, &fresh), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &solver), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &fresh), MPS_OK);
   mps_assert_ok(context, mps_petsc_solve_fluid(solver, t.fluid, 0));
   mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
   mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &start));
@@ -120,11 +120,13 @@ static void bad_calls_are_refused(void **state) {
   tank t = waves(8, 1e-8);
   mps_assert_fails(context, mps_petsc_solver_create(context, 2, &solver), MPS_ERROR_ARGUMENT,
                    "method is 2, allowed are 0 and 1");
-  assert_int_equal(mps_petsc_solver_create(NULL, MPS_PETSC_MULTIGRID, &solver), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_petsc_solver_create(NULL, MPS_PETSC_METHOD_MULTIGRID, &solver),
+                   MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_petsc_solver_create(context, -1, &solver), MPS_ERROR_ARGUMENT);
   assert_null(solver);
-  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_MULTIGRID, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_MULTIGRID, &solver), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, NULL),
+                   MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_petsc_solver_create(context, MPS_PETSC_METHOD_MULTIGRID, &solver), MPS_OK);
   assert_int_equal(mps_petsc_solve_fluid(NULL, t.fluid, 0), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_petsc_solve_fluid(solver, NULL, 0), MPS_ERROR_ARGUMENT);
   mps_assert_fails(context, mps_petsc_solve_fluid(solver, t.fluid, -1), MPS_ERROR_ARGUMENT,
@@ -145,13 +147,14 @@ int main(void) {
       cmocka_unit_test(going_back_is_exact),
       cmocka_unit_test(bad_calls_are_refused),
   };
-  mps_context *of_all = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *of_all = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_petsc_solver *first = NULL; /* MPI can be started once in a process: it lives as long */
-  if (mps_petsc_solver_create(of_all, MPS_PETSC_MULTIGRID, &first) != MPS_OK) return 1;
+  if (mps_petsc_solver_create(of_all, MPS_PETSC_METHOD_MULTIGRID, &first) != MPS_OK) return 1;
   const int failed = cmocka_run_group_tests(tests, make_context, drop_context);
   mps_petsc_solver_destroy(&first);
   mps_petsc_solver *late = NULL;
-  if (mps_petsc_solver_create(of_all, MPS_PETSC_MULTIGRID, &late) != MPS_ERROR_STATE) return 1;
+  if (mps_petsc_solver_create(of_all, MPS_PETSC_METHOD_MULTIGRID, &late) != MPS_ERROR_STATE)
+    return 1;
   if (!strstr(mps_context_error(of_all)->message, "cannot be started")) return 1;
   mps_context_destroy(&of_all);
   return failed;

@@ -41,7 +41,7 @@ static void test_levels(void **state) {
   mps_context_def def = mps_context_defaults();
   mps_context *context = NULL;
   mps_domain *mixed = NULL;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.instruction_level = rank == ranks - 1 ? 1 : 3;
   double none = mps_context_create(&def, &context, NULL, 0) != MPS_OK;
   mps_assert_ok(own, mps_domain_max(domain, 1, &none));

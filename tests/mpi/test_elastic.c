@@ -36,9 +36,9 @@ static void static_solutions_are_cholmods(void **state) {
       test_compare(&alone, &together, "displacement", 1e-9);
       test_compare(&alone, &together, "reaction", 1e-9);
       mps_assert_ok(own, mps_elastic_get_report(together.elastic, &report));
-      assert_int_equal(report.solver, MPS_ELASTIC_OUTSIDE);
+      assert_int_equal(report.solver, MPS_ELASTIC_SOLVER_FOREIGN);
       assert_true(report.residual < 1e-10);
-      assert_true(report.iterations <= (method == MPS_PETSC_DIRECT ? 2 : 60));
+      assert_true(report.iterations <= (method == MPS_PETSC_METHOD_DIRECT ? 2 : 60));
       /* Another load, the same matrix. */
       const double force[3] = {-0.2, 0.1, 0.3};
       mps_assert_ok(own, test_body_force(alone.elastic, force));
@@ -54,7 +54,7 @@ static void static_solutions_are_cholmods(void **state) {
 static void motions_are_cholmods(void **state) {
   (void)state;
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
-  test_body both[2] = {block(2, NULL), block(2, solvers[MPS_PETSC_MULTIGRID])};
+  test_body both[2] = {block(2, NULL), block(2, solvers[MPS_PETSC_METHOD_MULTIGRID])};
   motion.dt = 0.2;
   for (int k = 0; k < 2; k++) {
     mps_assert_ok(own, mps_particles_set(both[k].particles, "density", 0, 2.0));
@@ -99,14 +99,14 @@ static void a_slender_bar_is_solved(void **state) {
 /* What was solved by all ranks is solved by each alone when the solver is taken out. */
 static void a_solver_is_taken_out_again(void **state) {
   (void)state;
-  test_body b = block(2, solvers[MPS_PETSC_MULTIGRID]), alone = block(2, NULL);
+  test_body b = block(2, solvers[MPS_PETSC_METHOD_MULTIGRID]), alone = block(2, NULL);
   mps_elastic_report report;
   mps_assert_ok(own, mps_elastic_solve(b.elastic));
   mps_assert_ok(own, mps_elastic_set_solver(b.elastic, NULL));
   mps_assert_ok(own, mps_elastic_solve(b.elastic));
   mps_assert_ok(own, mps_elastic_solve(alone.elastic));
   mps_assert_ok(own, mps_elastic_get_report(b.elastic, &report));
-  assert_int_equal(report.solver, MPS_ELASTIC_LLT);
+  assert_int_equal(report.solver, MPS_ELASTIC_SOLVER_LLT);
   test_compare(&alone, &b, "displacement", 1e-13);
   assert_int_equal(mps_petsc_solve_elastic(NULL, b.elastic), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_petsc_solve_elastic(solvers[0], NULL), MPS_ERROR_ARGUMENT);

@@ -56,7 +56,7 @@ static void a_plate_of_a_million_unknowns(void **state) {
 
 int main(void) {
   if (!begin_world()) return 1;
-  if (mps_petsc_solver_create_world(own, MPS_PETSC_MULTIGRID, &solver) != MPS_OK) return 1;
+  if (mps_petsc_solver_create_world(own, MPS_PETSC_METHOD_MULTIGRID, &solver) != MPS_OK) return 1;
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_plate_of_a_million_unknowns)};
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   mps_petsc_solver_destroy(&solver);

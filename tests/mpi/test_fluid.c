@@ -22,8 +22,9 @@ static void test_multigrid(void **state) {
   (void)state;
   mps_petsc_solver *solvers[2] = {NULL, NULL};
   scene s[2] = {{.set = NULL}, {.set = NULL}};
-  assert_int_equal(mps_petsc_solver_create(own, MPS_PETSC_MULTIGRID, &solvers[0]), MPS_OK);
-  assert_int_equal(mps_petsc_solver_create_world(own, MPS_PETSC_MULTIGRID, &solvers[1]), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create(own, MPS_PETSC_METHOD_MULTIGRID, &solvers[0]), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create_world(own, MPS_PETSC_METHOD_MULTIGRID, &solvers[1]),
+                   MPS_OK);
   for (int k = 0; k < 2; k++) {
     mps_assert_ok(own, make_scene(own, k ? domain : NULL, EXACT, &s[k]));
     mps_assert_ok(own, mps_petsc_solve_fluid(solvers[k], s[k].fluid, 0));

@@ -11,7 +11,7 @@ static mps_context *own;
 static mps_domain *domain;
 
 static bool begin_world(void) {
-  own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_status status = mps_petsc_domain_create_world(own, &domain);
   if (status != MPS_OK) fprintf(stderr, "no domain: %s\n", mps_status_text(status));
   return status == MPS_OK;

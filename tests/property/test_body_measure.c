@@ -125,7 +125,7 @@ static void a_ring_of_soil(void **state) {
     mps_body *plate = NULL;
     mps_reaction r;
     mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
-    def.cell = 2.0 * SPACING, def.geometry = MPS_MPM_AXISYMMETRIC, def.measure = angles[k];
+    def.cell = 2.0 * SPACING, def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, def.measure = angles[k];
     def.lower[0] = 0.0, def.upper[0] = 0.4, def.lower[1] = 0.0, def.upper[1] = 0.4;
     mpm_scene_solve(&s, &def);
     at.position[1] = 0.1 + 0.049; /* presses 1 mm */
@@ -162,7 +162,7 @@ static void a_box_in_water(void **state) {
     mps_assert_near(felt.moment[2], given.moment[2], 1e-12 * given.force[1]);
     mps_assert_near(felt.impulse[1], given.impulse[1], 1e-12 * given.force[1]);
     held[k] = felt.force[1];
-    mps_assert_ok(context, mps_body_load(box, load, moment));
+    mps_assert_ok(context, mps_body_set_load(box, load, moment));
     mps_assert_ok(context, mps_fluid_float_body(t.fluid, 0, 1));
     mps_assert_fails(context, mps_body_advance(box, 1e-3), MPS_ERROR_STATE, "moves this body");
     mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
@@ -191,7 +191,7 @@ static void a_box_held_in_soil_and_water(void **state) {
   double unit[2] = {0.0, 0.0};
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) {
-      mps_body *box = make_box(MPS_BODY_MOTION_PRESCRIBED, 0.3, 0.19, 0.0);
+      mps_body *box = make_box(MPS_BODY_MOTION_DRIVEN, 0.3, 0.19, 0.0);
       mpm_scene soil = make_soil(measures[a], 0.22, 0.38, 0.24, 0.0);
       mps_contact *contact = add_contact(&soil, box, MPS_CONTACT_MOVER_OTHER);
       tank t = make_water(measures[b], box);

@@ -45,7 +45,7 @@ static double largest(const mps_totals *t) {
 static void add_everything(mps_dynamics *d, mps_particles *set, bool external) {
   mps_signal *wave = NULL;
   int32_t number;
-  mps_assert_ok(context, mps_signal_sine(context, 4.0, 1e-10, 0.3, &wave));
+  mps_assert_ok(context, mps_signal_create_sine(context, 4.0, 1e-10, 0.3, &wave));
   mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
   def.dofs = MPS_DOF_X | MPS_DOF_ROTATION; /* a side */
   def.lower[0] = def.lower[1] = -INFINITY;

@@ -82,7 +82,7 @@ static scales momentum_scales(mps_context *context, mps_particles *particles) {
 static void free_random_particles_keep_their_momenta(void **state) {
   (void)state;
   for (int variant = 0; variant < 8; variant++) {
-    mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+    mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *particles = NULL;
     mps_dynamics_def def = mps_dynamics_defaults();
     def.integrator =
@@ -118,7 +118,7 @@ static void free_random_particles_keep_their_momenta(void **state) {
 
 static void the_printed_torque_does_not_keep_angular_momentum(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *particles = NULL;
   mps_dynamics_def def = mps_dynamics_defaults();
   def.dt = 5e-4;
@@ -135,7 +135,7 @@ static void the_printed_torque_does_not_keep_angular_momentum(void **state) {
 
 static void energy_stays_bounded_over_1e5_steps(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const soil_layer soil = {16.0, 1500.0, 100.0, 200.0, 0.0};
   mps_particles *particles = soil_particles(context, 1.0, 12.0, 16.0, 1, &soil);
   mps_assert_ok(context, mps_particles_add_field(particles, "velocity", 0));
@@ -168,7 +168,7 @@ static void energy_stays_bounded_over_1e5_steps(void **state) {
 static void rigid_motion_makes_no_force(void **state) {
   (void)state;
   for (int removal = 0; removal < 2; removal++) {
-    mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+    mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     const soil_layer soil = {9.0, 1500.0, 100.0, 200.0, 0.0};
     mps_particles *particles = soil_particles(context, 1.0, 7.0, 9.0, 1, &soil);
     mps_dynamics_def def = mps_dynamics_defaults();

@@ -26,8 +26,8 @@ static mps_dynamics *level_ground(mps_context *context, bool columns, bool visco
   int64_t count;
   int64_t *base = soil_select(context, *particles, -100.0, -1.0, 100.0, 0.5, &count);
   mps_signal *s_wave = NULL, *p_wave = NULL;
-  mps_assert_ok(context, mps_signal_ricker(context, 6.0, 0.2, 1.0, &s_wave));
-  mps_assert_ok(context, mps_signal_ricker(context, 9.0, 0.15, 0.6, &p_wave));
+  mps_assert_ok(context, mps_signal_create_ricker(context, 6.0, 0.2, 1.0, &s_wave));
+  mps_assert_ok(context, mps_signal_create_ricker(context, 9.0, 0.15, 0.6, &p_wave));
   if (viscous) {
     mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
     boundary.signal[0] = s_wave;
@@ -51,7 +51,7 @@ static void level_ground_moves_as_endless_ground(void **state) {
                                           : MPS_DYNAMICS_INTEGRATOR_EULER;
     const bool viscous = variant != 0;
     const double ratio = variant == 2 ? 2.3 : 1.5; /* the second one reaches two columns inside */
-    mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+    mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *ground[2];
     mps_dynamics *solver[2];
     for (int k = 0; k < 2; k++) {
@@ -80,7 +80,7 @@ static void level_ground_moves_as_endless_ground(void **state) {
 
 /* Energy left in 30 m x 15 m of ground some time after a blow in its middle. */
 static double energy_left(bool absorbing) {
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const soil_layer soil = {15.0, 1800.0, 200.0, 400.0, 0.0};
   mps_particles *particles = soil_particles(context, 0.5, 30.0, 15.0, 1, &soil);
   mps_dynamics_def def = mps_dynamics_defaults();

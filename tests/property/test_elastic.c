@@ -98,7 +98,7 @@ static void check_patch(test_body *b, double young, double nu, int plane_stress)
   free(facets);
   hold_statically(b, &a);
   mps_assert_ok(b->context, mps_elastic_solve(b->elastic));
-  mps_assert_ok(b->context, mps_elastic_stress(b->elastic));
+  mps_assert_ok(b->context, mps_elastic_update_stress(b->elastic));
   static const int row[6] = {0, 1, 2, 0, 2, 1}, col[6] = {0, 1, 2, 1, 0, 2};
   double worst_u = 0, worst_s = 0, worst_r = 0;
   for (int64_t i = 0; i < b->n; i++) {
@@ -119,10 +119,10 @@ static void check_patch(test_body *b, double young, double nu, int plane_stress)
 
 static void constant_stress_is_exact_on_an_l_shape(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int plane_stress = 0; plane_stress < 2; plane_stress++) {
     mps_elastic_def def = mps_elastic_defaults();
-    def.state = plane_stress ? MPS_ELASTIC_PLANE_STRESS : MPS_ELASTIC_PLANE_STRAIN;
+    def.state = plane_stress ? MPS_ELASTIC_STATE_PLANE_STRESS : MPS_ELASTIC_STATE_PLANE_STRAIN;
     test_body b = l_shape(context, &def, 0.3);
     check_patch(&b, 3.0, 0.3, plane_stress);
     test_body_end(&b);
@@ -132,7 +132,7 @@ static void constant_stress_is_exact_on_an_l_shape(void **state) {
 
 static void constant_stress_is_exact_on_a_stepped_block(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = stepped(context, 0.3);
   check_patch(&b, 3.0, 0.3, 0);
   test_body_end(&b);
@@ -142,11 +142,11 @@ static void constant_stress_is_exact_on_a_stepped_block(void **state) {
 /* Layers of half cells along one axis, two, three: tractions on their facets balance the stress. */
 static void constant_stress_is_exact_where_layers_are_cut(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int dim = 2; dim <= 3; dim++)
     for (int axes = 1; axes <= dim; axes++) {
       mps_elastic_def def = mps_elastic_defaults();
-      def.state = MPS_ELASTIC_PLANE_STRAIN;
+      def.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
       test_body b = test_body_begin(context, dim, 0.25);
       test_body_box(&b, 0, 0, 0, 1.5, 1.25, dim == 3 ? 1 : 0);
       test_body_finish(&b, 3.0, 0.3, &def);
@@ -200,7 +200,7 @@ static double *pressed(mps_context *context, int m, bool half, int64_t *count) {
  * The difference is that of a discretisation, and falls with the spacing (docs/elastic.md). */
 static void a_half_differs_from_the_whole_by_the_discretisation(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double off[3];
   for (int r = 0; r < 3; r++) {
     int64_t count, of_half;
@@ -255,7 +255,7 @@ static void check_modes(test_body *b, int rigid, double gap) {
 
 static void rigid_motions_and_no_others_are_free(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_elastic_def def = mps_elastic_defaults();
   test_body b = l_shape(context, &def, 0.3);
   check_modes(&b, 3, 1e-3);
@@ -321,7 +321,7 @@ static void check_matrix(test_body *b) {
 
 static void the_assembled_matrix_is_the_operator(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_elastic_def def = mps_elastic_defaults();
   test_body b = stepped(context, 0.2);
   check_matrix(&b);
@@ -367,7 +367,7 @@ static void the_assembled_matrix_is_the_operator(void **state) {
 
 static void loads_and_reactions_are_in_equilibrium(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int dim = 2; dim <= 3; dim++) {
     test_body b = dim == 2 ? l_shape(context, NULL, 0.3) : stepped(context, 0.3);
     int64_t count, *ids = test_select(&b, 1, -1, 0.3, &count);
@@ -385,17 +385,17 @@ static void loads_and_reactions_are_in_equilibrium(void **state) {
     free(pressure);
     mps_assert_ok(context, mps_elastic_solve(b.elastic));
     double f[3], m[3], rf[3], rm[3];
-    mps_assert_ok(context, mps_elastic_load_resultant(b.elastic, point, f, m));
+    mps_assert_ok(context, mps_elastic_get_load_resultant(b.elastic, point, f, m));
     mps_assert_ok(context, test_reactions(b.elastic, point, rf, rm));
     for (int c = 0; c < dim; c++) mps_assert_near((f[c] + rf[c]) / fabs(f[1]), 0.0, 1e-10);
     for (int c = 0; c < (dim == 2 ? 1 : 3); c++)
       mps_assert_near((m[dim == 2 ? 2 : c] + rm[dim == 2 ? 2 : c]) / fabs(f[1]), 0.0, 1e-10);
     /* The section just above the support carries the reactions of the cut's near side. */
     double sf[3], sm[3], energy, work = 0.0;
-    mps_assert_ok(context, mps_elastic_section(b.elastic, 1, 100.0, point, sf, sm));
+    mps_assert_ok(context, mps_elastic_get_section(b.elastic, 1, 100.0, point, sf, sm));
     for (int c = 0; c < dim; c++) mps_assert_near(sf[c] / fabs(f[1]), 0.0, 1e-10);
     /* Clapeyron: the strain energy is half the work of the loads. */
-    mps_assert_ok(context, mps_elastic_energy(b.elastic, &energy, NULL));
+    mps_assert_ok(context, mps_elastic_get_energy(b.elastic, &energy, NULL));
     for (int64_t i = 0; i < b.n * dim; i++)
       work += 0.5 * b.elastic->load[i] * b.elastic->displacement[i];
     mps_assert_near(energy / work, 1.0, 1e-10);
@@ -408,7 +408,7 @@ static void loads_and_reactions_are_in_equilibrium(void **state) {
  * roller's normal gives the same displacement along it as turned supports say. */
 static void a_roller_lets_particles_slide_across_only(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = test_body_begin(context, 2, 0.1);
   test_body_box(&b, 0, 0, 0, 1, 1, 0);
   test_body_finish(&b, 2.0, 0.25, NULL);

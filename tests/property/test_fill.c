@@ -19,7 +19,7 @@ static mps_particles *make_set(mps_context *context, int32_t dim, double spacing
 /* The error of an area by counting sites is at most about half a cell along the boundary. */
 static void the_area_of_a_polygon_converges(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   enum { CORNERS = 14 };
   double xy[2 * CORNERS], area = 0.0, length = 0.0;
   for (int k = 0; k < CORNERS; k++) { /* a star of seven points, not symmetric to the lattice */
@@ -48,7 +48,7 @@ static void the_area_of_a_polygon_converges(void **state) {
 
 static void disc_and_ball_have_their_area_and_volume(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double centre[3] = {0.013, -0.21, 0.37}, r = 1.7;
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int level = 0; level < 4; level++) {
@@ -105,7 +105,7 @@ static void overlapping_fills_give_the_same_sites_in_any_order(void **state) {
   (void)state;
   static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
                                    {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double *first = NULL;
   int64_t count = 0;
   for (int o = 0; o < 6; o++) {

@@ -59,7 +59,7 @@ static balance check(mps_context *c, mps_fluid *fluid, int walls, int bodies) {
 /* By one thread and by three. */
 static void with_threads(void (*scene)(mps_context *)) {
   scene(context);
-  mps_context *three = test_context(MPS_EXECUTOR_OPENMP, 3);
+  mps_context *three = test_context(MPS_CONTEXT_EXECUTOR_OPENMP, 3);
   scene(three);
   mps_context_destroy(&three);
 }
@@ -116,7 +116,7 @@ static void closed_tank(mps_context *c) {
     if (k % 2 == 0) b.kind = MPS_FLUID_BOUNDARY_NO_SLIP;
     mps_assert_ok(c, mps_fluid_add_boundary(fluid, &b, NULL));
   }
-  mps_assert_ok(c, mps_signal_sine(c, 3.0, 2.0, 0.0, &shake.signal[0]));
+  mps_assert_ok(c, mps_signal_create_sine(c, 3.0, 2.0, 0.0, &shake.signal[0]));
   shake.acceleration[0] = 1.0;
   shake.lower[1] = 0.1; /* its upper half: it turns */
   mps_assert_ok(c, mps_fluid_add_load(fluid, &shake, NULL));

@@ -23,11 +23,11 @@ static mps_status creep(void *user, const mps_material_block *block) {
 static mps_material *make_law(int which) {
   static const char *const history[] = {"volume_strain"};
   mps_material *material = NULL;
-  mps_von_mises_def mises = mps_von_mises_defaults();
-  mps_drucker_prager_def cone = mps_drucker_prager_defaults();
-  mps_mohr_coulomb_def coulomb = mps_mohr_coulomb_defaults();
-  mps_newtonian_def fluid = mps_newtonian_defaults();
-  mps_user_law_def user = mps_user_law_defaults();
+  mps_material_von_mises_def mises = mps_material_von_mises_defaults();
+  mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
+  mps_material_mohr_coulomb_def coulomb = mps_material_mohr_coulomb_defaults();
+  mps_material_newtonian_def fluid = mps_material_newtonian_defaults();
+  mps_material_user_def user = mps_material_user_defaults();
   mises.young = cone.young = coulomb.young = 1e7;
   mises.yield_stress = 2e4, mises.hardening = 1e6;
   cone.friction = coulomb.friction = 0.6, cone.dilation = 0.2;
@@ -36,14 +36,16 @@ static mps_material *make_law(int which) {
   fluid.state = which == 6, fluid.no_tension = which == 6;
   user.update = creep, user.wave_modulus = 1e6, user.history = history, user.history_count = 1;
   mps_status status = MPS_OK;
-  if (which == 0) status = mps_material_linear_elastic(context, 1e7, 0.3, &material);
-  if (which == 1) status = mps_material_von_mises(context, &mises, &material);
-  if (which == 2 || which == 3) status = mps_material_drucker_prager(context, &cone, &material);
+  if (which == 0) status = mps_material_create_linear_elastic(context, 1e7, 0.3, &material);
+  if (which == 1) status = mps_material_create_von_mises(context, &mises, &material);
+  if (which == 2 || which == 3)
+    status = mps_material_create_drucker_prager(context, &cone, &material);
   if (which == 9) coulomb.tension = 1e3;
-  if (which == 4 || which == 9) status = mps_material_mohr_coulomb(context, &coulomb, &material);
-  if (which == 5) status = mps_material_neo_hookean(context, 1e7, 0.3, &material);
-  if (which == 6 || which == 7) status = mps_material_newtonian(context, &fluid, &material);
-  if (which == 8) status = mps_material_user(context, &user, &material);
+  if (which == 4 || which == 9)
+    status = mps_material_create_mohr_coulomb(context, &coulomb, &material);
+  if (which == 5) status = mps_material_create_neo_hookean(context, 1e7, 0.3, &material);
+  if (which == 6 || which == 7) status = mps_material_create_newtonian(context, &fluid, &material);
+  if (which == 8) status = mps_material_create_user(context, &user, &material);
   mps_assert_ok(context, status);
   return material;
 }

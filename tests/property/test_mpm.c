@@ -23,7 +23,7 @@ enum { COUNT = 4000 };
 /* Bodies of that scene; in space a thin pin with its end, and a ball. */
 static int crowd_bodies(int32_t geometry, mps_body **bodies) {
   mps_body_def body = mps_body_defaults();
-  if (geometry == MPS_MPM_SPACE) {
+  if (geometry == MPS_MPM_GEOMETRY_SPACE) {
     for (int c = 0; c < 3; c++) body.position[c] = 0.05;
     mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.04, &bodies[0]));
     body.position[0] = 0.13, body.position[1] = 0.11, body.rotation[0] = 0.4;
@@ -37,7 +37,7 @@ static int crowd_bodies(int32_t geometry, mps_body **bodies) {
 }
 
 static mpm_scene crowded(int32_t geometry, int32_t spline, bool keep_out) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double side = dim == 3 ? 0.2 : 1.0;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e6);
   mps_body *bodies[2] = {NULL};
@@ -122,8 +122,8 @@ static void check_shapes(mps_mpm *mpm, int64_t *fitted) {
 static void shapes_are_a_partition(void **state) {
   (void)state;
   for (int variant = 0; variant < 4; variant++) {
-    mpm_scene s =
-        crowded(variant < 2 ? MPS_MPM_PLANE_STRAIN : MPS_MPM_SPACE, 2 + variant % 2, false);
+    mpm_scene s = crowded(variant < 2 ? MPS_MPM_GEOMETRY_PLANE_STRAIN : MPS_MPM_GEOMETRY_SPACE,
+                          2 + variant % 2, false);
     int64_t fitted = 0;
     mps_assert_ok(context, mpsi_mpm_find_near(s.mpm, "test", MPS_OK));
     check_shapes(s.mpm, &fitted);
@@ -149,7 +149,8 @@ static void affine_round_trip(void **state) {
   const double plane[] = {1.1, -0.7, 0.4, 0.9};
   const double space[] = {1.1, -0.7, 0.3, 0.4, 0.9, -0.5, -0.2, 0.6, 0.8};
   for (int variant = 0; variant < 6; variant++) {
-    const int geometry = variant / 2, spline = variant % 2, dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+    const int geometry = variant / 2, spline = variant % 2,
+              dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
     const double *L = dim == 3 ? space : plane;
     mpm_scene s = crowded(geometry, 2 + spline, true);
     mps_mpm *mpm = s.mpm;
@@ -175,7 +176,7 @@ static void affine_round_trip(void **state) {
           mps_assert_near(*mps_view_f64(&v, k, c), exact, 1e-11);
         }
     }
-    assert_true((turned > 0) == (geometry != MPS_MPM_AXISYMMETRIC));
+    assert_true((turned > 0) == (geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC));
     mpm_scene_end(&s);
   }
 }
@@ -205,7 +206,7 @@ static void add_by_fit(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k, no
         v += p->L[dim * c + d][k] * h * s[d];
         force -= p->V[k] * p->s[symmetric[c][d]][k] * f.gradient[d][n];
       }
-      if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC && c == 0)
+      if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
         force -= f.phi[n] * p->V[k] * p->s[2][k] / p->x[0][k];
       to[1 + c] += m * f.phi[n] * v;
       to[5 + c] += force;
@@ -272,7 +273,7 @@ static void gather_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
       for (int d = 0; d < dim; d++) moment[d][c] += f.phi[n] * h * at.s[d][own[d]] * v[1 + c];
     }
   }
-  for (int c = 0; c < dim && beside && mpm->def.geometry != MPS_MPM_AXISYMMETRIC; c++)
+  for (int c = 0; c < dim && beside && mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC; c++)
     for (int d = 0; d < c; d++) {
       double *one = out + 3 + dim * c + d, *other = out + 3 + dim * d + c;
       const double sum = *one + *other, spin = (moment[d][c] - moment[c][d]) / full;
@@ -343,7 +344,7 @@ static void keeps_momentum(int dim, int spline, int64_t steps) {
                 mps_particles_fill_ball(s.particles, centre, dim == 3 ? 0.06 : 0.12, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.spline = spline;
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
@@ -444,7 +445,7 @@ static void contact_in_space_keeps_momentum(void **state) {
   mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.05, NULL));
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_MPM_SPACE;
+  def.geometry = MPS_MPM_GEOMETRY_SPACE;
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
   mps_body *bodies[2] = {NULL};
@@ -642,7 +643,7 @@ static int few_between_bodies(int dim, int spline, double *worst) {
     for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = uniform(-0.1, 0.1);
   mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.spline = spline, def.cell = 0.1, def.dt = 5e-4, def.gravity[1] = -1.0;
   mpm_scene_solve(&s, &def);
   mps_body *bodies[2] = {NULL};

@@ -43,7 +43,8 @@ static void assert_closes(mpm_scene *s, double start, const char *what, double t
 /* Driven sides, moving nodes, absorbing and frictional sides, loads, body accelerations. */
 static void closes_with_boundaries(void **state) {
   (void)state;
-  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++)
+  for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_SPACE;
+       geometry++)
     for (int32_t choice = 0; choice < 3; choice++) {
       int32_t box = -1, loads[2];
       mps_mpm_def def = mps_mpm_defaults();
@@ -62,7 +63,8 @@ static void closes_with_boundaries(void **state) {
 /* A driven and a free rough body, plastic soil; particles held by a list. */
 static void closes_with_bodies(void **state) {
   (void)state;
-  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++) {
+  for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_SPACE;
+       geometry++) {
     change c = none;
     c.budget = 1;
     c.half_plane = true;
@@ -94,14 +96,14 @@ static void closes_with_lists_of_particles(void **state) {
       mps_mpm_def def = mps_mpm_defaults();
       def.cell = 0.02, def.budget = 1, def.gravity[1] = -9.81, def.volumetric = volumetric;
       if (law == 1) {
-        mps_mohr_coulomb_def sand = mps_mohr_coulomb_defaults();
+        mps_material_mohr_coulomb_def sand = mps_material_mohr_coulomb_defaults();
         sand.young = 1e5, sand.friction = 0.5, sand.dilation = 0.2, sand.cohesion = 10.0;
         mps_material_destroy(&s.material);
-        mps_assert_ok(context, mps_material_mohr_coulomb(context, &sand, &s.material));
+        mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &sand, &s.material));
       }
       mpm_scene_solve(&s, &def);
       mps_signal *shake = NULL;
-      mps_assert_ok(context, mps_signal_sine(context, 20.0, 0.001, 0.0, &shake));
+      mps_assert_ok(context, mps_signal_create_sine(context, 20.0, 0.001, 0.0, &shake));
       int64_t ids[30];
       int32_t numbers[2];
       for (int k = 0; k < 30; k++) ids[k] = 3 * k;
@@ -252,7 +254,8 @@ static void piston(void **state) {
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.6, def.upper[1] = 0.1;
   mpm_scene_solve(&s, &def);
   mps_signal *push = NULL;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &push));
+  mps_assert_ok(context,
+                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &push));
   const double low[] = {0.36, -1.0}, high[] = {0.5, 1.0};
   mps_mpm_boundary_def wall = mpm_scene_box_def(s.mpm, low, high, 0, push, -1.0);
   int32_t number;
@@ -319,7 +322,7 @@ static void sums_go_back_and_are_the_same(void **state) {
   (void)state;
   change c = none;
   c.budget = 1;
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &c);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &c);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 30));
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
@@ -331,7 +334,7 @@ static void sums_go_back_and_are_the_same(void **state) {
   assert_memory_equal(&a, &b, sizeof a);
   int32_t threads = 3;
   mps_context *other = on_threads(&threads);
-  scene y = build(other, MPS_MPM_PLANE_STRAIN, &c);
+  scene y = build(other, MPS_MPM_GEOMETRY_PLANE_STRAIN, &c);
   mps_assert_ok(other, mps_mpm_step(y.s.mpm, 60));
   const mps_totals d = mpm_scene_totals(&y.s);
   assert_memory_equal(&a, &d, sizeof a);

@@ -37,7 +37,7 @@ static void scatter(mpm_scene *s, int32_t geometry, uint64_t *seed) {
   for (int64_t k = 0; k < x.view.shape[0]; k++)
     for (int c = 0; c < dim; c++) {
       const double place = k % 3 == 0 ? 0.1 * uniform(seed) : CELLS * uniform(seed);
-      const bool lower = geometry == MPS_MPM_AXISYMMETRIC && c == 0 ? false : k % 2 == 0;
+      const bool lower = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 ? false : k % 2 == 0;
       *mps_edit_f64(&x, k, c) = 1.0 + 0.1 * (lower ? place : CELLS - place);
     }
   mpm_scene_commit(s, &x);
@@ -48,7 +48,7 @@ static void scatter(mpm_scene *s, int32_t geometry, uint64_t *seed) {
 }
 
 static double run_scattered(int32_t geometry, int32_t spline, int32_t walls, uint64_t seed) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.1, 1.0, 1.0, 1e5);
   const double lo[] = {1.0, 1.0, 1.0}, hi[] = {1.8, 1.8, dim == 3 ? 1.3 : 1.8};
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
@@ -75,11 +75,12 @@ static double run_scattered(int32_t geometry, int32_t spline, int32_t walls, uin
 
 static void closes_beside_free_sides(void **state) {
   (void)state;
-  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++)
+  for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_SPACE;
+       geometry++)
     for (int32_t spline = 2; spline <= 3; spline++)
       for (int32_t walls = MPS_MPM_WALLS_MIRROR; walls <= MPS_MPM_WALLS_FIT; walls++) {
         double most = 0.0;
-        const int seeds = geometry == MPS_MPM_SPACE ? 4 : 16;
+        const int seeds = geometry == MPS_MPM_GEOMETRY_SPACE ? 4 : 16;
         for (int seed = 0; seed < seeds; seed++)
           most = fmax(most, run_scattered(geometry, spline, walls, (uint64_t)seed));
         print_message("geometry %d, spline %d, walls %d: open part %.2g\n", geometry, spline, walls,
@@ -94,10 +95,10 @@ static void works_between_soil_and_bodies_cancel(void **state) {
   for (int32_t method = MPS_CONTACT_METHOD_IMPULSE; method <= MPS_CONTACT_METHOD_PENALTY; method++)
     for (uint64_t seed = 0; seed < 3; seed++) {
       mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e6);
-      mps_mohr_coulomb_def sand = mps_mohr_coulomb_defaults();
+      mps_material_mohr_coulomb_def sand = mps_material_mohr_coulomb_defaults();
       sand.young = 1e6, sand.friction = 0.5, sand.dilation = 0.2, sand.cohesion = 2e3;
       mps_material_destroy(&s.material);
-      mps_assert_ok(context, mps_material_mohr_coulomb(context, &sand, &s.material));
+      mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &sand, &s.material));
       mpm_scene_box(&s, 0.0, 0.0, 0.8, 0.2);
       mps_mpm_def def = mps_mpm_defaults();
       def.cell = 0.04, def.budget = 1, def.gravity[1] = -9.81;

@@ -8,7 +8,7 @@
 
 /* A swinging block of 6^dim particles in cells of 0.2 m, with `far` more particles, far away. */
 static mpm_scene swing(int32_t geometry, int far, const double (*at)[3]) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double lo[] = {0.0, 0.0, 0.0}, hi[] = {0.6, 0.6, 0.6};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.1, 0.0, 0.0, 1e6);
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
@@ -55,7 +55,7 @@ static void a_far_grain_changes_nothing(void **state) {
   static const double one[][3] = {{1e6, 1e6, 1e6}};
   static const double apart[][3] = {
       {2e8, -2e8, 2e8}, {-2e8, 2e8, 1e8}, {-2e8, 2e8, -2e8}, {2e8, -2e8, -1e8}, {3.0, 1e8, 0.3}};
-  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry += 2) {
+  for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry += 2) {
     check_far(geometry, 1, one);
     check_far(geometry, 5, apart);
   }

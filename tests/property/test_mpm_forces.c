@@ -30,7 +30,8 @@ static void push_anew(mpm_scene *s, int32_t load) {
  * hoop stress besides, along x. */
 static void momentum_is_balanced(void **state) {
   (void)state;
-  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++) {
+  for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_SPACE;
+       geometry++) {
     int32_t box = -1, loads[2];
     mpm_scene s = held_begin(context, geometry, &box, loads);
     mps_totals before = mpm_scene_totals(&s);
@@ -48,7 +49,7 @@ static void momentum_is_balanced(void **state) {
       const double dt = mps_mpm_time(s.mpm) - t;
       double force[3];
       held_force(&s, box, force, acts);
-      for (int c = geometry == MPS_MPM_AXISYMMETRIC ? 1 : 0; c < s.mpm->dim; c++) {
+      for (int c = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 1 : 0; c < s.mpm->dim; c++) {
         const double all = force[c] + after.mass * s.mpm->def.gravity[c];
         worst = fmax(worst, fabs(after.linear[c] - before.linear[c] - s.mpm->run.dt * all));
         total = fmax(total, fabs(after.linear[c]) + fabs(dt * all));

@@ -28,7 +28,7 @@ typedef struct ball_of {
 /* The part of a box of 0.2 m, centred on x = z = 0 and standing on y = 0, in which bit c of `cut`
  * says that only c > 0 is there, beyond a roller. */
 static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, const ball_of *b) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double spacing = dim == 3 ? 0.02 : 0.01, half = 0.1;
   mpm_scene s = mpm_scene_begin_in(context, dim, spacing, 0.0, 0.0, 1e5);
   double lo[3], hi[3];
@@ -63,7 +63,8 @@ static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, con
   mps_signal *down = NULL;
   const double t[] = {0.0, 1.0}, way[] = {0.0, -0.5}; /* s, m */
   body.position[1] = 0.2 + b->radius + 0.5 * spacing;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 2, t, way, &down));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2, t,
+                                                 way, &down));
   mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &body, b->radius, &ball)
                                   : mps_body_create_disc(context, &body, b->radius, &ball));
   mps_assert_ok(context, mps_body_drive(ball, 1, down, 1.0));
@@ -138,8 +139,8 @@ static void roller_is_a_mirror(void **state) {
   const ball_of none = {0};
   for (volumetric = 0; volumetric <= MPS_MPM_VOLUMETRIC_NODES; volumetric += 2)
     for (int32_t spline = 2; spline <= 3; spline++) {
-      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &none, test_steps(150), 0.0);
-      compare_part(MPS_MPM_SPACE, spline, 5, &none, test_steps(150), 0.0);
+      compare_part(MPS_MPM_GEOMETRY_PLANE_STRAIN, spline, 1, &none, test_steps(150), 0.0);
+      compare_part(MPS_MPM_GEOMETRY_SPACE, spline, 5, &none, test_steps(150), 0.0);
     }
   volumetric = 0;
 }
@@ -150,12 +151,12 @@ static void bodies_cross_a_mirror(void **state) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     for (int rough = 0; rough < 2; rough++) {
       const ball_of penalty_bodies = {0.08, 0.3 * rough, MPS_CONTACT_METHOD_PENALTY, 1};
-      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &penalty_bodies, test_steps(150), 0.0);
-      compare_part(MPS_MPM_SPACE, spline, 5, &penalty_bodies, test_steps(150), 0.0);
+      compare_part(MPS_MPM_GEOMETRY_PLANE_STRAIN, spline, 1, &penalty_bodies, test_steps(150), 0.0);
+      compare_part(MPS_MPM_GEOMETRY_SPACE, spline, 5, &penalty_bodies, test_steps(150), 0.0);
     }
     const ball_of smooth = {0.08, 0.0, MPS_CONTACT_METHOD_IMPULSE, 400};
-    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &smooth, test_steps(150), 1e-4);
-    compare_part(MPS_MPM_SPACE, spline, 5, &smooth, test_steps(150), 1e-4);
+    compare_part(MPS_MPM_GEOMETRY_PLANE_STRAIN, spline, 1, &smooth, test_steps(150), 1e-4);
+    compare_part(MPS_MPM_GEOMETRY_SPACE, spline, 5, &smooth, test_steps(150), 1e-4);
   }
 }
 
@@ -167,8 +168,8 @@ static void rough_bodies_cross_a_mirror(void **state) {
   (void)state;
   const ball_of rough = {0.08, 0.3, MPS_CONTACT_METHOD_IMPULSE, 1000};
   for (int32_t spline = 2; spline <= 3; spline++) {
-    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &rough, 60, 1e-10);
-    compare_part(MPS_MPM_SPACE, spline, 5, &rough, 60, 1e-5);
+    compare_part(MPS_MPM_GEOMETRY_PLANE_STRAIN, spline, 1, &rough, 60, 1e-10);
+    compare_part(MPS_MPM_GEOMETRY_SPACE, spline, 5, &rough, 60, 1e-5);
   }
 }
 
@@ -178,8 +179,8 @@ static void thin_bodies_cross_a_mirror(void **state) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     const ball_of disc = {0.015, 0.0, MPS_CONTACT_METHOD_IMPULSE, 1000};
     const ball_of ball = {0.03, 0.0, MPS_CONTACT_METHOD_IMPULSE, 1000};
-    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &disc, 60, 1e-6);
-    compare_part(MPS_MPM_SPACE, spline, 5, &ball, 60, 1e-6);
+    compare_part(MPS_MPM_GEOMETRY_PLANE_STRAIN, spline, 1, &disc, 60, 1e-6);
+    compare_part(MPS_MPM_GEOMETRY_SPACE, spline, 5, &ball, 60, 1e-6);
   }
 }
 
@@ -188,8 +189,8 @@ static void thin_bodies_cross_a_mirror(void **state) {
 /* A domain full of particles in disorder, walls of all mirrored kinds at work; y frictional above,
  * so that mirrors meet a wall of the other kind; a rough disc or ball across the wall x = 0.4. */
 static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body, int32_t budget) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
-  const double lo[] = {geometry == MPS_MPM_AXISYMMETRIC ? 0.0 : 0.1, -0.1, 0.0};
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
+  const double lo[] = {geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 0.0 : 0.1, -0.1, 0.0};
   const double hi[] = {0.4, 0.1, 0.04};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e5);
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
@@ -204,10 +205,10 @@ static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body,
   def.budget = budget;
   def.cell = 0.02;
   for (int c = 0; c < dim; c++) def.lower[c] = lo[c], def.upper[c] = hi[c];
-  def.gravity[0] = geometry == MPS_MPM_AXISYMMETRIC ? 0.0 : 3.0, def.gravity[1] = -9.81;
+  def.gravity[0] = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 0.0 : 3.0, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, 20.0, 0.0005, 0.3, &signal));
+  mps_assert_ok(context, mps_signal_create_sine(context, 20.0, 0.0005, 0.3, &signal));
   mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
   mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.2);
@@ -251,7 +252,7 @@ static void given(mpm_scene *s, double *impulse, double *moment) {
 
 static void check_balance(int32_t geometry, int32_t spline, bool moves, int body) {
   mpm_scene s = turmoil(geometry, spline, moves, body, 0);
-  const int dim = s.mpm->dim, first = geometry == MPS_MPM_AXISYMMETRIC ? 1 : 0;
+  const int dim = s.mpm->dim, first = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 1 : 0;
   double worst = 0.0, size = 0.0;
   double before[3], after[3], moment[3];
   given(&s, before, moment);
@@ -280,7 +281,8 @@ static void check_balance(int32_t geometry, int32_t spline, bool moves, int body
 
 static void momentum_is_balanced(void **state) {
   (void)state;
-  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++)
+  for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_SPACE;
+       geometry++)
     for (int variant = 0; variant < 12; variant++)
       check_balance(geometry, 2 + variant % 2, variant / 2 % 2, variant / 4);
 }
@@ -289,7 +291,7 @@ static void momentum_is_balanced(void **state) {
 static void moments_are_balanced(void **state) {
   (void)state;
   for (int variant = 0; variant < 4; variant++) {
-    const int32_t geometry = variant / 2 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+    const int32_t geometry = variant / 2 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
     mpm_scene s = turmoil(geometry, 2 + variant % 2, true, 0, 0);
     mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
     memset(s.mpm->def.gravity, 0, sizeof s.mpm->def.gravity);
@@ -298,7 +300,7 @@ static void moments_are_balanced(void **state) {
     mps_assert_ok(context, mps_mpm_step(s.mpm, 40));
     const mps_totals b = mpm_scene_totals(&s);
     given(&s, impulse, moment);
-    for (int c = geometry == MPS_MPM_SPACE ? 0 : 2; c < 3; c++) {
+    for (int c = geometry == MPS_MPM_GEOMETRY_SPACE ? 0 : 2; c < 3; c++) {
       worst = fmax(worst, fabs(b.angular[c] - a.angular[c] - moment[c]));
       size = fmax(size, fabs(moment[c]));
     }
@@ -330,7 +332,7 @@ static void energy_is_balanced(void **state) {
 static void nothing_passes(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
-    mpm_scene s = turmoil(MPS_MPM_PLANE_STRAIN, spline, false, 0, 0);
+    mpm_scene s = turmoil(MPS_MPM_GEOMETRY_PLANE_STRAIN, spline, false, 0, 0);
     mps_edit x = mpm_scene_edit(&s, "position");
     for (int k = 0; k < 40; k++) *mps_edit_f64(&x, k, k % 2) = k % 2 ? -0.1 : k % 4 ? 0.4 : 0.1;
     mpm_scene_commit(&s, &x);

@@ -19,16 +19,16 @@ typedef struct sand {
 static mps_material *make_sand(mps_context *own, const sand *c) {
   mps_material *out = NULL;
   if (c->cone) {
-    mps_drucker_prager_def law = mps_drucker_prager_defaults();
+    mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
     law.young = 1e8, law.friction = 30.0 * DEGREE, law.dilation = c->dilation * DEGREE;
     law.cohesion = 1e4;
-    mps_assert_ok(own, mps_material_drucker_prager(own, &law, &out));
+    mps_assert_ok(own, mps_material_create_drucker_prager(own, &law, &out));
     return out;
   }
-  mps_mohr_coulomb_def law = mps_mohr_coulomb_defaults();
+  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
   law.young = 1e8, law.friction = 30.0 * DEGREE, law.dilation = c->dilation * DEGREE;
   law.cohesion = 1e4;
-  mps_assert_ok(own, mps_material_mohr_coulomb(own, &law, &out));
+  mps_assert_ok(own, mps_material_create_mohr_coulomb(own, &law, &out));
   return out;
 }
 
@@ -41,7 +41,7 @@ static mpm_scene begin(mps_context *own, const sand *c, mps_body **strip) {
   mps_assert_ok(own, mps_particles_set(s.particles, "density", 0, 2000.0));
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = h, def.volumetric = c->volumetric, def.spline = c->spline, def.budget = 1;
-  def.geometry = c->dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.geometry = c->dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   const double top[] = {1.0, 0.8, 0.2};
   for (int a = 0; a < c->dim; a++) def.lower[a] = 0.0, def.upper[a] = top[a];
   mps_material *law = make_sand(own, c), *at_first = c->layer ? s.material : law;
@@ -64,7 +64,7 @@ static mpm_scene begin(mps_context *own, const sand *c, mps_body **strip) {
     mps_assert_ok(own, mps_body_create_polygon(own, &body, 4, corners, strip));
   const double t[] = {0.0, 1.0}, v[] = {-0.1, -0.1};
   mps_signal *down = NULL;
-  mps_assert_ok(own, mps_signal_table(own, MPS_SIGNAL_VELOCITY, 2, t, v, &down));
+  mps_assert_ok(own, mps_signal_create_table(own, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down));
   mps_assert_ok(own, mps_body_drive(*strip, 1, down, 1.0));
   mps_signal_destroy(&down);
   mpm_scene_contact(&s, *strip, 0.5);
@@ -139,7 +139,7 @@ static void threads_and_restarts_change_nothing(void **state) {
   for (int layer = 0; layer < 2; layer++) {
     const sand c = {2, MPS_MPM_VOLUMETRIC_NODES, 2, 10.0, false, layer == 1};
     mps_body *strip[2] = {NULL, NULL};
-    mps_context *other = test_context(MPS_EXECUTOR_THREADS, 3);
+    mps_context *other = test_context(MPS_CONTEXT_EXECUTOR_THREADS, 3);
     mpm_scene one = begin(context, &c, &strip[0]), three = begin(other, &c, &strip[1]);
     mps_snapshot *snapshot = NULL;
     mps_assert_ok(context, mps_mpm_step(one.mpm, 93));

@@ -82,7 +82,7 @@ static int64_t check_against_all_pairs(const mps_neighbours *nb, const double *x
 
 static void lists_are_those_of_all_pairs(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   double *x = malloc(3 * SIZE * sizeof *x);
   assert_non_null(x);
   for (int32_t kind = 0; kind < CLOUDS; kind++)
@@ -108,7 +108,7 @@ static void lists_are_those_of_all_pairs(void **state) {
  * zero and far from it: cells must not lose them. */
 static void pairs_just_inside_the_radius_are_found_everywhere(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double places[] = {0.0, -1.0, 1.0 / 3.0, 1e3, -1e6 - 0.1, 1e9 + 0.7};
   const double radius = 0.1;
   for (int p = 0; p < 6; p++)
@@ -133,7 +133,7 @@ static void lists_do_not_depend_on_the_threads(void **state) {
   const int64_t n = 40000;
   double *x = malloc(3 * (size_t)n * sizeof *x);
   assert_non_null(x);
-  mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t dim = 2; dim <= 3; dim++)
     for (int32_t half = 0; half < 2; half++) {
       make_cloud(UNIFORM, dim, n, x);

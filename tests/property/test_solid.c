@@ -281,7 +281,7 @@ static void turns_as_driven(void **state) {
   mps_assert_ok(context, mps_body_create_sphere(context, &def, 1.0, &body));
   for (int c = 0; c < 6; c++) {
     mps_signal *sine = NULL;
-    mps_assert_ok(context, mps_signal_sine(context, 0.3 + 0.1 * c, 0.4, 0.0, &sine));
+    mps_assert_ok(context, mps_signal_create_sine(context, 0.3 + 0.1 * c, 0.4, 0.0, &sine));
     mps_assert_ok(context, mps_body_drive(body, c, sine, c == 4 ? -2.0 : 1.0));
     mps_signal_destroy(&sine);
   }
@@ -407,7 +407,7 @@ static void reactions_move_a_free_body(void **state) {
   mps_assert_ok(context, mps_body_create_cylinder(context, &def, 0.3, 1.0, &body));
   mps_assert_ok(context, mps_body_name_part(body, "side", 2, 1, NULL));
   const double force[3] = {1.0, 2.0, 3.0}, moment[3] = {0.1, -0.2, 0.3}, dt = 1e-3;
-  mps_assert_ok(context, mps_body_load(body, force, moment));
+  mps_assert_ok(context, mps_body_set_load(body, force, moment));
   const mpsi_load load[2] = {{{0.5, 0.0, 4.0}, {0.0, 0.2, 0.0}}, {{0.0, -1.0, 0.0}, {0.3, 0, 0}}};
   const int64_t contacts[2] = {3, 4};
   mpsi_body_source soil = {.moves = false};

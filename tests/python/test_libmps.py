@@ -23,7 +23,7 @@ def block(context, spacing=0.1):
 
 
 def falling(context, sand, **more):
-    law = context.material_linear_elastic(1e6, 0.3)
+    law = context.material_create_linear_elastic(1e6, 0.3)
     return context.mpm_create(sand, law, **{"cell": 0.2, "gravity": [0, -9.81, 0], "dt": 1e-3, **more})
 
 
@@ -62,7 +62,7 @@ class Values(unittest.TestCase):
         grid.close()
 
     def test_the_way_back_is_the_same_bit_for_bit(self):
-        context = mps.Context(executor=mps.EXECUTOR_SERIAL)
+        context = mps.Context(executor=mps.CONTEXT_EXECUTOR_SERIAL)
         sand = block(context)
         solver = falling(context, sand)
         solver.step(20)
@@ -92,10 +92,10 @@ class Values(unittest.TestCase):
         for own in (False, True):
             context = mps.Context(threads=2)
             sand = block(context)
-            law = context.material_user(
+            law = context.material_create_user(
                 update=update, name="python", history=["steps"], history_count=1,
                 wave_modulus=bulk + 4.0 * shear / 3.0) if own else \
-                context.material_linear_elastic(1e7, 0.3)
+                context.material_create_linear_elastic(1e7, 0.3)
             sand.add_field("velocity", 0)
             with sand.edit("velocity") as v:
                 v[:] = np.sin(3.0 * np.array(sand["position"]))
@@ -126,7 +126,7 @@ class Values(unittest.TestCase):
         solver = context.dynamics_create(ground)
         self.assertEqual(said, [])
         solver.set_dt(2.0 * solver.limit())
-        self.assertEqual([level for level, _ in said], [mps.LOG_WARNING])
+        self.assertEqual([level for level, _ in said], [mps.CONTEXT_LOG_WARNING])
         self.assertIn("limit", said[0][1])
         later = []
         context.set_log(lambda level, text: later.append(text))
@@ -139,7 +139,7 @@ class Values(unittest.TestCase):
         sand.set("shear_velocity", 0, 100.0)
         sand.set("pressure_velocity", 0, 200.0)
         solver = context.dynamics_create(sand)
-        sine = context.signal_sine(1.0, 0.01, 0.0)
+        sine = context.signal_create_sine(1.0, 0.01, 0.0)
         number = solver.add_boundary(kind=mps.DYNAMICS_BOUNDARY_DRIVEN, lower=[-1, 4.9, 0],
                                      upper=[2, 5.1, 0], signal=[sine, None, None])
         self.assertEqual(number, 0)
@@ -336,7 +336,7 @@ class Arrays(unittest.TestCase):
             lambda: sand.nearest([0.5]),
             lambda: sand.select_box([0, 0], [1, 1], 3, np.zeros(2, np.int64)),
             lambda: sand.set_geostatic(layer_count=2, layers=[{"thickness": 1.0}]),
-            lambda: context.signal_table(mps.SIGNAL_DISPLACEMENT, 3, [0, 1, 2], [0, 1]),
+            lambda: context.signal_create_table(mps.SIGNAL_QUANTITY_DISPLACEMENT, 3, [0, 1, 2], [0, 1]),
             lambda: context.body_create_polygon(4, [0, 0, 1, 0, 0, 1]),
             lambda: strip.distance(2, [0, 0, 1], np.zeros(2), None, None, None),
             lambda: strip.distance(2, [0, 0, 1, 1], np.zeros(2), np.zeros(3), None, None),
@@ -344,7 +344,7 @@ class Arrays(unittest.TestCase):
             lambda: solver.grid().evaluate("velocity", -1, 2, np.zeros(6), np.zeros(3), None),
             lambda: solver.grid().get_nodes(5, np.zeros(1, np.int64), None, np.zeros(4), None, None),
             lambda: context.coupling_create(size=4).begin(None, np.zeros(3)),
-            lambda: context.material_user(update=print, wave_modulus=1e6, history_count=2,
+            lambda: context.material_create_user(update=print, wave_modulus=1e6, history_count=2,
                                           history=["one"]),
         ]
         for k, call in enumerate(short):
@@ -395,7 +395,7 @@ class Callbacks(unittest.TestCase):
             def update(block):
                 raise ZeroDivisionError("a law")
 
-            law = context.material_user(update=update, name="bad", wave_modulus=1e7)
+            law = context.material_create_user(update=update, name="bad", wave_modulus=1e7)
             solver = context.mpm_create(sand, law, cell=0.2, dt=1e-4)
             with self.assertRaisesRegex(ZeroDivisionError, "a law"):
                 solver.step(1)
@@ -411,14 +411,14 @@ class Callbacks(unittest.TestCase):
         solver = falling(context, sand)
         with self.assertRaisesRegex(KeyError, "a signal"):
             solver.add_boundary(ids=sand["id"], id_count=100, kind=mps.MPM_BOUNDARY_PRESCRIBED,
-                                signal=[context.signal_user(motion), None, None])
+                                signal=[context.signal_create_user(motion), None, None])
             solver.step(1)
         self.assertEqual(solver.steps(), 0)
 
     def test_a_signal_of_another_arity_is_an_error(self):
         context = mps.Context()
         with self.assertRaises(TypeError):
-            context.signal_user(lambda t: 0).displacement(1.0)
+            context.signal_create_user(lambda t: 0).displacement(1.0)
 
     def test_interrupt_ends_a_run_within_a_step(self):
         context = mps.Context(threads=1)
@@ -468,7 +468,7 @@ class Garbage(unittest.TestCase):
         solver = falling(context, sand)
 
         def leave_garbage(_solver):
-            cycle = [context.signal_sine(1.0, 0.01, 0.0)]
+            cycle = [context.signal_create_sine(1.0, 0.01, 0.0)]
             cycle.append(cycle)
 
         threshold = gc.get_threshold()

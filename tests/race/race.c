@@ -26,8 +26,8 @@ int main(int argc, char **argv) {
   mps_context *context = NULL;
   meeting m = {0};
   char text[256] = "";
-  if (argc == 2 && strcmp(argv[1], "openmp") == 0) def.executor = MPS_EXECUTOR_OPENMP;
-  if (argc == 2 && strcmp(argv[1], "threads") == 0) def.executor = MPS_EXECUTOR_THREADS;
+  if (argc == 2 && strcmp(argv[1], "openmp") == 0) def.executor = MPS_CONTEXT_EXECUTOR_OPENMP;
+  if (argc == 2 && strcmp(argv[1], "threads") == 0) def.executor = MPS_CONTEXT_EXECUTOR_THREADS;
   if (mps_context_create(&def, &context, text, sizeof text) != MPS_OK ||
       mps_context_parallel_for(context, 2, add, &m) != MPS_OK) {
     printf("no loop ran: %s\n", text);

@@ -148,8 +148,8 @@ static void nothing_passes(void **state) {
   static const int32_t volumetric[] = {MPS_MPM_VOLUMETRIC_POINT, MPS_MPM_VOLUMETRIC_CELL,
                                        MPS_MPM_VOLUMETRIC_NODES};
   for (int k = 0; k < 18; k++) {
-    const int geometry = k / 3 % 3, dim = geometry == MPS_MPM_SPACE ? 3 : 2;
-    const double t = 0.004, ring = geometry == MPS_MPM_AXISYMMETRIC ? 0.1 : 0.0;
+    const int geometry = k / 3 % 3, dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
+    const double t = 0.004, ring = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 0.1 : 0.0;
     mpm_scene s = mpm_scene_begin_in(context, dim, SPACING, 0.0, 0.0, 1e6);
     add_rows(&s, ring - 0.5 * t, -1, 4, 6, dim == 3 ? 4 : 1);
     add_rows(&s, ring + 0.5 * t, 1, 4, 6, dim == 3 ? 4 : 1);
@@ -157,7 +157,7 @@ static void nothing_passes(void **state) {
     def.geometry = geometry;
     def.spline = k < 9 ? 3 : 2;
     def.cell = CELL;
-    if (geometry == MPS_MPM_AXISYMMETRIC) def.lower[0] = 0.0;
+    if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) def.lower[0] = 0.0;
     def.volumetric = volumetric[k % 3];
     mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
     mpm_scene_solve(&s, &def);

@@ -63,10 +63,11 @@ static void refuses_what_a_plane_has_not(void **state) {
                    "inertia[0] is 0 kg m2");
   mps_assert_ok(context, mps_body_create_disc(context, &def, 1.0, &body));
   const double out[] = {0.0, 0.0, 1.0}, bad[] = {0.0, NAN, 0.0};
-  mps_assert_fails(context, mps_body_load(body, out, NULL), MPS_ERROR_ARGUMENT, "must be 0 in 2D");
-  mps_assert_fails(context, mps_body_load(body, NULL, bad), MPS_ERROR_ARGUMENT,
+  mps_assert_fails(context, mps_body_set_load(body, out, NULL), MPS_ERROR_ARGUMENT,
+                   "must be 0 in 2D");
+  mps_assert_fails(context, mps_body_set_load(body, NULL, bad), MPS_ERROR_ARGUMENT,
                    "moment[1] nan N m");
-  mps_assert_ok(context, mps_body_load(body, NULL, out));
+  mps_assert_ok(context, mps_body_set_load(body, NULL, out));
   mps_body_destroy(&body);
 }
 
@@ -111,7 +112,7 @@ static void refuses_bad_calls(void **state) {
                    "component is 2");
   mps_assert_fails(context, mps_body_drive(body, 0, NULL, NAN), MPS_ERROR_ARGUMENT,
                    "factor is nan");
-  mps_assert_fails(context, mps_body_load(body, force, NULL), MPS_ERROR_STATE, "takes no load");
+  mps_assert_fails(context, mps_body_set_load(body, force, NULL), MPS_ERROR_STATE, "takes no load");
   mps_assert_fails(context, mps_body_distance(body, 1, bad, &d, NULL, NULL, NULL),
                    MPS_ERROR_ARGUMENT, "point 0 has y = inf");
   mps_assert_fails(context, mps_body_distance(body, -1, bad, &d, NULL, NULL, NULL),
@@ -136,10 +137,10 @@ static void names_parts(void **state) {
   int32_t tip, side;
   mps_assert_ok(context, mps_body_name_part(body, "tip", 0, 1, &tip));
   mps_assert_ok(context, mps_body_name_part(body, "side", 3, 2, &side)); /* 3 and 0 */
-  assert_int_equal(mps_body_part(body, "rest"), 0);
-  assert_int_equal(mps_body_part(body, "tip"), tip);
-  assert_int_equal(mps_body_part(body, "side"), side);
-  assert_int_equal(mps_body_part(body, "none"), -1);
+  assert_int_equal(mps_body_find_part(body, "rest"), 0);
+  assert_int_equal(mps_body_find_part(body, "tip"), tip);
+  assert_int_equal(mps_body_find_part(body, "side"), side);
+  assert_int_equal(mps_body_find_part(body, "none"), -1);
   assert_int_equal(mps_body_part_count(body), 3);
   for (int k = 3; k < MPS_BODY_MAX_PARTS; k++) {
     char name[8];
@@ -156,8 +157,8 @@ static void names_parts(void **state) {
 static void follows_signals(void **state) {
   (void)state;
   mps_signal *ramp = NULL, *sine = NULL;
-  mps_assert_ok(context, mps_signal_ramp(context, 0.0, 1.0, 2.0, &ramp));
-  mps_assert_ok(context, mps_signal_sine(context, 0.25, 0.5, 0.0, &sine));
+  mps_assert_ok(context, mps_signal_create_ramp(context, 0.0, 1.0, 2.0, &ramp));
+  mps_assert_ok(context, mps_signal_create_sine(context, 0.25, 0.5, 0.0, &sine));
   mps_body_def def = mps_body_defaults();
   def.position[0] = 1.0;
   def.rotation[2] = 0.3;
@@ -200,7 +201,7 @@ static void falls_freely(void **state) {
   mps_body *body = NULL;
   mps_assert_ok(context, mps_body_create_disc(context, &def, 1.0, &body));
   const double force[] = {4.0, 0.0, 0.0}, moment[] = {0.0, 0.0, 0.25};
-  mps_assert_ok(context, mps_body_load(body, force, moment));
+  mps_assert_ok(context, mps_body_set_load(body, force, moment));
   mps_assert_fails(context, mps_body_drive(body, 0, NULL, 1.0), MPS_ERROR_STATE, "follows no");
   const int steps = 200;
   const double dt = 0.01, t = steps * dt, late = 0.5 * dt * dt * steps * (steps + 1);
@@ -221,7 +222,7 @@ static void moves_from_outside(void **state) {
   mps_body *body = NULL;
   mps_body_state s;
   mps_signal *ramp = NULL;
-  mps_assert_ok(context, mps_signal_ramp(context, 0.0, 1.0, 2.0, &ramp));
+  mps_assert_ok(context, mps_signal_create_ramp(context, 0.0, 1.0, 2.0, &ramp));
   mps_assert_ok(context, mps_body_create_box(context, NULL, 4.0, 2.0, &body));
   mps_assert_ok(context, mps_body_drive(body, 0, ramp, 1.0));
   mps_signal_destroy(&ramp);
@@ -297,7 +298,7 @@ static void keeps_its_books(void **state) {
     const double force[] = {4.0, 0.0, 0.0}, moment[] = {0.0, 0.0, 0.25};
     const mpsi_load touch = {{-1.0, 6.0, 0.0}, {0.0, 0.0, -0.4}};
     const int64_t one = 1;
-    mps_assert_ok(context, mps_body_load(body, force, moment));
+    mps_assert_ok(context, mps_body_set_load(body, force, moment));
     mps_body_totals start, t;
     mps_reaction r;
     mps_assert_ok(context, mps_body_get_totals(body, &start));
@@ -328,9 +329,10 @@ static void begins_where_it_is(void **state) {
     mps_signal *signal = NULL;
     mps_body *body = NULL;
     mps_body_state s;
-    mps_assert_ok(context,
-                  mps_signal_table(context, kind ? MPS_SIGNAL_ACCELERATION : MPS_SIGNAL_VELOCITY, 2,
-                                   t, kind ? a : v, &signal));
+    mps_assert_ok(context, mps_signal_create_table(context,
+                                                   kind ? MPS_SIGNAL_QUANTITY_ACCELERATION
+                                                        : MPS_SIGNAL_QUANTITY_VELOCITY,
+                                                   2, t, kind ? a : v, &signal));
     mps_assert_ok(context, mps_body_create_disc(context, NULL, 1.0, &body));
     mps_assert_ok(context, mps_body_drive(body, 1, signal, -1.0));
     mps_assert_ok(context, mps_body_get_state(body, &s));

@@ -125,12 +125,12 @@ static void make_set(scene *s, double spacing) {
   mps_assert_ok(context, mps_particles_set(s->set, "density", 0, 2000.0));
   mps_assert_ok(context, mps_particles_set(s->set, "velocity", 0, 0.0));
   mps_assert_ok(context, mps_particles_set(s->set, "external_force", 1, -1.0));
-  mps_assert_ok(context, mps_signal_user(context, from_signal, s, &s->signal));
+  mps_assert_ok(context, mps_signal_create_user(context, from_signal, s, &s->signal));
 }
 
 static mps_material *stuff(void) {
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.25, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
   return material;
 }
 

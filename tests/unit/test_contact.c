@@ -203,7 +203,8 @@ static void wedges_are_no_walls(void **state) {
     if (!k)
       REFUSES("meet at less than 20 degrees", mps_mpm_add_contact(s.mpm, wedge, &springs, NULL));
   }
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 2, t, way, &down));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2, t,
+                                                 way, &down));
   mps_assert_ok(context, mps_body_drive(wedge, 1, down, 1.0));
   mps_assert_ok(context, mps_mpm_add_contact(s.mpm, wedge, NULL, NULL));
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.04, 1, NULL, NULL));
@@ -283,7 +284,8 @@ static void driven_too_deep_is_told(void **state) {
     mps_body *body = NULL;
     mps_body_def def = mps_body_defaults();
     def.position[0] = 0.1, def.position[1] = 0.105;
-    mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down));
+    mps_assert_ok(context,
+                  mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down));
     mps_assert_ok(context, mps_body_create_polygon(context, &def, 3, wedge, &body));
     mps_assert_ok(context, mps_body_drive(body, 1, down, -1.0));
     mpm_scene_contact(&s, body, 0.0);

@@ -49,7 +49,7 @@ static void bad_definitions_are_refused_with_the_reason(void **state) {
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(text, "executor is 7"));
   def = mps_context_defaults();
-  def.executor = MPS_EXECUTOR_CALLER;
+  def.executor = MPS_CONTEXT_EXECUTOR_CALLER;
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
   def = mps_context_defaults();
   def.struct_size = 0;
@@ -64,7 +64,7 @@ static mps_status refuse_node(void *user, const double *x, int32_t *inside) {
 
 static void a_callback_says_why_it_has_failed(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles_def def = mps_particles_defaults();
   mps_particles *set = NULL;
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.0, 1.0, 1.0};
@@ -106,7 +106,7 @@ static void the_instruction_level_is_one_that_the_machine_has(void **state) {
 
 static void errors_are_recorded_and_cleared(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_kernel *kernel = (mps_kernel *)&kernel;
   mps_assert_fails(context, mps_kernel_create(context, MPS_KERNEL_MPS, -2.0, &kernel),
                    MPS_ERROR_ARGUMENT, "-2 m");
@@ -127,14 +127,14 @@ static void add_index(void *data, int64_t index, int32_t worker) {
 }
 
 /* A caller's executor that runs backwards, on the calling thread. */
-static void backwards(void *user, int64_t count, mps_task_fn task, void *data) {
+static void backwards(void *user, int64_t count, mps_context_task_fn task, void *data) {
   ++*(int *)user;
   for (int64_t i = count - 1; i >= 0; i--) task(data, i, 0);
 }
 
 static void an_error_names_its_object(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_error *error = mps_context_error(context);
   (void)mpsi_fail(context, "mps_body_create_disc", MPS_ERROR_ARGUMENT, "x");
   assert_string_equal(error->object, "body");
@@ -152,7 +152,7 @@ static void count_log(void *user, int32_t level, const char *message) {
   (void)message;
   (*(int *)user)++;
 }
-static void count_progress(void *user, const mps_progress *progress) {
+static void count_progress(void *user, const mps_context_progress *progress) {
   (void)progress;
   (*(int *)user)++;
 }
@@ -163,14 +163,14 @@ static int32_t say_stop(void *user) {
 
 static void hooks_can_be_replaced(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   int first = 0, second = 0;
   mps_context_set_log(context, count_log, &first);
-  mpsi_log(context, MPS_LOG_INFO, "a");
+  mpsi_log(context, MPS_CONTEXT_LOG_INFO, "a");
   mps_context_set_log(context, count_log, &second);
-  mpsi_log(context, MPS_LOG_INFO, "b");
+  mpsi_log(context, MPS_CONTEXT_LOG_INFO, "b");
   mps_context_set_log(context, NULL, NULL);
-  mpsi_log(context, MPS_LOG_INFO, "c");
+  mpsi_log(context, MPS_CONTEXT_LOG_INFO, "c");
   assert_int_equal(first, 1);
   assert_int_equal(second, 1);
   mps_context_set_progress(context, count_progress, &first);
@@ -186,7 +186,7 @@ static void hooks_can_be_replaced(void **state) {
 
 static void a_callback_is_guarded_and_its_status_explained(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_error *error = mps_context_error(context);
   mpsi_guard guard = {0};
   assert_int_equal(mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_OK);
@@ -216,15 +216,15 @@ static void a_callback_is_guarded_and_its_status_explained(void **state) {
 }
 
 /* Executors that number their workers from 1, or leave the last unit out. */
-static void count_from_one(void *user, int64_t count, mps_task_fn task, void *data) {
+static void count_from_one(void *user, int64_t count, mps_context_task_fn task, void *data) {
   (void)user;
   for (int64_t k = 0; k < count; k++) task(data, k, 1 + (int32_t)(k % 2));
 }
-static void forget_one(void *user, int64_t count, mps_task_fn task, void *data) {
+static void forget_one(void *user, int64_t count, mps_context_task_fn task, void *data) {
   (void)user;
   for (int64_t k = 0; k + 1 < count; k++) task(data, k, 0);
 }
-static void go_wrong_later(void *user, int64_t count, mps_task_fn task, void *data) {
+static void go_wrong_later(void *user, int64_t count, mps_context_task_fn task, void *data) {
   const int32_t worker = (*(int *)user)++ > 0 ? 99 : 0; /* good at its trial */
   for (int64_t k = 0; k < count; k++) task(data, k, k == 1 ? worker : 0);
 }
@@ -238,7 +238,7 @@ static void a_bad_executor_is_noticed(void **state) {
   char text[256];
   mps_context *context = NULL;
   mps_context_def def = mps_context_defaults();
-  def.executor = MPS_EXECUTOR_CALLER;
+  def.executor = MPS_CONTEXT_EXECUTOR_CALLER;
   def.threads = 2;
   def.parallel_for = count_from_one;
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
@@ -278,14 +278,14 @@ static void the_library_tells_what_it_is(void **state) {
   assert_null(mps_library_feature_name(0));
   mps_context *context = NULL;
   mps_context_def def = mps_context_defaults();
-  def.executor = MPS_EXECUTOR_OPENMP;
+  def.executor = MPS_CONTEXT_EXECUTOR_OPENMP;
   assert_int_equal(mps_context_create(&def, &context, NULL, 0) == MPS_OK,
                    mps_library_has(MPS_FEATURE_OPENMP));
   mps_context_destroy(&context);
   assert_int_equal(mps_library_has_level(1), 1);
   assert_int_equal(mps_library_has_level(0), 0);
   assert_int_equal(mps_library_has_level(2), 0);
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const int32_t used = mps_context_instruction_level(context);
   assert_int_equal(mps_library_has_level(used), 1);
   for (int32_t level = used + 1; level < 6; level++)
@@ -299,9 +299,9 @@ static void every_executor_runs_every_unit_once(void **state) {
   for (int kind = 0; kind < 3; kind++) {
     mps_context_def def = mps_context_defaults();
     if (kind == 1) def.threads = 3; /* the build's default executor */
-    if (kind == 0) def.executor = MPS_EXECUTOR_SERIAL;
+    if (kind == 0) def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
     if (kind == 2) {
-      def.executor = MPS_EXECUTOR_CALLER;
+      def.executor = MPS_CONTEXT_EXECUTOR_CALLER;
       def.threads = 2;
       def.parallel_for = backwards;
       def.parallel_user = &calls;
@@ -341,7 +341,7 @@ static void the_callers_allocator_is_used_and_everything_returned(void **state) 
 
 static void lattice_density_is_the_sheet_value(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_kernel *kernel = NULL;
   double n0 = 0.0;
   mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_MPS, 1.5 * 0.7, &kernel));

@@ -65,7 +65,7 @@ static int take_step(mps_coupling *c, int step, double *x) {
 
 static void one_value_takes_three_repeats_then_two(void **state) {
   (void)state;
-  mps_coupling *c = make(MPS_COUPLING_AITKEN, 1);
+  mps_coupling *c = make(MPS_COUPLING_METHOD_AITKEN, 1);
   for (int step = 0; step < 4; step++) { /* x = 5 + step - 20 x: handed to and fro it diverges */
     double x, answer;
     int32_t done = 0;
@@ -87,7 +87,7 @@ static void one_value_takes_three_repeats_then_two(void **state) {
 static void a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes(void **state) {
   (void)state;
   double x[N];
-  mps_coupling *c = make(MPS_COUPLING_QUASI_NEWTON, N);
+  mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N);
   const int first = take_step(c, 0, x);
   assert_in_range(first, 4, 8);
   int later = 0;
@@ -100,7 +100,8 @@ static void a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes(void **s
 static void a_field_by_one_factor_takes_more(void **state) {
   (void)state;
   double x[N], y[N];
-  mps_coupling *newton = make(MPS_COUPLING_QUASI_NEWTON, N), *aitken = make(MPS_COUPLING_AITKEN, N);
+  mps_coupling *newton = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N),
+               *aitken = make(MPS_COUPLING_METHOD_AITKEN, N);
   int counts[2] = {0, 0};
   for (int step = 0; step < 5; step++) {
     counts[0] += take_step(newton, step, x);
@@ -118,7 +119,7 @@ static void what_does_not_agree_is_an_error_and_can_begin_again(void **state) {
   int32_t done = 0;
   mps_coupling *c = NULL;
   mps_coupling_def def = mps_coupling_defaults();
-  def.method = MPS_COUPLING_CONSTANT;
+  def.method = MPS_COUPLING_METHOD_CONSTANT;
   def.size = 1, def.relaxation = 0.5, def.repeats = 7;
   mps_assert_ok(context, mps_coupling_create(context, &def, &c));
   mps_assert_ok(context, mps_coupling_begin(c, NULL, &x));
@@ -141,7 +142,7 @@ static void what_does_not_agree_is_an_error_and_can_begin_again(void **state) {
 
 static void guesses_lie_on_a_line_through_the_last_steps(void **state) {
   (void)state;
-  mps_coupling *c = make(MPS_COUPLING_QUASI_NEWTON, 1);
+  mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 1);
   for (int step = 0; step < 4; step++) {
     double x, answer = 2.0 + 3.0 * step;
     int32_t done;
@@ -160,7 +161,8 @@ static void what_is_learnt_can_be_kept(void **state) {
   (void)state;
   double x[N], y[N], memory[4000];
   int64_t count = 0, again = 0;
-  mps_coupling *c = make(MPS_COUPLING_QUASI_NEWTON, N), *d = make(MPS_COUPLING_QUASI_NEWTON, N);
+  mps_coupling *c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N),
+               *d = make(MPS_COUPLING_METHOD_QUASI_NEWTON, N);
   for (int step = 0; step < 5; step++) take_step(c, step, x);
   mps_assert_ok(context, mps_coupling_get_memory(c, 0, NULL, &count));
   assert_in_range(count, 1, 4000);
@@ -185,7 +187,7 @@ typedef struct journal {
 
 static void note(void *user, int32_t level, const char *message) {
   journal *j = user;
-  if (level != MPS_LOG_WARNING) return;
+  if (level != MPS_CONTEXT_LOG_WARNING) return;
   j->count++;
   snprintf(j->last, sizeof j->last, "%s", message);
 }
@@ -242,7 +244,7 @@ static void bad_input_is_refused(void **state) {
   mps_assert_fails(context, mps_coupling_create(context, &def, &c), MPS_ERROR_ARGUMENT,
                    "relaxation of the coupling is 1.5");
   assert_null(c);
-  c = make(MPS_COUPLING_QUASI_NEWTON, 2);
+  c = make(MPS_COUPLING_METHOD_QUASI_NEWTON, 2);
   double x[2] = {0.0, 0.0}, answer[2] = {1.0, NAN};
   int32_t done;
   mps_assert_fails(context, mps_coupling_next(c, x, x, &done), MPS_ERROR_STATE, "begin");

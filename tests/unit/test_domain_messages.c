@@ -91,7 +91,7 @@ static counts call(mps_mpm *mpm, const counted *c, int64_t steps, mps_status *so
 static void measure(void *user, team *t, int32_t rank) {
   measured *m = user;
   counted c = {.inner = team_domain_def(t, rank)};
-  mps_context *own = team_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const mps_domain_def def = counting(&c);
   mps_domain *domain = NULL;
   scene s = {.set = NULL};

@@ -129,7 +129,7 @@ static void bad_definitions_are_refused(void **state) {
                    "out is NULL");
   mps_assert_fails(context, mps_dynamics_create(context, NULL, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    "particles is NULL");
-  mps_context *other = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_fails(other, mps_dynamics_create(other, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    "another context");
   mps_context_destroy(&other);

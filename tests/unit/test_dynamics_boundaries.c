@@ -22,7 +22,7 @@ static double value(mps_particles *set, const char *field, int64_t id, int compo
 
 static mps_signal *sine(double phase) {
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, 3.0, 0.01, phase, &signal));
+  mps_assert_ok(context, mps_signal_create_sine(context, 3.0, 0.01, phase, &signal));
   return signal;
 }
 

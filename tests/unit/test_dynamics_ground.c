@@ -73,8 +73,8 @@ static void a_material_is_what_its_fields_would_be(void **state) {
   (void)state;
   mps_material *clay = NULL, *rock = NULL;
   mps_moduli m[2];
-  mps_assert_ok(context, mps_material_linear_elastic(context, 4e7, 0.3, &clay));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 9e7, 0.2, &rock));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 4e7, 0.3, &clay));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 9e7, 0.2, &rock));
   mps_assert_ok(context, mps_material_get_moduli(clay, 1500.0, &m[0]));
   mps_assert_ok(context, mps_material_get_moduli(rock, 1500.0, &m[1]));
   mps_particles *by_law = block(context, 6, 6), *by_field = block(context, 6, 6);
@@ -108,12 +108,12 @@ static void a_material_is_what_its_fields_would_be(void **state) {
 
 static void materials_that_do_not_fit_are_refused(void **state) {
   (void)state;
-  mps_drucker_prager_def sand_def = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def sand_def = mps_material_drucker_prager_defaults();
   mps_material *sand = NULL, *thin = NULL, *light = NULL;
   sand_def.young = 1e7, sand_def.friction = 0.5;
-  mps_assert_ok(context, mps_material_drucker_prager(context, &sand_def, &sand));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, -0.1, &thin));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e-6, 0.3, &light));
+  mps_assert_ok(context, mps_material_create_drucker_prager(context, &sand_def, &sand));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, -0.1, &thin));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e-6, 0.3, &light));
   mps_particles *set = block(context, 4, 4);
   mps_dynamics_def def = mps_dynamics_defaults();
   mps_dynamics *d = NULL;
@@ -138,7 +138,7 @@ static void materials_that_do_not_fit_are_refused(void **state) {
   mps_assert_fails(context, mps_dynamics_set_material(d, sand, 0, NULL), MPS_ERROR_UNSUPPORTED,
                    "drucker_prager");
   mps_material_destroy(&light);
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e-6, 0.49, &light));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e-6, 0.49, &light));
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 1e9));
   mps_assert_fails(context, mps_dynamics_set_material(d, light, 0, NULL), MPS_ERROR_ARGUMENT,
                    "wave velocities of");
@@ -157,7 +157,7 @@ static void a_refused_material_writes_no_velocities(void **state) {
   (void)state;
   mps_material *stiff = NULL;
   mps_particles *set = block(context, 4, 4);
-  mps_assert_ok(context, mps_material_linear_elastic(context, 8e7, 0.25, &stiff));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 8e7, 0.25, &stiff));
   mps_dynamics *d = solver_of(set, NULL, NULL);
   const double shear = value_of(set, "shear_velocity", 3, 0);
   const double pressure = value_of(set, "pressure_velocity", 3, 0);
@@ -202,7 +202,7 @@ static void a_material_changes_in_motion(void **state) {
   (void)state;
   mps_material *stiff = NULL;
   mps_particles *set = block(context, 6, 6);
-  mps_assert_ok(context, mps_material_linear_elastic(context, 8e7, 0.25, &stiff));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 8e7, 0.25, &stiff));
   push(set, 1e-4);
   mps_dynamics *d = solver_of(set, NULL, NULL);
   mps_assert_ok(context, mps_dynamics_step(d, 30));
@@ -445,9 +445,9 @@ static picture picture_of(mps_context *own, mps_particles *set) {
                .epoch = mps_particles_epoch(set),
                .hash = 0xcbf29ce484222325u};
   for (int32_t f = 0; f < p.fields; f++) {
-    mps_field_info info;
+    mps_particles_field_info info;
     mps_view v;
-    mps_assert_ok(own, mps_particles_field(set, f, &info));
+    mps_assert_ok(own, mps_particles_get_field_info(set, f, &info));
     mps_assert_ok(own, mps_particles_view(set, info.name, &v));
     for (int64_t c = 0; c < v.shape[1]; c++)
       for (int64_t k = 0; k < v.shape[0]; k++) {
@@ -485,7 +485,7 @@ static void a_failed_creation_changes_nothing(void **state) {
     mps_dynamics_def def = mps_dynamics_defaults();
     mps_dynamics *d = NULL;
     mps_edit x;
-    mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &def.material));
+    mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &def.material));
     mps_assert_ok(context, mps_particles_edit(set, "position", &x));
     const int64_t last = mps_particles_count(set) - 1; /* of the column */
     if (late)
@@ -517,7 +517,7 @@ static void creation_without_memory_changes_nothing(void **state) {
     mps_dynamics *d = NULL;
     def.dt = DT;
     def.watch_damping = 1;
-    mps_assert_ok(own, mps_material_linear_elastic(own, 1e7, 0.3, &def.material));
+    mps_assert_ok(own, mps_material_create_linear_elastic(own, 1e7, 0.3, &def.material));
     const picture before = picture_of(own, set);
     allocator.refuse_at = allocator.calls + at;
     made = mps_dynamics_create(own, set, &def, &d) == MPS_OK;

@@ -51,13 +51,13 @@ static void added_and_moved_particles_get_new_references(void **state) {
 static void parts_may_go_in_any_order(void **state) {
   (void)state;
   for (int order = 0; order < 24; order++) {
-    mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+    mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *set = soil_particles(own, 1.0, 3.0, 3.0, 1, &soil_plain);
     mps_dynamics *d = NULL;
     mps_signal *signal = NULL;
     const int64_t id = 0;
     mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
-    mps_assert_ok(own, mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal));
+    mps_assert_ok(own, mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
     mps_assert_ok(own, soil_add_driven(d, 0, signal, 1.0, 1, &id));
     int left[4] = {0, 1, 2, 3};
     for (int k = 0, rest = order; k < 4; k++) {
@@ -100,7 +100,7 @@ static mps_status everything(mps_context *own, int integrator) {
   mps_dynamics_def def = mps_dynamics_defaults();
   def.integrator = integrator;
   if (status == MPS_OK) status = mps_dynamics_create(own, set, &def, &d);
-  if (status == MPS_OK) status = mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal);
+  if (status == MPS_OK) status = mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal);
   if (status == MPS_OK) status = soil_add_held(d, MPS_DOF_Y, 3, ids);
   if (status == MPS_OK) status = soil_add_driven(d, 0, signal, 1.0, 3, ids);
   mps_dynamics_boundary_def viscous = mps_dynamics_boundary_defaults();
@@ -156,7 +156,7 @@ static void steps_allocate_nothing(void **state) {
   mps_signal *signal = NULL;
   const int64_t ids[2] = {0, 199};
   mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
-  mps_assert_ok(own, mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal));
+  mps_assert_ok(own, mps_signal_create_ricker(own, 4.0, 0.25, 1.0, &signal));
   mps_assert_ok(own, soil_add_driven(d, 0, signal, 1.0, 1, &ids[0]));
   mps_assert_ok(own, soil_add_viscous(d, NULL, 1, &ids[1]));
   mps_assert_ok(own, mps_dynamics_step(d, 1)); /* finds dt */

@@ -21,11 +21,11 @@ typedef struct hooks {
 
 static void on_log(void *user, int32_t level, const char *message) {
   hooks *h = user;
-  h->warnings += level == MPS_LOG_WARNING;
+  h->warnings += level == MPS_CONTEXT_LOG_WARNING;
   snprintf(h->text, sizeof h->text, "%s", message);
 }
 
-static void on_progress(void *user, const mps_progress *progress) {
+static void on_progress(void *user, const mps_context_progress *progress) {
   hooks *h = user;
   h->rising = h->rising && progress->fraction >= h->fraction;
   h->fraction = progress->fraction;
@@ -41,7 +41,7 @@ static mps_context *hooked(hooks *h) {
   mps_context_def def = test_context_defaults();
   mps_context *own = NULL;
   *h = (hooks){.rising = true};
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.log = on_log;
   def.progress = on_progress;
   def.cancel = on_cancel;
@@ -344,7 +344,7 @@ static void a_rollback_repeats_a_run_bit_for_bit(void **state) {
       mps_snapshot *snapshot = NULL;
       mps_reaction first, again;
       double one[36], two[36];
-      mps_assert_ok(context, mps_signal_sine(context, 3.0, 0.01, 0.3, &sine));
+      mps_assert_ok(context, mps_signal_create_sine(context, 3.0, 0.01, 0.3, &sine));
       mps_dynamics *d = shaken(context, &def, 0.1, &set);
       mps_assert_ok(context, soil_add_driven(d, 0, sine, 1.0, 1, &base[0]));
       mps_assert_ok(context, soil_add_viscous(d, NULL, 1, &base[1]));

@@ -41,7 +41,7 @@ static void refuse_points(mps_context *context, int64_t count, const double *x, 
 
 static void bodies_that_cannot_be_solved_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double off[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.51};
   refuse_points(context, 4, off, "particle 3 is off the lattice");
   const double twice[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.5, 0.5, 0};
@@ -68,7 +68,7 @@ static void bodies_that_cannot_be_solved_are_refused(void **state) {
 
 static void impossible_materials_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 3, NULL);
   double *young = mpsi_particles_column(b.particles, "young", 0); /* past the set's own check */
   double *poisson = mpsi_particles_column(b.particles, "poisson", 0);
@@ -104,7 +104,7 @@ static void impossible_materials_are_refused(void **state) {
 
 static void bad_definitions_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 3, NULL);
   mps_elastic *e = NULL;
 #define REFUSE(member, bad, why)                                                                   \
@@ -155,7 +155,7 @@ static void bad_definitions_are_refused(void **state) {
 
 static void bad_supports_and_loads_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 3, NULL);
   mps_elastic *e = b.elastic;
   const int64_t good[2] = {0, 1}, bad[2] = {0, 9}, facet_bad[1] = {12};
@@ -181,7 +181,7 @@ static void bad_supports_and_loads_are_refused(void **state) {
   REFUSE(test_pressure(e, 2, good, nan_values), "values[1] is nan");
   REFUSE(test_traction_fn(e, 2, good, NULL, NULL), "function is NULL");
   REFUSE(mps_elastic_solve_cases(e, 1, NULL, NULL), "an array is NULL");
-  REFUSE(mps_elastic_section(e, 0, NAN, NULL, NULL, NULL), "position is nan");
+  REFUSE(mps_elastic_get_section(e, 0, NAN, NULL, NULL, NULL), "position is nan");
   assert_int_equal(mps_elastic_solve(NULL), MPS_ERROR_ARGUMENT);
   /* x + y and x - y fix a particle: a third direction is one too many. */
   const double up[2] = {1, 1}, down[2] = {1, -1};
@@ -189,7 +189,7 @@ static void bad_supports_and_loads_are_refused(void **state) {
   mps_assert_ok(context, test_roller(e, down, 1, good, NULL));
   mps_assert_fails(context, test_prescribe(e, 0, 1, good, NULL), MPS_ERROR_STATE, "already fixed");
   double force[3];
-  mps_assert_ok(context, mps_elastic_load_resultant(e, NULL, force, NULL));
+  mps_assert_ok(context, mps_elastic_get_load_resultant(e, NULL, force, NULL));
   assert_true(force[0] == 0.0 && force[1] == 0.0); /* nothing of the refused loads is left */
 #undef REFUSE
   test_body_end(&b);
@@ -198,7 +198,7 @@ static void bad_supports_and_loads_are_refused(void **state) {
 
 static void free_rigid_motions_are_named(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 4, NULL);
   mps_elastic *e = b.elastic;
 #define REFUSE(why) mps_assert_fails(context, mps_elastic_solve(e), MPS_ERROR_STATE, why)
@@ -249,16 +249,16 @@ static void free_rigid_motions_are_named(void **state) {
 
 static void solvers_and_orderings_agree(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const struct {
     int32_t solver, ordering;
     double limit;
-  } ways[] = {{MPS_ELASTIC_AUTO, MPS_ELASTIC_ORDER_BEST, NAN},
-              {MPS_ELASTIC_LLT, MPS_ELASTIC_ORDER_AMD, INFINITY},
-              {MPS_ELASTIC_LLT, MPS_ELASTIC_ORDER_METIS, NAN},
-              {MPS_ELASTIC_LDLT, MPS_ELASTIC_ORDER_AMD, INFINITY},
-              {MPS_ELASTIC_CG, MPS_ELASTIC_ORDER_AMD, INFINITY},
-              {MPS_ELASTIC_AUTO, MPS_ELASTIC_ORDER_AMD, 1000.0}};
+  } ways[] = {{MPS_ELASTIC_SOLVER_AUTO, MPS_ELASTIC_ORDERING_BEST, NAN},
+              {MPS_ELASTIC_SOLVER_LLT, MPS_ELASTIC_ORDERING_AMD, INFINITY},
+              {MPS_ELASTIC_SOLVER_LLT, MPS_ELASTIC_ORDERING_METIS, NAN},
+              {MPS_ELASTIC_SOLVER_LDLT, MPS_ELASTIC_ORDERING_AMD, INFINITY},
+              {MPS_ELASTIC_SOLVER_CG, MPS_ELASTIC_ORDERING_AMD, INFINITY},
+              {MPS_ELASTIC_SOLVER_AUTO, MPS_ELASTIC_ORDERING_AMD, 1000.0}};
   double reference = 0.0;
   for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
     mps_elastic_def def = mps_elastic_defaults();
@@ -275,22 +275,22 @@ static void solvers_and_orderings_agree(void **state) {
     mps_elastic_report report;
     mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
     const int cg = k >= 4;
-    assert_int_equal(report.solver, cg       ? MPS_ELASTIC_CG
-                                    : k == 3 ? MPS_ELASTIC_LDLT
-                                             : MPS_ELASTIC_LLT);
+    assert_int_equal(report.solver, cg       ? MPS_ELASTIC_SOLVER_CG
+                                    : k == 3 ? MPS_ELASTIC_SOLVER_LDLT
+                                             : MPS_ELASTIC_SOLVER_LLT);
     assert_true(cg ? report.iterations > 10 : report.condition > 10.0);
     assert_true(report.residual < 1e-11);
     test_body_end(&b);
   }
   mps_elastic_def def = mps_elastic_defaults();
-  def.solver = MPS_ELASTIC_LLT;
+  def.solver = MPS_ELASTIC_SOLVER_LLT;
   def.memory_limit = 1000.0;
   test_body b = square(context, 20, &def);
   clamp(&b);
   mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_MEMORY, "memory_limit is 1000");
   test_body_end(&b);
   def = mps_elastic_defaults();
-  def.solver = MPS_ELASTIC_CG;
+  def.solver = MPS_ELASTIC_SOLVER_CG;
   def.iterations = 3;
   b = square(context, 20, &def);
   clamp(&b);
@@ -302,7 +302,7 @@ static void solvers_and_orderings_agree(void **state) {
 /* Negative shear moduli, which no field can give: set inside the solver. */
 static void a_matrix_that_is_not_positive_definite_is_diagnosed(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 8, NULL);
   for (int64_t i = 40; i < b.n; i++) b.elastic->mu[i] = -1.0;
   mpsi_elastic_measure(b.elastic);
@@ -320,7 +320,7 @@ static void a_matrix_that_is_not_positive_definite_is_diagnosed(void **state) {
 
 static void what_can_be_kept_is_kept(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 12, NULL);
   mps_elastic_report report;
   mps_elastic_estimate estimate;
@@ -363,7 +363,7 @@ static void what_can_be_kept_is_kept(void **state) {
 
 static void many_load_cases_superpose(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 6, NULL);
   clamp(&b);
   const int64_t cases = 37, all = b.n * 3;
@@ -397,7 +397,7 @@ static void many_load_cases_superpose(void **state) {
 
 static void a_body_that_is_held_everywhere_has_no_unknowns(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 2, NULL);
   const int64_t ids[4] = {0, 1, 2, 3};
   const double load[2] = {1.0, -2.0};
@@ -428,7 +428,7 @@ static mps_status use(mps_context *context, mps_particles *particles, int32_t so
   for (int c = 0; c < 2 && status == MPS_OK; c++) status = test_prescribe(*out, c, 4, ids, NULL);
   if (status == MPS_OK) status = test_body_force(*out, gravity);
   if (status == MPS_OK) status = mps_elastic_solve(*out);
-  if (status == MPS_OK) status = mps_elastic_stress(*out);
+  if (status == MPS_OK) status = mps_elastic_update_stress(*out);
   if (status == MPS_OK) status = mps_elastic_solve_cases(*out, 1, loads, u);
   if (status == MPS_OK) status = mps_elastic_start(*out, &motion);
   if (status == MPS_OK) status = mps_elastic_step(*out, 2);
@@ -455,8 +455,8 @@ static mps_status make(mps_context *context, int solver) {
 
 static void every_refused_allocation_is_reported_and_leaks_nothing(void **state) {
   (void)state;
-  test_allocator_sweep(make, MPS_ELASTIC_AUTO);
-  test_allocator_sweep(make, MPS_ELASTIC_CG);
+  test_allocator_sweep(make, MPS_ELASTIC_SOLVER_AUTO);
+  test_allocator_sweep(make, MPS_ELASTIC_SOLVER_CG);
 }
 
 static void a_step_of_a_motion_allocates_nothing(void **state) {
@@ -524,13 +524,13 @@ static void failures_inside_cholmod_are_reported_and_leak_nothing(void **state) 
   (void)state;
   use_suite_hooks();
   int64_t failed = 0;
-  for (int32_t solver = MPS_ELASTIC_LLT; solver <= MPS_ELASTIC_LDLT; solver++) {
+  for (int32_t solver = MPS_ELASTIC_SOLVER_LLT; solver <= MPS_ELASTIC_SOLVER_LDLT; solver++) {
     mps_status status = MPS_ERROR_MEMORY;
     for (suite_refuse = 1; suite_refuse < 2000; suite_refuse++) {
-      mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+      mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
       mps_elastic_def def = mps_elastic_defaults();
       def.solver = solver;
-      def.ordering = MPS_ELASTIC_ORDER_AMD;
+      def.ordering = MPS_ELASTIC_ORDERING_AMD;
       suite_calls = 0;
       test_body b = square(context, 5, &def);
       clamp(&b);
@@ -560,14 +560,14 @@ static void failures_inside_cholmod_are_reported_and_leak_nothing(void **state) 
  * not there: 0.3 MB for this graph, more than anything else here takes at once. */
 static void without_memory_for_metis_the_ordering_is_amd(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   int32_t chosen[2];
   use_suite_hooks();
   for (int k = 0; k < 2; k++) {
     mps_elastic_def def = mps_elastic_defaults();
     mps_elastic_report report;
-    def.solver = MPS_ELASTIC_LLT;
-    def.ordering = MPS_ELASTIC_ORDER_METIS;
+    def.solver = MPS_ELASTIC_SOLVER_LLT;
+    def.ordering = MPS_ELASTIC_ORDERING_METIS;
     test_body b = square(context, 12, &def);
     suite_most = k ? 250000 : 0;
     clamp(&b);
@@ -578,14 +578,14 @@ static void without_memory_for_metis_the_ordering_is_amd(void **state) {
   }
   suite_most = 0;
   drop_suite_hooks();
-  assert_int_equal(chosen[0], MPS_ELASTIC_ORDER_METIS);
-  assert_int_equal(chosen[1], MPS_ELASTIC_ORDER_AMD);
+  assert_int_equal(chosen[0], MPS_ELASTIC_ORDERING_METIS);
+  assert_int_equal(chosen[1], MPS_ELASTIC_ORDERING_AMD);
   mps_context_destroy(&context);
 }
 
 static void the_particles_outlive_their_owner_and_may_be_used_by_two_solvers(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 4, NULL);
   mps_elastic *second = NULL;
   mps_elastic_def def = mps_elastic_defaults();

@@ -55,7 +55,7 @@ static int32_t cancel(void *user) {
 static mps_context *hooked(hook *h) {
   mps_context_def def = mps_context_defaults();
   mps_context *context = NULL;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.cancel = cancel;
   def.cancel_user = h;
   assert_int_equal(mps_context_create(&def, &context, NULL, 0), MPS_OK);
@@ -67,7 +67,7 @@ static mps_context *hooked(hook *h) {
 
 static void a_set_of_another_context_is_refused(void **state) {
   (void)state;
-  mps_context *one = test_context(MPS_EXECUTOR_SERIAL, 1), *other = test_context(0, 1);
+  mps_context *one = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1), *other = test_context(0, 1);
   test_body b = square(one, 3);
   mps_elastic *e = NULL;
   mps_assert_fails(other, mps_elastic_create(other, b.particles, NULL, &e), MPS_ERROR_ARGUMENT,
@@ -80,7 +80,7 @@ static void a_set_of_another_context_is_refused(void **state) {
 
 static void blas_has_the_threads_of_the_context_while_it_works(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = square(context, 12);
   blas_threads = blas_least = 7;
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
@@ -140,7 +140,7 @@ static void modes_of_two_threads_wait_for_one_another(void **state) {
   test_body b[2];
   pthread_t thread[2];
   for (int k = 0; k < 2; k++) {
-    context[k] = test_context(MPS_EXECUTOR_SERIAL, 1);
+    context[k] = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     b[k] = square(context[k], 8);
   }
   for (int k = 0; k < 2; k++)

@@ -11,7 +11,7 @@ static mps_context *context;
 
 static int begin(void **state) {
   (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   return 0;
 }
 
@@ -87,7 +87,7 @@ static void other_material(const beam *b) {
   mps_material *soft = NULL;
   int64_t ids[10];
   for (int k = 0; k < 10; k++) ids[k] = 5 + k;
-  OK(mps_material_linear_elastic(context, 3e5, 0.1, &soft));
+  OK(mps_material_create_linear_elastic(context, 3e5, 0.1, &soft));
   OK(mps_elastic_set_material(b->e, soft, 10, ids));
   mps_material_destroy(&soft);
 }
@@ -193,7 +193,7 @@ static void a_solution_weighs_the_present_densities(void **state) {
   OK(mps_elastic_set_load(b.e, 0, &weight));
   OK(mps_elastic_solve(b.e));
   OK(mps_particles_set(b.set, "density", 0, 3000.0));
-  OK(mps_elastic_load_resultant(b.e, NULL, force, NULL));
+  OK(mps_elastic_get_load_resultant(b.e, NULL, force, NULL));
   mps_assert_near(force[1], -10.0 * 3000.0 * 0.25, 1e-9);
   OK(mps_elastic_solve(b.e));
   mps_reaction r;
@@ -201,11 +201,11 @@ static void a_solution_weighs_the_present_densities(void **state) {
   mps_assert_near(r.force[1], 10.0 * 3000.0 * 0.25, 1e-6);
   mps_assert_near(totals_of(&b).mass, 3000.0 * 0.25, 1e-9);
   const double nowhere[3] = {0.0, NAN, 0.0};
-  mps_assert_fails(context, mps_elastic_load_resultant(b.e, nowhere, force, NULL),
+  mps_assert_fails(context, mps_elastic_get_load_resultant(b.e, nowhere, force, NULL),
                    MPS_ERROR_ARGUMENT, "about[1]");
   const double far[3] = {1e305, 0.0, 0.0};
-  mps_assert_fails(context, mps_elastic_load_resultant(b.e, far, force, force), MPS_ERROR_NUMERIC,
-                   "moment[2]");
+  mps_assert_fails(context, mps_elastic_get_load_resultant(b.e, far, force, force),
+                   MPS_ERROR_NUMERIC, "moment[2]");
   drop(&b);
 }
 

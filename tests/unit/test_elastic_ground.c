@@ -101,8 +101,8 @@ static void a_material_is_what_its_fields_would_be(void **state) {
   (void)state;
   mps_material *clay = NULL, *rock = NULL;
   int64_t count;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.25, &clay));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 9e7, 0.1, &rock));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.25, &clay));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 9e7, 0.1, &rock));
   mps_particles *by_law = block(context, 2, 6, 6, true), *by_field = block(context, 2, 6, 6, false);
   mps_elastic *a = solver_of(by_law, clay, NULL);
   mps_material_destroy(&clay); /* the solver has its share */
@@ -136,11 +136,11 @@ static void a_material_is_what_its_fields_would_be(void **state) {
 
 static void materials_that_do_not_fit_are_refused(void **state) {
   (void)state;
-  mps_von_mises_def def = mps_von_mises_defaults();
+  mps_material_von_mises_def def = mps_material_von_mises_defaults();
   mps_material *metal = NULL, *rubber = NULL;
   def.young = 1e9, def.yield_stress = 1e6;
-  mps_assert_ok(context, mps_material_von_mises(context, &def, &metal));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.4, &rubber));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &metal));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.4, &rubber));
   mps_particles *set = block(context, 2, 4, 4, true);
   mps_elastic_def made = mps_elastic_defaults();
   mps_elastic *e = NULL;
@@ -242,7 +242,7 @@ static void an_excavation_is_a_new_solver_on_what_is_left(void **state) {
     const int dim = what % 2 ? 3 : 2;
     mps_material *rock = NULL;
     int64_t count, of_rock;
-    mps_assert_ok(context, mps_material_linear_elastic(context, 8e7, 0.2, &rock));
+    mps_assert_ok(context, mps_material_create_linear_elastic(context, 8e7, 0.2, &rock));
     mps_particles *set = block(context, dim, 6, 6, false);
     int64_t *top = between(set, 1, what < 2 ? 2.6 : 1.6, 3.0, &count), kept = 0;
     for (int64_t k = 0; k < count && what >= 2; k++) /* a corner */
@@ -340,7 +340,7 @@ static void a_rollback_brings_back_what_was_dug_away(void **state) {
     mps_snapshot *whole = NULL, *dug = NULL;
     mps_material *rock = NULL;
     int64_t count, of_rock, kept = 0;
-    mps_assert_ok(context, mps_material_linear_elastic(context, 8e7, 0.2, &rock));
+    mps_assert_ok(context, mps_material_create_linear_elastic(context, 8e7, 0.2, &rock));
     int64_t *low = between(set, 1, 0.0, 1.0, &of_rock), *side = between(set, 0, 0.0, 1.0, &count);
     mps_assert_ok(context, mps_elastic_set_material(e, rock, of_rock, low));
     for (int64_t k = 0; k < count; k++) /* a corner at the foot: held, loaded, of rock */
@@ -421,7 +421,7 @@ static void without_memory_nothing_changes(void **state) {
       mps_particles *set = block(own, 2, 4, 4, true);
       mps_elastic_def def = mps_elastic_defaults();
       mps_elastic *e = NULL;
-      mps_assert_ok(own, mps_material_linear_elastic(own, 1e7, 0.25, &def.material));
+      mps_assert_ok(own, mps_material_create_linear_elastic(own, 1e7, 0.25, &def.material));
       const int32_t fields = mps_particles_field_count(set);
       const uint64_t epoch = mps_particles_epoch(set);
       const int64_t foot[4] = {0, 1, 2, 3}, top[4] = {12, 13, 14, 15};
@@ -467,8 +467,8 @@ static void without_memory_the_material_stays(void **state) {
     mps_elastic_def def = mps_elastic_defaults();
     mps_elastic *e = NULL;
     mps_material *hard = NULL;
-    mps_assert_ok(own, mps_material_linear_elastic(own, 1e7, 0.25, &def.material));
-    mps_assert_ok(own, mps_material_linear_elastic(own, 1e8, 0.3, &hard));
+    mps_assert_ok(own, mps_material_create_linear_elastic(own, 1e7, 0.25, &def.material));
+    mps_assert_ok(own, mps_material_create_linear_elastic(own, 1e8, 0.3, &hard));
     mps_assert_ok(own, mps_elastic_create(own, set, &def, &e));
     const int64_t foot[4] = {0, 1, 2, 3};
     const double down[2] = {0.0, -1e3};
@@ -476,7 +476,7 @@ static void without_memory_the_material_stays(void **state) {
     mps_assert_ok(own, test_body_force(e, down));
     mps_assert_ok(own, mps_elastic_solve(e));
     double former, now;
-    mps_assert_ok(own, mps_elastic_energy(e, &former, NULL));
+    mps_assert_ok(own, mps_elastic_get_energy(e, &former, NULL));
     if (call == 0) { /* a joint appears */
       mps_edit young;
       mps_assert_ok(own, mps_particles_edit(set, "young", &young));
@@ -492,7 +492,7 @@ static void without_memory_the_material_stays(void **state) {
       allocator.refuse_at = 0;
       done = status == MPS_OK;
       refused += !done;
-      mps_assert_ok(own, mps_elastic_energy(e, &now, NULL));
+      mps_assert_ok(own, mps_elastic_get_energy(e, &now, NULL));
       if (!done) assert_int_equal(status, MPS_ERROR_MEMORY);
       if (!done) mps_assert_near(now / former, 1.0, 0.0);
     }

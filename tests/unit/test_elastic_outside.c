@@ -108,7 +108,7 @@ static void another_solver_gives_the_same_displacements(void **state) {
     assert_int_equal(p.all, alone.n * dim);
     assert_int_equal(p.block, dim);
     mps_assert_ok(own, mps_elastic_get_report(other.elastic, &report));
-    assert_int_equal(report.solver, MPS_ELASTIC_OUTSIDE);
+    assert_int_equal(report.solver, MPS_ELASTIC_SOLVER_FOREIGN);
     assert_int_equal(report.matrix_nonzeros, p.start[p.rows]);
     assert_true(report.iterations > 10 && report.residual < 1e-10);
     /* Motions: two steps, two matrices. Then the library's own again. */
@@ -221,7 +221,7 @@ int main(void) {
       cmocka_unit_test(the_matrix_comes_in_parts),
       cmocka_unit_test(answers_that_are_none_are_refused),
   };
-  own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   mps_context_destroy(&own);
   return failed;

@@ -69,9 +69,9 @@ static void assert_same(test_body *b, double *before) {
 /* Each retry of a step whose CG does not converge added energy. */
 static void a_step_that_fails_has_not_happened(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_elastic_def def = mps_elastic_defaults();
-  def.solver = MPS_ELASTIC_CG;
+  def.solver = MPS_ELASTIC_SOLVER_CG;
   def.iterations = 12;
   def.tolerance = 1e-8;
   test_body b = clamped(context, &def), twin = clamped(context, &def);
@@ -104,7 +104,7 @@ static void a_cancelled_step_leaves_whole_ones(void **state) {
   hook h = {.at = INT32_MAX};
   mps_context_def def = mps_context_defaults();
   mps_context *context = NULL;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.cancel = cancel;
   def.cancel_user = &h;
   assert_int_equal(mps_context_create(&def, &context, NULL, 0), MPS_OK);
@@ -135,7 +135,7 @@ static void a_cancelled_step_leaves_whole_ones(void **state) {
 /* A step is tried with three loads, as a coupling iterates; the last try counts. */
 static void a_step_can_be_repeated_with_other_loads(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = clamped(context, NULL), twin = clamped(context, NULL);
   mps_snapshot *snapshot = NULL;
   mps_elastic_load_def load = mps_elastic_load_defaults();
@@ -174,7 +174,7 @@ static void a_step_can_be_repeated_with_other_loads(void **state) {
 static void a_saved_motion_goes_on(void **state) {
   (void)state;
   const char *path = "test_elastic_steps.h5";
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = clamped(context, NULL), twin = clamped(context, NULL);
   start(&b, 0.1);
   mps_assert_ok(context, mps_elastic_step(b.elastic, 7));
@@ -227,7 +227,7 @@ static mps_status look(void *user, mps_elastic *e) {
 
 static void a_run_ends_where_it_was_told(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = clamped(context, NULL);
   caller c = {.body = &b};
   mps_assert_fails(context, mps_elastic_run(b.elastic, 1.0, 1, NULL, NULL), MPS_ERROR_STATE,
@@ -255,7 +255,7 @@ static void a_run_ends_where_it_was_told(void **state) {
 
 static void numbers_are_the_lowest_free_ones(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = clamped(context, NULL);
   const int64_t id = 20;
   int32_t number = -1;
@@ -289,7 +289,7 @@ static void numbers_are_the_lowest_free_ones(void **state) {
 /* The field `external_force` does what a load on particles does; the boundaries hold it. */
 static void external_forces_act_as_loads(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = clamped(context, NULL), twin = clamped(context, NULL);
   const int64_t id = 50;
   const double force[2] = {0.3, -0.7};
@@ -308,7 +308,7 @@ static void external_forces_act_as_loads(void **state) {
   mps_totals t;
   double load[3];
   mps_assert_ok(context, mps_elastic_get_reaction(b.elastic, 0, &r));
-  mps_assert_ok(context, mps_elastic_load_resultant(b.elastic, NULL, load, NULL));
+  mps_assert_ok(context, mps_elastic_get_load_resultant(b.elastic, NULL, load, NULL));
   for (int c = 0; c < 2; c++) mps_assert_near((r.force[c] + load[c]) / fabs(load[1]), 0.0, 1e-10);
   mps_assert_ok(context, mps_elastic_get_totals(b.elastic, &t));
   mps_assert_near((t.strain - t.work_loads - t.work_boundaries) / t.strain, 0.0, 1e-10);
@@ -323,7 +323,7 @@ static void external_forces_act_as_loads(void **state) {
 /* Sums and squares of what is larger are infinite: neither a start nor a step may hand them out. */
 static void loads_and_motions_beyond_numbers_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = clamped(context, NULL);
   mps_elastic_motion_def def = mps_elastic_motion_defaults();
   mps_elastic_load_def load = mps_elastic_load_defaults();
@@ -356,7 +356,7 @@ static void loads_and_motions_beyond_numbers_are_refused(void **state) {
 /* A bar in tension: facets move as the linear field says. */
 static void facets_come_as_arrays(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = test_body_begin(context, 2, 0.5);
   test_body_box(&b, 0, 0, 0, 4, 2, 0);
   mps_elastic_def def = mps_elastic_defaults();

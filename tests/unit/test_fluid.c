@@ -47,7 +47,7 @@ static void bad_definitions_are_refused(void **state) {
     assert_int_equal(mps_particles_field_count(p), fields);
   }
   mps_assert_fails(context, mps_fluid_create(context, NULL, NULL, &f), MPS_ERROR_ARGUMENT, "NULL");
-  mps_context *other = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_fails(other, mps_fluid_create(other, p, NULL, &f), MPS_ERROR_ARGUMENT,
                    "another context");
   mps_context_destroy(&other);
@@ -199,7 +199,7 @@ static void copy_state(const tank *t, double *to) {
 static void a_solution_that_does_not_converge_keeps_the_state(void **state) {
   (void)state;
   mps_signal *piston = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston));
   mps_particles *p = block(0.05);
   mps_fluid_def def = mps_fluid_defaults();
   tank t = {p, NULL};
@@ -279,7 +279,7 @@ static void a_rollback_repeats_the_steps_bit_for_bit(void **state) {
   (void)state;
   mps_signal *piston = NULL;
   mps_snapshot *snapshot = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.05, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.05, 0.0, &piston));
   tank t = tank_make(context, 1.0, 0.3, 0.025, piston, 2e-3);
   const int64_t n = mps_particles_count(t.water);
   double *first = malloc(8 * (size_t)n * sizeof *first), *second = first + 4 * n;
@@ -307,8 +307,8 @@ static void a_rollback_repeats_the_steps_bit_for_bit(void **state) {
 static void a_boundary_can_change(void **state) {
   (void)state;
   mps_signal *piston = NULL, *slow = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
-  mps_assert_ok(context, mps_signal_sine(context, 0.5, 0.02, 0.0, &slow));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_create_sine(context, 0.5, 0.02, 0.0, &slow));
   tank t = tank_make(context, 0.6, 0.3, 0.03, piston, 2e-3);
   mps_assert_ok(context, mps_fluid_run(t.fluid, 0.25, 1000, NULL, NULL)); /* at .02 m, at rest */
   mps_reaction before, after;
@@ -426,7 +426,7 @@ static void forces_on_particles_push(void **state) {
  * lost, and the next steps are short. */
 static void count_warnings(void *user, int32_t level, const char *message) {
   int *count = user;
-  *count += level == MPS_LOG_WARNING && strstr(message, "pushed off walls") != NULL;
+  *count += level == MPS_CONTEXT_LOG_WARNING && strstr(message, "pushed off walls") != NULL;
 }
 
 /* Its step is made, and the log told once that the guards act often. */

@@ -84,7 +84,7 @@ static double iterations(int rows, double *bytes) {
   const double l0 = 0.3 / rows, length = l0 * round(16.0 / 3.0 * rows);
   mps_signal *piston = NULL;
   mps_fluid_report before, after;
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston));
   tank t = tank_make(context, length, 0.3, l0, piston, 0.04 * sqrt(l0 / TANK_G));
   mps_assert_ok(context, mps_fluid_step(t.fluid, 10));
   mps_assert_ok(context, mps_fluid_get_report(t.fluid, &before));

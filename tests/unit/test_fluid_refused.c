@@ -98,7 +98,7 @@ static void a_step_that_fails_leaves_reactions_and_loads(void **state) {
   tank t;
   double x[3] = {0.2, 0.0, 0.0}, before, after;
   set.spacing = L0, def.dt = 2e-3;
-  mps_assert_ok(context, mps_signal_sine(context, 5.0, 1.0, 0.0, &sine));
+  mps_assert_ok(context, mps_signal_create_sine(context, 5.0, 1.0, 0.0, &sine));
   mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
   tank_fill(context, t.water, 0.4, 0.2, NULL, NULL);
   mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));

@@ -103,7 +103,7 @@ static tank waves_of(double length, double tolerance) {
   tank_fill(context, t.water, length, 0.25, NULL, NULL);
   mps_assert_ok(context, mps_particles_append(t.water, 1, drop));
   mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 0.02, 0.0, &piston));
   tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
   tank_wall(context, t.fluid, length, 0.0, -1.0, 0.0, NULL);

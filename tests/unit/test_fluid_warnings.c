@@ -18,7 +18,7 @@ typedef struct journal {
 
 static void note(void *user, int32_t level, const char *message) {
   journal *j = user;
-  if (level != MPS_LOG_WARNING) return;
+  if (level != MPS_CONTEXT_LOG_WARNING) return;
   j->count++;
   snprintf(j->last, sizeof j->last, "%s", message);
 }
@@ -28,7 +28,7 @@ static int32_t stop_at_the_third(void *user) { return ++((journal *)user)->asked
 static mps_context *noting(journal *j, bool cancels) {
   mps_context_def def = test_context_defaults();
   mps_context *own;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.log = note, def.log_user = j;
   if (cancels) def.cancel = stop_at_the_third, def.cancel_user = j;
   assert_int_equal(mps_context_create(&def, &own, NULL, 0), MPS_OK);

@@ -27,7 +27,7 @@ static mps_view view_of(mps_particles *set, const char *name) {
 }
 
 /* Two layers, 1 m of 1500 with K0 = 0.4 and deeper ground of 2000 with K0 = 0.6, under 3 kPa. */
-static const mps_soil_layer two[] = {{1.0, 0.4, 1500.0}, {INFINITY, 0.6, 2000.0}};
+static const mps_geostatic_layer two[] = {{1.0, 0.4, 1500.0}, {INFINITY, 0.6, 2000.0}};
 
 static double weight_above(double depth) {
   return 3e3 + G * (1500.0 * fmin(depth, 1.0) + 2000.0 * fmax(depth - 1.0, 0.0));
@@ -111,7 +111,7 @@ static void layers_carry_what_lies_above(void **state) {
 
 static void layers_take_their_particles_density(void **state) {
   (void)state;
-  static const mps_soil_layer from_field[] = {{1.0, 0.4, 0.0}, {4.0, 0.6, 0.0}};
+  static const mps_geostatic_layer from_field[] = {{1.0, 0.4, 0.0}, {4.0, 0.6, 0.0}};
   mps_particles *set = ground(context, 2, 3.0);
   mps_geostatic_def def = two_layers();
   def.layers = from_field;
@@ -141,7 +141,7 @@ static void layers_take_their_particles_density(void **state) {
 static void bad_layers_are_refused_and_nothing_is_changed(void **state) {
   (void)state;
   mps_particles *set = ground(context, 2, 3.0);
-  mps_soil_layer layers[2];
+  mps_geostatic_layer layers[2];
   const double backwards[] = {1.0, 0.0, 0.5, 0.0};
 #define REFUSED(change, text)                                                                      \
   do {                                                                                             \

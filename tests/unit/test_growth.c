@@ -75,26 +75,26 @@ static mps_status use_neighbours(const void *def) {
 }
 
 static void need_von_mises(void *def) {
-  mps_von_mises_def *d = def;
+  mps_material_von_mises_def *d = def;
   d->young = 1e7;
   d->yield_stress = 1e4;
 }
 static void need_drucker_prager(void *def) {
-  mps_drucker_prager_def *d = def;
+  mps_material_drucker_prager_def *d = def;
   d->young = 1e7;
   d->friction = 0.5;
 }
 static void need_mohr_coulomb(void *def) {
-  mps_mohr_coulomb_def *d = def;
+  mps_material_mohr_coulomb_def *d = def;
   d->young = 1e7;
   d->friction = 0.5;
 }
-static void need_newtonian(void *def) { ((mps_newtonian_def *)def)->bulk_modulus = 1e6; }
+static void need_newtonian(void *def) { ((mps_material_newtonian_def *)def)->bulk_modulus = 1e6; }
 
 #define USE_MATERIAL(name)                                                                         \
   static mps_status use_##name(const void *def) {                                                  \
     mps_material *made = NULL;                                                                     \
-    const mps_status status = mps_material_##name(context, def, &made);                            \
+    const mps_status status = mps_material_create_##name(context, def, &made);                     \
     mps_material_destroy(&made);                                                                   \
     return status;                                                                                 \
   }
@@ -115,7 +115,7 @@ static mps_status use_mpm(const void *def) {
   mps_particles *set = square();
   mps_material *material = NULL;
   mps_mpm *made = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
   const mps_status status = mps_mpm_create(context, set, material, def, &made);
   mps_mpm_destroy(&made);
   mps_material_destroy(&material);
@@ -129,7 +129,7 @@ static mps_status use_mpm_settle(const void *def) {
   mps_mpm_def solver = mps_mpm_defaults();
   mps_mpm *made = NULL;
   solver.cell = 1.0;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
   mps_assert_ok(context, mps_mpm_create(context, set, material, &solver, &made));
   const mps_status status = mps_mpm_settle(made, def, NULL);
   mps_mpm_destroy(&made);
@@ -223,7 +223,7 @@ static mps_mpm *make_mpm(void) {
   mps_mpm *made = NULL;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 1.0;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
   mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &made));
   mps_material_destroy(&material);
   mps_particles_destroy(&set);
@@ -383,13 +383,13 @@ static mps_status no_law(void *user, const mps_material_block *block) {
   return MPS_OK;
 }
 static void need_user_law(void *def) {
-  mps_user_law_def *d = def;
+  mps_material_user_def *d = def;
   d->update = no_law;
   d->wave_modulus = 1e7;
 }
 static mps_status use_user_law(const void *def) {
   mps_material *made = NULL;
-  const mps_status status = mps_material_user(context, def, &made);
+  const mps_status status = mps_material_create_user(context, def, &made);
   mps_material_destroy(&made);
   return status;
 }
@@ -414,13 +414,13 @@ static void no_umat(double *stress, double *statev, double *ddsdde, double *sse,
   (void)cmname_length;
 }
 static void need_umat(void *def) {
-  mps_umat_def *d = def;
+  mps_material_umat_def *d = def;
   d->umat = no_umat;
   d->wave_modulus = 1e7;
 }
 static mps_status use_umat(const void *def) {
   mps_material *made = NULL;
-  const mps_status status = mps_material_umat(context, def, &made);
+  const mps_status status = mps_material_create_umat(context, def, &made);
   mps_material_destroy(&made);
   return status;
 }
@@ -436,14 +436,14 @@ static void need_block(void *def) {
 }
 static mps_status use_block(const void *def) {
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
   const mps_status status = mps_material_update(context, material, def);
   mps_material_destroy(&material);
   return status;
 }
 
 static void need_geostatic(void *def) {
-  static const mps_soil_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2000.0};
+  static const mps_geostatic_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2000.0};
   mps_geostatic_def *d = def;
   d->layer_count = 1;
   d->layers = &layer;
@@ -457,7 +457,7 @@ static mps_status use_geostatic(const void *def) {
 
 static mps_status use_record(const void *def) {
   mps_signal *made = NULL;
-  const mps_status status = mps_signal_record(context, TEST_DATA "/sample.AT2", def, &made);
+  const mps_status status = mps_signal_create_record(context, TEST_DATA "/sample.AT2", def, &made);
   mps_signal_destroy(&made);
   return status;
 }
@@ -531,27 +531,27 @@ static const user users[] = {
     {"mps_mpm_boundary_def", need_mpm_boundary, use_mpm_boundary},
     {"mps_mpm_load_def", need_mpm_load, use_mpm_load},
     {"mps_recorder_def", need_recorder, use_recorder},
-    {"mps_umat_def", need_umat, use_umat},
-    {"mps_user_law_def", need_user_law, use_user_law},
+    {"mps_material_umat_def", need_umat, use_umat},
+    {"mps_material_user_def", need_user_law, use_user_law},
     {"mps_body_def", need_nothing, use_body},
     {"mps_context_def", need_nothing, use_context},
     {"mps_coupling_def", need_coupling, use_coupling},
     {"mps_domain_def", need_domain, use_domain},
-    {"mps_drucker_prager_def", need_drucker_prager, use_drucker_prager},
+    {"mps_material_drucker_prager_def", need_drucker_prager, use_drucker_prager},
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},
     {"mps_fluid_def", need_nothing, use_fluid},
     {"mps_fluid_load_def", need_nothing, use_fluid_load},
     {"mps_fluid_solver_def", need_fluid_solver, use_fluid_solver},
     {"mps_geostatic_def", need_geostatic, use_geostatic},
-    {"mps_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},
+    {"mps_material_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},
     {"mps_mpm_def", need_mpm, use_mpm},
     {"mps_mpm_settle_def", need_nothing, use_mpm_settle},
     {"mps_neighbours_def", need_neighbours, use_neighbours},
-    {"mps_newtonian_def", need_newtonian, use_newtonian},
+    {"mps_material_newtonian_def", need_newtonian, use_newtonian},
     {"mps_particles_def", need_particles, use_particles},
     {"mps_signal_record_def", need_nothing, use_record},
-    {"mps_von_mises_def", need_von_mises, use_von_mises},
+    {"mps_material_von_mises_def", need_von_mises, use_von_mises},
 };
 
 /* ---- every struct -----------------------------------------------------------------------------
@@ -731,7 +731,7 @@ static void definitions_come_back_with_the_callers_size(void **state) {
   mps_dynamics_destroy(&dynamics);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 1.0;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
   mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &mpm));
   mps_assert_ok(context, mps_mpm_get_def_sized(mpm, &part.mpm, size));
   assert_int_equal(part.size, size);
@@ -743,14 +743,14 @@ static void definitions_come_back_with_the_callers_size(void **state) {
 static void descriptions_of_fields_are_sized(void **state) {
   (void)state;
   mps_particles *set = square();
-  mps_field_info whole;
+  mps_particles_field_info whole;
   memset(&whole, 0xee, sizeof whole);
-  mps_assert_ok(context, mps_particles_field(set, 1, &whole));
+  mps_assert_ok(context, mps_particles_get_field_info(set, 1, &whole));
   assert_string_equal(whole.name, "position");
-  mps_field_info part;
+  mps_particles_field_info part;
   memset(&part, 0xee, sizeof part);
-  mps_assert_ok(context,
-                mps_particles_field_sized(set, 1, &part, offsetof(mps_field_info, meaning)));
+  mps_assert_ok(context, mps_particles_get_field_info_sized(
+                             set, 1, &part, offsetof(mps_particles_field_info, meaning)));
   assert_string_equal(part.name, "position");
   assert_string_equal(part.unit, "m");
   assert_int_equal(part.flags, 0xeeeeeeee);

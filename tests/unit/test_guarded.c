@@ -28,7 +28,7 @@ static mps_mpm *make_mpm(mps_particles *set) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 1.0;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 8.0;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
   mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &mpm));
   mps_material_destroy(&material);
   return mpm;
@@ -326,7 +326,7 @@ static void a_sets_material_renews_its_masses(void **state) {
   mps_mpm *mpm = make_mpm(set);
   mps_material *rock = NULL;
   mps_totals before, after;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.2, &rock));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.2, &rock));
   mps_assert_ok(context, mps_mpm_get_totals(mpm, &before));
   mps_assert_ok(context, mps_particles_set_material(set, rock, 3000.0, 0, NULL));
   mps_assert_ok(context, mps_mpm_get_totals(mpm, &after));
@@ -343,7 +343,7 @@ static void one_solver_moves_a_set(void **state) {
   mps_material *material = NULL;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 1.0;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
   const uint64_t epoch = mps_particles_epoch(set);
   const int32_t fields = mps_particles_field_count(set);
   mps_assert_fails(context, mps_mpm_create(context, set, material, &def, &second), MPS_ERROR_STATE,

@@ -70,9 +70,9 @@ static void field_bits(mps_particles *set, const char *name, bool write) {
 
 /* Writes or compares all fields but id. */
 static void each_bit(mps_particles *set, bool write) {
-  mps_field_info info;
+  mps_particles_field_info info;
   for (int32_t f = 1; f < mps_particles_field_count(set); f++) {
-    mps_assert_ok(context, mps_particles_field(set, f, &info));
+    mps_assert_ok(context, mps_particles_get_field_info(set, f, &info));
     field_bits(set, info.name, write);
   }
 }
@@ -108,9 +108,9 @@ static unsigned char *copy_of(mps_particles *set, size_t *size) {
   unsigned char *copy = NULL;
   *size = 0;
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-    mps_field_info info;
+    mps_particles_field_info info;
     mps_view view;
-    mps_assert_ok(context, mps_particles_field(set, f, &info));
+    mps_assert_ok(context, mps_particles_get_field_info(set, f, &info));
     mps_assert_ok(context, mps_particles_view(set, info.name, &view));
     for (int64_t c = 0; c < view.shape[1]; c++) {
       const size_t bytes = (size_t)view.shape[0] * 8;

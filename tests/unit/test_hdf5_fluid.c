@@ -11,7 +11,7 @@ static const char *const fields[] = {"position", "velocity", "reduced_pressure",
 /* Water of 24 x 12 particles before a piston. */
 static tank make(mps_context *c, double depth) {
   mps_signal *piston = NULL;
-  mps_assert_ok(c, mps_signal_sine(c, 1.25, 0.005, 0.0, &piston));
+  mps_assert_ok(c, mps_signal_create_sine(c, 1.25, 0.005, 0.0, &piston));
   tank t = tank_make(c, 24 * 0.025, depth, 0.025, piston, 2e-3);
   mps_signal_destroy(&piston);
   return t;
@@ -37,12 +37,12 @@ static void same(mps_context *a, const tank *x, mps_context *b, const tank *y) {
 
 static void goes_on_from_a_file(void **state) {
   (void)state;
-  mps_context *a = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *a = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   tank whole = make(a, 0.3);
   for (int32_t threads = 1; threads <= 3; threads++) {
     mps_assert_ok(a, mps_fluid_step(whole.fluid, 20));
     mps_assert_ok(a, mps_fluid_save(whole.fluid, path, NULL));
-    mps_context *b = test_context(MPS_EXECUTOR_THREADS, threads);
+    mps_context *b = test_context(MPS_CONTEXT_EXECUTOR_THREADS, threads);
     tank next = make(b, 0.3);
     if (threads == 2) mps_assert_ok(b, mps_fluid_step(next.fluid, 3)); /* no matter where it is */
     mps_checkpoint info = mps_checkpoint_defaults();
@@ -79,7 +79,7 @@ static tank make_afloat(mps_context *c, mps_body **box) {
   def.position[0] = 0.3, def.position[1] = 0.3;
   def.mass = 10.0, def.inertia[2] = 0.04;
   mps_assert_ok(c, mps_body_create_box(c, &def, 0.1, 0.2, box));
-  mps_assert_ok(c, mps_body_load(*box, load, NULL));
+  mps_assert_ok(c, mps_body_set_load(*box, load, NULL));
   mps_assert_ok(c, mps_fluid_add_body(t.fluid, *box, MPS_FLUID_BOUNDARY_SLIP, &number));
   mps_assert_ok(c, mps_fluid_float_body(t.fluid, number, 1));
   return t;
@@ -87,7 +87,7 @@ static tank make_afloat(mps_context *c, mps_body **box) {
 
 static void a_body_afloat_goes_on_from_a_file(void **state) {
   (void)state;
-  mps_context *a = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *a = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_body *box = NULL, *other = NULL;
   mps_body_state p, q;
   tank whole = make_afloat(a, &box), next = make_afloat(a, &other);
@@ -110,7 +110,7 @@ static void a_body_afloat_goes_on_from_a_file(void **state) {
 
 static void other_tanks_and_damaged_files_are_refused(void **state) {
   (void)state;
-  mps_context *c = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *c = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   tank t = make(c, 0.3), lower = make(c, 0.275);
   mps_assert_ok(c, mps_fluid_step(t.fluid, 5));
   mps_assert_ok(c, mps_fluid_save(t.fluid, path, NULL));

@@ -21,7 +21,7 @@ static const char path[] = TEST_TMP "/mpm.h5", part[] = TEST_TMP "/mpm.h5.part";
 /* One run goes on all the while; at each stop it is saved, and another solver, on other threads,
  * takes over and follows it to the next stop. */
 static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   scene whole = build(context, geometry, &none);
   const uint64_t epoch = mps_particles_epoch(whole.s.particles);
   for (int k = 0; k < stops; k++) {
@@ -53,25 +53,25 @@ static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
 
 static void goes_on_in_plane_strain(void **state) {
   (void)state;
-  stop_and_go_on(MPS_MPM_PLANE_STRAIN, 61, 8);
+  stop_and_go_on(MPS_MPM_GEOMETRY_PLANE_STRAIN, 61, 8);
 }
 
 static void goes_on_in_axisymmetry(void **state) {
   (void)state;
-  stop_and_go_on(MPS_MPM_AXISYMMETRIC, 83, 4);
+  stop_and_go_on(MPS_MPM_GEOMETRY_AXISYMMETRIC, 83, 4);
 }
 
 static void goes_on_in_space(void **state) {
   (void)state;
-  stop_and_go_on(MPS_MPM_SPACE, 29, 4);
+  stop_and_go_on(MPS_MPM_GEOMETRY_SPACE, 29, 4);
 }
 
 /* Stops at every step, some of which leave the particles to be sorted by the next. */
 static void goes_on_from_every_step(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene whole = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        next = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene whole = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        next = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 100));
   uint64_t epoch = mps_particles_epoch(whole.s.particles);
   int sorted = 0;
@@ -94,8 +94,8 @@ static void goes_on_from_every_step(void **state) {
 
 static void with_walls_loads_and_materials(void **state) {
   (void)state;
-  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++) {
-    mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++) {
+    mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     scene whole = build_held(context, geometry);
     for (int k = 0; k < (test_quick() ? 3 : 4);
          k++) { /* at first before the walls have found their forces at rest */
@@ -121,13 +121,13 @@ static void with_walls_loads_and_materials(void **state) {
 
 static void other_walls_loads_and_materials_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene saved = build_held(context, MPS_MPM_PLANE_STRAIN);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene saved = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN);
   mps_assert_ok(context, mps_mpm_save(saved.s.mpm, path, NULL));
   drop(&saved);
   for (int k = 0; k < 4; k++) {
     int32_t box, loads[2];
-    scene x = {.s = held_begin(context, MPS_MPM_PLANE_STRAIN, &box, loads)};
+    scene x = {.s = held_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &box, loads)};
     if (k == 0) mps_assert_ok(context, mps_mpm_set_side(x.s.mpm, 1, MPS_MPM_BOUNDARY_FIXED, 0.0));
     if (k == 1) mps_assert_ok(context, mps_mpm_remove_load(x.s.mpm, loads[1]));
     if (k == 2) mps_assert_ok(context, mps_mpm_remove_boundary(x.s.mpm, box));
@@ -144,8 +144,8 @@ static void other_walls_loads_and_materials_are_refused(void **state) {
 
 static void another_solver_is_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 20));
   mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
   drop(&x);
@@ -154,8 +154,8 @@ static void another_solver_is_refused(void **state) {
     change c;
     const char *text;
   } list[] = {
-      {MPS_MPM_AXISYMMETRIC, none, "geometry is 0, in this solver 1"},
-      {MPS_MPM_SPACE, none, "particles in 2D, the set has"},
+      {MPS_MPM_GEOMETRY_AXISYMMETRIC, none, "geometry is 0, in this solver 1"},
+      {MPS_MPM_GEOMETRY_SPACE, none, "particles in 2D, the set has"},
       {0, {.spacing = 0.02, .cell = 0.02, .bodies = 2}, "spacing 0.01 m, the set has 0.02"},
       {0, {.spacing = 0.01, .cell = 0.04, .bodies = 2}, "in this solver 0.0400"},
       {0,
@@ -190,11 +190,11 @@ static void another_solver_is_refused(void **state) {
 /* The set takes the particles of the file: more, fewer, or others than it has. */
 static void another_number_of_particles_is_taken(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   change more = none;
   more.particles = 1;
-  scene few = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        many = build(context, MPS_MPM_PLANE_STRAIN, &more);
+  scene few = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        many = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &more);
   mps_assert_ok(context, mps_mpm_step(few.s.mpm, 60));
   mps_assert_ok(context, mps_mpm_save(few.s.mpm, path, NULL));
   mps_assert_ok(context, mps_mpm_restore(many.s.mpm, path, NULL));
@@ -216,8 +216,8 @@ static void another_number_of_particles_is_taken(void **state) {
 
 static void other_files_and_bad_arguments(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_checkpoint info = mps_checkpoint_defaults();
   assert_int_equal(mps_mpm_save(NULL, path, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_mpm_restore(NULL, path, NULL), MPS_ERROR_ARGUMENT);
@@ -251,9 +251,9 @@ static void other_files_and_bad_arguments(void **state) {
 /* A run that has diverged cannot be saved, but goes on from an earlier checkpoint. */
 static void a_broken_run_goes_back(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        y = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        y = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
   mpsi_particles_column(x.s.particles, "velocity", 0)[7] = NAN;
   FAILS(mps_mpm_step(x.s.mpm, 1), MPS_ERROR_DIVERGED, "not finite");
@@ -270,8 +270,8 @@ static void a_broken_run_goes_back(void **state) {
 /* What the caller gives along comes back, from both kinds of checkpoint. */
 static void the_callers_bytes_come_back(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   char text[] = "rows so far", room[64];
   for (int k = 0; k < 2; k++) {
     mps_checkpoint info = mps_checkpoint_defaults(), back = mps_checkpoint_defaults();
@@ -303,8 +303,8 @@ static void the_callers_bytes_come_back(void **state) {
  * particles' stencils would leave. */
 static void blocks_elsewhere_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   enum { ROW = 10 };
   static const int64_t bad[][2] = {{0, 1},  {1, 1000}, {1, INT64_MAX}, {3, 1},
                                    {4, -1}, {4, 12},   {8, 99},        {9, 2}};
@@ -339,7 +339,7 @@ static void blocks_elsewhere_are_refused(void **state) {
 static mps_status restore_once(mps_context *own, int what) {
   (void)what;
   scene x;
-  mps_status status = try_build(own, MPS_MPM_PLANE_STRAIN, &none, &x);
+  mps_status status = try_build(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_save(x.s.mpm, path, NULL);
   if (status == MPS_OK) status = mps_mpm_restore(x.s.mpm, path, NULL);
   drop(&x);

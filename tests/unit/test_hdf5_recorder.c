@@ -374,7 +374,7 @@ static void bad_arguments_are_refused_before_the_file_is_touched(void **state) {
   mps_particles *set = make_set(3);
   mps_recorder *recorder = (mps_recorder *)&recorder;
   mps_recorder_def def = mps_recorder_defaults();
-  mps_context *other = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   unlink(path);
 #define REFUSED(status, text)                                                                      \
   mps_assert_fails(context, mps_recorder_create(context, set, &def, &recorder), status, text);     \
@@ -589,7 +589,7 @@ static void *write_series(void *data) {
   mps_recorder *recorder = NULL;
   const double at[4] = {0.0, 0.0, 1.0, 0.0};
   mps_context_def context_def = mps_context_defaults();
-  context_def.executor = MPS_EXECUTOR_SERIAL;
+  context_def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   set_def.spacing = 1.0;
   def.path = data;
   mps_status status = mps_context_create(&context_def, &own, NULL, 0);

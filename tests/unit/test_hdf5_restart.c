@@ -62,7 +62,7 @@ static body build(const run *r, double dt) {
   int64_t ids[64], count;
   mps_signal *wave = NULL;
   mps_assert_ok(context, mps_particles_select_box(b.set, base_lo, base_hi, 64, ids, &count));
-  mps_assert_ok(context, mps_signal_ricker(context, 9.0, 0.05, 0.01, &wave));
+  mps_assert_ok(context, mps_signal_create_ricker(context, 9.0, 0.05, 0.01, &wave));
   if (r->driven) {
     mps_assert_ok(context, soil_add_held(b.solver, MPS_DOF_Y, count, ids));
     mps_assert_ok(context, soil_add_driven(b.solver, 0, wave, 1.0, count, ids));
@@ -83,10 +83,10 @@ static void drop(body *b) {
 
 static void same_bits(const body *a, const body *b, const char *what) {
   mps_view va, vb;
-  mps_field_info info;
+  mps_particles_field_info info;
   assert_int_equal(mps_particles_field_count(a->set), mps_particles_field_count(b->set));
   for (int32_t f = 0; f < mps_particles_field_count(a->set); f++) {
-    mps_assert_ok(context, mps_particles_field(a->set, f, &info));
+    mps_assert_ok(context, mps_particles_get_field_info(a->set, f, &info));
     mps_assert_ok(context, mps_particles_view(a->set, info.name, &va));
     mps_assert_ok(context, mps_particles_view(b->set, info.name, &vb));
     for (int64_t c = 0; c < va.shape[1]; c++)

@@ -78,7 +78,7 @@ static mps_particles *box(double spacing, double width, double height) {
 
 static mps_material *stuff(double young) {
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, young, 0.25, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, young, 0.25, &material));
   return material;
 }
 
@@ -120,7 +120,7 @@ static void make_ground(host *h) {
   mps_assert_ok(context,
                 mps_dynamics_create(context, set, &def, (mps_dynamics **)&h->solver[GROUND]));
   mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
-  mps_assert_ok(context, mps_signal_user(context, shake, h, &h->shake));
+  mps_assert_ok(context, mps_signal_create_user(context, shake, h, &h->shake));
   base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
   base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.3;
   base.dofs = MPS_DOF_Y;
@@ -275,9 +275,9 @@ static uint64_t look(const host *h, int k) {
   mps_totals totals;
   mps_reaction reaction;
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-    mps_field_info info;
+    mps_particles_field_info info;
     mps_view view;
-    mps_assert_ok(context, mps_particles_field(set, f, &info));
+    mps_assert_ok(context, mps_particles_get_field_info(set, f, &info));
     mps_assert_ok(context, mps_particles_view(set, info.name, &view));
     for (int64_t c = 0; c < view.shape[1]; c++)
       mix(&hash, (const char *)view.data + 8 * c * view.stride[1], 8 * (size_t)view.shape[0]);

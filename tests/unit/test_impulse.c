@@ -204,9 +204,9 @@ static void bodies_end_and_materials_differ(void **state) {
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
   mpm_scene_box(&s, 0.2, 0.0, 0.3, 0.1);
   mps_material *stiff = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 3e6, 0.0, &stiff));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 3e6, 0.0, &stiff));
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.0, &s.material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.0, &s.material));
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02;
   def.lower[1] = 0.0;
@@ -285,7 +285,7 @@ static void shear_is_by_area(void **state) {
     mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e6);
     mps_assert_ok(context, mps_particles_fill_box(s.particles, low, high, NULL));
     mps_mpm_def def = mps_mpm_defaults();
-    def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+    def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
     def.cell = 0.02;
     def.lower[1] = 0.0, def.origin[0] = -shift[k % 3], def.origin[1] = -shift[k % 3];
     def.lower[1] = def.origin[1] + ceil(shift[k % 3] / 0.02) * 0.02 - 0.02;
@@ -404,7 +404,7 @@ static void put_at(mpm_scene *s, int64_t name, double y) {
 static void depth_is_found_anew(void **state) {
   (void)state;
   for (int32_t threads = 1; threads <= 2; threads++) {
-    mps_context *own = test_context(threads == 1 ? MPS_EXECUTOR_SERIAL : 0, threads);
+    mps_context *own = test_context(threads == 1 ? MPS_CONTEXT_EXECUTOR_SERIAL : 0, threads);
     mpm_scene s = mpm_scene_begin(own, 0.01, 0.0, 0.0, 1e6);
     mps_body_def at = mps_body_defaults();
     mps_body *plate = NULL;

@@ -13,57 +13,57 @@
 static void elastic_constants_are_checked(void **state) {
   (void)state;
   mps_material *m = (mps_material *)&m;
-  mps_assert_fails(context, mps_material_linear_elastic(context, 0.0, 0.3, &m), MPS_ERROR_ARGUMENT,
-                   "Young's modulus is 0 Pa, must be 1e-06 to 1e+18");
+  mps_assert_fails(context, mps_material_create_linear_elastic(context, 0.0, 0.3, &m),
+                   MPS_ERROR_ARGUMENT, "Young's modulus is 0 Pa, must be 1e-06 to 1e+18");
   assert_null(m);
-  mps_assert_fails(context, mps_material_linear_elastic(context, NAN, 0.3, &m), MPS_ERROR_ARGUMENT,
-                   "nan");
-  mps_assert_fails(context, mps_material_neo_hookean(context, INFINITY, 0.3, &m),
+  mps_assert_fails(context, mps_material_create_linear_elastic(context, NAN, 0.3, &m),
+                   MPS_ERROR_ARGUMENT, "nan");
+  mps_assert_fails(context, mps_material_create_neo_hookean(context, INFINITY, 0.3, &m),
                    MPS_ERROR_ARGUMENT, "inf");
-  mps_assert_fails(context, mps_material_neo_hookean(context, 1.0, 0.5, &m), MPS_ERROR_ARGUMENT,
-                   "Poisson's ratio is 0.5, must be -0.999 to 0.49999");
-  mps_assert_fails(context, mps_material_linear_elastic(context, 1.0, -1.0, &m), MPS_ERROR_ARGUMENT,
-                   "-1");
-  mps_assert_fails(context, mps_material_linear_elastic(context, 1.0, NAN, &m), MPS_ERROR_ARGUMENT,
-                   "nan");
-  mps_assert_fails(context, mps_material_linear_elastic(context, 1.0, 0.3, NULL),
+  mps_assert_fails(context, mps_material_create_neo_hookean(context, 1.0, 0.5, &m),
+                   MPS_ERROR_ARGUMENT, "Poisson's ratio is 0.5, must be -0.999 to 0.49999");
+  mps_assert_fails(context, mps_material_create_linear_elastic(context, 1.0, -1.0, &m),
+                   MPS_ERROR_ARGUMENT, "-1");
+  mps_assert_fails(context, mps_material_create_linear_elastic(context, 1.0, NAN, &m),
+                   MPS_ERROR_ARGUMENT, "nan");
+  mps_assert_fails(context, mps_material_create_linear_elastic(context, 1.0, 0.3, NULL),
                    MPS_ERROR_ARGUMENT, "out is NULL");
-  assert_int_equal(mps_material_linear_elastic(NULL, 1.0, 0.3, &m), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_material_create_linear_elastic(NULL, 1.0, 0.3, &m), MPS_ERROR_ARGUMENT);
 }
 
 /* Makes the law with one member changed, and expects a message. */
 #define REFUSED(law, make, prepare, member, value, text)                                           \
   do {                                                                                             \
-    mps_##law##_def def = prepare;                                                                 \
+    mps_material_##law##_def def = prepare;                                                        \
     mps_material *m = NULL;                                                                        \
     def.member = value;                                                                            \
     mps_assert_fails(context, make(context, &def, &m), MPS_ERROR_ARGUMENT, text);                  \
     assert_null(m);                                                                                \
   } while (0)
 
-static mps_von_mises_def mises(void) {
-  mps_von_mises_def def = mps_von_mises_defaults();
+static mps_material_von_mises_def mises(void) {
+  mps_material_von_mises_def def = mps_material_von_mises_defaults();
   def.young = 1e6;
   def.yield_stress = 1e3;
   return def;
 }
 
-static mps_drucker_prager_def sand(void) {
-  mps_drucker_prager_def def = mps_drucker_prager_defaults();
+static mps_material_drucker_prager_def sand(void) {
+  mps_material_drucker_prager_def def = mps_material_drucker_prager_defaults();
   def.young = 1e6;
   def.friction = 0.5;
   return def;
 }
 
-static mps_mohr_coulomb_def pyramid(void) {
-  mps_mohr_coulomb_def def = mps_mohr_coulomb_defaults();
+static mps_material_mohr_coulomb_def pyramid(void) {
+  mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
   def.young = 1e6;
   def.friction = 0.5;
   return def;
 }
 
-static mps_newtonian_def water(void) {
-  mps_newtonian_def def = mps_newtonian_defaults();
+static mps_material_newtonian_def water(void) {
+  mps_material_newtonian_def def = mps_material_newtonian_defaults();
   def.bulk_modulus = 1e6;
   return def;
 }
@@ -71,13 +71,13 @@ static mps_newtonian_def water(void) {
 static void bad_definitions_are_refused_with_the_reason(void **state) {
   (void)state;
 #define MISES(member, value, text)                                                                 \
-  REFUSED(von_mises, mps_material_von_mises, mises(), member, value, text)
+  REFUSED(von_mises, mps_material_create_von_mises, mises(), member, value, text)
 #define SAND(member, value, text)                                                                  \
-  REFUSED(drucker_prager, mps_material_drucker_prager, sand(), member, value, text)
+  REFUSED(drucker_prager, mps_material_create_drucker_prager, sand(), member, value, text)
 #define PYRAMID(member, value, text)                                                               \
-  REFUSED(mohr_coulomb, mps_material_mohr_coulomb, pyramid(), member, value, text)
+  REFUSED(mohr_coulomb, mps_material_create_mohr_coulomb, pyramid(), member, value, text)
 #define WATER(member, value, text)                                                                 \
-  REFUSED(newtonian, mps_material_newtonian, water(), member, value, text)
+  REFUSED(newtonian, mps_material_create_newtonian, water(), member, value, text)
   MISES(young, -1.0, "Young's modulus is -1");
   MISES(yield_stress, 0.0, "yield stress is 0 Pa");
   MISES(yield_stress, NAN, "yield stress is nan");
@@ -109,18 +109,19 @@ static void bad_definitions_are_refused_with_the_reason(void **state) {
   WATER(state, 2, "state is 2");
   WATER(no_tension, 2, "no_tension is 2");
   mps_material *m = NULL;
-  mps_assert_fails(context, mps_material_newtonian(context, NULL, &m), MPS_ERROR_ARGUMENT,
+  mps_assert_fails(context, mps_material_create_newtonian(context, NULL, &m), MPS_ERROR_ARGUMENT,
                    "def is NULL");
-  assert_int_equal(mps_newtonian_def_init(NULL, sizeof(mps_newtonian_def)), MPS_ERROR_ARGUMENT);
-  mps_newtonian_def def;
-  assert_int_equal(mps_newtonian_def_init(&def, 4), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_material_newtonian_def_init(NULL, sizeof(mps_material_newtonian_def)),
+                   MPS_ERROR_ARGUMENT);
+  mps_material_newtonian_def def;
+  assert_int_equal(mps_material_newtonian_def_init(&def, 4), MPS_ERROR_ARGUMENT);
 }
 
 static void materials_answer_questions(void **state) {
   (void)state;
   mps_material *m = NULL;
-  const mps_drucker_prager_def def = sand();
-  mps_assert_ok(context, mps_material_drucker_prager(context, &def, &m));
+  const mps_material_drucker_prager_def def = sand();
+  mps_assert_ok(context, mps_material_create_drucker_prager(context, &def, &m));
   assert_string_equal(mps_material_name(m), "drucker_prager");
   assert_int_equal(mps_material_history_count(m), 2);
   assert_string_equal(mps_material_history_name(m, 0), "plastic_strain");
@@ -167,7 +168,7 @@ static mps_status dashpot(void *user, const mps_material_block *block) {
     block->history[1][k] += 1.0;
     block->stress[0][k] += 10.0 * block->gradient[0][k];
     if (block->flags[k] != 0) return MPS_ERROR_INTERNAL; /* they come as zero */
-    block->flags[k] = MPS_MATERIAL_PLASTIC;
+    block->flags[k] = MPS_MATERIAL_FLAG_PLASTIC;
   }
   if (seen->refuse != MPS_OK && block->message_size > 0) {
     snprintf(block->message, (size_t)block->message_size, "too hot at %g s", block->time);
@@ -179,8 +180,8 @@ static mps_status dashpot(void *user, const mps_material_block *block) {
 static const char *const two_names[] = {"damage", "steps"};
 static const double two_values[] = {0.25, 0.0};
 
-static mps_user_law_def dashpot_def(calls *seen) {
-  mps_user_law_def def = mps_user_law_defaults();
+static mps_material_user_def dashpot_def(calls *seen) {
+  mps_material_user_def def = mps_material_user_defaults();
   def.update = dashpot;
   def.user = seen;
   def.name = "dashpot";
@@ -195,9 +196,9 @@ static mps_user_law_def dashpot_def(calls *seen) {
 static void a_users_law_is_called_once_a_block(void **state) {
   (void)state;
   calls seen = {0};
-  mps_user_law_def def = dashpot_def(&seen);
+  mps_material_user_def def = dashpot_def(&seen);
   mps_material *m = NULL;
-  mps_assert_ok(context, mps_material_user(context, &def, &m));
+  mps_assert_ok(context, mps_material_create_user(context, &def, &m));
   assert_string_equal(mps_material_name(m), "dashpot");
   assert_string_equal(mps_material_history_name(m, 1), "steps");
   assert_true(mps_material_wave_modulus(m) == 5e5 && mpsi_material_viscosity(m) == 7.0);
@@ -220,7 +221,7 @@ static void a_users_law_is_called_once_a_block(void **state) {
     assert_true(history[0][k] == 0.25 && history[1][k] == 3.0);
     mps_assert_near(stress[0][k], 3.0 * k, 1e-12);
     mps_assert_near(volume[k], 2.0 * pow(1.0 + 0.05 * k, 3.0), 1e-12 * volume[k]);
-    assert_int_equal(flags[k], MPS_MATERIAL_PLASTIC);
+    assert_int_equal(flags[k], MPS_MATERIAL_FLAG_PLASTIC);
   }
   block.count = 0; /* nothing to do: nobody is called */
   mps_assert_ok(context, mps_material_update(context, m, &block));
@@ -249,11 +250,11 @@ static void a_users_law_gets_the_state_it_asks_for(void **state) {
   for (int turns = 0; turns < 2; turns++)
     for (int deforms = 0; deforms < 2; deforms++) {
       calls seen = {0};
-      mps_user_law_def def = dashpot_def(&seen);
+      mps_material_user_def def = dashpot_def(&seen);
       def.turns_stress = turns;
       def.needs_deformation = deforms;
       mps_material *m = NULL;
-      mps_assert_ok(context, mps_material_user(context, &def, &m));
+      mps_assert_ok(context, mps_material_create_user(context, &def, &m));
       mps_material_point point = point_under(m, 0.0);
       assert_true(point.history[0] == 0.25);
       point.stress[0] = 1.0;
@@ -280,7 +281,7 @@ static void bad_users_laws_are_refused(void **state) {
   static const double wrong[] = {0.0, NAN};
   calls seen = {0};
 #define LAW(member, value, text)                                                                   \
-  REFUSED(user_law, mps_material_user, dashpot_def(&seen), member, value, text)
+  REFUSED(user, mps_material_create_user, dashpot_def(&seen), member, value, text)
   LAW(update, NULL, "update is NULL");
   LAW(name, NULL, "name is \"(NULL)\"");
   LAW(name, "", "name is \"\"");
@@ -298,10 +299,10 @@ static void bad_users_laws_are_refused(void **state) {
   LAW(needs_deformation, 2, "needs_deformation is 2");
   LAW(turns_stress, -1, "turns_stress is -1");
   mps_material *m = NULL;
-  mps_assert_fails(context, mps_material_user(context, NULL, &m), MPS_ERROR_ARGUMENT,
+  mps_assert_fails(context, mps_material_create_user(context, NULL, &m), MPS_ERROR_ARGUMENT,
                    "def is NULL");
-  const mps_user_law_def def = dashpot_def(&seen);
-  mps_assert_fails(context, mps_material_user(context, &def, NULL), MPS_ERROR_ARGUMENT,
+  const mps_material_user_def def = dashpot_def(&seen);
+  mps_assert_fails(context, mps_material_create_user(context, &def, NULL), MPS_ERROR_ARGUMENT,
                    "out is NULL");
 }
 
@@ -313,9 +314,9 @@ static void malformed_blocks_are_refused(void **state) {
   double x = 7.0;
   int64_t flags = 5;
   mps_material *neo = NULL, *plastic = NULL;
-  const mps_von_mises_def def = mises();
-  mps_assert_ok(context, mps_material_neo_hookean(context, 1e6, 0.3, &neo));
-  mps_assert_ok(context, mps_material_von_mises(context, &def, &plastic));
+  const mps_material_von_mises_def def = mises();
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, 1e6, 0.3, &neo));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &plastic));
   mps_material_block good = {.struct_size = sizeof good, .dim = 3, .count = 1, .dt = 1.0};
   for (int c = 0; c < 9; c++) good.gradient[c] = good.deformation[c] = &x;
   for (int c = 0; c < 6; c++) good.stress[c] = &x;
@@ -358,7 +359,7 @@ static void malformed_blocks_are_refused(void **state) {
 static void malformed_paths_are_refused(void **state) {
   (void)state;
   mps_material *m = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.3, &m));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &m));
   mps_material_point point = point_under(m, 1.0);
   double gradient[9] = {0};
 #define DRIVE(material, point, gradient, duration, steps, text)                                    \
@@ -388,11 +389,11 @@ static void malformed_paths_are_refused(void **state) {
 static mps_status make_and_destroy(mps_context *on, int what) {
   calls seen = {0};
   mps_material *m = NULL;
-  const mps_drucker_prager_def cone = sand();
-  const mps_user_law_def user = dashpot_def(&seen);
-  const mps_status status = what == 0   ? mps_material_linear_elastic(on, 1e6, 0.3, &m)
-                            : what == 1 ? mps_material_drucker_prager(on, &cone, &m)
-                                        : mps_material_user(on, &user, &m);
+  const mps_material_drucker_prager_def cone = sand();
+  const mps_material_user_def user = dashpot_def(&seen);
+  const mps_status status = what == 0   ? mps_material_create_linear_elastic(on, 1e6, 0.3, &m)
+                            : what == 1 ? mps_material_create_drucker_prager(on, &cone, &m)
+                                        : mps_material_create_user(on, &user, &m);
   assert_true((status == MPS_OK) == (m != NULL));
   mps_material_destroy(&m);
   return status;
@@ -408,7 +409,7 @@ static void a_material_outlives_its_context_and_first_owner(void **state) {
   test_allocator allocator = {0};
   mps_context *own = test_allocator_context(&allocator);
   mps_material *m = NULL;
-  mps_assert_ok(own, mps_material_linear_elastic(own, 1e6, 0.3, &m));
+  mps_assert_ok(own, mps_material_create_linear_elastic(own, 1e6, 0.3, &m));
   mps_material *second = mpsi_material_retain(m);
   mps_context_destroy(&own);
   mps_material_destroy(&m);

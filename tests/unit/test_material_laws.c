@@ -15,7 +15,7 @@
 
 static void each_kind_has_its_descriptor(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const int32_t levels[] = {1, 3, 4};
   for (int kind = 0; kind < MPSI_LAW_COUNT; kind++) {
     const mpsi_law_type *type = &mpsi_law_types[kind];
@@ -53,8 +53,8 @@ static mps_status by_user(void *user, const mps_material_block *b) {
   return MPS_OK;
 }
 
-static MPS_UMAT(by_umat) {
-  MPS_UMAT_UNUSED;
+static MPS_MATERIAL_UMAT(by_umat) {
+  MPS_MATERIAL_UMAT_UNUSED;
   const double mean = props[1] * (dstran[0] + dstran[1] + dstran[2]);
   for (int c = 0; c < *ntens; c++)
     stress[c] += c < *ndi ? mean + 2.0 * props[0] * dstran[c] : props[0] * dstran[c];
@@ -65,27 +65,27 @@ enum { BUILT_IN, USER, UMAT, UNSTATED, WAYS };
 static mps_material *make(mps_context *context, int way, hooke *law) {
   mps_material *built_in = NULL, *out = NULL;
   mps_moduli m;
-  mps_assert_ok(context, mps_material_linear_elastic(context, E, NU, &built_in));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, E, NU, &built_in));
   mps_assert_ok(context, mps_material_get_moduli(built_in, 1.0, &m));
   *law = (hooke){m.shear, m.bulk, m.lambda};
   if (way == BUILT_IN) return built_in;
   mps_material_destroy(&built_in);
   if (way == UMAT) {
     const double props[] = {m.shear, m.lambda};
-    mps_umat_def def = mps_umat_defaults();
+    mps_material_umat_def def = mps_material_umat_defaults();
     def.umat = by_umat;
     def.props = props, def.props_count = 2;
     def.bulk_modulus = m.bulk, def.shear_modulus = m.shear;
-    mps_assert_ok(context, mps_material_umat(context, &def, &out));
+    mps_assert_ok(context, mps_material_create_umat(context, &def, &out));
     return out;
   }
-  mps_user_law_def def = mps_user_law_defaults();
+  mps_material_user_def def = mps_material_user_defaults();
   def.update = by_user, def.user = law;
   if (way == USER)
     def.bulk_modulus = m.bulk, def.shear_modulus = m.shear;
   else
     def.wave_modulus = m.wave;
-  mps_assert_ok(context, mps_material_user(context, &def, &out));
+  mps_assert_ok(context, mps_material_create_user(context, &def, &out));
   return out;
 }
 
@@ -136,7 +136,7 @@ static void throw_block(mps_context *context, int way, result *out) {
 static void a_users_law_equals_the_built_in_one(void **state) {
   (void)state;
   static result results[WAYS];
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int way = 0; way < WAYS; way++) throw_block(context, way, &results[way]);
   double most = 0.0;
   for (int k = 0; k < COUNT; k++) most = fmax(most, -results[0].s[k][1]);
@@ -150,7 +150,7 @@ static void a_users_law_equals_the_built_in_one(void **state) {
 
 static void moduli_of_users_laws_are_checked(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const struct {
     double bulk, shear, wave;
     const char *text;
@@ -161,8 +161,8 @@ static void moduli_of_users_laws_are_checked(void **state) {
                {1e6, -2.0, 0.0, "shear modulus is -2"},
                {1e6, 3e5, 1.3e6, "at least K + 4G/3 of its moduli, 1.4e+06 Pa"},
                {1e6, 3e5, INFINITY, "wave modulus is inf"}};
-  mps_user_law_def def = mps_user_law_defaults();
-  mps_umat_def umat = mps_umat_defaults();
+  mps_material_user_def def = mps_material_user_defaults();
+  mps_material_umat_def umat = mps_material_umat_defaults();
   mps_material *material = NULL;
   mps_moduli m;
   def.update = by_user, umat.umat = by_umat;
@@ -170,24 +170,24 @@ static void moduli_of_users_laws_are_checked(void **state) {
     def.bulk_modulus = umat.bulk_modulus = wrong[k].bulk;
     def.shear_modulus = umat.shear_modulus = wrong[k].shear;
     def.wave_modulus = umat.wave_modulus = wrong[k].wave;
-    mps_assert_fails(context, mps_material_user(context, &def, &material), MPS_ERROR_ARGUMENT,
-                     wrong[k].text);
-    mps_assert_fails(context, mps_material_umat(context, &umat, &material), MPS_ERROR_ARGUMENT,
-                     wrong[k].text);
+    mps_assert_fails(context, mps_material_create_user(context, &def, &material),
+                     MPS_ERROR_ARGUMENT, wrong[k].text);
+    mps_assert_fails(context, mps_material_create_umat(context, &umat, &material),
+                     MPS_ERROR_ARGUMENT, wrong[k].text);
   }
   def.bulk_modulus = 1e6, def.shear_modulus = 3e5, def.wave_modulus = 0.0;
-  mps_assert_ok(context, mps_material_user(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_user(context, &def, &material));
   mps_assert_near(mps_material_wave_modulus(material), 1.4e6, 1e-8);
   mps_assert_ok(context, mps_material_get_moduli(material, 2e3, &m));
   mps_assert_near(m.shear, 3e5, 0.0);
   mps_material_destroy(&material);
   def.wave_modulus = 5e6; /* of a stiffer state, for the step */
-  mps_assert_ok(context, mps_material_user(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_user(context, &def, &material));
   mps_assert_near(mps_material_wave_modulus(material), 5e6, 0.0);
   mps_assert_near(mpsi_material_rest_modulus(material), 1.4e6, 1e-8);
   mps_material_destroy(&material);
   def.bulk_modulus = def.shear_modulus = 0.0;
-  mps_assert_ok(context, mps_material_user(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_user(context, &def, &material));
   assert_int_equal(mps_material_get_moduli(material, 2e3, &m), MPS_ERROR_UNSUPPORTED);
   mps_material_destroy(&material);
   mps_context_destroy(&context);
@@ -220,26 +220,26 @@ static void expect_other_constants(mps_material **a, mps_material **b, int32_t d
 
 static void constants_tell_materials_apart(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_material *a = NULL, *b = NULL;
-  mps_von_mises_def mises = mps_von_mises_defaults();
+  mps_material_von_mises_def mises = mps_material_von_mises_defaults();
   mises.young = E, mises.yield_stress = 1e3;
-  mps_assert_ok(context, mps_material_von_mises(context, &mises, &a));
-  mps_assert_ok(context, mps_material_von_mises(context, &mises, &b));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &a));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &b));
   expect_other_constants(&a, &b, 0);
   mises.hardening = 10.0;
-  mps_assert_ok(context, mps_material_von_mises(context, &mises, &b));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &b));
   expect_other_constants(&a, &b, 1);
   mps_material_destroy(&a);
   double props[] = {1.0, 2.0};
-  mps_umat_def umat = mps_umat_defaults();
+  mps_material_umat_def umat = mps_material_umat_defaults();
   umat.umat = by_umat, umat.wave_modulus = E;
   umat.props = props, umat.props_count = 2;
-  mps_assert_ok(context, mps_material_umat(context, &umat, &a));
-  mps_assert_ok(context, mps_material_umat(context, &umat, &b));
+  mps_assert_ok(context, mps_material_create_umat(context, &umat, &a));
+  mps_assert_ok(context, mps_material_create_umat(context, &umat, &b));
   expect_other_constants(&a, &b, 0);
   props[1] = 3.0, umat.temperature = 20.0;
-  mps_assert_ok(context, mps_material_umat(context, &umat, &b));
+  mps_assert_ok(context, mps_material_create_umat(context, &umat, &b));
   expect_other_constants(&a, &b, 2);
   mps_material_destroy(&a);
   mps_context_destroy(&context);
@@ -269,13 +269,13 @@ static mps_status spoiling(void *user, const mps_material_block *b) {
 
 static mps_material *make_spoiling(mps_context *context, spoil *s) {
   static const char *const names[] = {"age"};
-  mps_user_law_def def = mps_user_law_defaults();
+  mps_material_user_def def = mps_material_user_defaults();
   mps_material *out = NULL;
   def.update = spoiling, def.user = s;
   def.name = "mud";
   def.history_count = 1, def.history = names;
   def.bulk_modulus = 1e5, def.shear_modulus = 1e4;
-  mps_assert_ok(context, mps_material_user(context, &def, &out));
+  mps_assert_ok(context, mps_material_create_user(context, &def, &out));
   return out;
 }
 
@@ -290,7 +290,7 @@ static void a_law_that_yields_no_number_is_an_error(void **state) {
       "the law 'mud' has refused particle 5: volume_ratio is 0, must be finite and > 0"};
   for (int k = 0; k < 4; k++)
     for (int32_t volumetric = 0; volumetric <= MPS_MPM_VOLUMETRIC_NODES; volumetric++) {
-      mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+      mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
       spoil s = spoils[k];
       mpm_scene scene = mpm_scene_begin_in(context, 2, 0.01, 0.0, 0.0, E);
       mps_material_destroy(&scene.material);
@@ -323,12 +323,12 @@ static void a_law_that_yields_no_number_is_an_error(void **state) {
  */
 static void a_point_keeps_its_state(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mps_newtonian_def water = mps_newtonian_defaults();
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mps_material_newtonian_def water = mps_material_newtonian_defaults();
   spoil s = {-1, 2, NAN, 0.5};
   mps_material *fluid = NULL, *mud = make_spoiling(context, &s);
   water.bulk_modulus = 2e6;
-  mps_assert_ok(context, mps_material_newtonian(context, &water, &fluid));
+  mps_assert_ok(context, mps_material_create_newtonian(context, &water, &fluid));
   mps_material_point point, before;
   mps_assert_ok(context, mps_material_point_init(context, fluid, &point));
   before = point;
@@ -366,13 +366,13 @@ static mps_status odd_level(void *user, const double *x, double *level) {
 
 static void a_status_that_is_none_is_an_argument(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const int odd[] = {-7, 4711};
   static const char *const texts[] = {"it returned status -7 (unknown status code)",
                                       "it returned status 4711 (unknown status code)"};
   mpm_scene s = mpm_scene_begin_in(context, 2, 0.1, 0.0, 0.0, E);
   mpm_scene_box(&s, 0.0, 0.0, 1.0, 1.0);
-  const mps_soil_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2e3};
+  const mps_geostatic_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2e3};
   for (int k = 0; k < 2; k++) {
     int status = odd[k];
     mps_assert_fails(context, mps_particles_set_stress(s.particles, odd_stress, &status),

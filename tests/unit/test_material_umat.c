@@ -82,8 +82,8 @@ UMAT(mises_umat) {
 
 static const double constants[4] = {E, NU, 2e4, 1e6};
 
-static mps_umat_def umat_of(mps_umat_fn call, int32_t statev_count) {
-  mps_umat_def def = mps_umat_defaults();
+static mps_material_umat_def umat_of(mps_material_umat_fn call, int32_t statev_count) {
+  mps_material_umat_def def = mps_material_umat_defaults();
   def.umat = call;
   def.statev_count = statev_count;
   def.props = constants;
@@ -92,19 +92,19 @@ static mps_umat_def umat_of(mps_umat_fn call, int32_t statev_count) {
   return def;
 }
 
-static mps_material *make_umat(mps_umat_fn call, int32_t statev_count) {
-  const mps_umat_def def = umat_of(call, statev_count);
+static mps_material *make_umat(mps_material_umat_fn call, int32_t statev_count) {
+  const mps_material_umat_def def = umat_of(call, statev_count);
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_umat(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_umat(context, &def, &material));
   return material;
 }
 
 static mps_material *make_own(bool mises) {
-  mps_von_mises_def def = mps_von_mises_defaults();
+  mps_material_von_mises_def def = mps_material_von_mises_defaults();
   mps_material *material = NULL;
   def.young = E, def.poisson = NU, def.yield_stress = 2e4, def.hardening = 1e6;
-  mps_assert_ok(context, mises ? mps_material_von_mises(context, &def, &material)
-                               : mps_material_linear_elastic(context, E, NU, &material));
+  mps_assert_ok(context, mises ? mps_material_create_von_mises(context, &def, &material)
+                               : mps_material_create_linear_elastic(context, E, NU, &material));
   return material;
 }
 
@@ -264,11 +264,11 @@ static void arguments_are_those_of_abaqus(void **unused) {
   (void)unused;
   static const char *const names[] = {"void_ratio", "calls"};
   static const double initial[] = {0.7, 0.0};
-  mps_umat_def def = umat_of(spy_umat, 2);
+  mps_material_umat_def def = umat_of(spy_umat, 2);
   mps_material *material = NULL;
   def.name = "Clay_1", def.statev_names = names, def.statev_initial = initial;
   def.needs_deformation = 1, def.length = 0.25, def.temperature = 20.0;
-  mps_assert_ok(context, mps_material_umat(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_umat(context, &def, &material));
   assert_string_equal(mps_material_name(material), "Clay_1");
   assert_int_equal(mps_material_history_count(material), 10);
   assert_string_equal(mps_material_history_name(material, 0), "void_ratio");
@@ -327,10 +327,10 @@ static void a_umat_may_refuse(void **unused) {
   (void)unused;
   for (int what = 1; what <= 2; what++) {
     const double props[] = {what}, gradient[9] = {1.0};
-    mps_umat_def def = umat_of(spy_umat, 2);
+    mps_material_umat_def def = umat_of(spy_umat, 2);
     mps_material *material = NULL;
     def.props = props, def.props_count = 1;
-    mps_assert_ok(context, mps_material_umat(context, &def, &material));
+    mps_assert_ok(context, mps_material_create_umat(context, &def, &material));
     mps_material_point point = point_under(material, 0.0), before = point;
     mps_assert_fails(context, mps_material_point_drive(context, material, &point, gradient, 1.0, 1),
                      MPS_ERROR_NUMERIC,
@@ -346,10 +346,11 @@ static void bad_definitions_are_refused(void **unused) {
   static const char *const twice[] = {"a", "umat_time"};
 #define REFUSED(member, value, text)                                                               \
   do {                                                                                             \
-    mps_umat_def def = umat_of(spy_umat, 2);                                                       \
+    mps_material_umat_def def = umat_of(spy_umat, 2);                                              \
     mps_material *m = NULL;                                                                        \
     def.member = value;                                                                            \
-    mps_assert_fails(context, mps_material_umat(context, &def, &m), MPS_ERROR_ARGUMENT, text);     \
+    mps_assert_fails(context, mps_material_create_umat(context, &def, &m), MPS_ERROR_ARGUMENT,     \
+                     text);                                                                        \
     assert_null(m);                                                                                \
   } while (0)
   REFUSED(umat, NULL, "umat is NULL");
@@ -368,9 +369,9 @@ static void bad_definitions_are_refused(void **unused) {
 }
 
 static mps_status make_and_destroy(mps_context *own, int what) {
-  const mps_umat_def def = umat_of(mises_umat, what);
+  const mps_material_umat_def def = umat_of(mises_umat, what);
   mps_material *material = NULL;
-  const mps_status status = mps_material_umat(own, &def, &material);
+  const mps_status status = mps_material_create_umat(own, &def, &material);
   assert_true((material != NULL) == (status == MPS_OK));
   mps_material_destroy(&material);
   return status;

@@ -54,21 +54,22 @@ static void what_is_out_of_range_is_refused(void **state) {
   (void)state;
   mps_moduli m;
   mps_material *out = NULL;
-  FAILS(mps_material_linear_elastic(context, 1e308, 0.4999999999, &out), MPS_ERROR_ARGUMENT,
+  FAILS(mps_material_create_linear_elastic(context, 1e308, 0.4999999999, &out), MPS_ERROR_ARGUMENT,
         "Young's modulus is 1e+308 Pa, must be 1e-06 to 1e+18");
-  FAILS(mps_material_linear_elastic(context, 1e6, 0.4999999999, &out), MPS_ERROR_ARGUMENT,
+  FAILS(mps_material_create_linear_elastic(context, 1e6, 0.4999999999, &out), MPS_ERROR_ARGUMENT,
         "Poisson's ratio is 0.5, must be -0.999 to 0.49999");
-  FAILS(mps_material_neo_hookean(context, 1e-320, 0.3, &out), MPS_ERROR_ARGUMENT,
+  FAILS(mps_material_create_neo_hookean(context, 1e-320, 0.3, &out), MPS_ERROR_ARGUMENT,
         "Young's modulus");
-  mps_newtonian_def water = mps_newtonian_defaults();
+  mps_material_newtonian_def water = mps_material_newtonian_defaults();
   water.bulk_modulus = 1e300;
-  FAILS(mps_material_newtonian(context, &water, &out), MPS_ERROR_ARGUMENT,
+  FAILS(mps_material_create_newtonian(context, &water, &out), MPS_ERROR_ARGUMENT,
         "bulk modulus is 1e+300");
   water.bulk_modulus = 2e9, water.viscosity = 1e200;
-  FAILS(mps_material_newtonian(context, &water, &out), MPS_ERROR_ARGUMENT, "viscosity is 1e+200");
-  mps_von_mises_def steel = mps_von_mises_defaults();
+  FAILS(mps_material_create_newtonian(context, &water, &out), MPS_ERROR_ARGUMENT,
+        "viscosity is 1e+200");
+  mps_material_von_mises_def steel = mps_material_von_mises_defaults();
   steel.young = 2e11, steel.yield_stress = 1e-300;
-  FAILS(mps_material_von_mises(context, &steel, &out), MPS_ERROR_ARGUMENT,
+  FAILS(mps_material_create_von_mises(context, &steel, &out), MPS_ERROR_ARGUMENT,
         "yield stress is 1e-300");
   assert_null(out);
   FAILS(mps_moduli_from_elastic(context, 1e6, 0.3, 0.0, &m), MPS_ERROR_ARGUMENT, "density is 0");
@@ -99,7 +100,7 @@ static void the_ends_of_the_ranges_are_sane(void **state) {
     for (size_t c = 0; c < sizeof all / sizeof *all; c++)
       assert_true(all[c] > 1e-12 && all[c] < 1e24);
     mps_assert_ok(context,
-                  mps_material_linear_elastic(context, E[k & 1], nu[k >> 1 & 1], &material));
+                  mps_material_create_linear_elastic(context, E[k & 1], nu[k >> 1 & 1], &material));
     near_relative(mps_material_wave_modulus(material), m.wave);
     mps_material_destroy(&material);
   }
@@ -117,9 +118,9 @@ static void materials_tell_their_moduli(void **state) {
   (void)state;
   mps_moduli m, want;
   mps_material *sand = NULL, *own = NULL;
-  mps_mohr_coulomb_def def = mps_mohr_coulomb_defaults();
+  mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
   def.young = 5e7, def.poisson = 0.28, def.friction = 0.6;
-  mps_assert_ok(context, mps_material_mohr_coulomb(context, &def, &sand));
+  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &def, &sand));
   mps_assert_ok(context, mps_material_get_moduli(sand, 1700.0, &m));
   mps_assert_ok(context, mps_moduli_from_elastic(context, 5e7, 0.28, 1700.0, &want));
   near_relative(m.young, 5e7);
@@ -130,9 +131,9 @@ static void materials_tell_their_moduli(void **state) {
   mps_assert_ok(context,
                 mps_material_get_moduli_sized(sand, 1700.0, (mps_moduli *)(void *)first, 8));
   assert_true(first[0] == m.young && first[1] == 7.0);
-  mps_user_law_def law = mps_user_law_defaults();
+  mps_material_user_def law = mps_material_user_defaults();
   law.update = nothing, law.wave_modulus = 1e6;
-  mps_assert_ok(context, mps_material_user(context, &law, &own));
+  mps_assert_ok(context, mps_material_create_user(context, &law, &own));
   FAILS(mps_material_get_moduli(own, 1e3, &m), MPS_ERROR_UNSUPPORTED, "user has no elastic");
   FAILS(mps_material_get_moduli(sand, -1.0, &m), MPS_ERROR_ARGUMENT, "density is -1");
   mps_material_destroy(&sand);
@@ -154,15 +155,15 @@ static void fields_say_what_particles_are_made_of(void **state) {
   const double lo[] = {0.0, 0.0}, hi[] = {4.0, 4.0};
   mps_particles *set = NULL;
   mps_material *clay = NULL, *rock = NULL, *sand = NULL;
-  mps_drucker_prager_def cone = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
   mps_moduli soft, hard;
   def.spacing = 1.0;
   cone.young = 1e7, cone.friction = 0.5;
   mps_assert_ok(context, mps_particles_create(context, &def, &set));
   mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 2e7, 0.4, &clay));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 3e10, 0.2, &rock));
-  mps_assert_ok(context, mps_material_drucker_prager(context, &cone, &sand));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 2e7, 0.4, &clay));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 3e10, 0.2, &rock));
+  mps_assert_ok(context, mps_material_create_drucker_prager(context, &cone, &sand));
   mps_assert_ok(context, mps_moduli_from_elastic(context, 2e7, 0.4, 1600.0, &soft));
   mps_assert_ok(context, mps_moduli_from_elastic(context, 3e10, 0.2, 2600.0, &hard));
   const int32_t fields = mps_particles_field_count(set);
@@ -174,9 +175,9 @@ static void fields_say_what_particles_are_made_of(void **state) {
   FAILS(mps_particles_set_material(set, clay, 1e3, 2, bad), MPS_ERROR_ARGUMENT, "ids[1] is 16");
   FAILS(mps_particles_set_material(set, clay, 1e3, 2, NULL), MPS_ERROR_ARGUMENT, "count is 2");
   assert_int_equal(mps_particles_set_material(NULL, clay, 1e3, 0, NULL), MPS_ERROR_ARGUMENT);
-  mps_context *other = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *other = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_material *foreign = NULL;
-  mps_assert_ok(other, mps_material_linear_elastic(other, 2e7, 0.4, &foreign));
+  mps_assert_ok(other, mps_material_create_linear_elastic(other, 2e7, 0.4, &foreign));
   FAILS(mps_particles_set_material(set, foreign, 1e3, 0, NULL), MPS_ERROR_ARGUMENT,
         "another context");
   mps_material_destroy(&foreign);

@@ -42,7 +42,7 @@ static void refuses_bad_definitions(void **state) {
   CASE(cell, NAN, "cell is nan m");
   CASE(spline, 4, "spline is 4");
   CASE(geometry, 3, "geometry is 3");
-  CASE(geometry, MPS_MPM_SPACE, "geometry is 2, and the set has 2 dimensions");
+  CASE(geometry, MPS_MPM_GEOMETRY_SPACE, "geometry is 2, and the set has 2 dimensions");
   CASE(step_from, 9, "step_from is 9");
   CASE(measure, 0.0, "measure is 0, must be a thickness");
   CASE(cell, 1e9, "cell is 1e+09 m with particles 0.01 m apart");
@@ -66,7 +66,7 @@ static void refuses_bad_definitions(void **state) {
                    MPS_ERROR_ARGUMENT, "material is NULL");
   mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, NULL),
                    MPS_ERROR_ARGUMENT, "out is NULL");
-  def.geometry = MPS_MPM_AXISYMMETRIC;
+  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   def.lower[0] = -0.02;
   refuses(&s, &def, "radius begins at 0");
   mps_edit x = mpm_scene_edit(&s, "position");
@@ -171,12 +171,12 @@ static mps_material *refusing_material(mps_context *c, const int32_t *refuses_no
   static const char *const names[] = {"plastic_strain", "damage"};
   static const double initial[] = {0.5, 1.0};
   mps_material *out = NULL;
-  mps_user_law_def law = mps_user_law_defaults();
+  mps_material_user_def law = mps_material_user_defaults();
   law.update = refusing, law.user = (void *)refuses_now;
   law.name = "touchy", law.wave_modulus = 1e5;
   law.history_count = 2, law.history = names, law.history_initial = initial;
   law.needs_deformation = 1;
-  mps_assert_ok(c, mps_material_user(c, &law, &out));
+  mps_assert_ok(c, mps_material_create_user(c, &law, &out));
   return out;
 }
 
@@ -214,12 +214,12 @@ static void sets_materials(void **state) {
   mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
   for (int k = 2; k < MPS_MPM_MAX_MATERIALS; k++) { /* two there are */
     mps_material *more = NULL;
-    mps_assert_ok(context, mps_material_linear_elastic(context, 1e5, 0.3, &more));
+    mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e5, 0.3, &more));
     mps_assert_ok(context, mps_mpm_set_material(s.mpm, more, 1, ids));
     mps_material_destroy(&more);
   }
   mps_material *last = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e5, 0.3, &last));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e5, 0.3, &last));
   mps_assert_fails(context, mps_mpm_set_material(s.mpm, last, 1, ids), MPS_ERROR_ARGUMENT,
                    "has 16 materials");
   mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 1, ids));  /* known: no new one */
@@ -249,8 +249,8 @@ static void inverted_deformations_are_refused(void **state) {
     mps_mpm *mpm = NULL;
     def.dim = dim, def.spacing = 0.1;
     solver.cell = 0.2;
-    if (dim == 3) solver.geometry = MPS_MPM_SPACE;
-    mps_assert_ok(context, mps_material_neo_hookean(context, 1e6, 0.3, &law));
+    if (dim == 3) solver.geometry = MPS_MPM_GEOMETRY_SPACE;
+    mps_assert_ok(context, mps_material_create_neo_hookean(context, 1e6, 0.3, &law));
     mps_assert_ok(context, mps_particles_create(context, &def, &set));
     mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
     mps_assert_ok(context, mps_particles_set(set, "density", 0, 1000.0));
@@ -294,7 +294,7 @@ static void viscosity_limits_the_step(void **state) {
   mps_edit v;
   mps_totals before, after;
   const double lo[] = {0.0, 0.0}, hi[] = {0.2, 0.2}, viscosity = 2000.0;
-  mps_newtonian_def law = mps_newtonian_defaults();
+  mps_material_newtonian_def law = mps_material_newtonian_defaults();
   law.bulk_modulus = 1e5, law.viscosity = viscosity;
   mps_assert_ok(context, mps_particles_create(context, &set, &particles));
   mps_assert_ok(context, mps_particles_fill_box(particles, lo, hi, NULL));
@@ -305,7 +305,7 @@ static void viscosity_limits_the_step(void **state) {
   for (int64_t k = 0; k < x.shape[0]; k++)
     *mps_edit_f64(&v, k, 0) = sin(100.0 * *mps_view_f64(&x, k, 1));
   mps_assert_ok(context, mps_particles_commit(particles, &v));
-  mps_assert_ok(context, mps_material_newtonian(context, &law, &material));
+  mps_assert_ok(context, mps_material_create_newtonian(context, &law, &material));
   mps_mpm_def def = small_def();
   mps_assert_ok(context, mps_mpm_create(context, particles, material, &def, &mpm));
   const double limit = 1000.0 * def.cell * def.cell / (4.0 * 2.0 * viscosity);
@@ -339,7 +339,7 @@ static void keep_on_the_wall(int32_t walls) {
   mps_assert_ok(context, mps_particles_edit(particles, "position", &x));
   *mps_edit_f64(&x, 0, 0) = 0.0;
   mps_assert_ok(context, mps_particles_commit(particles, &x));
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e5, 0.3, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e5, 0.3, &material));
   mps_mpm_def def = small_def();
   def.lower[0] = 0.0;
   def.walls = walls;
@@ -374,18 +374,18 @@ static mps_status make(mps_context *c, int what) {
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1000.0);
   if (status == MPS_OK) {
     if (what == 0) {
-      status = mps_material_linear_elastic(c, 1e5, 0.3, &material);
+      status = mps_material_create_linear_elastic(c, 1e5, 0.3, &material);
     } else if (what == 1) {
-      status = mps_material_neo_hookean(c, 1e5, 0.3, &material);
+      status = mps_material_create_neo_hookean(c, 1e5, 0.3, &material);
     } else {
-      mps_von_mises_def law = mps_von_mises_defaults();
+      mps_material_von_mises_def law = mps_material_von_mises_defaults();
       law.young = 1e5, law.yield_stress = 10.0;
-      status = mps_material_von_mises(c, &law, &material);
+      status = mps_material_create_von_mises(c, &law, &material);
     }
   }
   mps_mpm_def def = small_def();
   if (status == MPS_OK) status = mps_mpm_create(c, particles, material, &def, &mpm);
-  if (status == MPS_OK && what == 2) status = mps_material_neo_hookean(c, 1e5, 0.3, &other);
+  if (status == MPS_OK && what == 2) status = mps_material_create_neo_hookean(c, 1e5, 0.3, &other);
   if (status == MPS_OK && other) status = mps_mpm_set_material(mpm, other, 1, &fifth);
   mps_body_def disc = mps_body_defaults();
   disc.position[0] = 0.12;

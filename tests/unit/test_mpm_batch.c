@@ -1,7 +1,8 @@
-/* test_mpm_batch.c - particles beside bodies, four of one stencil at once (src/mpm/transfer/least_squares_batch.c), give
- * to the nodes and take from them what least_squares.c gives and takes one by one: to round-off, in all
- * geometries, with both kernels, at fitted and mirrored walls, beside thin walls and in corners,
- * and with one to four particles a stencil. SPDX-License-Identifier: BSD-3-Clause */
+/* test_mpm_batch.c - particles beside bodies, four of one stencil at once
+ * (src/mpm/transfer/least_squares_batch.c), give to the nodes and take from them what
+ * least_squares.c gives and takes one by one: to round-off, in all geometries, with both kernels,
+ * at fitted and mirrored walls, beside thin walls and in corners, and with one to four particles a
+ * stencil. SPDX-License-Identifier: BSD-3-Clause */
 #define MPSI_LEVEL                                                                                 \
   1 /* of what is inline in the headers; nothing in them depends on it for memory */
 #include "mpm_scene.h"
@@ -107,7 +108,7 @@ static void add_particles(mpm_scene *s, int dim, int count) {
 }
 
 static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * CELL, 0.0, 0.0, 1e6);
   add_particles(&s, dim, dim == 2 ? 700 : 8000);
   mps_mpm_def def = mps_mpm_defaults();
@@ -275,7 +276,7 @@ static mpm_scene pressed(int dim, bool plane) {
   const double lo[3] = {0.0}, hi[3] = {10 * CELL, 10 * CELL, dim == 3 ? 6 * CELL : 0.0};
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = CELL;
   mpm_scene_solve(&s, &def);
   mps_body_def body = mps_body_defaults();

@@ -30,7 +30,7 @@ static void refused_creation_changes_nothing(void **state) {
   mps_assert_ok(context, mps_particles_add_field(s.particles, "volume_ratio", 0));
   mps_material *rubber = NULL;
   mps_mpm *mpm = NULL;
-  mps_assert_ok(context, mps_material_neo_hookean(context, 1e5, 0.3, &rubber));
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, 1e5, 0.3, &rubber));
   const uint64_t epoch = mps_particles_epoch(s.particles);
   const int32_t fields = mps_particles_field_count(s.particles);
   mps_mpm_def def = small_def();
@@ -47,7 +47,7 @@ static void refused_creation_changes_nothing(void **state) {
     assert_int_equal(*mps_view_i64(&id, k, 0), k);
   }
   def = small_def();
-  def.geometry = MPS_MPM_AXISYMMETRIC;
+  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, rubber, &def, &mpm));
   mps_totals t;
   mps_assert_ok(context, mps_mpm_get_totals(mpm, &t));
@@ -170,7 +170,7 @@ static void steps_can_be_cancelled(void **state) {
   int asked = 0;
   mps_context *own = NULL, *shared = context;
   mps_context_def hooks = mps_context_defaults();
-  hooks.executor = MPS_EXECUTOR_SERIAL;
+  hooks.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   hooks.cancel = stop_at_once, hooks.cancel_user = &asked;
   assert_int_equal(mps_context_create(&hooks, &own, NULL, 0), MPS_OK);
   context = own;

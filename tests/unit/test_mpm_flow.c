@@ -29,7 +29,7 @@ static const double *column(mps_particles *set, const char *name, int32_t compon
 /* Without particles nothing bounds the step that follows the limit, and its impulses. */
 static void nothing_settles_where_no_particle_is(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
   mps_mpm_def def = mps_mpm_defaults();
   int64_t ids[MOST];
@@ -52,8 +52,8 @@ static void nothing_settles_where_no_particle_is(void **state) {
 
 static void erosion_of_half_a_column_takes_its_mass_and_momentum(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   int64_t ids[MOST];
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 100));
   const int64_t count = above(x.s.particles, 0.18, ids);
@@ -115,7 +115,7 @@ static void settle(mpm_scene *s, int times) {
 
 static void a_fed_column_bears_its_weight(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene fed = soil(context, 0.25), whole = soil(context, 1.0);
   for (int layer = 0; layer < 6; layer++) {
     const double lo[2] = {0.0, 0.25 + 0.125 * layer}, hi[2] = {0.2, lo[1] + 0.125};
@@ -178,7 +178,7 @@ static void same_bits_on_any_threads(void **state) {
     context[t] = on_threads(&threads[t]);
     change c = none;
     c.spacing = 0.005, c.cell = 0.01; /* many enough to share */
-    x[t] = build(context[t], MPS_MPM_PLANE_STRAIN, &c);
+    x[t] = build(context[t], MPS_MPM_GEOMETRY_PLANE_STRAIN, &c);
     mps_assert_ok(context[t], mps_mpm_step(x[t].s.mpm, 20));
     change_some(&x[t]);
     mps_assert_ok(context[t], mps_mpm_step(x[t].s.mpm, 20));
@@ -194,7 +194,7 @@ static void same_bits_on_any_threads(void **state) {
 /* A column, some of it removed before the first step; and one that never had it. */
 static void what_remains_moves_as_if_made_so(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene eroded = soil(context, 1.0), fresh = soil(context, 0.5);
   int64_t ids[MOST];
   const int64_t count = above(eroded.particles, 0.5, ids);
@@ -262,21 +262,21 @@ static void goes_back_across(int32_t geometry, int32_t threads) {
 
 static void goes_back_across_what_came_and_went(void **state) {
   (void)state;
-  goes_back_across(MPS_MPM_PLANE_STRAIN, 1);
-  goes_back_across(MPS_MPM_AXISYMMETRIC, 2);
-  goes_back_across(MPS_MPM_SPACE, 3);
+  goes_back_across(MPS_MPM_GEOMETRY_PLANE_STRAIN, 1);
+  goes_back_across(MPS_MPM_GEOMETRY_AXISYMMETRIC, 2);
+  goes_back_across(MPS_MPM_GEOMETRY_SPACE, 3);
 }
 
 /* ---- what new particles are ------------------------------------------------------------------ */
 
 static void new_particles_take_material_volume_and_mass(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = soil(context, 0.5);
-  mps_von_mises_def def = mps_von_mises_defaults();
+  mps_material_von_mises_def def = mps_material_von_mises_defaults();
   def.young = 1e6, def.poisson = 0.3, def.yield_stress = 1e3;
   mps_material *clay = NULL;
-  mps_assert_ok(context, mps_material_von_mises(context, &def, &clay));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &clay));
   mps_assert_ok(context, mps_mpm_step(s.mpm, 30));
   const double places[4] = {0.05, 0.7, 0.15, 0.7};
   mps_assert_ok(context, mps_particles_append(s.particles, 2, places));
@@ -326,7 +326,7 @@ static void new_particles_take_material_volume_and_mass(void **state) {
 /* A boundary holds those of its list that there are. */
 static void held_particles_leave_the_list_and_come_back(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = soil(context, 0.5);
   const int64_t ids[3] = {150, 151, 152}, gone[2] = {151, 3};
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
@@ -365,9 +365,9 @@ static mps_status meddle(void *user, mps_mpm *mpm) {
 
 static void refusals_change_nothing(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        twin = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 20));
   mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 20));
   const double out[4] = {0.7, 0.7, 1.2, 0.7}, within[4] = {0.7, 0.7, 0.1, 0.03};
@@ -393,7 +393,7 @@ static void refusals_change_nothing(void **state) {
 /* All may go; time goes on, and others may come. */
 static void an_empty_solver_waits(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = soil(context, 0.5);
   int64_t ids[MOST];
   mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
@@ -474,7 +474,7 @@ static mps_status come_and_go(mps_context *own, int what) {
   mps_snapshot *snapshot = NULL;
   const double lo[2] = {0.5, 0.1}, hi[2] = {0.9, 0.3};
   const int64_t ids[2] = {3, 400};
-  mps_status status = try_build(own, MPS_MPM_PLANE_STRAIN, &none, &x);
+  mps_status status = try_build(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_snapshot(x.s.mpm, &snapshot);
   if (status == MPS_OK) status = mps_particles_remove(x.s.particles, 2, ids);
   if (status == MPS_OK) {

@@ -26,7 +26,7 @@ static nodes *read_nodes(mps_mpm *mpm) {
 
 /* A block that moves and turns; far from any side, or in a corner. */
 static mpm_scene block(mps_context *context, int32_t geometry, bool corner) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.05, 0.0, 0.0, 1e6);
   mps_mpm_def def = mps_mpm_defaults();
   const double lo[3] = {corner ? 0.0 : 1.0, corner ? 0.0 : 1.0, corner ? 0.0 : 1.0};
@@ -46,7 +46,7 @@ static mpm_scene block(mps_context *context, int32_t geometry, bool corner) {
 
 static void nodes_have_the_particles_mass_and_momentum(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t geometry = 0; geometry < 3; geometry++)
     for (int corner = 0; corner < 2; corner++) {
       mpm_scene s = block(context, geometry, corner != 0);
@@ -77,8 +77,8 @@ static void nodes_have_the_particles_mass_and_momentum(void **state) {
 /* Uniform stress: forces inside the block vanish, those at its upper face pull it down by s A. */
 static void forces_are_those_of_the_stress(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_PLANE_STRAIN, false);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
   mps_assert_ok(context, mps_particles_set(s.particles, "stress", 1, 1000.0));
   nodes *n = read_nodes(s.mpm);
   double upper = 0.0;
@@ -101,11 +101,11 @@ static double filling(int64_t k, int c) {
 
 static void linear_fields_are_reproduced(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t geometry = 0; geometry < 3; geometry++)
     for (int32_t spline = 2; spline <= 3; spline++) {
       mpm_scene s = block(context, geometry, true);
-      const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+      const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
       mps_mpm_def def;
       mps_assert_ok(context, mps_mpm_get_def(s.mpm, &def));
       def.spline = spline;
@@ -147,8 +147,8 @@ static void linear_fields_are_reproduced(void **state) {
 
 static void points_know_where_they_are(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_PLANE_STRAIN, true); /* 0.5 x 0.7 from the origin */
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, true); /* 0.5 x 0.7 from the origin */
   mps_grid *grid = mps_mpm_grid(s.mpm);
   const double points[3 * 7] = {0.25, 0.35, 0.0, 0.25, 0.7, NAN, 0.5, 0.7,  0.0, 0.0, 0.0,
                                 0.0,  0.25, 0.9, 0.0,  2.0, 2.0, 0.0, -0.1, 0.2, 0.0};
@@ -218,8 +218,8 @@ static void asking_changes_nothing(void **state) {
 /* The nodes as a set; a recorder may hold it. */
 static void nodes_fill_a_set(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_PLANE_STRAIN, false);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
   mps_particles_def def = mps_particles_defaults();
   mps_recorder_def series = mps_recorder_defaults();
   mps_particles *set = NULL;
@@ -263,8 +263,8 @@ static void nodes_fill_a_set(void **state) {
 /* The weights as an object, given or asked for. */
 static void weights_are_a_kernel(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mpm_scene s = block(context, MPS_MPM_PLANE_STRAIN, false);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mpm_scene s = block(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
   mps_kernel *kernel = mps_mpm_kernel(s.mpm), *other = NULL;
   double mean = 0.0;
   assert_int_equal(mps_kernel_get_kind(kernel), MPS_KERNEL_SPLINE3);

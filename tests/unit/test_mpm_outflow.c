@@ -50,7 +50,7 @@ static void check_balance(mpm_scene *s, int64_t came, double momentum, double an
 
 static void a_jet_leaves_the_channel(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = channel(context, 0.0);
   int64_t came = mps_particles_count(s.particles);
   assert_int_equal(came, 32 * 8);
@@ -89,7 +89,7 @@ static void a_jet_leaves_the_channel(void **state) {
 /* Before, the side failed the step. Going back brings those that left back. */
 static void goes_back_and_leaves_again(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = channel(context, -9.81), other = channel(context, -9.81);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.02, 1, NULL, NULL));
@@ -127,7 +127,7 @@ static void goes_back_and_leaves_again(void **state) {
 
 static void an_open_side_takes_no_motion(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = channel(context, 0.0);
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
   def.kind = MPS_MPM_BOUNDARY_OPEN;
@@ -147,7 +147,7 @@ static void an_open_side_takes_no_motion(void **state) {
 
 static void a_body_takes_away_what_it_finds(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = channel(context, 0.0);
   const int64_t all = mps_particles_count(s.particles);
   mps_assert_ok(context, mps_particles_set(s.particles, "velocity", 0, 0.0));

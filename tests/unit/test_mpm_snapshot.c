@@ -44,17 +44,17 @@ static void goes_back(int32_t geometry, int32_t threads, int64_t steps) {
 static void goes_back_bit_for_bit_on_any_threads(void **state) {
   (void)state;
   for (int32_t threads = test_quick() ? 3 : 1; threads <= 3; threads++)
-    goes_back(MPS_MPM_PLANE_STRAIN, threads, 50);
-  goes_back(MPS_MPM_AXISYMMETRIC, 2, 80);
-  goes_back(MPS_MPM_SPACE, 2, 25);
+    goes_back(MPS_MPM_GEOMETRY_PLANE_STRAIN, threads, 50);
+  goes_back(MPS_MPM_GEOMETRY_AXISYMMETRIC, 2, 80);
+  goes_back(MPS_MPM_GEOMETRY_SPACE, 2, 25);
 }
 
 /* Walls that look for their forces at rest, boxes of nodes, loads, two materials. */
 static void goes_back_with_walls_and_loads(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build_held(context, MPS_MPM_PLANE_STRAIN),
-        twin = build_held(context, MPS_MPM_PLANE_STRAIN);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN),
+        twin = build_held(context, MPS_MPM_GEOMETRY_PLANE_STRAIN);
   mps_snapshot *snapshot = NULL;
   for (int k = 0; k < 4; k++) {
     mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
@@ -76,9 +76,9 @@ static void goes_back_with_walls_and_loads(void **state) {
 /* A step that fails half way is forgotten. */
 static void mends_a_failed_step(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        twin = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   mpsi_particles_column(x.s.particles, "velocity", 0)[7] = NAN;
@@ -94,9 +94,9 @@ static void mends_a_failed_step(void **state) {
 
 static void belongs_to_its_solver(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        y = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        y = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
 #define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
   FAILS(mps_mpm_rollback(x.s.mpm, NULL), MPS_ERROR_ARGUMENT, "snapshot is NULL");
@@ -110,7 +110,7 @@ static void belongs_to_its_solver(void **state) {
   FAILS(mps_mpm_snapshot(y.s.mpm, &snapshot), MPS_ERROR_ARGUMENT, "of another solver");
   assert_non_null(snapshot);
   drop(&x); /* it survives, also where the next solver gets the memory of this one */
-  x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   FAILS(mps_mpm_rollback(x.s.mpm, snapshot), MPS_ERROR_ARGUMENT, "of another solver");
   drop(&x);
   drop(&y);
@@ -121,11 +121,11 @@ static void belongs_to_its_solver(void **state) {
 /* What the caller has built since is not undone: it is named. */
 static void another_build_is_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   change c = none;
   c.bodies = 1;
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &c),
-        twin = build(context, MPS_MPM_PLANE_STRAIN, &c);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &c),
+        twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &c);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));
@@ -147,7 +147,7 @@ static mps_status snapshot_once(mps_context *own, int what) {
   (void)what;
   scene x;
   mps_snapshot *snapshot = NULL;
-  mps_status status = try_build(own, MPS_MPM_PLANE_STRAIN, &none, &x);
+  mps_status status = try_build(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_snapshot(x.s.mpm, &snapshot);
   if (status == MPS_OK) status = mps_mpm_rollback(x.s.mpm, snapshot);
   mps_snapshot_destroy(&snapshot);
@@ -166,9 +166,9 @@ static void refused_allocations_change_nothing(void **state) {
   (void)state;
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        twin = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        first = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        first = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   const uint64_t epoch = mps_particles_epoch(x.s.particles);
@@ -218,7 +218,7 @@ static void memory_is_reused(void **state) {
   (void)state;
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   const int64_t live = allocator.live, before = allocator.calls;

@@ -32,7 +32,7 @@ static void refuses_bad_sides(void **state) {
   const int64_t ids[] = {1};
   mps_reaction r;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_ramp(context, 0.0, 1.0, 1.0, &signal));
+  mps_assert_ok(context, mps_signal_create_ramp(context, 0.0, 1.0, 1.0, &signal));
   REFUSES("no lower side across z", mps_mpm_set_side(m, MPS_MPM_SIDE_Z_LOWER, 0, 0.0));
   REFUSES("boundary is -1", mps_mpm_set_side(m, -1, 0, 0.0));
   REFUSES("no upper side across x", mps_mpm_set_side(m, MPS_MPM_SIDE_X_UPPER, 0, 0.0));
@@ -64,7 +64,7 @@ static void refuses_bad_sides(void **state) {
   REFUSES("the standard method does not allow",
           mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
   mps_mpm_destroy(&s.mpm);
-  solver.geometry = MPS_MPM_AXISYMMETRIC;
+  solver.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &solver, &s.mpm));
   REFUSES("on the axis r = 0", mps_mpm_set_side(s.mpm, 0, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
   REFUSES("cannot be free", mps_mpm_remove_boundary(s.mpm, 0));
@@ -155,7 +155,8 @@ static void drives_particles(void **state) {
   mpm_scene_solve(&s, &solver);
   const double t[] = {0.0, 1.0}, v[] = {0.2, 0.2};
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &signal));
+  mps_assert_ok(context,
+                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &signal));
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
   const int64_t ids[] = {0, 17, 99};
   def.ids = ids, def.id_count = 3, def.dofs = MPS_DOF_X, def.signal[0] = signal;
@@ -203,14 +204,14 @@ typedef struct heard {
 
 static void listen(void *user, int32_t level, const char *message) {
   heard *h = user;
-  if (level != MPS_LOG_WARNING) return;
+  if (level != MPS_CONTEXT_LOG_WARNING) return;
   h->warnings++;
   snprintf(h->last, sizeof h->last, "%s", message);
 }
 
 static mps_context *listening(heard *h) {
   mps_context_def def = test_context_defaults();
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.log = listen;
   def.log_user = h;
   mps_context *own = NULL;
@@ -326,9 +327,9 @@ static mps_status make(mps_context *c, int what) {
   mps_status status = mps_particles_create(c, &set, &particles);
   if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1000.0);
-  if (status == MPS_OK) status = mps_material_linear_elastic(c, 1e5, 0.3, &material);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(c, 1e5, 0.3, &material);
   if (status == MPS_OK) status = mps_mpm_create(c, particles, material, &def, &mpm);
-  if (status == MPS_OK) status = mps_signal_ramp(c, 0.0, 1.0, 1.0, &signal);
+  if (status == MPS_OK) status = mps_signal_create_ramp(c, 0.0, 1.0, 1.0, &signal);
   mps_mpm_boundary_def base = side_def(MPS_MPM_BOUNDARY_ABSORBING), box, list = base;
   base.signal[0] = signal;
   list.kind = MPS_MPM_BOUNDARY_PRESCRIBED;
@@ -358,7 +359,7 @@ static void steady_steps_allocate_nothing(void **state) {
   test_allocator allocator = {0};
   mps_context *own = test_allocator_context(&allocator);
   int32_t box = -1, loads[2];
-  mpm_scene s = held_begin(own, MPS_MPM_PLANE_STRAIN, &box, loads);
+  mpm_scene s = held_begin(own, MPS_MPM_GEOMETRY_PLANE_STRAIN, &box, loads);
   int64_t calls = 0;
   for (int round = 0; round < 5; round++) {
     if (round == 2) calls = allocator.calls;

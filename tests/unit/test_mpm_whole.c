@@ -37,12 +37,12 @@ static mps_status update(void *user, const mps_material_block *b) {
 static mps_material *law_of(mps_context *own, touchy *t) {
   static const char *const names[] = {"work"};
   mps_material *out = NULL;
-  mps_user_law_def law = mps_user_law_defaults();
+  mps_material_user_def law = mps_material_user_defaults();
   law.update = update, law.user = t;
   law.name = "touchy", law.wave_modulus = 1.5e5;
   law.history_count = 1, law.history = names;
   law.needs_deformation = 1;
-  mps_assert_ok(own, mps_material_user(own, &law, &out));
+  mps_assert_ok(own, mps_material_create_user(own, &law, &out));
   return out;
 }
 
@@ -68,8 +68,8 @@ static void same_particles(scene *a, scene *b) {
   mps_view id = mpm_scene_view(&a->s, "id");
   assert_int_equal(mps_particles_count(a->s.particles), mps_particles_count(b->s.particles));
   for (int32_t f = 0; f < mps_particles_field_count(a->s.particles); f++) {
-    mps_field_info info;
-    mps_assert_ok(a->s.context, mps_particles_field(a->s.particles, f, &info));
+    mps_particles_field_info info;
+    mps_assert_ok(a->s.context, mps_particles_get_field_info(a->s.particles, f, &info));
     mps_view va = mpm_scene_view(&a->s, info.name), vb = mpm_scene_view(&b->s, info.name);
     for (int64_t k = 0; k < va.shape[0]; k++) {
       const int64_t other = mps_particles_index(b->s.particles, *mps_view_i64(&id, k, 0));
@@ -141,7 +141,7 @@ static void a_refused_step_has_not_happened(void **state) {
   refuses(&def, 2, false);
   def = mps_mpm_defaults();
   refuses(&def, 2, true);
-  def.geometry = MPS_MPM_SPACE;
+  def.geometry = MPS_MPM_GEOMETRY_SPACE;
   refuses(&def, 2, false);
 }
 

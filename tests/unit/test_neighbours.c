@@ -16,7 +16,7 @@ static mps_view view_of(const double *xy, int64_t n, int32_t dim) {
 
 static void bad_arguments_are_refused(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_neighbours_def good = mps_neighbours_defaults(), def;
   mps_neighbours *nb = NULL;
   const double radii[] = {0.0, -1.0, NAN, INFINITY, 1e-200, 1e200};
@@ -52,7 +52,7 @@ static void bad_arguments_are_refused(void **state) {
 
 static void bad_positions_leave_the_former_list(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_neighbours_def def = mps_neighbours_defaults();
   mps_neighbours *nb = NULL;
   double xy[] = {0, 0, 0.5, 0, 3, 0};
@@ -100,7 +100,7 @@ static void bad_positions_leave_the_former_list(void **state) {
  * exactly D none: the radius itself is outside. */
 static void lattice_particles_have_the_neighbours_known_by_hand(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t dim = 2; dim <= 3; dim++) {
     mps_particles_def def = mps_particles_defaults();
     mps_particles *set = NULL;

@@ -41,8 +41,8 @@ static void make_set(scene *s, double spacing, double height) {
   OK(mps_particles_fill_box(s->set, lo, hi, NULL));
   OK(mps_particles_set(s->set, "density", 0, 2000.0));
   OK(mps_particles_set(s->set, "velocity", 0, 0.01));
-  OK(mps_material_linear_elastic(s->own, 1e6, 0.25, &s->material));
-  OK(mps_material_linear_elastic(s->own, 2e6, 0.25, &s->second));
+  OK(mps_material_create_linear_elastic(s->own, 1e6, 0.25, &s->material));
+  OK(mps_material_create_linear_elastic(s->own, 2e6, 0.25, &s->second));
 }
 
 /* ---- WLS-MPM ----------------------------------------------------------------------------------
@@ -198,7 +198,7 @@ static mps_status edit_field(scene *s) {
   return MPS_OK;
 }
 static mps_status set_geostatic(scene *s) {
-  const mps_soil_layer layer = {.thickness = 1.0, .k0 = 0.5, .density = 1800.0};
+  const mps_geostatic_layer layer = {.thickness = 1.0, .k0 = 0.5, .density = 1800.0};
   mps_geostatic_def def;
   assert_int_equal(mps_geostatic_def_init(&def, sizeof def), MPS_OK);
   def.layers = &layer, def.layer_count = 1;
@@ -363,14 +363,14 @@ static mps_status elastic_analyse(scene *s) {
   mps_elastic_estimate estimate;
   return mps_elastic_analyse(s->elastic, &estimate);
 }
-static mps_status elastic_stress(scene *s) { return mps_elastic_stress(s->elastic); }
+static mps_status elastic_stress(scene *s) { return mps_elastic_update_stress(s->elastic); }
 static mps_status elastic_section(scene *s) {
   double force[3], moment[3];
-  return mps_elastic_section(s->elastic, 1, 0.2, NULL, force, moment);
+  return mps_elastic_get_section(s->elastic, 1, 0.2, NULL, force, moment);
 }
 static mps_status elastic_energy(scene *s) {
   double strain;
-  return mps_elastic_energy(s->elastic, &strain, NULL);
+  return mps_elastic_get_energy(s->elastic, &strain, NULL);
 }
 static mps_status elastic_totals(scene *s) {
   mps_totals totals;
@@ -378,7 +378,7 @@ static mps_status elastic_totals(scene *s) {
 }
 static mps_status elastic_resultant(scene *s) {
   double force[3];
-  return mps_elastic_load_resultant(s->elastic, NULL, force, NULL);
+  return mps_elastic_get_load_resultant(s->elastic, NULL, force, NULL);
 }
 static mps_status elastic_modes(scene *s) {
   double omega[2];
@@ -589,11 +589,11 @@ static const row rows[] = {
     {make_held_elastic, elastic_modes, "mps_elastic_modes", false},
     {make_solved_elastic, elastic_solve, "mps_elastic_solve", false},
     {make_solved_elastic, elastic_solve_cases, "mps_elastic_solve_cases", false},
-    {make_solved_elastic, elastic_stress, "mps_elastic_stress", false},
-    {make_solved_elastic, elastic_section, "mps_elastic_section", false},
-    {make_solved_elastic, elastic_energy, "mps_elastic_energy", false},
+    {make_solved_elastic, elastic_stress, "mps_elastic_update_stress", false},
+    {make_solved_elastic, elastic_section, "mps_elastic_get_section", false},
+    {make_solved_elastic, elastic_energy, "mps_elastic_get_energy", false},
     {make_solved_elastic, elastic_totals, "mps_elastic_get_totals", false},
-    {make_solved_elastic, elastic_resultant, "mps_elastic_load_resultant", false},
+    {make_solved_elastic, elastic_resultant, "mps_elastic_get_load_resultant", false},
     {make_solved_elastic, elastic_start, "mps_elastic_start", false},
     {make_solved_elastic, elastic_update_material, "mps_elastic_update_material", false},
     {make_solved_elastic, elastic_set_material, "mps_elastic_set_material", false},
@@ -607,7 +607,7 @@ static const row rows[] = {
     {make_edited_elastic, elastic_start, "mps_elastic_start", false},
     {make_edited_elastic, elastic_modes, "mps_elastic_modes", false},
     {make_edited_elastic, elastic_solve, "mps_elastic_solve", false},
-    {make_edited_elastic, elastic_resultant, "mps_elastic_load_resultant", false},
+    {make_edited_elastic, elastic_resultant, "mps_elastic_get_load_resultant", false},
     {make_moving_elastic, elastic_step, "mps_elastic_step", false},
     {make_moving_elastic, elastic_run, "mps_elastic_run", false},
     {make_moving_elastic, elastic_solve, "mps_elastic_solve", false},

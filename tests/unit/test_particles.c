@@ -70,17 +70,19 @@ static void a_new_set_is_empty_and_has_id_and_position(void **state) {
   assert_int_equal(mps_particles_dim(set), 3);
   mps_assert_near(mps_particles_spacing(set), 0.5, 0.0);
   assert_int_equal(mps_particles_field_count(set), 2);
-  mps_field_info info;
-  mps_assert_ok(context, mps_particles_field(set, 0, &info));
+  mps_particles_field_info info;
+  mps_assert_ok(context, mps_particles_get_field_info(set, 0, &info));
   assert_string_equal(info.name, "id");
   assert_int_equal(info.flags, MPS_VIEW_READONLY);
-  mps_assert_ok(context, mps_particles_field(set, 1, &info));
+  mps_assert_ok(context, mps_particles_get_field_info(set, 1, &info));
   assert_string_equal(info.name, "position");
   assert_string_equal(info.unit, "m");
   assert_int_equal(info.components, 3);
   assert_int_equal(info.flags, 0);
-  mps_assert_fails(context, mps_particles_field(set, 2, &info), MPS_ERROR_ARGUMENT, "index is 2");
-  mps_assert_fails(context, mps_particles_field(set, -1, &info), MPS_ERROR_ARGUMENT, "index is -1");
+  mps_assert_fails(context, mps_particles_get_field_info(set, 2, &info), MPS_ERROR_ARGUMENT,
+                   "index is 2");
+  mps_assert_fails(context, mps_particles_get_field_info(set, -1, &info), MPS_ERROR_ARGUMENT,
+                   "index is -1");
   assert_int_equal(view_of(set, "position").shape[0], 0);
   const double x[3] = {0, 0, 0};
   assert_int_equal(mps_particles_nearest(set, x), -1);
@@ -103,7 +105,7 @@ static void queries_of_no_set_answer_nothing(void **state) {
   assert_int_equal(mps_particles_add_field(NULL, "density", 0), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_view(NULL, "density", NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_set(NULL, "density", 0, 1.0), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_particles_field(NULL, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_particles_get_field_info(NULL, 0, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_particles_select_box(NULL, NULL, NULL, 0, NULL, NULL), MPS_ERROR_ARGUMENT);
 }
 

@@ -79,12 +79,12 @@ static void the_samples_in_three_formats_are_the_known_motion(void **state) {
       mps_signal_record_def def = mps_signal_record_defaults();
       def.format = automatic ? MPS_SIGNAL_RECORD_AUTO : files[i].format;
       mps_signal *signal = NULL;
-      mps_assert_ok(context, mps_signal_record(context, files[i].path, &def, &signal));
+      mps_assert_ok(context, mps_signal_create_record(context, files[i].path, &def, &signal));
       check_known(signal, 0.01, files[i].last, files[i].extra);
       mps_signal_destroy(&signal);
     }
   mps_signal *signal = NULL; /* without a definition: the defaults */
-  mps_assert_ok(context, mps_signal_record(context, files[0].path, NULL, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, files[0].path, NULL, &signal));
   mps_signal_destroy(&signal);
 }
 
@@ -94,7 +94,7 @@ static mps_signal *read_text(const char *content, int32_t baseline) {
   mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = baseline;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, FILE_TMP, &def, &signal));
   return signal;
 }
 
@@ -157,23 +157,23 @@ static void quantity_scale_and_taper_act_as_they_say(void **state) {
   write_file("0 1\n1 1\n2 1\n3 1\n4 1\n", 20);
   mps_signal_record_def def = mps_signal_record_defaults();
   mps_signal *signal = NULL;
-  def.quantity = MPS_SIGNAL_VELOCITY; /* the default baseline is for accelerations only */
+  def.quantity = MPS_SIGNAL_QUANTITY_VELOCITY; /* the default baseline is for accelerations only */
   def.scale = 0.5;
-  mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, FILE_TMP, &def, &signal));
   mps_assert_near(mps_signal_displacement(signal, 4.0), 2.0, 1e-15);
   mps_signal_destroy(&signal);
-  def.quantity = MPS_SIGNAL_DISPLACEMENT;
-  mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
+  def.quantity = MPS_SIGNAL_QUANTITY_DISPLACEMENT;
+  mps_assert_ok(context, mps_signal_create_record(context, FILE_TMP, &def, &signal));
   mps_assert_near(mps_signal_displacement(signal, 2.5), 0.5, 1e-15);
   mps_signal_destroy(&signal);
   def.taper = 1.0;
-  mps_assert_fails(context, mps_signal_record(context, FILE_TMP, &def, &signal), MPS_ERROR_ARGUMENT,
-                   "taper is 1 s, must be 0 for a record of displacements");
-  def.quantity = MPS_SIGNAL_ACCELERATION;
+  mps_assert_fails(context, mps_signal_create_record(context, FILE_TMP, &def, &signal),
+                   MPS_ERROR_ARGUMENT, "taper is 1 s, must be 0 for a record of displacements");
+  def.quantity = MPS_SIGNAL_QUANTITY_ACCELERATION;
   def.baseline = MPS_SIGNAL_BASELINE_NONE;
   def.scale = -3.0;
   def.taper = 2.0; /* 0, 1/2, 1, 1/2, 0 */
-  mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, FILE_TMP, &def, &signal));
   for (int i = 0; i <= 4; i++)
     mps_assert_near(mps_signal_acceleration(signal, i), -1.5 * (2 - abs(i - 2)), 1e-15);
   mps_signal_destroy(&signal);
@@ -195,7 +195,7 @@ static mps_signal *drifting(const double drift[3], bool uneven, int32_t baseline
   mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = baseline;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, FILE_TMP, &def, &signal));
   return signal;
 }
 
@@ -247,11 +247,11 @@ static void a_correction_needs_enough_samples(void **state) {
   mps_signal_record_def def = mps_signal_record_defaults();
   mps_signal *signal = NULL;
   def.baseline = MPS_SIGNAL_BASELINE_CUBIC;
-  mps_assert_fails(context, mps_signal_record(context, FILE_TMP, &def, &signal), MPS_ERROR_ARGUMENT,
-                   "baseline 4 needs at least 4 samples, the record has 3");
+  mps_assert_fails(context, mps_signal_create_record(context, FILE_TMP, &def, &signal),
+                   MPS_ERROR_ARGUMENT, "baseline 4 needs at least 4 samples, the record has 3");
   def.baseline =
       MPS_SIGNAL_BASELINE_QUADRATIC; /* two unknowns, v(1) and v(2): nothing is left of v */
-  mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, FILE_TMP, &def, &signal));
   mps_assert_near(mps_signal_velocity(signal, 2.0), 0.0, 1e-14);
   mps_signal_destroy(&signal);
   signal = read_text("0 0\n1 0\n2 0\n3 0\n", MPS_SIGNAL_BASELINE_CUBIC);
@@ -282,7 +282,7 @@ static void a_decimal_comma_of_the_host_changes_nothing(void **state) {
   snprintf(text, sizeof text, "%.1f", 0.5);
   assert_string_equal(text, "0,5"); /* the locale is on */
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_record(context, TEST_DATA "/sample.AT2", NULL, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, TEST_DATA "/sample.AT2", NULL, &signal));
   assert_string_equal(localeconv()->decimal_point, ","); /* and stays on */
   setlocale(LC_ALL, "C");
   check_known(signal, 0.01, 4.0, 1e-7);
@@ -425,10 +425,10 @@ static void every_malformed_file_is_refused_with_its_line(void **state) {
     char expected[512];
     snprintf(expected, sizeof expected, "record.tmp:%s",
              bad->reason[0] == ':' ? bad->reason + 1 : "");
-    mps_assert_fails(context, mps_signal_record(context, FILE_TMP, &def, &signal), MPS_ERROR_FORMAT,
-                     expected);
+    mps_assert_fails(context, mps_signal_create_record(context, FILE_TMP, &def, &signal),
+                     MPS_ERROR_FORMAT, expected);
     assert_non_null(strstr(mps_context_error(context)->message, bad->reason));
-    assert_string_equal(mps_context_error(context)->function, "mps_signal_record");
+    assert_string_equal(mps_context_error(context)->function, "mps_signal_create_record");
     assert_null(signal);
   }
 }
@@ -457,7 +457,7 @@ static void numbers_that_overflow_later_are_refused(void **state) {
     def.baseline = files[i].baseline;
     def.scale = files[i].scale;
     mps_signal *signal = NULL;
-    mps_assert_fails(context, mps_signal_record(context, FILE_TMP, &def, &signal),
+    mps_assert_fails(context, mps_signal_create_record(context, FILE_TMP, &def, &signal),
                      MPS_ERROR_NUMERIC, files[i].reason);
   }
 }
@@ -466,16 +466,16 @@ static void what_is_not_a_text_is_refused(void **state) {
   (void)state;
   mps_signal *signal = NULL;
   write_file("0,1\n1,\0002\n", 9);
-  mps_assert_fails(context, mps_signal_record(context, FILE_TMP, NULL, &signal), MPS_ERROR_FORMAT,
-                   "record.tmp:2: a NUL byte: this is not a text file");
-  mps_assert_fails(context, mps_signal_record(context, TEST_TMP, NULL, &signal), MPS_ERROR_IO,
-                   "cannot read: Is a directory");
-  mps_assert_fails(context, mps_signal_record(context, TEST_TMP "/no/file", NULL, &signal),
+  mps_assert_fails(context, mps_signal_create_record(context, FILE_TMP, NULL, &signal),
+                   MPS_ERROR_FORMAT, "record.tmp:2: a NUL byte: this is not a text file");
+  mps_assert_fails(context, mps_signal_create_record(context, TEST_TMP, NULL, &signal),
+                   MPS_ERROR_IO, "cannot read: Is a directory");
+  mps_assert_fails(context, mps_signal_create_record(context, TEST_TMP "/no/file", NULL, &signal),
                    MPS_ERROR_IO, "cannot open: No such file or directory");
   char path[2000];
   memset(path, 'x', sizeof path);
   path[sizeof path - 1] = '\0';
-  mps_assert_fails(context, mps_signal_record(context, path, NULL, &signal), MPS_ERROR_IO,
+  mps_assert_fails(context, mps_signal_create_record(context, path, NULL, &signal), MPS_ERROR_IO,
                    "xxx: cannot open: File name too long");
   assert_memory_equal(mps_context_error(context)->message, "...xxx", 6);
   mpsi_text text;
@@ -500,13 +500,13 @@ static void gigantic_lines_are_read_and_gigantic_words_refused(void **state) {
   mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = MPS_SIGNAL_BASELINE_NONE;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
+  mps_assert_ok(context, mps_signal_create_record(context, FILE_TMP, &def, &signal));
   mps_assert_near(mps_signal_acceleration(signal, 0.01 * (COUNT - 1)), 0.99 * G, 1e-9);
   mps_signal_destroy(&signal);
   memset(content + header, '7', COUNT * WIDTH);
   write_file(content, size);
-  mps_assert_fails(context, mps_signal_record(context, FILE_TMP, &def, &signal), MPS_ERROR_FORMAT,
-                   ":5: the acceleration is \"7777");
+  mps_assert_fails(context, mps_signal_create_record(context, FILE_TMP, &def, &signal),
+                   MPS_ERROR_FORMAT, ":5: the acceleration is \"7777");
   free(content);
 }
 
@@ -518,8 +518,8 @@ static void bad_definitions_are_refused(void **state) {
 #define REFUSED(member, value, text)                                                               \
   def = mps_signal_record_defaults();                                                              \
   def.member = value;                                                                              \
-  mps_assert_fails(context, mps_signal_record(context, path, &def, &signal), MPS_ERROR_ARGUMENT,   \
-                   text)
+  mps_assert_fails(context, mps_signal_create_record(context, path, &def, &signal),                \
+                   MPS_ERROR_ARGUMENT, text)
   REFUSED(struct_size, 4, "def.struct_size is 4 bytes, allowed are 32 to 4096");
   REFUSED(format, 4, "format is 4");
   REFUSED(quantity, -1, "quantity is -1");
@@ -531,11 +531,11 @@ static void bad_definitions_are_refused(void **state) {
   REFUSED(taper, 2.001, "taper is 2.001 s, must be at most half the record (2 s)");
 #undef REFUSED
   assert_null(signal);
-  mps_assert_fails(context, mps_signal_record(context, NULL, NULL, &signal), MPS_ERROR_ARGUMENT,
-                   "path is NULL");
-  mps_assert_fails(context, mps_signal_record(context, path, NULL, NULL), MPS_ERROR_ARGUMENT,
+  mps_assert_fails(context, mps_signal_create_record(context, NULL, NULL, &signal),
+                   MPS_ERROR_ARGUMENT, "path is NULL");
+  mps_assert_fails(context, mps_signal_create_record(context, path, NULL, NULL), MPS_ERROR_ARGUMENT,
                    "out is NULL");
-  assert_int_equal(mps_signal_record(NULL, path, NULL, &signal), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_record(NULL, path, NULL, &signal), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_signal_record_def_init(NULL, sizeof def), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_signal_record_def_init(&def, 8), MPS_ERROR_ARGUMENT);
 }
@@ -546,7 +546,7 @@ static mps_status read_sample(mps_context *owner, int format) {
   mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = MPS_SIGNAL_BASELINE_CUBIC;
   mps_signal *signal = NULL;
-  const mps_status status = mps_signal_record(owner, paths[format], &def, &signal);
+  const mps_status status = mps_signal_create_record(owner, paths[format], &def, &signal);
   assert_int_equal(status == MPS_OK, signal != NULL);
   mps_signal_destroy(&signal);
   return status;

@@ -10,7 +10,7 @@ static mps_context *context;
 
 static int begin(void **state) {
   (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   return 0;
 }
 
@@ -81,7 +81,7 @@ static void mpm_ends_with_divergence(void **state) {
     const int64_t id = 5;
     def.cell = 0.2;
     load.ids = &id, load.id_count = 1, load.traction[0] = strong[k];
-    OK(mps_material_linear_elastic(context, 1e6, 0.3, &law));
+    OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &law));
     OK(mps_mpm_create(context, set, law, &def, &mpm));
     OK(mps_mpm_set_dt(mpm, 1e-4));
     OK(mps_mpm_add_load(mpm, &load, NULL));
@@ -199,7 +199,7 @@ static void a_rollback_brings_back_what_a_free_side_shows(void **state) {
   def.cell = 0.2;
   def.gravity[1] = -9.81;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 0.8;
-  OK(mps_material_linear_elastic(context, 1e6, 0.3, &law));
+  OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &law));
   OK(mps_mpm_create(context, set, law, &def, &mpm));
   OK(mps_mpm_step(mpm, 20));
   side.kind = MPS_MPM_BOUNDARY_FREE;

@@ -1,7 +1,7 @@
-/* test_refusing_signals.c - a function of the caller that refuses a motion (mps_signal_user): every
- * call that evaluates it returns the caller's status with a record that names the signal, whose it
- * is and the time; nothing has changed, and the run goes on as if it had never refused.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* test_refusing_signals.c - a function of the caller that refuses a motion
+ * (mps_signal_create_user): every call that evaluates it returns the caller's status with a record
+ * that names the signal, whose it is and the time; nothing has changed, and the run goes on as if
+ * it had never refused. SPDX-License-Identifier: BSD-3-Clause */
 #include "unchanged.h"
 #include "test_fixture.h"
 
@@ -30,7 +30,7 @@ static source from;
 static mps_signal *shaking(void) {
   mps_signal *signal = NULL;
   from = (source){.with = MPS_ERROR_IO};
-  mps_assert_ok(context, mps_signal_user(context, shake, &from, &signal));
+  mps_assert_ok(context, mps_signal_create_user(context, shake, &from, &signal));
   return signal;
 }
 
@@ -59,7 +59,7 @@ static mps_particles *block(double spacing) {
 
 static mps_material *stuff(void) {
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.25, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.25, &material));
   return material;
 }
 

@@ -36,7 +36,7 @@ static void a_ricker_wavelet_is_the_papers_acceleration_and_its_integrals(void *
   (void)state;
   const double fc = 4.0, tp = 0.25, amplitude = -3.0, c = PI * fc * PI * fc;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_ricker(context, fc, tp, amplitude, &signal));
+  mps_assert_ok(context, mps_signal_create_ricker(context, fc, tp, amplitude, &signal));
   for (int i = 0; i <= 100; i++) { /* Yoshida (9) */
     const double t = 0.006 * i, x = c * (t - tp) * (t - tp);
     mps_assert_near(mps_signal_acceleration(signal, t), amplitude * (2.0 * x - 1.0) * exp(-x),
@@ -66,7 +66,7 @@ static void a_sine_starts_at_zero_time_with_its_phase(void **state) {
   (void)state;
   const double f = 2.5, amplitude = 0.02, phase = 0.7, w = 2.0 * PI * f;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, f, amplitude, phase, &signal));
+  mps_assert_ok(context, mps_signal_create_sine(context, f, amplitude, phase, &signal));
   for (int i = 0; i < 50; i++) {
     const double t = 0.037 * i;
     mps_assert_near(mps_signal_displacement(signal, t), amplitude * sin(w * t + phase), 1e-15);
@@ -90,7 +90,7 @@ static void a_ramp_begins_and_ends_at_rest(void **state) {
   (void)state;
   const double start = -0.5, duration = 2.0, amplitude = -0.3;
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_ramp(context, start, duration, amplitude, &signal));
+  mps_assert_ok(context, mps_signal_create_ramp(context, start, duration, amplitude, &signal));
   for (int side = -1; side <= 1; side++) {
     const double t0 = start + side * 1e-9, t1 = start + duration + side * 1e-9;
     mps_assert_near(mps_signal_displacement(signal, t0), 0.0, 1e-20);
@@ -115,8 +115,8 @@ static void a_table_of_accelerations_is_integrated_exactly(void **state) {
   /* a = 0, 6, 6, -12, 0 at uneven times; by hand: v = 3 t^2, u = t^3 in the first second, ... */
   const double times[] = {10.0, 11.0, 13.0, 13.5, 17.5}, values[] = {0.0, 6.0, 6.0, -12.0, 0.0};
   mps_signal *signal = NULL;
-  mps_assert_ok(context,
-                mps_signal_table(context, MPS_SIGNAL_ACCELERATION, 5, times, values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_ACCELERATION, 5,
+                                                 times, values, &signal));
   for (int i = 0; i <= 100; i++) {
     double s = 0.01 * i;
     mps_assert_near(mps_signal_displacement(signal, 10.0 + s), s * s * s, 1e-14);
@@ -148,7 +148,8 @@ static void a_table_of_velocities_is_linear_between_samples(void **state) {
   (void)state;
   const double times[] = {0.0, 1.0, 3.0}, values[] = {2.0, 4.0, 1.0};
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, times, values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, times,
+                                                 values, &signal));
   mps_assert_near(mps_signal_velocity(signal, 0.0), 2.0, 0.0);
   mps_assert_near(mps_signal_velocity(signal, -1e-9), 0.0, 0.0);
   mps_assert_near(mps_signal_displacement(signal, 0.5), 1.25, 1e-15); /* 2 s + s^2 */
@@ -172,8 +173,8 @@ static double spline_error(int steps) {
     values[i] = 0.5 + sin(PI * i / steps);
   }
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, steps + 1, times,
-                                          values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT,
+                                                 steps + 1, times, values, &signal));
   for (int i = 0; i <= steps; i++)
     mps_assert_near(mps_signal_displacement(signal, times[i]), values[i], 1e-15);
   for (int i = 0; i <= 1000; i++) {
@@ -203,8 +204,8 @@ static void a_spline_is_smooth_on_uneven_samples_and_a_line_stays_a_line(void **
   (void)state;
   const double times[] = {0.0, 0.1, 1.0, 1.3, 3.0}, values[] = {1.0, -1.0, 2.0, 0.0, 0.5};
   mps_signal *signal = NULL;
-  mps_assert_ok(context,
-                mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 5, times, values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 5,
+                                                 times, values, &signal));
   for (int i = 1; i < 4; i++) {
     const double before = nextafter(times[i], -1.0), at = times[i];
     mps_assert_near(mps_signal_displacement(signal, before), values[i], 1e-13);
@@ -215,8 +216,8 @@ static void a_spline_is_smooth_on_uneven_samples_and_a_line_stays_a_line(void **
   mps_assert_near(mps_signal_acceleration(signal, 0.0), 0.0, 0.0);
   mps_assert_near(mps_signal_acceleration(signal, 3.0), 0.0, 0.0);
   mps_signal_destroy(&signal);
-  mps_assert_ok(context,
-                mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 2, times, values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, 2,
+                                                 times, values, &signal));
   mps_assert_near(mps_signal_displacement(signal, 0.025), 0.5, 1e-15);
   mps_assert_near(mps_signal_velocity(signal, 0.1), -20.0, 1e-13);
   mps_signal_destroy(&signal);
@@ -232,8 +233,8 @@ static void every_piece_of_a_table_is_found(void **state) {
       values[i] = i;
     }
     mps_signal *signal = NULL;
-    mps_assert_ok(
-        context, mps_signal_table(context, MPS_SIGNAL_ACCELERATION, COUNT, times, values, &signal));
+    mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_ACCELERATION, COUNT,
+                                                   times, values, &signal));
     for (int i = 0; i < COUNT; i++) {
       mps_assert_near(mps_signal_acceleration(signal, times[i]), i, 1e-12 * COUNT);
       if (i + 1 == COUNT) break;
@@ -248,8 +249,8 @@ static void the_table_is_a_copy_and_owners_share_it(void **state) {
   (void)state;
   double times[] = {0.0, 1.0}, values[] = {1.0, 1.0};
   mps_signal *signal = NULL;
-  mps_assert_ok(context,
-                mps_signal_table(context, MPS_SIGNAL_ACCELERATION, 2, times, values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_ACCELERATION, 2,
+                                                 times, values, &signal));
   values[0] = values[1] = times[1] = 99.0;
   mps_signal *other = mpsi_signal_retain(signal);
   mps_signal_destroy(&signal);
@@ -269,29 +270,31 @@ static void bad_analytic_arguments_are_refused(void **state) {
   (void)state;
   mps_signal *s = NULL;
 #define REFUSED(call, text) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, text)
-  REFUSED(mps_signal_ricker(context, 0.0, 1, 1, &s), "frequency is 0 Hz, must be in 1e-09..1e+09");
-  REFUSED(mps_signal_ricker(context, NAN, 1, 1, &s), "frequency is nan");
-  REFUSED(mps_signal_ricker(context, 1, -0.5, 1, &s), "peak time is -0.5 s");
-  REFUSED(mps_signal_ricker(context, 1, INFINITY, 1, &s), "peak time is inf s");
-  REFUSED(mps_signal_ricker(context, 1, 1, NAN, &s), "amplitude is nan");
-  REFUSED(mps_signal_ricker(context, 1e-9, 1, 1e300, &s), "the motion overflows");
-  REFUSED(mps_signal_ricker(context, 1, 1, 1, NULL), "out is NULL");
-  REFUSED(mps_signal_sine(context, -2.0, 1, 0, &s), "frequency is -2 Hz");
-  REFUSED(mps_signal_sine(context, 2.0, INFINITY, 0, &s), "amplitude is inf");
-  REFUSED(mps_signal_sine(context, 2.0, 1, NAN, &s), "phase is nan rad");
-  REFUSED(mps_signal_sine(context, 1e9, 1e300, 0, &s), "the motion overflows");
-  REFUSED(mps_signal_sine(context, 1, 1, 1, NULL), "out is NULL");
-  REFUSED(mps_signal_ramp(context, NAN, 1, 1, &s), "start is nan s");
-  REFUSED(mps_signal_ramp(context, 0, 0, 1, &s), "duration is 0 s");
-  REFUSED(mps_signal_ramp(context, 0, NAN, 1, &s), "duration is nan s");
-  REFUSED(mps_signal_ramp(context, 1e20, 1, 1, &s), "lost in rounding beside the start 1e+20 s");
-  REFUSED(mps_signal_ramp(context, 0, 1e-200, 1, &s), "the motion overflows");
-  REFUSED(mps_signal_ramp(context, 0, 1, NAN, &s), "amplitude is nan");
-  REFUSED(mps_signal_ramp(context, 0, 1, 1, NULL), "out is NULL");
+  REFUSED(mps_signal_create_ricker(context, 0.0, 1, 1, &s),
+          "frequency is 0 Hz, must be in 1e-09..1e+09");
+  REFUSED(mps_signal_create_ricker(context, NAN, 1, 1, &s), "frequency is nan");
+  REFUSED(mps_signal_create_ricker(context, 1, -0.5, 1, &s), "peak time is -0.5 s");
+  REFUSED(mps_signal_create_ricker(context, 1, INFINITY, 1, &s), "peak time is inf s");
+  REFUSED(mps_signal_create_ricker(context, 1, 1, NAN, &s), "amplitude is nan");
+  REFUSED(mps_signal_create_ricker(context, 1e-9, 1, 1e300, &s), "the motion overflows");
+  REFUSED(mps_signal_create_ricker(context, 1, 1, 1, NULL), "out is NULL");
+  REFUSED(mps_signal_create_sine(context, -2.0, 1, 0, &s), "frequency is -2 Hz");
+  REFUSED(mps_signal_create_sine(context, 2.0, INFINITY, 0, &s), "amplitude is inf");
+  REFUSED(mps_signal_create_sine(context, 2.0, 1, NAN, &s), "phase is nan rad");
+  REFUSED(mps_signal_create_sine(context, 1e9, 1e300, 0, &s), "the motion overflows");
+  REFUSED(mps_signal_create_sine(context, 1, 1, 1, NULL), "out is NULL");
+  REFUSED(mps_signal_create_ramp(context, NAN, 1, 1, &s), "start is nan s");
+  REFUSED(mps_signal_create_ramp(context, 0, 0, 1, &s), "duration is 0 s");
+  REFUSED(mps_signal_create_ramp(context, 0, NAN, 1, &s), "duration is nan s");
+  REFUSED(mps_signal_create_ramp(context, 1e20, 1, 1, &s),
+          "lost in rounding beside the start 1e+20 s");
+  REFUSED(mps_signal_create_ramp(context, 0, 1e-200, 1, &s), "the motion overflows");
+  REFUSED(mps_signal_create_ramp(context, 0, 1, NAN, &s), "amplitude is nan");
+  REFUSED(mps_signal_create_ramp(context, 0, 1, 1, NULL), "out is NULL");
   assert_null(s);
-  assert_int_equal(mps_signal_ricker(NULL, 1, 1, 1, &s), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_signal_sine(NULL, 1, 1, 1, &s), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_signal_ramp(NULL, 1, 1, 1, &s), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_ricker(NULL, 1, 1, 1, &s), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_sine(NULL, 1, 1, 1, &s), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_ramp(NULL, 1, 1, 1, &s), MPS_ERROR_ARGUMENT);
 }
 
 static void bad_tables_are_refused(void **state) {
@@ -299,38 +302,46 @@ static void bad_tables_are_refused(void **state) {
   mps_signal *s = NULL;
   const double up[] = {0.0, 1.0, 2.0}, level[] = {0.0, 1.0, 1.0}, broken[] = {0.0, NAN, 2.0};
   const double wide[] = {-1e308, 0.0, 1e308}, tight[] = {0.0, 1e-320, 1.0};
-  REFUSED(mps_signal_table(context, (mps_signal_quantity)3, 3, up, up, &s), "quantity is 3");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, 1, up, up, &s),
+  REFUSED(mps_signal_create_table(context, (mps_signal_quantity)3, 3, up, up, &s), "quantity is 3");
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 1, up, up, &s),
           "count is 1, must be in 2");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, INT64_MAX, up, up, &s), "must be in 2");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, NULL, up, &s), "times is NULL");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, up, NULL, &s), "values is NULL");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, level, up, &s),
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, INT64_MAX, up, up, &s),
+          "must be in 2");
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, NULL, up, &s),
+          "times is NULL");
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, up, NULL, &s),
+          "values is NULL");
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, level, up, &s),
           "times[2] is 1 s, must be after times[1] = 1 s");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, broken, up, &s), "times[1] is nan");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, up, broken, &s), "values[1] is nan");
-  REFUSED(mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, up, up, NULL), "out is NULL");
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, broken, up, &s),
+          "times[1] is nan");
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, up, broken, &s),
+          "values[1] is nan");
+  REFUSED(mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, up, up, NULL),
+          "out is NULL");
 #undef REFUSED
   for (int quantity = 1; quantity < 3; quantity++)
-    mps_assert_fails(context,
-                     mps_signal_table(context, (mps_signal_quantity)quantity, 3, wide, wide, &s),
-                     MPS_ERROR_NUMERIC, "the motion overflows at or after t = ");
+    mps_assert_fails(
+        context, mps_signal_create_table(context, (mps_signal_quantity)quantity, 3, wide, wide, &s),
+        MPS_ERROR_NUMERIC, "the motion overflows at or after t = ");
   for (int quantity = 0; quantity < 3; quantity++)
-    mps_assert_fails(context,
-                     mps_signal_table(context, (mps_signal_quantity)quantity, 3, tight, up, &s),
-                     MPS_ERROR_NUMERIC, "the motion overflows at or after t = ");
+    mps_assert_fails(
+        context, mps_signal_create_table(context, (mps_signal_quantity)quantity, 3, tight, up, &s),
+        MPS_ERROR_NUMERIC, "the motion overflows at or after t = ");
   assert_null(s);
-  assert_int_equal(mps_signal_table(NULL, MPS_SIGNAL_VELOCITY, 3, up, up, &s), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_table(NULL, MPS_SIGNAL_QUANTITY_VELOCITY, 3, up, up, &s),
+                   MPS_ERROR_ARGUMENT);
 }
 
 static mps_status make_one(mps_context *owner, int kind) {
   const double times[] = {0.0, 1.0, 2.0, 3.0}, values[] = {0.0, 1.0, -1.0, 2.0};
   mps_signal *signal = NULL;
-  const mps_status status = kind == 0   ? mps_signal_ricker(owner, 1, 1, 1, &signal)
-                            : kind == 1 ? mps_signal_sine(owner, 1, 1, 0, &signal)
-                            : kind == 2 ? mps_signal_ramp(owner, 0, 1, 1, &signal)
-                                        : mps_signal_table(owner, (mps_signal_quantity)(kind - 3),
-                                                           4, times, values, &signal);
+  const mps_status status = kind == 0   ? mps_signal_create_ricker(owner, 1, 1, 1, &signal)
+                            : kind == 1 ? mps_signal_create_sine(owner, 1, 1, 0, &signal)
+                            : kind == 2
+                                ? mps_signal_create_ramp(owner, 0, 1, 1, &signal)
+                                : mps_signal_create_table(owner, (mps_signal_quantity)(kind - 3), 4,
+                                                          times, values, &signal);
   assert_int_equal(status == MPS_OK, signal != NULL);
   mps_signal_destroy(&signal);
   return status;
@@ -346,7 +357,7 @@ static void a_signal_outlives_its_context(void **state) {
   test_allocator allocator = {0};
   mps_context *owner = test_allocator_context(&allocator);
   mps_signal *signal = NULL;
-  mps_assert_ok(owner, mps_signal_sine(owner, 1.0, 2.0, 0.5 * PI, &signal));
+  mps_assert_ok(owner, mps_signal_create_sine(owner, 1.0, 2.0, 0.5 * PI, &signal));
   mps_context_destroy(&owner);
   mps_assert_near(mps_signal_displacement(signal, 0.0), 2.0, 0.0);
   mps_signal_destroy(&signal);
@@ -359,7 +370,8 @@ static void what_lies_before_zero_displaces_nothing_at_the_start(void **state) {
   (void)state;
   const double times[] = {-2.0, -1.0, 1.0, 3.0}, values[] = {1.0, 1.0, 1.0, -0.5};
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 4, times, values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 4, times,
+                                                 values, &signal));
   mps_assert_near(mps_signal_displacement(signal, 0.0), 0.0, 1e-15);
   mps_assert_near(mps_signal_displacement(signal, 1.0), 1.0, 1e-15);
   mps_assert_near(mps_signal_displacement(signal, -2.0), -2.0, 1e-15);
@@ -368,8 +380,8 @@ static void what_lies_before_zero_displaces_nothing_at_the_start(void **state) {
   mps_signal_destroy(&signal);
   /* a from t = -2: v = t + 2 from rest there, u = (t + 2)^2/2 - 2 */
   const double ones[] = {1.0, 1.0, 1.0, 1.0};
-  mps_assert_ok(context,
-                mps_signal_table(context, MPS_SIGNAL_ACCELERATION, 4, times, ones, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_ACCELERATION, 4,
+                                                 times, ones, &signal));
   for (double t = -2.0; t < 3.0; t += 0.25) {
     mps_assert_near(mps_signal_displacement(signal, t), 0.5 * (t + 2.0) * (t + 2.0) - 2.0, 1e-14);
     mps_assert_near(mps_signal_velocity(signal, t), t + 2.0, 1e-14);
@@ -377,7 +389,8 @@ static void what_lies_before_zero_displaces_nothing_at_the_start(void **state) {
   mps_signal_destroy(&signal);
   /* entirely in the past: what goes on is the last velocity, from 0 at t = 0 */
   const double past[] = {-5.0, -4.0};
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, past, ones, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, past,
+                                                 ones, &signal));
   mps_assert_near(mps_signal_displacement(signal, 0.0), 0.0, 1e-15);
   mps_assert_near(mps_signal_displacement(signal, 2.0), 2.0, 1e-15);
   mps_signal_destroy(&signal);
@@ -401,7 +414,7 @@ static void the_callers_function_is_a_signal(void **state) {
   (void)state;
   parabola p = {3.0, 0};
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_user(context, parabola_at, &p, &signal));
+  mps_assert_ok(context, mps_signal_create_user(context, parabola_at, &p, &signal));
   mps_assert_near(mps_signal_displacement(signal, -2.0), 6.0, 0.0);
   mps_assert_near(mps_signal_velocity(signal, 2.0), 6.0, 0.0);
   mps_assert_near(mps_signal_acceleration(signal, 2.0), 3.0, 0.0);
@@ -416,10 +429,10 @@ static void the_callers_function_is_a_signal(void **state) {
   p.refuse_after = -1;
   assert_true(isnan(mps_signal_displacement(signal, 2.0)));
   mps_signal_destroy(&signal);
-  assert_int_equal(mps_signal_user(context, NULL, NULL, &signal), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_user(context, NULL, NULL, &signal), MPS_ERROR_ARGUMENT);
   assert_null(signal);
-  assert_int_equal(mps_signal_user(NULL, parabola_at, NULL, &signal), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_signal_user(context, parabola_at, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_user(NULL, parabola_at, NULL, &signal), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_create_user(context, parabola_at, NULL, NULL), MPS_ERROR_ARGUMENT);
 }
 
 int main(void) {

@@ -24,7 +24,7 @@ static void weigh(void *data, int64_t i, int32_t worker) {
 
 static void workers_share_a_kernel_and_have_numbers_of_their_own(void **state) {
   (void)state;
-  mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *serial = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_kernel *kernel = NULL;
   mps_assert_ok(serial, mps_kernel_create(serial, MPS_KERNEL_MPS, 1.5, &kernel));
   for (int32_t threads = 1; threads <= THREADS; threads++) {
@@ -51,7 +51,7 @@ static void *use_a_context_of_its_own(void *argument) {
   bool *ok = argument;
   for (int round = 0; round < 50; round++) {
     mps_context_def def = mps_context_defaults();
-    def.executor = MPS_EXECUTOR_SERIAL;
+    def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
     mps_context *context = NULL;
     mps_kernel *kernel = NULL;
     double n0 = 0.0;

@@ -47,13 +47,13 @@ static mps_status elastic(void *user, const mps_material_block *b) {
 
 static mps_material *make_law(mps_context *context, const char *name, int32_t columns,
                               const char *const *names, seen *s) {
-  mps_user_law_def def = mps_user_law_defaults();
+  mps_material_user_def def = mps_material_user_defaults();
   mps_material *out = NULL;
   def.update = elastic, def.user = s;
   def.name = name;
   def.history_count = columns, def.history = names;
   def.wave_modulus = K + 4.0 / 3.0 * G;
-  mps_assert_ok(context, mps_material_user(context, &def, &out));
+  mps_assert_ok(context, mps_material_create_user(context, &def, &out));
   return out;
 }
 
@@ -84,7 +84,7 @@ static mpm_scene begin(mps_context *context, mps_material *law, bool warm) {
 
 static void a_block_tells_ids_places_time_and_temperature(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int warm = 0; warm < 2; warm++) {
     static seen told;
     told = (seen){.bad = -1000};
@@ -116,7 +116,7 @@ static void same_column(mpm_scene *a, mpm_scene *b, const char *name) {
 /* A column called as a field of the library is neither that field nor disturbs it. */
 static void names_of_the_field_table_do_no_harm(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const char *const table[] = {"group",  "volume",   "density", "mass",
                                       "stress", "velocity", "id",      "position"};
   static const char *const plain[] = {"a", "b", "c", "d", "e", "f", "g", "h"};
@@ -145,7 +145,7 @@ static void names_of_the_field_table_do_no_harm(void **state) {
 /* Two laws with a column of the same name, and a caller's field so called. */
 static void laws_do_not_share_columns(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static const char *const names[] = {"damage"};
   mpm_scene s = begin(context, make_law(context, "clay", 1, names, NULL), false);
   mps_material *silt = make_law(context, "silt", 1, names, NULL);
@@ -166,7 +166,7 @@ static void laws_do_not_share_columns(void **state) {
 
 static void histories_may_be_long(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static char text[MOST][8];
   const char *names[MOST];
   for (int c = 0; c < MOST; c++) {
@@ -219,7 +219,7 @@ static void a_refusal_names_the_particle(void **state) {
 /* Time, steps and shortest remainder of a run whose only step is refused are as before it. */
 static void a_run_that_is_refused_takes_no_time(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static seen told;
   told = (seen){.bad = 30, .from = -1.0};
   mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
@@ -239,7 +239,7 @@ static void a_run_that_is_refused_takes_no_time(void **state) {
 /* A result of no bytes is refused before anything is settled. */
 static void settling_looks_at_its_result_first(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static seen told;
   told = (seen){.bad = -1000};
   mpm_scene s = begin(context, make_law(context, "mild", 0, NULL, &told), false);
@@ -260,7 +260,7 @@ static int32_t cancel_third(void *user) { return ++*(int *)user >= 3; }
 /* Settling that was cut leaves particles that move; a step starts them from rest, if it happens. */
 static void a_refused_step_leaves_settling_as_it_was_cut(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   static seen told;
   told = (seen){.bad = -1000};
   mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);

@@ -21,7 +21,7 @@ static void close_column(mps_context **context, mps_particles **particles,
 
 /* Linear limit of the R = 0.5 m column. */
 static double linear_limit(char wave, double vs, double damping, bool printed) {
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *particles = NULL;
   mps_dynamics_def def = column_def(MPS_DYNAMICS_INTEGRATOR_VERLET, NAN);
   mps_dynamics *dynamics =
@@ -51,7 +51,7 @@ static void linear_limits_are_the_reference_values(void **state) {
 static void stepping_is_stable_at_4_10_ms_and_not_at_4_11_ms(void **state) {
   (void)state;
   for (int k = 0; k < 2; k++) {
-    mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+    mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
     mps_particles *particles = NULL;
     const mps_dynamics_def def =
         column_def(MPS_DYNAMICS_INTEGRATOR_VERLET, k == 0 ? 4.10e-3 : 4.11e-3);
@@ -84,7 +84,7 @@ static mps_status watch(void *user, mps_dynamics *dynamics) {
 }
 
 static response run_column(int integrator, double dt, double duration, double *trace) {
-  response r = {.context = test_context(MPS_EXECUTOR_SERIAL, 1), .trace = trace};
+  response r = {.context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1), .trace = trace};
   const mps_dynamics_def def = column_def(integrator, dt);
   mps_dynamics *dynamics = paper_column(r.context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &r.particles);
   const double middle[2] = {4.5, 99.5}, edge[2] = {0.5, 99.5};

@@ -106,7 +106,7 @@ static mps_dynamics *solver_from(mps_context *context, const sample *s, int inte
 static double difference(int integrator, int removal, double damping) {
   static sample s;
   draw(&s);
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double dt = integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? 1e-5 : 2e-3;
   mps_particles *particles = NULL;
   plain_body plain = plain_from(context, &s, integrator, removal, damping, dt);

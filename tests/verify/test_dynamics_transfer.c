@@ -106,10 +106,10 @@ static mps_dynamics *build(mps_context *context, bool viscous, double spacing, m
 }
 
 static void compare(bool viscous, double spacing, double duration) {
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *particles = NULL;
   mps_signal *input = NULL;
-  mps_assert_ok(context, mps_signal_ricker(context, 4.0, 0.5, 1.0, &input));
+  mps_assert_ok(context, mps_signal_create_ricker(context, 4.0, 0.5, 1.0, &input));
   mps_dynamics *dynamics = build(context, viscous, spacing, input, &particles);
   const double dt = EVERY * mps_dynamics_dt(dynamics); /* of the samples */
   const int64_t steps = (int64_t)(duration / dt) + 4;

@@ -128,7 +128,7 @@ static void compare(test_body *b, const laminate *l, double *eu, double *es) {
 
 static void check_laminate(mps_context *context, laminate *l, double radius) {
   mps_elastic_def def = mps_elastic_defaults();
-  def.state = l->plane_stress ? MPS_ELASTIC_PLANE_STRESS : MPS_ELASTIC_PLANE_STRAIN;
+  def.state = l->plane_stress ? MPS_ELASTIC_STATE_PLANE_STRESS : MPS_ELASTIC_STATE_PLANE_STRAIN;
   def.radius_ratio = radius;
   test_body b = test_body_begin(context, l->dim, 0.1);
   test_body_box(&b, 0, 0, 0, 0.8, 0.8, 0.6);
@@ -137,7 +137,7 @@ static void check_laminate(mps_context *context, laminate *l, double radius) {
   fill(&b, l);
   load_laminate(&b, l);
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  mps_assert_ok(context, mps_elastic_stress(b.elastic));
+  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
   double eu, es;
   compare(&b, l, &eu, &es);
   print_message("layers %dD, normal %c, E %g:1, re %g: displacement %.1e, stress %.1e\n", l->dim,
@@ -149,7 +149,7 @@ static void check_laminate(mps_context *context, laminate *l, double radius) {
 
 static void layers_in_constant_traction_are_exact(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double ratio[] = {1.0 / 3000, 3, 95, 3000};
   for (int r = 0; r < 4; r++)
     for (int dim = 2; dim <= 3; dim++)
@@ -172,7 +172,7 @@ static void layers_in_constant_traction_are_exact(void **state) {
 /* The finding as it was met: uniform tension of 1 MPa, nu = 0. */
 static void a_bar_in_series_carries_its_load_everywhere(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double ratio[] = {3, 95, 3000};
   for (int r = 0; r < 3; r++) {
     laminate l = {.dim = 2,
@@ -188,7 +188,7 @@ static void a_bar_in_series_carries_its_load_everywhere(void **state) {
 /* Beside one another along the load the layers share the strain. */
 static void layers_in_parallel_share_the_strain(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int dim = 2; dim <= 3; dim++) {
     laminate l = {.dim = dim,
                   .axis = 1,
@@ -307,7 +307,7 @@ static double beam_error(mps_context *context, const beam *q, int cells) {
 
 static void composite_cantilevers_bend_as_beam_theory_says(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int layout = 0; layout < 4; layout++) {
     const bool swap = layout % 2;
     beam q = {.depth = 1.0, .nu = 0.3, .split = 0.5, .bending = NAN};
@@ -332,7 +332,7 @@ static void composite_cantilevers_bend_as_beam_theory_says(void **state) {
  * of their own bending stiffness. */
 static void layers_at_any_height_bend_as_beam_theory_says(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double ratio[] = {0.1, 10, 100, 1000}, split[] = {0.1, 0.2, 0.3, 0.5, 0.8};
   for (int r = 0; r < 4; r++)
     for (int s = 0; s < 5; s++) {
@@ -354,7 +354,7 @@ static void layers_at_any_height_bend_as_beam_theory_says(void **state) {
 /* Materials without any order; the matrix is checked against the operator in property/elastic. */
 static void only_rigid_motions_are_free_whatever_the_materials(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int dim = 2; dim <= 3; dim++) {
     test_body b = test_body_begin(context, dim, 0.25);
     test_body_box(&b, 0, 0, 0, 2, 1, 0.5);
@@ -440,7 +440,7 @@ static void inclusion_error(mps_context *context, inclusion *q, int cells, doubl
                             double *rms) {
   const double h = 1.0 / (cells + 0.5), young = 2 * (1 + q->nu); /* mu = 1 */
   mps_elastic_def def = mps_elastic_defaults();
-  def.state = MPS_ELASTIC_PLANE_STRAIN;
+  def.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
   mps_particles_def set = mps_particles_defaults();
   set.spacing = h;
   set.origin[0] = set.origin[1] = -0.5 * h;
@@ -469,7 +469,7 @@ static void inclusion_error(mps_context *context, inclusion *q, int cells, doubl
     free(facets);
   }
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  mps_assert_ok(context, mps_elastic_stress(b.elastic));
+  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
   double sum = 0, square = 0, count = 0;
   for (int64_t i = 0; i < b.n; i++) {
     const double x = test_value(&b, "position", i, 0), y = test_value(&b, "position", i, 1);
@@ -486,7 +486,7 @@ static void inclusion_error(mps_context *context, inclusion *q, int cells, doubl
 
 static void a_stiff_inclusion_converges(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double ratios[] = {10, 0.1};
   for (int r = 0; r < 2; r++) {
     inclusion q = {.m = ratios[r], .nu = 0.3};

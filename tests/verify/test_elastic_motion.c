@@ -59,10 +59,10 @@ static void load_all(test_body *b, mps_signal *swing) {
 
 static void the_energy_budget_closes(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_signal *swing = NULL, *ramp = NULL;
-  mps_assert_ok(context, mps_signal_sine(context, 0.11, 1.0, 0.3, &swing));
-  mps_assert_ok(context, mps_signal_ramp(context, 2.0, 9.0, 0.4, &ramp));
+  mps_assert_ok(context, mps_signal_create_sine(context, 0.11, 1.0, 0.3, &swing));
+  mps_assert_ok(context, mps_signal_create_ramp(context, 2.0, 9.0, 0.4, &ramp));
   for (int damped = 0; damped < 3; damped++) {
     test_body b = beam(context, 16, 4, NULL);
     load_all(&b, swing);
@@ -100,7 +100,7 @@ static void the_energy_budget_closes(void **state) {
 /* What comes in by gravity and the wall is the momentum. */
 static void impulses_are_the_momentum(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = beam(context, 12, 4, NULL);
   const double gravity[2] = {0.02, -0.05};
   mps_assert_ok(context, test_load(b.elastic, MPS_ELASTIC_LOAD_GRAVITY, 0, NULL, gravity, 0));
@@ -128,7 +128,7 @@ static void impulses_are_the_momentum(void **state) {
 /* Amplitudes of the two lowest modes fall as exp(-h w t), with h as asked for. */
 static void modes_decay_with_the_damping_ratios_asked_for(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int mode = 0; mode < 2; mode++) {
     test_body b = beam(context, 20, 4, NULL);
     double omega[2], energy[2];
@@ -180,7 +180,7 @@ static mps_status start(test_body *b, double dt, double rho, double beta, double
  * quadratic in k, which the ratio at 3 sizes takes out. */
 static void endless_frequencies_fall_by_rho_inf(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double rho[] = {0.9, 0.8, 0.5};
   for (int k = 0; k < 3; k++) {
     test_body b = beam(context, 6, 3, NULL);
@@ -205,7 +205,7 @@ static void endless_frequencies_fall_by_rho_inf(void **state) {
 /* Second order for every rho_inf: error of one period of the first mode against steps. */
 static void every_member_is_of_second_order(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double rho[] = {1.0, 0.6, 0.0};
   for (int k = 0; k < 3; k++) {
     double error[2];
@@ -241,10 +241,10 @@ static void every_member_is_of_second_order(void **state) {
 
 static void a_driven_wall_follows_its_signal(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   test_body b = beam(context, 8, 4, NULL);
   mps_signal *ramp = NULL;
-  mps_assert_ok(context, mps_signal_ramp(context, 0.5, 3.0, 0.2, &ramp));
+  mps_assert_ok(context, mps_signal_create_ramp(context, 0.5, 3.0, 0.2, &ramp));
   drive_wall(&b, ramp, NULL);
   mps_assert_ok(context, start(&b, 0.1, 1.0, NAN, NAN));
   for (int k = 0; k < 20; k++) {

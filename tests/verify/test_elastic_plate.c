@@ -24,9 +24,9 @@ static double tension_error(mps_context *context, int32_t state) {
   mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, count, wall));
   mps_assert_ok(context, test_traction(b.elastic, facet_count, facets, traction));
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  mps_assert_ok(context, mps_elastic_stress(b.elastic));
+  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
   const double x0 = 0.5 / 17, y0 = test_value(&b, "position", wall[count / 2], 1);
-  const int strain = state == MPS_ELASTIC_PLANE_STRAIN;
+  const int strain = state == MPS_ELASTIC_STATE_PLANE_STRAIN;
   const double ex = load * (strain ? 1 - nu * nu : 1), ey = -nu * load * (strain ? 1 + nu : 1);
   double worst = 0.0;
   for (int64_t i = 0; i < b.n; i++) {
@@ -43,7 +43,7 @@ static double tension_error(mps_context *context, int32_t state) {
   /* The force through any section is the load, without a moment about the middle. */
   const double middle[3] = {0.0, 0.5, 0.0};
   double force[3], moment[3];
-  mps_assert_ok(context, mps_elastic_section(b.elastic, 0, 0.4, middle, force, moment));
+  mps_assert_ok(context, mps_elastic_get_section(b.elastic, 0, 0.4, middle, force, moment));
   mps_assert_near(force[0] / load, 1.0, 1e-10);
   mps_assert_near(force[1] / load, 0.0, 1e-10);
   mps_assert_near(moment[2] / load, 0.0, 1e-10);
@@ -55,7 +55,7 @@ static double tension_error(mps_context *context, int32_t state) {
 
 static void a_plate_in_tension_is_exact(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   for (int32_t s = 0; s < 2; s++) {
     const double error = tension_error(context, s);
     print_message("plate in tension, 289 particles, state %d: largest error %.1e\n", s, error);
@@ -67,7 +67,7 @@ static void a_plate_in_tension_is_exact(void **state) {
 /* The published method with the paper's particles on the boundary: nodal forces at the end. */
 static void the_published_plate_is_the_reference_value(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double l0 = 1.0 / 16;
   test_body b = test_body_begin(context, 2, l0);
   test_body_box(&b, 0, 0, 0, 17 * l0, 17 * l0, 0);
@@ -168,7 +168,7 @@ static double kirsch_concentration(mps_context *context, int m) {
     free(facets);
   }
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  mps_assert_ok(context, mps_elastic_stress(b.elastic));
+  mps_assert_ok(context, mps_elastic_update_stress(b.elastic));
   int64_t count, *axis = test_select(&b, 0, -1, 0.1 * l0, &count);
   const double concentration = fit_at_edge(&b, axis, count, a + 4 * l0, 3 * a);
   print_message("hole of radius %.1f spacings, %d particles: concentration %.3f\n", m + 0.5,
@@ -180,7 +180,7 @@ static double kirsch_concentration(mps_context *context, int m) {
 
 static void the_hole_concentrates_stress_three_times(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   const double coarse = kirsch_concentration(context, 10);
   const double middle = kirsch_concentration(context, 20);
   const double fine = kirsch_concentration(context, 40);

@@ -190,7 +190,7 @@ static void waves_press_on_the_wall_as_potential_flow_does(void **state) {
     double time, force;
   } exact[] = {{3.142, 527.8}, {4.170, 548.2}, {4.698, 334.1}, {5.235, 532.4}};
   mps_signal *motion = NULL;
-  mps_assert_ok(context, mps_signal_user(context, piston, NULL, &motion));
+  mps_assert_ok(context, mps_signal_create_user(context, piston, NULL, &motion));
   tank t = tank_make(context, 1.6, 0.3, 0.02, motion, 2e-3);
   size_t at = 0;
   while (at < sizeof exact / sizeof *exact) {

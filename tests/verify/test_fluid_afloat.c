@@ -151,7 +151,7 @@ static void heaves(scene s, double bar) {
   int64_t solutions = 0;
   int turns = 0;
   launch(&s);
-  mps_assert_ok(context, mps_body_load(s.body, load, NULL));
+  mps_assert_ok(context, mps_body_set_load(s.body, load, NULL));
   while (turns < 3) {
     mps_body_state b;
     mps_assert_ok(context, mps_fluid_step(s.t.fluid, 1));
@@ -218,7 +218,7 @@ static void rests(scene s, double load) {
   int64_t count = 0;
   s.damping = 40.0;
   launch(&s);
-  mps_assert_ok(context, mps_body_load(s.body, down, NULL));
+  mps_assert_ok(context, mps_body_set_load(s.body, down, NULL));
   while (mps_fluid_time(s.t.fluid) < 2.5) {
     mps_body_state b;
     mps_assert_ok(context, mps_fluid_step(s.t.fluid, 1));
@@ -313,7 +313,7 @@ static void going_back_is_exact(void **state) {
   mps_snapshot *start = NULL;
   mps_body_state first, again;
   launch(&s);
-  mps_assert_ok(context, mps_body_load(s.body, load, moment));
+  mps_assert_ok(context, mps_body_set_load(s.body, load, moment));
   mps_assert_ok(context, mps_fluid_step(s.t.fluid, 40));
   mps_assert_ok(context, mps_fluid_snapshot(s.t.fluid, &start));
   mps_assert_ok(context, mps_fluid_step(s.t.fluid, 10));

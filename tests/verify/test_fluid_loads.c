@@ -27,7 +27,7 @@ static void a_shaken_tank_is_a_loaded_one(void **state) {
   tank stands = tank_make(context, 0.6, 0.2, 0.02, NULL, dt);
   mps_fluid_load_def load = mps_fluid_load_defaults();
   load.acceleration[0] = 1.0;
-  mps_assert_ok(context, mps_signal_user(context, shake, &n, &load.signal[0]));
+  mps_assert_ok(context, mps_signal_create_user(context, shake, &n, &load.signal[0]));
   mps_assert_ok(context, mps_fluid_add_load(stands.fluid, &load, NULL));
   mps_signal_destroy(&load.signal[0]);
   double place = 0.0, velocity = 0.0, largest = 0.0;
@@ -183,8 +183,8 @@ static void a_gust_makes_waves(void **state) {
   load.kind = MPS_FLUID_LOAD_PRESSURE;
   load.pressure = s.pressure;
   load.lower[0] = 0.0, load.upper[0] = s.width;
-  mps_assert_ok(context,
-                mps_signal_sine(context, s.omega / (2.0 * TANK_PI), 1.0, 0.0, &load.signal[0]));
+  mps_assert_ok(context, mps_signal_create_sine(context, s.omega / (2.0 * TANK_PI), 1.0, 0.0,
+                                                &load.signal[0]));
   mps_assert_ok(context, mps_fluid_add_load(t.fluid, &load, NULL));
   mps_signal_destroy(&load.signal[0]);
   mps_totals rest;
@@ -237,7 +237,7 @@ static void loads_go_back(void **state) {
   gust_def.kind = MPS_FLUID_LOAD_PRESSURE;
   gust_def.pressure = -80.0, gust_def.lower[0] = 0.3;
   push.acceleration[0] = 0.7, push.upper[0] = 0.3;
-  mps_assert_ok(context, mps_signal_sine(context, 1.0, 1.0, 0.0, &push.signal[0]));
+  mps_assert_ok(context, mps_signal_create_sine(context, 1.0, 1.0, 0.0, &push.signal[0]));
   mps_assert_ok(context, mps_fluid_add_load(t.fluid, &gust_def, NULL));
   mps_assert_ok(context, mps_fluid_add_load(t.fluid, &push, NULL));
   mps_signal_destroy(&push.signal[0]);
@@ -303,7 +303,7 @@ static void what_is_refused(void **state) {
   mps_assert_ok(context, mps_fluid_add_load(t.fluid, &bad, &number));
   assert_int_equal(number, 4);
   /* a signal that refuses: the step has not happened */
-  mps_assert_ok(context, mps_signal_user(context, refuse, NULL, &bad.signal[1]));
+  mps_assert_ok(context, mps_signal_create_user(context, refuse, NULL, &bad.signal[1]));
   mps_assert_ok(context, mps_fluid_set_load(t.fluid, 4, &bad));
   mps_signal_destroy(&bad.signal[1]);
   assert_int_equal(mps_fluid_step(t.fluid, 1), MPS_ERROR_IO);

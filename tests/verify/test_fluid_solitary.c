@@ -52,8 +52,8 @@ static mps_signal *piston(const wave *w) {
     x[k] = w->stroke * (tanh(low) - tanh(-3.8));
   }
   x[0] = 0.0;
-  mps_assert_ok(context,
-                mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, SAMPLES, times, x, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, SAMPLES,
+                                                 times, x, &signal));
   return signal;
 }
 

@@ -11,7 +11,7 @@ static const double lame = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU));
 
 static mps_material *linear_elastic(void) {
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, E, NU, &material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, E, NU, &material));
   return material;
 }
 
@@ -123,7 +123,7 @@ static double energy(const double *f) {
 
 static mps_material *neo_hookean(void) {
   mps_material *material = NULL;
-  mps_assert_ok(context, mps_material_neo_hookean(context, E, NU, &material));
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, E, NU, &material));
   return material;
 }
 
@@ -228,13 +228,13 @@ static void neo_hookean_wave_modulus_bounds_every_direction(void **state) {
  */
 
 static mps_material *fluid(int32_t state_equation, double viscosity, int32_t no_tension) {
-  mps_newtonian_def def = mps_newtonian_defaults();
+  mps_material_newtonian_def def = mps_material_newtonian_defaults();
   mps_material *material = NULL;
   def.bulk_modulus = 2e6;
   def.state = state_equation;
   def.viscosity = viscosity;
   def.no_tension = no_tension;
-  mps_assert_ok(context, mps_material_newtonian(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_newtonian(context, &def, &material));
   return material;
 }
 
@@ -280,7 +280,7 @@ static void fluid_without_tension_opens_and_closes(void **state) {
   mps_assert_ok(context, mps_material_point_drive(context, material, &point, open, 1.0, 50));
   for (int c = 0; c < 6; c++) mps_assert_near(point.stress[c], 0.0, 0.0);
   mps_assert_near(point.volume_ratio, 1.0, 0.0);
-  assert_int_equal(point.flags, MPS_MATERIAL_APEX);
+  assert_int_equal(point.flags, MPS_MATERIAL_FLAG_APEX);
   mps_assert_ok(context, mps_material_point_drive(context, material, &point, close, 1.0, 1));
   mps_assert_near(point.stress[0], -2e6 / 7.0 * (pow(0.99, -7.0) - 1.0), 1e-9);
   assert_int_equal(point.flags, 0);

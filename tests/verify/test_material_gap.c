@@ -13,8 +13,8 @@ static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0
 enum { LAWS = 5 }; /* four cones, and Mohr-Coulomb */
 
 static mps_material *soil(int law, double psi, double cohesion, double tension) {
-  mps_drucker_prager_def cone = mps_drucker_prager_defaults();
-  mps_mohr_coulomb_def pyramid = mps_mohr_coulomb_defaults();
+  mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
+  mps_material_mohr_coulomb_def pyramid = mps_material_mohr_coulomb_defaults();
   mps_material *material = NULL;
   cone.young = pyramid.young = E;
   cone.cone = law;
@@ -22,8 +22,8 @@ static mps_material *soil(int law, double psi, double cohesion, double tension) 
   cone.dilation = pyramid.dilation = psi * PI / 180.0;
   cone.cohesion = pyramid.cohesion = cohesion;
   cone.tension = pyramid.tension = tension;
-  mps_assert_ok(context, law < 4 ? mps_material_drucker_prager(context, &cone, &material)
-                                 : mps_material_mohr_coulomb(context, &pyramid, &material));
+  mps_assert_ok(context, law < 4 ? mps_material_create_drucker_prager(context, &cone, &material)
+                                 : mps_material_create_mohr_coulomb(context, &pyramid, &material));
   return material;
 }
 
@@ -57,7 +57,7 @@ static void sand_closes_its_gap_before_it_resists(void **state) {
         assert_no_stress(&point);
         mps_assert_near(point.history[1], gap, 1e-12);
         mps_assert_near(point.volume_ratio, 1.0, 1e-12);
-        assert_int_equal(point.flags, MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX);
+        assert_int_equal(point.flags, MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX);
       }
       while (gap > 1.5e-3) { /* sheared as it closes: it neither resists nor dilates */
         step(material, &point, -2e-3, 3e-3, -2e-3, 4e-3);

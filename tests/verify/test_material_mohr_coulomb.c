@@ -9,14 +9,14 @@
 static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0 * NU));
 
 static mps_material *mohr_coulomb(double phi, double psi, double cohesion) {
-  mps_mohr_coulomb_def def = mps_mohr_coulomb_defaults();
+  mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
   mps_material *material = NULL;
   def.young = E;
   def.poisson = NU;
   def.friction = phi * PI / 180.0;
   def.dilation = psi * PI / 180.0;
   def.cohesion = cohesion;
-  mps_assert_ok(context, mps_material_mohr_coulomb(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &def, &material));
   return material;
 }
 
@@ -84,7 +84,7 @@ static void associated_returns_are_the_closest_points(void **state) {
       kinds[kind]++;
       if (kind == 2)
         right += 2.0 * mean_stress(s) < fmax(s[0], fmax(s[1], s[2])) + fmin(s[0], fmin(s[1], s[2]));
-      assert_int_equal((point.flags & MPS_MATERIAL_APEX) != 0, kind == 3);
+      assert_int_equal((point.flags & MPS_MATERIAL_FLAG_APEX) != 0, kind == 3);
       for (int k = 0; k < 200; k++) { /* admissible states: scaled back towards one inside */
         double other[3];
         for (int c = 0; c < 3; c++) other[c] = 1e5 * random_number(&seed);
@@ -168,7 +168,7 @@ static void returns_keep_the_principal_axes(void **state) {
   static const int row[6] = {0, 1, 2, 0, 2, 1}, column[6] = {0, 1, 2, 1, 0, 2};
   mps_material *material = mohr_coulomb(30.0, 5.0, C);
   mps_material *elastic = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, E, NU, &elastic));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, E, NU, &elastic));
   uint64_t seed = 31;
   int returned = 0;
   for (int n = 0; n < 3000; n++) {
@@ -211,7 +211,7 @@ static void sand_opens_without_drift_of_volume(void **state) {
   mps_assert_ok(context, mps_material_point_drive(context, material, &point, pull, 1.0, 1000));
   for (int c = 0; c < 6; c++) mps_assert_near(point.stress[c], 0.0, 0.0);
   mps_assert_near(point.volume_ratio, 1.0, 0.0);
-  assert_int_equal(point.flags, MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX);
+  assert_int_equal(point.flags, MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX);
   mps_material_destroy(&material);
 }
 

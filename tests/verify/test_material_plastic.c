@@ -12,13 +12,13 @@ static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0
  */
 
 static mps_material *von_mises(double yield, double hardening) {
-  mps_von_mises_def def = mps_von_mises_defaults();
+  mps_material_von_mises_def def = mps_material_von_mises_defaults();
   mps_material *material = NULL;
   def.young = E;
   def.poisson = NU;
   def.yield_stress = yield;
   def.hardening = hardening;
-  mps_assert_ok(context, mps_material_von_mises(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &material));
   return material;
 }
 
@@ -33,7 +33,7 @@ static void von_mises_yields_and_hardens_in_tension(void **state) {
     const double stress = E * (strain - over) + tangent * over;
     mps_assert_near(point.stress[2], stress, 1e-9 * yield);
     mps_assert_near(point.history[0], over - tangent * over / E, 1e-12);
-    if (step != 20) assert_int_equal(point.flags, step > 20 ? MPS_MATERIAL_PLASTIC : 0);
+    if (step != 20) assert_int_equal(point.flags, step > 20 ? MPS_MATERIAL_FLAG_PLASTIC : 0);
   }
   mps_material_destroy(&material);
 }
@@ -71,7 +71,7 @@ static void von_mises_has_the_cohesion_in_plane_strain(void **state) {
 
 static mps_material *drucker_prager(int32_t cone, double phi, double psi, double cohesion,
                                     double tension) {
-  mps_drucker_prager_def def = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def def = mps_material_drucker_prager_defaults();
   mps_material *material = NULL;
   def.young = E;
   def.poisson = NU;
@@ -80,7 +80,7 @@ static mps_material *drucker_prager(int32_t cone, double phi, double psi, double
   def.dilation = psi * PI / 180.0;
   def.cohesion = cohesion;
   def.tension = tension;
-  mps_assert_ok(context, mps_material_drucker_prager(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_drucker_prager(context, &def, &material));
   return material;
 }
 
@@ -174,7 +174,7 @@ static void drucker_prager_returns_to_the_surface(void **state) {
       const double drop =
           mean_stress(before.stress) + bulk * strain - p; /* K times plastic volume */
       assert_true(f <= 1e-12 * E * 1e-2 && p <= limit * (1.0 + 1e-12));
-      if (point.flags & MPS_MATERIAL_APEX) {
+      if (point.flags & MPS_MATERIAL_FLAG_APEX) {
         mps_assert_near(p, limit, 1e-12 * limit);
         /* all plastic volume is the gap's, the elastic is the grains' own */
         mps_assert_near(point.history[1], drop / bulk, 1e-14);
@@ -211,7 +211,7 @@ static void the_tension_cut_off_keeps_small_shear(void **state) {
     mps_assert_near(point.stress[3], large ? radius : 2.0 * shear * gamma, 1e-9);
     for (int c = 0; c < 3; c++) mps_assert_near(point.stress[c], tension, 1e-10);
     mps_assert_near(point.history[0] > 0.0, large, 0.0);
-    assert_int_equal(point.flags, MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX);
+    assert_int_equal(point.flags, MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX);
   }
   mps_material_destroy(&material);
   material = drucker_prager(MPS_MATERIAL_CONE_INSCRIBED, 0.0, 0.0, C,

@@ -108,11 +108,11 @@ static bool search(const plane *planes, const double *trial, double *s) {
  */
 
 static mps_material *mohr_coulomb(double phi, double psi, double tension) {
-  mps_mohr_coulomb_def def = mps_mohr_coulomb_defaults();
+  mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
   mps_material *material = NULL;
   def.young = E, def.poisson = NU, def.cohesion = C, def.tension = tension;
   def.friction = phi * PI / 180.0, def.dilation = psi * PI / 180.0;
-  mps_assert_ok(context, mps_material_mohr_coulomb(context, &def, &material));
+  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &def, &material));
   return material;
 }
 
@@ -162,8 +162,8 @@ static void mohr_coulomb_goes_to_the_closest_point(void **state) {
       seen[where]++;
       const bool cut = where >= 4;
       assert_int_equal(point.flags, where == 0 ? 0
-                                    : cut      ? MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX
-                                               : MPS_MATERIAL_PLASTIC);
+                                    : cut      ? MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX
+                                               : MPS_MATERIAL_FLAG_PLASTIC);
       if (cut) /* the elastic part of the strain is the grains' own */
         mps_assert_near(point.volume_ratio, exp(mean_stress(s) / bulk), 1e-7);
     }
@@ -229,11 +229,11 @@ static void drucker_prager_goes_to_the_closest_point(void **state) {
   uint64_t seed = 7;
   for (int n = 0; n < 3; n++) {
     const double T = 0.3 * n * kappa / (3.0 * alpha);
-    mps_drucker_prager_def def = mps_drucker_prager_defaults();
+    mps_material_drucker_prager_def def = mps_material_drucker_prager_defaults();
     mps_material *material = NULL;
     def.young = E, def.poisson = NU, def.cohesion = C, def.tension = T;
     def.friction = def.dilation = phi, def.cone = MPS_MATERIAL_CONE_INSCRIBED;
-    mps_assert_ok(context, mps_material_drucker_prager(context, &def, &material));
+    mps_assert_ok(context, mps_material_create_drucker_prager(context, &def, &material));
     int cut = 0, corner = 0, cone = 0;
     for (int k = 0; k < 8000; k++) {
       double trial[3];

@@ -19,13 +19,13 @@ typedef struct clay {
   double shift;                    /* of the lattice, in its spacings */
 } clay;
 
-static int dim_of(const clay *c) { return c->geometry == MPS_MPM_SPACE ? 3 : 2; }
+static int dim_of(const clay *c) { return c->geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2; }
 
 static mps_status is_outside(void *user, const double *x, int32_t *inside) {
   const clay *c = user;
   double square = x[0] * x[0];
-  if (c->geometry != MPS_MPM_AXISYMMETRIC) square += x[1] * x[1];
-  if (c->geometry == MPS_MPM_SPACE) square += x[2] * x[2];
+  if (c->geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) square += x[1] * x[1];
+  if (c->geometry == MPS_MPM_GEOMETRY_SPACE) square += x[2] * x[2];
   *inside = square > c->radius * c->radius;
   return MPS_OK;
 }
@@ -49,19 +49,19 @@ static mpm_scene make_clay(clay *c, double cohesion) {
   def.geometry = c->geometry, def.spline = c->spline, def.cell = CELL;
   def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
   for (int a = 0; a < 3; a++) {
-    const bool radial = c->geometry == MPS_MPM_AXISYMMETRIC && a == 0;
+    const bool radial = c->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0;
     def.lower[a] = radial ? 0.0 : -outer, def.upper[a] = outer;
     low[a] = def.lower[a] + 1e-9, high[a] = outer - 1e-9;
   }
   mps_assert_ok(context, mps_particles_fill_where(s.particles, low, high, is_outside, c, NULL));
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
   mps_assert_ok(context, mps_particles_set_stress(s.particles, press, NULL));
-  mps_von_mises_def law = mps_von_mises_defaults();
+  mps_material_von_mises_def law = mps_material_von_mises_defaults();
   law.young = 5e6, law.poisson = 0.3, law.yield_stress = sqrt(3.0) * cohesion;
-  mps_assert_ok(context, mps_material_von_mises(context, &law, &s.material));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &law, &s.material));
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   for (int32_t side = 0; side < 2 * set.dim; side++)
-    if (c->geometry != MPS_MPM_AXISYMMETRIC || side != 0)
+    if (c->geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC || side != 0)
       mpm_scene_side(&s, side, MPS_MPM_BOUNDARY_FIXED, 0.0);
   return s;
 }
@@ -133,7 +133,8 @@ static void clay_flows(void **state) {
 static void spheres_turn(void **state) {
   (void)state;
   for (int k = 0; k < 2; k++) {
-    clay c = {.geometry = MPS_MPM_SPACE, .spline = 2 + k, .along = 2, .radius = 4.0 * CELL};
+    clay c = {
+        .geometry = MPS_MPM_GEOMETRY_SPACE, .spline = 2 + k, .along = 2, .radius = 4.0 * CELL};
     c.shift = 0.3 * k;
     const double part = turn(&c, 0.5 * COHESION, 0.5, 120);
     print_message("sphere, degree %d: moment %.4f\n", c.spline, part);
@@ -145,7 +146,7 @@ static void spheres_turn(void **state) {
 static void shafts_are_pulled(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
-    clay c = {.geometry = MPS_MPM_AXISYMMETRIC, .spline = 2 + k % 2, .along = 2 + k / 2};
+    clay c = {.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC, .spline = 2 + k % 2, .along = 2 + k / 2};
     c.radius = 3.0 * CELL;
     mpm_scene s = make_clay(&c, 1e3 * COHESION);
     const double length = 2.0 * CELL * ceil(c.radius / CELL + RIM), strength = 0.5 * COHESION;

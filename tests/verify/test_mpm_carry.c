@@ -92,7 +92,7 @@ static double carry(int32_t spline, int32_t strain, double moves) {
   int64_t ids[COUNT];
   mpm_scene s = mpm_scene_begin(context, SPACING, 0.0, -0.5 * DEPTH, YOUNG);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_neo_hookean(context, YOUNG, POISSON, &s.material));
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, YOUNG, POISSON, &s.material));
   mpm_scene_box(&s, 0.0, -0.5 * DEPTH, LENGTH, 0.5 * DEPTH);
   assert_int_equal(mps_particles_count(s.particles), COUNT);
   mps_view id = mpm_scene_view(&s, "id");

@@ -10,7 +10,7 @@
 /* A column between rollers, of height 1 m, starts with the stress of its weight and stays at rest:
  * sigma_yy = -rho g depth, sigma_xx = K0 sigma_yy, exact for linear stress. */
 static void column_at_rest(int32_t geometry) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double rho = 1000.0, g = 10.0, K0 = 0.3 / 0.7;
   const double lo[] = {0.0, 0.0, 0.0}, hi[] = {dim == 3 ? 0.12 : 0.2, 1.0, 0.08};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.02, 0.0, 0.0, 1e7);
@@ -48,9 +48,9 @@ static void column_at_rest(int32_t geometry) {
 
 static void own_weight(void **state) {
   (void)state;
-  column_at_rest(MPS_MPM_PLANE_STRAIN);
-  column_at_rest(MPS_MPM_AXISYMMETRIC);
-  column_at_rest(MPS_MPM_SPACE);
+  column_at_rest(MPS_MPM_GEOMETRY_PLANE_STRAIN);
+  column_at_rest(MPS_MPM_GEOMETRY_AXISYMMETRIC);
+  column_at_rest(MPS_MPM_GEOMETRY_SPACE);
 }
 
 /* A block that is thrown against the walls, in plane strain or as a slab of one cell in space. */
@@ -63,7 +63,7 @@ static mpm_scene thrown(int dim, int32_t volumetric) {
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.volumetric = volumetric;
   def.cell = 0.02;
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0;

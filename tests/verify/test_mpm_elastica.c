@@ -127,7 +127,7 @@ static double bend_for(double periods, int32_t spline, int cells, int across, do
   const double cell = DEPTH / cells, spacing = cell / across, g = gravity_of(load);
   mpm_scene s = mpm_scene_begin(context, spacing, 0.0, -0.5 * DEPTH, YOUNG);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_neo_hookean(context, YOUNG, POISSON, &s.material));
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, YOUNG, POISSON, &s.material));
   mpm_scene_box(&s, 0.0, -0.5 * DEPTH, LENGTH, 0.5 * DEPTH);
   const double lo[2] = {LENGTH - spacing, -INFINITY}, hi[2] = {INFINITY, INFINITY};
   int64_t ids[64], count;

@@ -18,7 +18,7 @@ typedef struct part_changes {
 /* 0.8 m of 1500 kg/m3 over 2000 kg/m3; K0 is that of elastic ground. */
 static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_t floor) {
   const double k0 = 0.3 / 0.7;
-  const mps_soil_layer layers[] = {{0.8, k0, 0.0}, {INFINITY, k0, 0.0}};
+  const mps_geostatic_layer layers[] = {{0.8, k0, 0.0}, {INFINITY, k0, 0.0}};
   const double full = GRAVITY * (1500.0 * 0.8 + 2000.0 * 1.2);
   mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 2e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.4, HEIGHT);
@@ -77,10 +77,11 @@ static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_
 /* Mirrors leave the error of the particles' quadrature; the surface has half-filled cells. */
 static void layers_stay_at_rest(void **state) {
   (void)state;
-  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_AXISYMMETRIC; geometry++)
+  for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_AXISYMMETRIC;
+       geometry++)
     for (int32_t spline = 2; spline <= 3; spline++)
       for (int32_t floor = MPS_MPM_BOUNDARY_ROLLER; floor <= MPS_MPM_BOUNDARY_FIXED; floor++) {
-        const double most = geometry == MPS_MPM_PLANE_STRAIN ? 8e-4 : 3e-3;
+        const double most = geometry == MPS_MPM_GEOMETRY_PLANE_STRAIN ? 8e-4 : 3e-3;
         const part_changes c = rest(geometry, spline, MPS_MPM_WALLS_MIRROR, floor);
         assert_true(c.floor < most);
         assert_true(c.inside < most);
@@ -92,7 +93,8 @@ static void layers_stay_at_rest(void **state) {
 static void fit_moves_it_at_walls(void **state) {
   (void)state;
   static const double most[2][2] = {{4e-3, 0.025}, {0.012, 0.045}};
-  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_AXISYMMETRIC; geometry++)
+  for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_AXISYMMETRIC;
+       geometry++)
     for (int32_t spline = 2; spline <= 3; spline++) {
       const part_changes c = rest(geometry, spline, MPS_MPM_WALLS_FIT, MPS_MPM_BOUNDARY_ROLLER);
       assert_true(c.floor < most[geometry][spline - 2]);

@@ -32,9 +32,9 @@ static double confined(double young, double poisson) { /* K + 4G/3 */
 
 static mps_material *von_mises(double young, double yield) {
   mps_material *out = NULL;
-  mps_von_mises_def def = mps_von_mises_defaults();
+  mps_material_von_mises_def def = mps_material_von_mises_defaults();
   def.young = young, def.yield_stress = yield;
-  mps_assert_ok(context, mps_material_von_mises(context, &def, &out));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &def, &out));
   return out;
 }
 
@@ -108,7 +108,7 @@ static void joint_reflects(void **state) {
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.02;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mps_material *stiff = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, E2, 0.3, &stiff));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, E2, 0.3, &stiff));
   lay(&s, stiff, 1.0);
   mps_material_destroy(&stiff);
   const double before = mpm_scene_totals(&s).linear[1], t = 0.85 / c1;
@@ -152,7 +152,7 @@ static mpm_scene lumps(int laws, mps_material *rubber) {
 static void each_as_alone(void **state) {
   (void)state;
   mps_material *rubber = NULL;
-  mps_assert_ok(context, mps_material_neo_hookean(context, 2e5, 0.4, &rubber));
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, 2e5, 0.4, &rubber));
   mpm_scene both = lumps(ELASTIC | RUBBER, rubber);
   mpm_scene alone[2] = {lumps(ELASTIC, rubber), lumps(RUBBER, rubber)};
   const int64_t half = mps_particles_count(alone[0].particles);
@@ -191,7 +191,7 @@ static void contact_by_own_modulus(void **state) {
   mpm_scene_solve(&s, &def);
   const int64_t second = 1;
   mps_material *stiff = NULL;
-  mps_assert_ok(context, mps_material_linear_elastic(context, 7e5, 0.3, &stiff));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 7e5, 0.3, &stiff));
   mps_assert_ok(context, mps_mpm_set_material(s.mpm, stiff, 1, &second));
   mps_body *floor = NULL;
   mps_body_def body = mps_body_defaults();

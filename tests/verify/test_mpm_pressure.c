@@ -14,13 +14,13 @@
 static mpm_scene water(int32_t spline, int32_t volumetric, int cells, double sides, bool at_rest) {
   const double h = WIDTH / cells, height = 2.0 * WIDTH, c = 10.0 * sqrt(2.0 * GRAVITY * height);
   const double K = RHO * c * c;
-  mps_newtonian_def law = mps_newtonian_defaults();
+  mps_material_newtonian_def law = mps_material_newtonian_defaults();
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
   mps_material_destroy(&s.material);
   law.state = MPS_MATERIAL_STATE_LINEAR;
   law.bulk_modulus = K;
   law.no_tension = 1;
-  mps_assert_ok(context, mps_material_newtonian(context, &law, &s.material));
+  mps_assert_ok(context, mps_material_create_newtonian(context, &law, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, WIDTH, height);
   mps_assert_ok(context, mps_particles_add_field(s.particles, "volume_ratio", 0));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));

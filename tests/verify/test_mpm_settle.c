@@ -89,7 +89,8 @@ static void driven_nodes_are_not_damped(void **state) {
   mpm_scene_solve(&s, &def);
   mps_signal *go = NULL;
   const double t[] = {0.0, 1.0}, v[] = {0.3, 0.3}, low[] = {-1.0, -1.0}, high[] = {1.0, 1.0};
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &go));
+  mps_assert_ok(context,
+                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &go));
   const mps_mpm_boundary_def all = mpm_scene_box_def(s.mpm, low, high, 0, go, 1.0);
   int32_t number;
   mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &all, &number));
@@ -168,10 +169,10 @@ static void column_settles(void **state) {
  * written; arguments are checked. */
 static void flow_does_not_settle(void **state) {
   (void)state;
-  mps_von_mises_def weak = mps_von_mises_defaults();
+  mps_material_von_mises_def weak = mps_material_von_mises_defaults();
   mps_material *law = NULL;
   weak.young = 1e7, weak.yield_stress = 500.0;
-  mps_assert_ok(context, mps_material_von_mises(context, &weak, &law));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &weak, &law));
   mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, 1e7);
   mps_material_destroy(&s.material);
   s.material = law;
@@ -210,11 +211,11 @@ static void flow_does_not_settle(void **state) {
 
 static mpm_scene slope(double gravity) {
   const double xy[] = {0.0, 0.0, 8.0, 0.0, 8.0, 2.0, 6.0, 2.0, 3.0, 4.0, 0.0, 4.0};
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.young = 2e7, law.poisson = 0.3, law.friction = 0.45, law.cohesion = 6e3;
   mpm_scene s = mpm_scene_begin(context, 0.125, 0.0, 0.0, 1e7);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_drucker_prager(context, &law, &s.material));
+  mps_assert_ok(context, mps_material_create_drucker_prager(context, &law, &s.material));
   mps_assert_ok(context, mps_particles_fill_polygon(s.particles, 6, xy, NULL));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
   mps_mpm_def def = mps_mpm_defaults();
@@ -324,10 +325,10 @@ typedef struct footing {
 
 static footing make_footing(void) {
   footing f = {.s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e9)};
-  mps_von_mises_def law = mps_von_mises_defaults();
+  mps_material_von_mises_def law = mps_material_von_mises_defaults();
   law.young = 1e9, law.poisson = 0.3, law.yield_stress = sqrt(3.0) * 1e4;
   mps_material_destroy(&f.s.material);
-  mps_assert_ok(context, mps_material_von_mises(context, &law, &f.s.material));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &law, &f.s.material));
   mpm_scene_box(&f.s, 0.0, 0.0, 2.0, 1.2);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.1;

@@ -48,7 +48,7 @@ static mpm_scene make_tube(const tube *t, bool space) {
 static void solve(mpm_scene *s, const tube *t, double g, double courant) {
   const int up = mps_particles_dim(s->particles) - 1;
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = up == 2 ? MPS_MPM_SPACE : MPS_MPM_AXISYMMETRIC;
+  def.geometry = up == 2 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_AXISYMMETRIC;
   def.cell = t->cell;
   for (int c = 0; c <= up; c++) def.lower[c] = 0.0;
   def.gravity[up] = -g;
@@ -129,12 +129,12 @@ static void ring_breathes(void **state) {
 /* ---- column ---------------------------------------------------------------------------------- */
 
 static void become_sand(mpm_scene *s) {
-  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = MPS_MATERIAL_CONE_INSCRIBED;
   law.young = E_, law.poisson = 0.3;
   law.friction = 35.0 / 180.0 * PI;
   mps_material_destroy(&s->material);
-  mps_assert_ok(context, mps_material_drucker_prager(context, &law, &s->material));
+  mps_assert_ok(context, mps_material_create_drucker_prager(context, &law, &s->material));
 }
 
 /* On a floor that holds it, free at its side: let go, it sags and bulges. The largest differences

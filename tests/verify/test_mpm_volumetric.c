@@ -11,16 +11,16 @@
 /* A ball of `material` that deforms by a uniform velocity gradient; the nodes are not needed for
  * it: one step. */
 static mpm_scene stretched(int32_t geometry, int32_t spline, int32_t volumetric, bool rubber) {
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double v0[] = {0.3, -0.2, 0.1}, centre[] = {0.1, 0.0, 0.0};
   const double plane[] = {3.0, -7.0, 4.0, 9.0}, axial[] = {3.0, 0.0, 0.0, 9.0};
   const double space[] = {3.0, -7.0, 3.0, 4.0, 9.0, -5.0, -2.0, 6.0, 8.0};
   const double still[] = {0.0, -0.2, 0.0};
-  const bool axis = geometry == MPS_MPM_AXISYMMETRIC;
+  const bool axis = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, 1e6);
   if (rubber) {
     mps_material_destroy(&s.material);
-    mps_assert_ok(context, mps_material_neo_hookean(context, 1e6, 0.3, &s.material));
+    mps_assert_ok(context, mps_material_create_neo_hookean(context, 1e6, 0.3, &s.material));
   }
   mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.07, NULL));
   mpm_scene_affine(&s, axis ? still : v0, dim == 3 ? space : axis ? axial : plane);
@@ -83,7 +83,7 @@ static double trace_of(const mps_view *L, int64_t k) {
 static void takes_the_mean(int32_t geometry) {
   static double volume[SIDE * SIDE * SIDE], change[SIDE * SIDE * SIDE], held[20000];
   static int cell[20000];
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double h = 0.02, E = 1e6, bulk = E / (3.0 * (1.0 - 2.0 * 0.3)), dt = 1e-4;
   const double centre[] = {0.11, 0.0, 0.0};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, E);
@@ -141,7 +141,8 @@ static void takes_the_mean(int32_t geometry) {
 
 static void pressure_is_of_the_cell(void **state) {
   (void)state;
-  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++) takes_the_mean(geometry);
+  for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++)
+    takes_the_mean(geometry);
 }
 
 /* ---- nearly incompressible cantilever -------------------------------------------------------- */
@@ -164,7 +165,7 @@ static double deflection(int32_t spline, int32_t volumetric) {
   const double length = h * LENGTH_CELLS, height = h * HEIGHT_CELLS;
   mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, E);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_linear_elastic(context, E, nu, &s.material));
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, E, nu, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, length, height);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = h, def.spline = spline, def.volumetric = volumetric;
@@ -249,10 +250,10 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   const double half = 0.5, speed = 0.08, ramp = 0.1, t_end = 0.3;
   const double t[] = {0.0, ramp, 1.0}, v[] = {0.0, speed, speed}, height = 0.1 * NY;
   mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
-  mps_von_mises_def law = mps_von_mises_defaults();
+  mps_material_von_mises_def law = mps_material_von_mises_defaults();
   law.young = 1e3 * COHESION, law.poisson = 0.499, law.yield_stress = sqrt(3.0) * COHESION;
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_von_mises(context, &law, &s.material));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &law, &s.material));
   mpm_scene_box(&s, 0.0, 0.0, 0.1 * NX, height);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.1, def.spline = spline, def.volumetric = volumetric;
@@ -263,7 +264,8 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   mps_body *body = NULL;
   mps_body_def plate = mps_body_defaults();
   plate.position[1] = height + 0.25;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, t, v, &down));
+  mps_assert_ok(context,
+                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &down));
   mps_assert_ok(context, mps_body_create_box(context, &plate, 2.0 * half, 0.5, &body));
   mps_assert_ok(context, mps_body_drive(body, 1, down, -1.0));
   mpm_scene_contact(&s, body, 0.0);

@@ -108,7 +108,7 @@ static void the_body_force_balances_the_librarys_law(void **state) {
   const vortex v = {.amplitude = 1.0};
   const double e = 1e-3;
   mps_material *law = NULL;
-  mps_assert_ok(context, mps_material_neo_hookean(context, YOUNG, POISSON, &law));
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, YOUNG, POISSON, &law));
   for (int k = 0; k < 60; k++) {
     const double R = INNER + e + (OUTER - INNER - 2.0 * e) * (k + 0.5) / 60.0, t = 0.03 + 0.016 * k;
     const double X[2] = {R * cos(0.7 * k), R * sin(0.7 * k)};
@@ -220,7 +220,7 @@ static void run_vortex(double amplitude, int32_t spline, int cells, double *erro
   const double cell = (OUTER - INNER) / cells;
   mpm_scene s = mpm_scene_begin(context, 0.5 * cell, 0.0, 0.0, YOUNG);
   mps_material_destroy(&s.material);
-  mps_assert_ok(context, mps_material_neo_hookean(context, YOUNG, POISSON, &s.material));
+  mps_assert_ok(context, mps_material_create_neo_hookean(context, YOUNG, POISSON, &s.material));
   int64_t count;
   double *X = fill_ring(&s, 0.5 * cell, &count);
   const int64_t half = 16 * cells;

@@ -130,7 +130,8 @@ static void absorbing_wall_carries(void **state) {
 static mps_signal *constant_velocity(double v) {
   const double times[] = {0.0, 100.0}, values[] = {v, v};
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, times, values, &signal));
+  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, times,
+                                                 values, &signal));
   return signal;
 }
 
@@ -155,7 +156,7 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
     *mps_edit_f64(&stress, k, 1) = -RHO * g * cos(slope) * (hi[1] - *mps_view_f64(&x, k, 1));
   mpm_scene_commit(&s, &stress);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = 0.02;
   def.lower[1] = 0.0;
   def.gravity[0] = g * sin(slope), def.gravity[1] = -g * cos(slope);
@@ -269,12 +270,12 @@ static void moves_as_one(void **state) {
  * comes back leaves. */
 static void shake(int32_t geometry, bool absorbing) {
   static const char *const names[] = {"plane strain", "axisymmetry", "space"};
-  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double E = 1e6, height = 1.0, rise = 1e-4, c = sqrt(wave_modulus(E) / RHO);
   const double travel = height / c, y0 = height - 0.005, hi[] = {0.04, height, 0.04};
   const double lo[] = {0.0, 0.0, 0.0};
   mps_signal *signal = NULL;
-  mps_assert_ok(context, mps_signal_ramp(context, 0.0, 0.6 * travel, rise, &signal));
+  mps_assert_ok(context, mps_signal_create_ramp(context, 0.0, 0.6 * travel, rise, &signal));
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, E);
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mps_mpm_def def = mps_mpm_defaults();
@@ -308,8 +309,8 @@ static void shake(int32_t geometry, bool absorbing) {
 
 static void base_shakes(void **state) {
   (void)state;
-  shake(MPS_MPM_PLANE_STRAIN, false);
-  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++) shake(geometry, true);
+  shake(MPS_MPM_GEOMETRY_PLANE_STRAIN, false);
+  for (int32_t geometry = 0; geometry <= MPS_MPM_GEOMETRY_SPACE; geometry++) shake(geometry, true);
 }
 
 /* ---- traction -------------------------------------------------------------------------------- */
@@ -329,7 +330,7 @@ static mpm_scene pulled(double traction, double duration, double t_end) {
   assert_int_equal(count, 8);
   mps_signal *signal = NULL;
   int32_t load = -1;
-  mps_assert_ok(context, mps_signal_ramp(context, 0.0, duration, 1.0, &signal));
+  mps_assert_ok(context, mps_signal_create_ramp(context, 0.0, duration, 1.0, &signal));
   const mps_mpm_load_def pulls = mpm_scene_load_def(count, ids, NULL, pull, 2, signal);
   mps_assert_ok(context, mps_mpm_add_load(s.mpm, &pulls, &load));
   mps_signal_destroy(&signal);

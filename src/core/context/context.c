@@ -11,7 +11,7 @@
 
 static const mps_context_def context_defaults = {
     .struct_size = sizeof(mps_context_def),
-    .executor = MPS_EXECUTOR_THREADS,
+    .executor = MPS_CONTEXT_EXECUTOR_THREADS,
 };
 
 mps_status mps_context_def_init(mps_context_def *def, size_t size) {
@@ -27,17 +27,17 @@ static mps_status refuse(char *text, size_t size, mps_status status, const char 
 
 static mps_status check_def(const mps_context_def *def, char *text, size_t size) {
   char why[160];
-  if (def->executor < MPS_EXECUTOR_SERIAL || def->executor > MPS_EXECUTOR_THREADS) {
+  if (def->executor < MPS_CONTEXT_EXECUTOR_SERIAL || def->executor > MPS_CONTEXT_EXECUTOR_THREADS) {
     snprintf(why, sizeof why,
              "executor is %d, allowed are 0 (serial), 1 (OpenMP), 2 (caller), 3 (threads)",
              def->executor);
     return refuse(text, size, MPS_ERROR_ARGUMENT, why);
   }
 #ifndef MPSI_OPENMP
-  if (def->executor == MPS_EXECUTOR_OPENMP)
+  if (def->executor == MPS_CONTEXT_EXECUTOR_OPENMP)
     return refuse(
         text, size, MPS_ERROR_UNSUPPORTED,
-        "this libmps was built without OpenMP: use MPS_EXECUTOR_THREADS, or the caller's");
+        "this libmps was built without OpenMP: use MPS_CONTEXT_EXECUTOR_THREADS, or the caller's");
 #endif
   if (def->threads < 0 || def->threads > MPSI_MAX_THREADS) {
     snprintf(why, sizeof why, "threads is %d, allowed are 0 (all processors) to %d", def->threads,
@@ -56,7 +56,7 @@ static mps_status check_def(const mps_context_def *def, char *text, size_t size)
              mpsi_level(0));
     return refuse(text, size, MPS_ERROR_UNSUPPORTED, why);
   }
-  if (def->executor == MPS_EXECUTOR_CALLER && (!def->parallel_for || def->threads < 1))
+  if (def->executor == MPS_CONTEXT_EXECUTOR_CALLER && (!def->parallel_for || def->threads < 1))
     return refuse(text, size, MPS_ERROR_ARGUMENT,
                   "the caller's executor needs parallel_for and threads >= 1");
   if (!def->alloc != !def->free)
@@ -97,7 +97,7 @@ mps_status mps_context_create(const mps_context_def *user_def, mps_context **out
   memset(context, 0, bytes);
   context->def = def;
   context->threads = threads;
-  if (def.executor == MPS_EXECUTOR_THREADS &&
+  if (def.executor == MPS_CONTEXT_EXECUTOR_THREADS &&
       !mpsi_pool_begin(&context->pool, threads, context + 1)) {
     def.free(def.memory_user, context);
     return refuse(error_text, error_size, MPS_ERROR_MEMORY, "the system refuses a lock");
@@ -136,19 +136,19 @@ void mps_context_destroy(mps_context **context) {
 
 /* ---- hooks ----------------------------------------------------------------------------------- */
 
-void mps_context_set_log(mps_context *context, mps_log_fn log, void *user) {
+void mps_context_set_log(mps_context *context, mps_context_log_fn log, void *user) {
   if (!context) return;
   context->def.log = log;
   context->def.log_user = user;
 }
 
-void mps_context_set_progress(mps_context *context, mps_progress_fn progress, void *user) {
+void mps_context_set_progress(mps_context *context, mps_context_progress_fn progress, void *user) {
   if (!context) return;
   context->def.progress = progress;
   context->def.progress_user = user;
 }
 
-void mps_context_set_cancel(mps_context *context, mps_cancel_fn cancel, void *user) {
+void mps_context_set_cancel(mps_context *context, mps_context_cancel_fn cancel, void *user) {
   if (!context) return;
   context->def.cancel = cancel;
   context->def.cancel_user = user;
@@ -158,13 +158,13 @@ void mpsi_progress(mps_context *context, const char *task, int64_t step, double 
                    double time_end) {
   if (!context->def.progress) return;
   const double fraction = time_end > 0.0 ? time / time_end : 1.0;
-  const mps_progress progress = {.task = task,
-                                 .step = step,
-                                 .time = time,
-                                 .time_end = time_end,
-                                 .fraction = fraction < 0.0   ? 0.0
-                                             : fraction > 1.0 ? 1.0
-                                                              : fraction};
+  const mps_context_progress progress = {.task = task,
+                                         .step = step,
+                                         .time = time,
+                                         .time_end = time_end,
+                                         .fraction = fraction < 0.0   ? 0.0
+                                                     : fraction > 1.0 ? 1.0
+                                                                      : fraction};
   context->def.progress(context->def.progress_user, &progress);
 }
 
@@ -180,7 +180,7 @@ int32_t mps_context_instruction_level(const mps_context *context) {
 
 int32_t mps_context_threads(const mps_context *context) { return context ? context->threads : 0; }
 
-mps_status mps_context_parallel_for(mps_context *context, int64_t count, mps_task_fn task,
+mps_status mps_context_parallel_for(mps_context *context, int64_t count, mps_context_task_fn task,
                                     void *data) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (count < 0)

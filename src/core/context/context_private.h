@@ -16,7 +16,7 @@ struct mps_context {
   int32_t threads;
   int32_t level;         /* 1, 3 or 4: of the instruction set of inner loops */
   atomic_int references; /* the caller's one, and one for each living object */
-  mpsi_pool pool;        /* of MPS_EXECUTOR_THREADS; its members lie behind the context */
+  mpsi_pool pool;        /* of MPS_CONTEXT_EXECUTOR_THREADS; its members lie behind the context */
 };
 
 /* memory.c: memory of the system where the caller gives no hooks. */

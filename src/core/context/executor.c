@@ -19,12 +19,12 @@ static int32_t processors(void) {
 }
 
 int32_t mpsi_executor_threads(const mps_context_def *def) {
-  if (def->executor == MPS_EXECUTOR_SERIAL) return 1;
+  if (def->executor == MPS_CONTEXT_EXECUTOR_SERIAL) return 1;
   return def->threads > 0 ? def->threads : processors();
 }
 
 #ifdef MPSI_OPENMP
-static void openmp_for(int32_t threads, int64_t count, mps_task_fn task, void *data) {
+static void openmp_for(int32_t threads, int64_t count, mps_context_task_fn task, void *data) {
   /* The number of threads is a clause, never omp_set_num_threads: the host program's setting is
    * not ours to change. Units are claimed one by one; what a unit computes does not depend on
    * which worker runs it. */
@@ -33,13 +33,13 @@ static void openmp_for(int32_t threads, int64_t count, mps_task_fn task, void *d
 }
 #endif
 
-static void serial_for(int64_t count, mps_task_fn task, void *data) {
+static void serial_for(int64_t count, mps_context_task_fn task, void *data) {
   for (int64_t i = 0; i < count; i++) task(data, i, 0);
 }
 
 /* The caller's executor is not trusted: a worker's number chooses scratch memory. */
 typedef struct guarded {
-  mps_task_fn task;
+  mps_context_task_fn task;
   void *data;
   int64_t count;
   int32_t workers;
@@ -54,7 +54,7 @@ static void guarded_task(void *data, int64_t index, int32_t worker) {
     atomic_store(g->fault, 1);
 }
 
-static void caller_for(mps_context *context, int64_t count, mps_task_fn task, void *data) {
+static void caller_for(mps_context *context, int64_t count, mps_context_task_fn task, void *data) {
   guarded g = {task, data, count, context->threads, &context->executor_fault};
   context->def.parallel_for(context->def.parallel_user, count, guarded_task, &g);
 }
@@ -65,7 +65,7 @@ static void count_run(void *data, int64_t index, int32_t worker) {
 }
 
 bool mpsi_executor_probe(mps_context *context) {
-  if (context->def.executor != MPS_EXECUTOR_CALLER) return true;
+  if (context->def.executor != MPS_CONTEXT_EXECUTOR_CALLER) return true;
   enum { UNITS = 64 };
   atomic_int runs[UNITS];
   for (int k = 0; k < UNITS; k++) atomic_init(&runs[k], 0);
@@ -84,13 +84,13 @@ mps_status mpsi_executor_check(mps_context *context, const char *function) {
       context->threads - 1);
 }
 
-void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data) {
+void mpsi_parallel_for(mps_context *context, int64_t count, mps_context_task_fn task, void *data) {
   const mps_context_def *def = &context->def;
   if (count <= 1 || context->threads <= 1)
     serial_for(count, task, data);
-  else if (def->executor == MPS_EXECUTOR_CALLER)
+  else if (def->executor == MPS_CONTEXT_EXECUTOR_CALLER)
     caller_for(context, count, task, data);
-  else if (def->executor == MPS_EXECUTOR_THREADS)
+  else if (def->executor == MPS_CONTEXT_EXECUTOR_THREADS)
     mpsi_pool_for(&context->pool, count, task, data);
 #ifdef MPSI_OPENMP
   else
@@ -104,7 +104,7 @@ void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, vo
 #define SLEEP_NS 20000 /* and what the system adds */
 
 bool mpsi_executor_is_own(const mps_context *context) {
-  return context->def.executor != MPS_EXECUTOR_CALLER;
+  return context->def.executor != MPS_CONTEXT_EXECUTOR_CALLER;
 }
 
 bool mpsi_wait_a_little(int32_t look, bool may_sleep) {

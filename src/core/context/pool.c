@@ -38,7 +38,8 @@ static bool wait_more(int look) {
 
 /* ---- workers --------------------------------------------------------------------------------- */
 
-static void run_units(mpsi_pool *p, mps_task_fn task, void *data, int64_t count, int32_t worker) {
+static void run_units(mpsi_pool *p, mps_context_task_fn task, void *data, int64_t count,
+                      int32_t worker) {
   for (;;) {
     const int64_t unit = atomic_fetch_add_explicit(&p->next, 1, memory_order_relaxed);
     if (unit >= count) return;
@@ -61,7 +62,7 @@ static void *live(void *argument) {
       p->asleep--;
     }
     const bool quit = p->quit;
-    const mps_task_fn task = p->task;
+    const mps_context_task_fn task = p->task;
     void *const data = p->data;
     const int64_t count = p->count;
     seen = p->number;
@@ -94,7 +95,7 @@ static void start(mpsi_pool *p) {
 
 /* ---- the caller's thread --------------------------------------------------------------------- */
 
-static void open_loop(mpsi_pool *p, int64_t count, mps_task_fn task, void *data) {
+static void open_loop(mpsi_pool *p, int64_t count, mps_context_task_fn task, void *data) {
   pthread_mutex_lock(&p->lock);
   p->task = task, p->data = data, p->count = count;
   atomic_store_explicit(&p->next, 0, memory_order_relaxed);
@@ -118,7 +119,7 @@ static void close_loop(mpsi_pool *p) {
   pthread_mutex_unlock(&p->lock);
 }
 
-void mpsi_pool_for(mpsi_pool *p, int64_t count, mps_task_fn task, void *data) {
+void mpsi_pool_for(mpsi_pool *p, int64_t count, mps_context_task_fn task, void *data) {
   const bool first = p->started == 0 && !p->busy;
   if (first) start(p);
   if (p->size == 0 || p->busy || p->process != (long)getpid()) { /* busy: a loop within a unit */

@@ -1,4 +1,4 @@
-/* pool.h - threads that stay: the executor MPS_EXECUTOR_THREADS.
+/* pool.h - threads that stay: the executor MPS_CONTEXT_EXECUTOR_THREADS.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_POOL_H
 #define MPSI_POOL_H
@@ -24,7 +24,7 @@ typedef struct mpsi_pool {
   int32_t size, started;
   long process; /* that has the threads: a fork has none */
   /* the loop in work */
-  mps_task_fn task;
+  mps_context_task_fn task;
   void *data;
   int64_t count;
   _Atomic int64_t next;    /* unit that nobody has taken */
@@ -41,6 +41,6 @@ size_t mpsi_pool_bytes(int32_t workers);
 bool mpsi_pool_begin(mpsi_pool *pool, int32_t workers, void *member);
 void mpsi_pool_end(mpsi_pool *pool);
 /* Runs task(data, i, worker) for i in [0, count). */
-void mpsi_pool_for(mpsi_pool *pool, int64_t count, mps_task_fn task, void *data);
+void mpsi_pool_for(mpsi_pool *pool, int64_t count, mps_context_task_fn task, void *data);
 
 #endif

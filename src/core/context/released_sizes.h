@@ -9,42 +9,42 @@
 
 /* clang-format off */
 #define MPSI_RELEASED_SIZES(X) \
-  X(mps_body_def, mps_body_def_init, "0.2", 176) \
-  X(mps_body_motion, mps_body_motion_init, "0.2", 104) \
-  X(mps_checkpoint, mps_checkpoint_init, "0.2", 112) \
-  X(mps_contact_def, mps_contact_def_init, "0.2", 96) \
-  X(mps_context_def, mps_context_def_init, "0.2", 104) \
-  X(mps_coupling_def, mps_coupling_def_init, "0.2", 64) \
-  X(mps_domain_def, mps_domain_def_init, "0.2", 112) \
-  X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
-  X(mps_dynamics_boundary_def, mps_dynamics_boundary_def_init, "0.2", 152) \
-  X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 112) \
-  X(mps_dynamics_load_def, mps_dynamics_load_def_init, "0.2", 176) \
-  X(mps_dynamics_predict_def, mps_dynamics_predict_def_init, "0.2", 64) \
-  X(mps_elastic_boundary_def, mps_elastic_boundary_def_init, "0.2", 160) \
-  X(mps_elastic_def, mps_elastic_def_init, "0.2", 104) \
-  X(mps_elastic_load_def, mps_elastic_load_def_init, "0.2", 120) \
-  X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.2", 96) \
-  X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.2", 40) \
-  X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.2", 88) \
-  X(mps_fluid_def, mps_fluid_def_init, "0.2", 104) \
-  X(mps_fluid_load_def, mps_fluid_load_def_init, "0.2", 152) \
-  X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.2", 56) \
-  X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \
-  X(mps_material_block, mps_material_block_init, "0.2", 312) \
-  X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
-  X(mps_mpm_boundary_def, mps_mpm_boundary_def_init, "0.2", 144) \
-  X(mps_mpm_def, mps_mpm_def_init, "0.2", 192) \
-  X(mps_mpm_load_def, mps_mpm_load_def_init, "0.2", 104) \
-  X(mps_mpm_settle_def, mps_mpm_settle_def_init, "0.2", 24) \
-  X(mps_neighbours_def, mps_neighbours_def_init, "0.2", 24) \
-  X(mps_newtonian_def, mps_newtonian_def_init, "0.2", 32) \
-  X(mps_particles_def, mps_particles_def_init, "0.2", 40) \
-  X(mps_recorder_def, mps_recorder_def_init, "0.2", 32) \
-  X(mps_signal_record_def, mps_signal_record_def_init, "0.2", 32) \
-  X(mps_umat_def, mps_umat_def_init, "0.2", 104) \
-  X(mps_user_law_def, mps_user_law_def_init, "0.2", 88) \
-  X(mps_von_mises_def, mps_von_mises_def_init, "0.2", 40)
+  X(mps_body_def, mps_body_def_init, "0.3", 176) \
+  X(mps_body_motion, mps_body_motion_init, "0.3", 104) \
+  X(mps_checkpoint, mps_checkpoint_init, "0.3", 112) \
+  X(mps_contact_def, mps_contact_def_init, "0.3", 96) \
+  X(mps_context_def, mps_context_def_init, "0.3", 104) \
+  X(mps_coupling_def, mps_coupling_def_init, "0.3", 64) \
+  X(mps_domain_def, mps_domain_def_init, "0.3", 112) \
+  X(mps_dynamics_boundary_def, mps_dynamics_boundary_def_init, "0.3", 152) \
+  X(mps_dynamics_def, mps_dynamics_def_init, "0.3", 112) \
+  X(mps_dynamics_load_def, mps_dynamics_load_def_init, "0.3", 176) \
+  X(mps_dynamics_predict_def, mps_dynamics_predict_def_init, "0.3", 64) \
+  X(mps_elastic_boundary_def, mps_elastic_boundary_def_init, "0.3", 160) \
+  X(mps_elastic_def, mps_elastic_def_init, "0.3", 104) \
+  X(mps_elastic_load_def, mps_elastic_load_def_init, "0.3", 120) \
+  X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.3", 96) \
+  X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.3", 40) \
+  X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.3", 88) \
+  X(mps_fluid_def, mps_fluid_def_init, "0.3", 104) \
+  X(mps_fluid_load_def, mps_fluid_load_def_init, "0.3", 152) \
+  X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.3", 56) \
+  X(mps_geostatic_def, mps_geostatic_def_init, "0.3", 72) \
+  X(mps_material_block, mps_material_block_init, "0.3", 312) \
+  X(mps_material_drucker_prager_def, mps_material_drucker_prager_def_init, "0.3", 56) \
+  X(mps_material_mohr_coulomb_def, mps_material_mohr_coulomb_def_init, "0.3", 56) \
+  X(mps_material_newtonian_def, mps_material_newtonian_def_init, "0.3", 32) \
+  X(mps_material_umat_def, mps_material_umat_def_init, "0.3", 104) \
+  X(mps_material_user_def, mps_material_user_def_init, "0.3", 88) \
+  X(mps_material_von_mises_def, mps_material_von_mises_def_init, "0.3", 40) \
+  X(mps_mpm_boundary_def, mps_mpm_boundary_def_init, "0.3", 144) \
+  X(mps_mpm_def, mps_mpm_def_init, "0.3", 192) \
+  X(mps_mpm_load_def, mps_mpm_load_def_init, "0.3", 104) \
+  X(mps_mpm_settle_def, mps_mpm_settle_def_init, "0.3", 24) \
+  X(mps_neighbours_def, mps_neighbours_def_init, "0.3", 24) \
+  X(mps_particles_def, mps_particles_def_init, "0.3", 40) \
+  X(mps_recorder_def, mps_recorder_def_init, "0.3", 32) \
+  X(mps_signal_record_def, mps_signal_record_def_init, "0.3", 32)
 /* clang-format on */
 
 /* MPSI_RELEASED_<struct>: its size. */

@@ -256,19 +256,19 @@ int32_t mps_particles_field_count(const mps_particles *particles) {
   return particles ? particles->field_count : 0;
 }
 
-mps_status mps_particles_field_sized(const mps_particles *particles, int32_t index,
-                                     mps_field_info *out, size_t size) {
-  static const char function[] = "mps_particles_field";
+mps_status mps_particles_get_field_info_sized(const mps_particles *particles, int32_t index,
+                                              mps_particles_field_info *out, size_t size) {
+  static const char function[] = "mps_particles_get_field_info";
   if (!particles) return MPS_ERROR_ARGUMENT;
   if (index < 0 || index >= particles->field_count)
     return mpsi_fail(particles->context, function, MPS_ERROR_ARGUMENT,
                      "index is %d, allowed are 0 to %d", index, particles->field_count - 1);
   const mpsi_field *field = particles->fields[index];
-  const mps_field_info info = {.name = field->name,
-                               .unit = field->unit,
-                               .meaning = field->meaning,
-                               .dtype = field->dtype,
-                               .components = field->components,
-                               .flags = field->flags};
+  const mps_particles_field_info info = {.name = field->name,
+                                         .unit = field->unit,
+                                         .meaning = field->meaning,
+                                         .dtype = field->dtype,
+                                         .components = field->components,
+                                         .flags = field->flags};
   return mpsi_out_write(particles->context, function, out, size, &info, sizeof info);
 }

@@ -52,14 +52,14 @@
     "implicit elasticity; explicit dynamics, where the set has it", "after a solution or a step")                                           \
   X(strain, F64, MPSI_PER_STRESS, "-",                                                             \
     "strain xx, yy, zz, xy; 3D: and zx, yz (shear: tensor components)",                            \
-    "implicit elasticity", "after mps_elastic_stress")                                             \
+    "implicit elasticity", "after mps_elastic_update_stress")                                             \
   X(stress, F64, MPSI_PER_STRESS, "Pa",                                                            \
     "stress xx, yy, zz, xy; 3D: and zx, yz; tension positive",                                     \
-    "the caller (initial state of WLS-MPM); solvers", "after a step or mps_elastic_stress")        \
+    "the caller (initial state of WLS-MPM); solvers", "after a step or mps_elastic_update_stress")        \
   X(principal, F64, 3, "Pa", "principal stresses, largest first",                                  \
-    "implicit elasticity", "after mps_elastic_stress")                                             \
+    "implicit elasticity", "after mps_elastic_update_stress")                                             \
   X(von_mises, F64, 1, "Pa", "von Mises stress",                                                   \
-    "implicit elasticity", "after mps_elastic_stress")                                             \
+    "implicit elasticity", "after mps_elastic_update_stress")                                             \
   X(acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration",                                       \
     "solvers", "after a step or a run")                                                            \
   X(pressure, F64, 1, "Pa", "pressure",                                                            \

@@ -223,7 +223,7 @@ static bool push_row(const mps_particles *p, const site_box *box, int64_t j, int
 
 /* Of a row, the sites that `inside` wants. `*complete` is false where memory was refused. */
 static mps_status push_wanted(const mps_particles *p, const char *function, const site_box *box,
-                              int64_t j, int64_t k, mps_predicate_fn inside, void *user,
+                              int64_t j, int64_t k, mps_particles_predicate_fn inside, void *user,
                               mpsi_site_runs *out, bool *complete) {
   for (int64_t i = box->begin[0]; i < box->end[0] && *complete; i++) {
     const double x[3] = {centre(p, 0, i), centre(p, 1, j), centre(p, 2, k)};
@@ -241,7 +241,7 @@ static mps_status push_wanted(const mps_particles *p, const char *function, cons
 
 /* The runs of a box, cut to where `inside` wants a particle (NULL: everywhere). */
 static mps_status box_runs(const mps_particles *p, const char *function, const site_box *box,
-                           mps_predicate_fn inside, void *user, mpsi_site_runs *out,
+                           mps_particles_predicate_fn inside, void *user, mpsi_site_runs *out,
                            bool *complete) {
   mps_status status = MPS_OK;
   *complete = true;
@@ -256,8 +256,8 @@ static mps_status box_runs(const mps_particles *p, const char *function, const s
 
 /* Where `status`, of the caller's own arguments, is well. */
 static mps_status fill_box(mps_particles *p, const char *function, mps_status status,
-                           const double *lo, const double *hi, mps_predicate_fn inside, void *user,
-                           int64_t *added) {
+                           const double *lo, const double *hi, mps_particles_predicate_fn inside,
+                           void *user, int64_t *added) {
   site_box box;
   mpsi_site_runs runs = {0};
   bool complete = true;
@@ -276,7 +276,7 @@ mps_status mps_particles_fill_box(mps_particles *particles, const double *lo, co
 }
 
 mps_status mps_particles_fill_where(mps_particles *particles, const double *lo, const double *hi,
-                                    mps_predicate_fn inside, void *user, int64_t *added) {
+                                    mps_particles_predicate_fn inside, void *user, int64_t *added) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_status status = MPS_OK;
   if (!inside)

@@ -11,10 +11,10 @@ static mps_status compare_dt(mps_dynamics *dynamics, const char *function, doubl
       mpsi_as(dynamics->context, function, mps_dynamics_find_limit(dynamics, 0.0, &limit));
   if (status != MPS_OK) return status;
   if (euler && limit.dt == 0.0)
-    mpsi_log(dynamics->context, MPS_LOG_WARNING,
+    mpsi_log(dynamics->context, MPS_CONTEXT_LOG_WARNING,
              "Euler without damping has no stable time step: the motion grows at any dt");
   else if (dt > limit.dt)
-    mpsi_log(dynamics->context, MPS_LOG_WARNING,
+    mpsi_log(dynamics->context, MPS_CONTEXT_LOG_WARNING,
              "dt = %g s is above the linear stability limit %.4g s: the run may diverge", dt,
              limit.dt);
   return MPS_OK;

@@ -29,7 +29,7 @@ void mpsi_fluid_warn_of_guards(mps_fluid *f) {
   const double share = acted / ((double)f->steps * (double)f->count + 1.0);
   if (f->steps < WARN_FROM || !(share > MOST_GUARDED) || !first_time(f, MPSI_FLUID_WARNED_GUARDS))
     return;
-  mpsi_log(f->context, MPS_LOG_WARNING,
+  mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
            "step %lld of the fluid: collisions, cut velocities and particles pushed off walls are "
            "%.1f %% of the particles a step, above %g %%: the flow wants a smaller spacing or step",
            (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
@@ -45,7 +45,7 @@ void mpsi_fluid_warn_of_angles(mps_fluid *f) {
         if (angle >= MPSI_FLUID_LEAST_ANGLE ||
             !first_time(f, (uint32_t)MPSI_FLUID_WARNED_ANGLE << number))
           continue;
-        mpsi_log(f->context, MPS_LOG_WARNING,
+        mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
                  "step %lld of the fluid: edge %d of body %d and boundary %d enclose %.3g degrees "
                  "of fluid, below the %g degrees that the fluid resolves: pressures in that corner "
                  "are not to be relied on",
@@ -92,13 +92,13 @@ mps_status mpsi_fluid_check_walls(mps_fluid *f, const char *function) {
           "bend little; the step is not made",
           (long long)f->steps, f->time, b, slope, MOST_SLOPE);
     if (travel > FAR_TRAVEL * f->l0 && first_time(f, MPSI_FLUID_WARNED_TRAVEL))
-      mpsi_log(f->context, MPS_LOG_WARNING,
+      mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
                "step %lld of the fluid: %s %d goes %g m in the step of %g s, more than half the "
                "spacing of %g m: the pressure there wants a smaller step",
                (long long)f->steps, kind_of(w), number, travel, f->dt, f->l0);
     if (slope > FAR_SLOPE && first_time(f, MPSI_FLUID_WARNED_SLOPE))
       mpsi_log(
-          f->context, MPS_LOG_WARNING,
+          f->context, MPS_CONTEXT_LOG_WARNING,
           "step %lld of the fluid: boundary %d bends to a slope of %g, above %g: its images are "
           "those of walls that bend little",
           (long long)f->steps, b, slope, FAR_SLOPE);

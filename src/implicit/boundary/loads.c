@@ -83,7 +83,7 @@ static void make_uniform(const mps_elastic *e, const mpsi_facet *f, const double
 
 /* Integrates the caller's traction over one facet. */
 static mps_status integrate(const mps_elastic *e, const char *function, int64_t k,
-                            mps_traction_fn traction, void *user, double *force,
+                            mps_elastic_traction_fn traction, void *user, double *force,
                             double (*moment)[3]) {
   static const double at[3] = {-0.7745966692414834, 0.0, 0.7745966692414834}; /* sqrt(3/5) */
   static const double weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
@@ -439,8 +439,8 @@ static mps_status give_resultant(const mps_elastic *e, const char *function, con
   return MPS_OK;
 }
 
-mps_status mps_elastic_load_resultant(mps_elastic *e, const double *about, double *force,
-                                      double *moment) {
+mps_status mps_elastic_get_load_resultant(mps_elastic *e, const double *about, double *force,
+                                          double *moment) {
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;

@@ -69,7 +69,7 @@ mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t
   const mps_status status = check_moduli(e, function, i, young, poisson);
   if (status != MPS_OK) return status;
   const double two_mu = young / (1.0 + poisson);
-  const bool plane_stress = e->dim == 2 && e->def.state == MPS_ELASTIC_PLANE_STRESS;
+  const bool plane_stress = e->dim == 2 && e->def.state == MPS_ELASTIC_STATE_PLANE_STRESS;
   e->mu[i] = 0.5 * two_mu;
   e->lambda[i] = two_mu * poisson / (plane_stress ? 1.0 - poisson : 1.0 - 2.0 * poisson);
   e->poisson[i] = poisson;

@@ -62,9 +62,9 @@ static mps_status read_def(mps_context *context, const char *function, const mps
     const char *name;
     int32_t value, low, high;
   } choices[] = {
-      {"state", def->state, MPS_ELASTIC_PLANE_STRESS, MPS_ELASTIC_PLANE_STRAIN},
-      {"solver", def->solver, MPS_ELASTIC_AUTO, MPS_ELASTIC_CG},
-      {"ordering", def->ordering, MPS_ELASTIC_ORDER_BEST, MPS_ELASTIC_ORDER_METIS},
+      {"state", def->state, MPS_ELASTIC_STATE_PLANE_STRESS, MPS_ELASTIC_STATE_PLANE_STRAIN},
+      {"solver", def->solver, MPS_ELASTIC_SOLVER_AUTO, MPS_ELASTIC_SOLVER_CG},
+      {"ordering", def->ordering, MPS_ELASTIC_ORDERING_BEST, MPS_ELASTIC_ORDERING_METIS},
       {"refinements", def->refinements, 0, 10},
       {"blas_threads", def->blas_threads, 0, 1024},
   };

@@ -24,7 +24,7 @@ static void complete_plane(const mps_elastic *e, int64_t i, double (*strain)[3],
                            double (*stress)[3]) {
   if (e->dim == 3) return;
   const double nu = e->poisson[i];
-  if (e->def.state == MPS_ELASTIC_PLANE_STRAIN)
+  if (e->def.state == MPS_ELASTIC_STATE_PLANE_STRAIN)
     stress[2][2] = nu * (stress[0][0] + stress[1][1]);
   else
     strain[2][2] = -nu / (1.0 - nu) * (strain[0][0] + strain[1][1]);
@@ -163,7 +163,7 @@ static mps_status share_table(mps_elastic *e, const char *function, mps_status s
   return status;
 }
 
-mps_status mps_elastic_stress(mps_elastic *e) {
+mps_status mps_elastic_update_stress(mps_elastic *e) {
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;
@@ -188,8 +188,8 @@ mps_status mps_elastic_stress(mps_elastic *e) {
 
 /* ---- sections and energy --------------------------------------------------------------------- */
 
-mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position, const double *about,
-                               double *force, double *moment) {
+mps_status mps_elastic_get_section(mps_elastic *e, int32_t axis, double position,
+                                   const double *about, double *force, double *moment) {
   if (!e) return MPS_ERROR_ARGUMENT;
   if (axis < 0 || axis >= e->dim || !isfinite(position))
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
@@ -227,7 +227,7 @@ static void add_pairs(const mps_elastic *e, mpsi_exact *sum) {
   }
 }
 
-mps_status mps_elastic_energy(mps_elastic *e, double *strain, double *stabilising) {
+mps_status mps_elastic_get_energy(mps_elastic *e, double *strain, double *stabilising) {
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;

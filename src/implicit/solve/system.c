@@ -46,7 +46,7 @@ static mps_status order(mps_elastic *e, const char *function) {
 
 static mps_status analyse(mps_elastic *e, const char *function) {
   static const mpsi_ordering orderings[] = {MPSI_ORDER_BEST, MPSI_ORDER_AMD, MPSI_ORDER_METIS};
-  e->use_cg = e->def.solver == MPS_ELASTIC_CG;
+  e->use_cg = e->def.solver == MPS_ELASTIC_SOLVER_CG;
   memset(&e->symbolic, 0, sizeof e->symbolic);
   if (e->use_cg || e->unknowns == 0) {
     e->analysed = true;
@@ -55,13 +55,13 @@ static mps_status analyse(mps_elastic *e, const char *function) {
   mps_status status = MPS_OK;
   if (!e->cholesky)
     status = mpsi_cholesky_create(
-        e->context, function, orderings[e->def.ordering], e->def.solver == MPS_ELASTIC_LDLT,
+        e->context, function, orderings[e->def.ordering], e->def.solver == MPS_ELASTIC_SOLVER_LDLT,
         e->def.blas_threads ? e->def.blas_threads : mps_context_threads(e->context), &e->cholesky);
   if (status == MPS_OK) status = order(e, function);
   if (status != MPS_OK) return status;
   e->report.analyses++;
   if (e->symbolic.bytes > e->def.memory_limit) {
-    if (e->def.solver != MPS_ELASTIC_AUTO)
+    if (e->def.solver != MPS_ELASTIC_SOLVER_AUTO)
       return mpsi_fail(e->context, function, MPS_ERROR_MEMORY,
                        "the factor takes %.4g bytes, memory_limit is %.4g: raise it, or set solver "
                        "to AUTO or CG",
@@ -235,9 +235,9 @@ static int64_t nonzeros(const mps_elastic *e) {
 }
 
 static int32_t solver_used(const mps_elastic *e) {
-  if (e->outside) return MPS_ELASTIC_OUTSIDE;
-  if (e->use_cg) return MPS_ELASTIC_CG;
-  return e->def.solver == MPS_ELASTIC_AUTO ? MPS_ELASTIC_LLT : e->def.solver;
+  if (e->outside) return MPS_ELASTIC_SOLVER_FOREIGN;
+  if (e->use_cg) return MPS_ELASTIC_SOLVER_CG;
+  return e->def.solver == MPS_ELASTIC_SOLVER_AUTO ? MPS_ELASTIC_SOLVER_LLT : e->def.solver;
 }
 
 mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, size_t size) {

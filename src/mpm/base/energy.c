@@ -55,7 +55,7 @@ void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t b
       for (int b = 0; b < dim; b++)
         power += p->s[stress_column(a, b)][k] * p->L[gradient_column(dim, a, b)][k];
     }
-    if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
+    if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
     stresses += p->V[k] * power;
   }
   of_cells(mpm, cells)->loads += mpm->run.dt * loads;
@@ -68,7 +68,7 @@ void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int6
   double power = 0.0;
   for (int a = 0; a < mpm->dim; a++)
     power += (p->m[particle] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][particle] : 0.0)) * v[a];
-  if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC)
+  if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
     power -= p->V[particle] * p->s[2][particle] * v[0] / p->x[0][particle];
   of_cells(mpm, cells)->returned += mpm->run.dt * power;
 }

@@ -21,14 +21,14 @@
 #define MPSI_UNROLL _Pragma("GCC unroll 4")
 
 #define MPSI_VARIANTS(X)                                                                           \
-  X(plane_strain, cubic, MPS_MPM_PLANE_STRAIN, 3)                                                  \
-  X(plane_strain, quadratic, MPS_MPM_PLANE_STRAIN, 2)                                              \
-  X(axisymmetric, cubic, MPS_MPM_AXISYMMETRIC, 3)                                                  \
-  X(axisymmetric, quadratic, MPS_MPM_AXISYMMETRIC, 2)                                              \
-  X(space, cubic, MPS_MPM_SPACE, 3)                                                                \
-  X(space, quadratic, MPS_MPM_SPACE, 2)
+  X(plane_strain, cubic, MPS_MPM_GEOMETRY_PLANE_STRAIN, 3)                                         \
+  X(plane_strain, quadratic, MPS_MPM_GEOMETRY_PLANE_STRAIN, 2)                                     \
+  X(axisymmetric, cubic, MPS_MPM_GEOMETRY_AXISYMMETRIC, 3)                                         \
+  X(axisymmetric, quadratic, MPS_MPM_GEOMETRY_AXISYMMETRIC, 2)                                     \
+  X(space, cubic, MPS_MPM_GEOMETRY_SPACE, 3)                                                       \
+  X(space, quadratic, MPS_MPM_GEOMETRY_SPACE, 2)
 
-MPSI_INLINE int mpsi_dim_of(int geometry) { return geometry == MPS_MPM_SPACE ? 3 : 2; }
+MPSI_INLINE int mpsi_dim_of(int geometry) { return geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2; }
 
 /* ---- vectors --------------------------------------------------------------------------------- */
 

@@ -24,7 +24,7 @@ mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size) {
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static bool on_axis(const mps_mpm *mpm, int32_t number) {
-  return mpm->def.geometry == MPS_MPM_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
+  return mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
          mpm->def.lower[0] == 0.0;
 }
 

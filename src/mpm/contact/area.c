@@ -92,7 +92,8 @@ static double weight_at(layer l, double distance) {
 static double area_of(const mps_mpm *mpm, layer l, int64_t k, const mpsi_foot *foot) {
   if (!(foot->distance < l.reach)) return 0.0;
   const double area = mpm->p.V[k] * foot->narrowing * weight_at(l, foot->distance);
-  return mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k] : area;
+  return mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k]
+                                                            : area;
 }
 
 /* Distances change no faster than places: see constraints.c. */

@@ -62,7 +62,7 @@ static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contac
                      "through it; use a cell of at most %.4g m, a thicker wall, or allow it with "
                      "thin = 1",
                      wall, cells, MPSI_THIN_CELLS, wall / MPSI_THIN_CELLS);
-  mpsi_log(mpm->context, MPS_LOG_WARNING,
+  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
            "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it",
            mpm->contact.bodies, wall, cells, MPSI_THIN_CELLS);
   return MPS_OK;
@@ -97,7 +97,7 @@ static void warn_of_areas(mps_mpm *mpm, const mps_contact *contact) {
   const double spacing = mps_particles_spacing(mpm->particles);
   if (!mpsi_has_strength(contact) || 2.0 * spacing <= mpm->def.cell * (1.0 + 1e-9)) return;
   mpsi_log(
-      mpm->context, MPS_LOG_WARNING,
+      mpm->context, MPS_CONTEXT_LOG_WARNING,
       "body %d bears shear by strength or adhesion, and the particles' spacing of %.4g m is more "
       "than half a cell, %.4g m: on curved surfaces that is a fifth too little",
       mpm->contact.bodies, spacing, 0.5 * mpm->def.cell);

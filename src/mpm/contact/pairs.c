@@ -75,7 +75,7 @@ static bool list_cell_pairs(mps_mpm *mpm, int64_t *count) {
 static bool asks_for_mass(const mps_mpm *mpm, int32_t body) {
   return mpm->contact.handle[body]->def.friction > 0.0 &&
          !mpsi_by_impulses(mpm->contact.handle[body]) &&
-         mpm->contact.body[body]->def.motion != MPS_BODY_MOTION_PRESCRIBED;
+         mpm->contact.body[body]->def.motion != MPS_BODY_MOTION_DRIVEN;
 }
 
 /* The pairs of blocks of nodes and bodies. The same in two goes: see list_cell_pairs. */

@@ -18,7 +18,7 @@ MPSI_INLINE bool mpsi_find_contact(const mps_mpm *mpm, const mps_contact *contac
                                 .modulus = mpsi_law_of(mpm, particle)->modulus,
                                 .cell = mpm->def.cell,
                                 .courant = mpm->def.courant,
-                                .weight = mpm->def.geometry == MPS_MPM_AXISYMMETRIC
+                                .weight = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC
                                               ? mpm->def.measure * out->x[0]
                                               : mpm->def.measure};
   return mpsi_contact_find(contact, dim, &law, v, L, out);

@@ -19,7 +19,7 @@ static int32_t words_of(const mps_mpm *mpm) { return (ranks_of(mpm) + 63) / 64; 
 static bool has_free_bodies(const mps_mpm *mpm) {
   bool found = false;
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    found = found || mpm->contact.body[b]->def.motion != MPS_BODY_MOTION_PRESCRIBED;
+    found = found || mpm->contact.body[b]->def.motion != MPS_BODY_MOTION_DRIVEN;
   return found;
 }
 

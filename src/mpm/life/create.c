@@ -32,13 +32,13 @@ mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
 
 static const char create[] = "mps_mpm_create";
 
-static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_MPM_SPACE ? 3 : 2; }
+static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2; }
 
 /* Of the weights, m. */
 static double radius_of(const mps_mpm_def *d) { return (d->spline == 2 ? 1.5 : 2.0) * d->cell; }
 
 static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
-  if (d->geometry < MPS_MPM_PLANE_STRAIN || d->geometry > MPS_MPM_SPACE)
+  if (d->geometry < MPS_MPM_GEOMETRY_PLANE_STRAIN || d->geometry > MPS_MPM_GEOMETRY_SPACE)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "geometry is %d, allowed are 0 (plane strain), 1 (axisymmetric) and 2 (space)",
                      d->geometry);
@@ -105,7 +105,8 @@ static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
 
 /* The thickness, or the angle of the sector. */
 static mps_status read_measure(mps_context *context, mps_mpm_def *d) {
-  const bool ring = d->geometry == MPS_MPM_AXISYMMETRIC, space = d->geometry == MPS_MPM_SPACE;
+  const bool ring = d->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC,
+             space = d->geometry == MPS_MPM_GEOMETRY_SPACE;
   const double whole = 8.0 * atan(1.0), most = ring ? whole * (1.0 + 1e-12) : FAR;
   if (isnan(d->measure)) d->measure = ring ? whole : 1.0;
   if (d->measure >= LEAST_MEASURE && d->measure <= most && !(space && d->measure != 1.0))
@@ -139,7 +140,7 @@ static mps_status read_wall(mps_context *context, const mps_mpm_def *d, int c, b
 }
 
 static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low, int64_t *high) {
-  if (d->geometry == MPS_MPM_AXISYMMETRIC) {
+  if (d->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) {
     if (d->lower[0] == -INFINITY) d->lower[0] = 0.0;
     if (!(d->lower[0] >= 0.0))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,

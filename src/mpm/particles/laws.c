@@ -23,7 +23,8 @@ static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t be
   const int tensors = mpm->dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
     const int to = mpm->dim == 3 ? c : planar[c];
-    if (mpm->def.geometry != MPS_MPM_PLANE_STRAIN || c < 4) block->gradient[to] = p->L[c] + begin;
+    if (mpm->def.geometry != MPS_MPM_GEOMETRY_PLANE_STRAIN || c < 4)
+      block->gradient[to] = p->L[c] + begin;
     block->deformation[to] = law->needs_deformation ? p->F[c] + begin : NULL;
   }
   for (int c = 0; c < 2 * mpm->dim; c++) block->stress[c] = p->s[c] + begin;

@@ -29,7 +29,8 @@ static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
 static double area_by_spacing(const mps_mpm *mpm, int64_t particle) {
   const double spacing = mps_particles_spacing(mpm->particles);
   if (mpm->dim == 3) return spacing * spacing;
-  const double radius = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][particle] : 1.0;
+  const double radius =
+      mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->p.x[0][particle] : 1.0;
   return spacing * mpm->def.measure * radius;
 }
 

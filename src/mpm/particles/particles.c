@@ -123,7 +123,7 @@ mps_status mpsi_mpm_check_lost(mps_mpm *mpm, const char *function) {
 double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t k) {
   const double spacing = mps_particles_spacing(mpm->particles);
   if (mpm->dim == 3) return spacing * spacing * spacing;
-  const double radius = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0;
+  const double radius = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0;
   return spacing * spacing * mpm->def.measure * radius;
 }
 
@@ -155,7 +155,8 @@ static void set_mass(mps_mpm *mpm, int64_t k, double density) {
   mpsi_columns *p = &mpm->p;
   if (p->V[k] == 0.0) p->V[k] = mpsi_mpm_lattice_volume(mpm, k);
   p->m[k] = density * p->V[k];
-  const double mass = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
+  const double mass =
+      mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
   if (mass > 0.0 && !(mass >= mpm->contact.least_mass)) mpm->contact.least_mass = mass;
 }
 

@@ -95,11 +95,11 @@ typedef struct departure {
 
 static mps_status list_columns(departure *d) {
   mps_particles *set = d->mpm->particles;
-  mps_field_info info;
+  mps_particles_field_info info;
   mps_status status = MPS_OK;
   d->columns = 0;
   for (int32_t f = 0; f < mps_particles_field_count(set) && status == MPS_OK; f++) {
-    status = mps_particles_field(set, f, &info);
+    status = mps_particles_get_field_info(set, f, &info);
     for (int32_t c = 0; c < info.components && status == MPS_OK; c++) {
       void *column = info.dtype.code == 0 ? (void *)mpsi_particles_integers(set, info.name)
                                           : (void *)mpsi_particles_column(set, info.name, c);

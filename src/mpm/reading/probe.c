@@ -204,7 +204,7 @@ static void add_weight(fit *f, int64_t k, double w, const double *s, void *data)
   const mps_mpm *mpm = f->list->mpm;
   const double across =
       mpm->def.measure *
-      (mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? f->list->row[k].value[0] : 1.0);
+      (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? f->list->row[k].value[0] : 1.0);
   (void)data;
   f->weight += w;
   f->filled += w * f->list->row[k].value[ROW_V] / across;

@@ -17,7 +17,7 @@ static void warn_about_courant(mps_mpm *mpm, double dt) {
   const double limit = mps_mpm_limit(mpm), courant = mpm->def.courant;
   if (mpm->run.warned_about_dt || !(dt > courant * limit * (1.0 + 1e-9))) return;
   mpm->run.warned_about_dt = true;
-  mpsi_log(mpm->context, MPS_LOG_WARNING,
+  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
            "step %lld: dt is %.4g s, %.3g of the Courant limit h/(c + v), above the fraction "
            "courant = %g: choose a smaller dt, or NaN for a step that follows the limit",
            (long long)mpm->run.steps, dt, dt / limit, courant);
@@ -35,7 +35,7 @@ static void warn_about_chatter(mps_mpm *mpm, double dt) {
     const double ratio = k * dt * dt / mpm->contact.least_mass;
     if (!(ratio > CHATTER) || (mpm->run.warned_about_chatter >> b & 1)) continue;
     mpm->run.warned_about_chatter |= UINT32_C(1) << b;
-    mpsi_log(mpm->context, MPS_LOG_WARNING,
+    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
              "contact with body %d will chatter: k dt^2/m = %.3g, above %g; use a penalty k of at "
              "most %.4g or a dt of at most %.4g s",
              b, ratio, CHATTER, k * CHATTER / ratio, dt * sqrt(CHATTER / ratio));

@@ -51,7 +51,9 @@ static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
   const bool space = mpm->dim == 3;
   diagonal[0] = p->D[0];
   diagonal[1] = p->D[space ? 4 : 3];
-  diagonal[2] = space ? p->D[8] : mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->L[4] : NULL;
+  diagonal[2] = space                                                ? p->D[8]
+                : mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->L[4]
+                                                                     : NULL;
 }
 
 /* Place of a particle when G2P found its stencil. */

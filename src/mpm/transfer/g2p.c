@@ -199,7 +199,7 @@ MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geome
     *outside |= there & ~good;
     *left |= there & ~here;
     store_some(p->v[c] + at, v, n);
-    if (geometry == MPS_MPM_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, v / x, n);
+    if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, v / x, n);
     store_some(p->x[c] + at, to, n);
   }
   MPSI_UNROLL for (int a = 0; a < dim * dim; a++)
@@ -245,7 +245,7 @@ static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, 
         cells->gone = true;
         continue;
       }
-      const bool axis = mpm->def.geometry == MPS_MPM_AXISYMMETRIC && c == 0 && !(*x > 0.0);
+      const bool axis = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 && !(*x > 0.0);
       if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) {
         if (bad < 0) bad = k;
         break;

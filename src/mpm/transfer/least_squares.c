@@ -218,7 +218,8 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
       out.stress[d][1 + a] = -c->V[p] * c->s[symmetric[a][d]][p];
     }
   }
-  if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC) out.body[1] -= c->V[p] * c->s[2][p] / c->x[0][p];
+  if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+    out.body[1] -= c->V[p] * c->s[2][p] / c->x[0][p];
   return out;
 }
 

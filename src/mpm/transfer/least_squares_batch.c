@@ -309,7 +309,7 @@ MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const batch *b, int64_t
   for (int a = 0; a < dim; a++) {
     mpsi_quad body = out->m * mpm->def.gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
-    if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC && a == 0)
+    if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
       body -= V * mpsi_get_some(from->s[2] + p, n) / mpsi_get_some(from->x[0] + p, n);
     for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
     for (int d = 0; d < dim; d++) {

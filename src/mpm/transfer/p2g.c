@@ -34,7 +34,7 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
       const int to = MPSI_VECTOR + c;
       mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
       if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
-      if (geometry == MPS_MPM_AXISYMMETRIC && c == 0)
+      if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
         force -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
       mpsi_put(out->sum[0][to] + k, split ? momentum : momentum + force);
       if (split) mpsi_put(out->force[0][to] + k, force);

@@ -24,7 +24,8 @@
 MPSI_INLINE bool mpsi_keeps_spin(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                  uint32_t bodies) {
   bool impulses = false;
-  if (bodies == 0 || mpm->def.geometry == MPS_MPM_AXISYMMETRIC || mpm->standard || mpm->by_weight)
+  if (bodies == 0 || mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || mpm->standard ||
+      mpm->by_weight)
     return false;
   for (int32_t q = 0; q < cells->pairs; q++) {
     const int32_t body = mpm->contact.cell_pair[cells->first_pair + q].body;

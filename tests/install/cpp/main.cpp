@@ -28,7 +28,7 @@ static mps::particles block(const mps::context &context) {
 }
 
 static mps::mpm falling(const mps::context &context, const mps::particles &sand) {
-  const mps::material law = mps::create(context, mps_material_linear_elastic, 1e6, 0.3);
+  const mps::material law = mps::create(context, mps_material_create_linear_elastic, 1e6, 0.3);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.2;
   def.gravity[1] = -9.81;
@@ -137,8 +137,8 @@ static void errors(const mps::context &context) {
   }
 }
 
-// Laws, signals and hooks that throw, on one thread and on two: the exception comes out, the solver is
-// as it was and goes on.
+// Laws, signals and hooks that throw, on one thread and on two: the exception comes out, the solver
+// is as it was and goes on.
 static void callbacks(const mps::context &context) {
   const mps::particles sand = block(context);
   bool bad = true;
@@ -146,11 +146,11 @@ static void callbacks(const mps::context &context) {
     if (bad) throw std::out_of_range("a law");
     for (int64_t i = 0; i < block->count; i++) block->stress[0][i] = 0.0;
   });
-  mps_user_law_def law = mps_user_law_defaults();
+  mps_material_user_def law = mps_material_user_defaults();
   law.update = update.function();
   law.user = update.user();
   law.wave_modulus = 1e6;
-  const mps::material material = mps::create(context, mps_material_user, law);
+  const mps::material material = mps::create(context, mps_material_create_user, law);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.2;
   def.dt = 1e-4;
@@ -171,7 +171,7 @@ static void callbacks(const mps::context &context) {
     out[0] = out[1] = out[2] = 0.0;
   });
   const mps::signal signal =
-      mps::create(context, mps_signal_user, motion.function(), motion.user());
+      mps::create(context, mps_signal_create_user, motion.function(), motion.user());
   try {
     mps_signal *list[1] = {signal.get()};
     EXPECT(mps_signal_displacement(list[0], 0.25) == 0.0);
@@ -182,7 +182,7 @@ static void callbacks(const mps::context &context) {
     EXPECT(std::strcmp(e.what(), "a signal") == 0);
   }
 
-  const mps::callback<mps_cancel_fn> cancel(context, []() -> int32_t { throw 7; });
+  const mps::callback<mps_context_cancel_fn> cancel(context, []() -> int32_t { throw 7; });
   mps_context_set_cancel(context, cancel.function(), cancel.user());
   try {
     mps::call(solver, mps_mpm_step, 10);
