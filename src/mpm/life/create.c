@@ -528,7 +528,6 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->settling.nodes_room.item,
                    mpm->rooms.force.item,
                    mpm->rooms.radix.item,
-                   mpm->rooms.flags.item,
                    mpm->rooms.stencil.item,
                    mpm->rooms.strain.item,
                    mpm->rooms.gone.item,
