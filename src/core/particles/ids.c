@@ -42,23 +42,32 @@ static void close_up(mpsi_ids *ids, int64_t hole) {
   ids->id[hole] = -1;
 }
 
-static bool grow_table(mps_context *context, mpsi_ids *ids, int64_t count) {
-  const int64_t half_more = ids->room / 4 * 3 + ids->room / 3;
-  mpsi_ids larger = {.sparse = true};
-  larger.room = slots_for(
-      ids->room > 0 && count < half_more && half_more < MPSI_IDS_MOST ? half_more : count);
-  larger.id = mpsi_alloc(context, larger.room, sizeof *larger.id);
-  larger.places = mpsi_alloc(context, larger.room, sizeof *larger.places);
-  if (!larger.id || !larger.places) {
-    mpsi_ids_free(context, &larger);
+/* To a table of so many slots. False: no memory, and nothing has changed. */
+static bool move_table(mps_context *context, mpsi_ids *ids, int64_t room) {
+  mpsi_ids other = {.sparse = true, .room = room};
+  other.id = mpsi_alloc(context, room, sizeof *other.id);
+  other.places = mpsi_alloc(context, room, sizeof *other.places);
+  if (!other.id || !other.places) {
+    mpsi_ids_free(context, &other);
     return false;
   }
-  for (int64_t at = 0; at < larger.room; at++) larger.id[at] = -1;
+  for (int64_t at = 0; at < room; at++) other.id[at] = -1;
   for (int64_t at = 0; at < ids->room; at++)
-    if (ids->id[at] >= 0) mpsi_ids_put(&larger, ids->id[at], ids->places[at]);
+    if (ids->id[at] >= 0) mpsi_ids_put(&other, ids->id[at], ids->places[at]);
   mpsi_ids_free(context, ids);
-  *ids = larger;
+  *ids = other;
   return true;
+}
+
+static bool grow_table(mps_context *context, mpsi_ids *ids, int64_t count) {
+  const int64_t half_more = ids->room / 4 * 3 + ids->room / 3;
+  const bool by_half = ids->room > 0 && count < half_more && half_more < MPSI_IDS_MOST;
+  return move_table(context, ids, slots_for(by_half ? half_more : count));
+}
+
+bool mpsi_ids_fit(mps_context *context, mpsi_ids *ids, int64_t count) {
+  if (!ids->sparse || ids->count > count || ids->room <= slots_for(count)) return true;
+  return move_table(context, ids, slots_for(count));
 }
 
 /* ---- both ------------------------------------------------------------------------------------ */

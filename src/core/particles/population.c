@@ -371,6 +371,8 @@ void mpsi_backup_drop(mps_particles *p, mpsi_backup *backup) {
 
 mps_status mpsi_particles_fit(mps_particles *p, const char *function) {
   const int64_t wanted = p->count + p->count / 64 + 8;
+  if (!mpsi_ids_fit(p->context, &p->ids, wanted))
+    return mpsi_fail_memory(p->context, function, (size_t)wanted * 16);
   if (p->capacity <= wanted) return MPS_OK;
   if (mpsi_particles_reserve(p, wanted)) {
     mpsi_particles_settle_columns(p, true);

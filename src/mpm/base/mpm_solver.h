@@ -22,7 +22,7 @@ struct mpsi_kernels;
 
 /* Memory for each particle. */
 typedef struct mpsi_rooms {
-  mpsi_room radix, flags, stencil;
+  mpsi_room radix, stencil;
   mpsi_room strain; /* of the columns D */
   mpsi_room gone;   /* marks of what leaves at the end of a step; none where nothing can */
   mpsi_room force;  /* of the columns f; none without loads */

@@ -232,6 +232,17 @@ static int32_t written_count(const mps_mpm *mpm) {
   return OWN_COLUMNS + mps_material_history_count(mpm->laws.law[0].material);
 }
 
+/* Whether the caller's fields, the first `fields`, are among them. */
+static bool writes_given(const mps_mpm *mpm, int32_t fields) {
+  for (int32_t f = 0; f < fields; f++) {
+    mps_field_info info = {.name = ""};
+    if (mps_particles_field(mpm->particles, f, &info) != MPS_OK) return true;
+    for (int32_t c = 0; c < written_count(mpm) && info.dtype.code != 0; c++)
+      if (written(mpm, c) == mpsi_particles_column(mpm->particles, info.name, 0)) return true;
+  }
+  return false;
+}
+
 static mps_status save_columns(mps_mpm *mpm, double **copy) {
   const int32_t columns = written_count(mpm);
   const int64_t count = mpm->p.count;
@@ -342,19 +353,23 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
 }
 
 /* Of a set in parts: particles go to their ranks with the caller's fields alone, and those of the
- * solver are added there. Every rank comes to each function that is collective. */
+ * solver are added there. The set is copied, for an error to take back what has been written, only
+ * where that is a field of the caller. Every rank comes to each function that is collective. */
 static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status status,
                               mpsi_backup *backup) {
+  const int32_t fields = mps_particles_field_count(mpm->particles);
   status = mpsi_mpm_share_deal(mpm, create, status);
   if (status != MPS_OK) return status;
-  status = mpsi_particles_back_up(mpm->particles, create, backup);
-  if (status == MPS_OK) status = add_fields(mpm);
+  status = add_fields(mpm);
   if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
   if (status == MPS_OK) {
     mpsi_mpm_bind(mpm);
     status = mpsi_mpm_check_start(mpm, create);
     if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
   }
+  if (status == MPS_OK && writes_given(mpm, fields))
+    status = mpsi_particles_back_up(mpm->particles, create, backup);
+  backup->field_count = fields;
   if (status == MPS_OK) {
     mpsi_mpm_begin_particles(mpm);
     status = find_speed(mpm);
@@ -364,6 +379,7 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
   if (status == MPS_OK) status = make_memory(mpm);
   if (status == MPS_OK) status = mpsi_mpm_sort_cells(mpm, create);
   status = mpsi_mpm_share_take_part(mpm, create, status);
+  if (status != MPS_OK && !backup->memory) mpsi_particles_drop_fields(mpm->particles, fields);
   mpm->boundaries.outdated = true;
   return status;
 }
@@ -512,7 +528,6 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->settling.nodes_room.item,
                    mpm->rooms.force.item,
                    mpm->rooms.radix.item,
-                   mpm->rooms.flags.item,
                    mpm->rooms.stencil.item,
                    mpm->rooms.strain.item,
                    mpm->rooms.gone.item,

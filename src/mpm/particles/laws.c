@@ -8,9 +8,10 @@ void mpsi_mpm_begin_block(mps_material_block *block) {
   *block = (mps_material_block){.struct_size = sizeof *block};
 }
 
-/* Columns of particles [begin, end) as the law sees them: all members but those of its answers. */
+/* Columns of particles [begin, end) as the law sees them: all members but those of its answers.
+ * `flags` has room for a chunk. */
 static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin, int64_t end,
-                         mps_material_block *block) {
+                         int64_t *flags, mps_material_block *block) {
   static const int planar[5] = {0, 1, 3, 4, 8};
   const mpsi_columns *p = &mpm->p;
   block->dim = mpm->dim;
@@ -19,7 +20,8 @@ static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t be
   block->time = mpm->run.time + mpm->run.dt;
   block->ids = mpm->laws.ids + begin;
   block->volume_ratio = (law->reads_volume ? p->J : p->V) + begin;
-  block->flags = mpm->laws.flags + begin;
+  memset(flags, 0, (size_t)(end - begin) * sizeof *flags);
+  block->flags = flags;
   const int tensors = mpm->dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
     const int to = mpm->dim == 3 ? c : planar[c];
@@ -86,7 +88,8 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
                       mps_material_block *block) {
   mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, begin);
-  find_columns(mpm, law, begin, end, block);
+  int64_t flags[MPSI_CHUNK];
+  find_columns(mpm, law, begin, end, flags, block);
   take_strains(mpm, D, first, block);
   for (int c = 0; mean && c < 3; c++) block->gradient[4 * c] = mean[c] + first;
   mpsi_before_law before;
@@ -116,12 +119,10 @@ void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t 
     int64_t flags[MPSI_CHUNK];
     if (!law->opens) continue;
     mpsi_mpm_begin_block(&block);
-    find_columns(mpm, law, k, next, &block);
+    find_columns(mpm, law, k, next, flags, &block);
     for (int c = 0; c < 9; c++)
       if (block.gradient[c]) block.gradient[c] = rest;
-    block.flags = flags;
     apply_law(mpm, cells, law, &block, k);
-    for (int64_t q = k; q < next; q++) mpm->laws.flags[q] |= flags[q - k];
   }
 }
 
@@ -140,7 +141,8 @@ void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double
     if (mpsi_material_stiffens(law->material)) {
       mps_material_block block;
       mpsi_mpm_begin_block(&block);
-      find_columns(mpm, law, k, next, &block);
+      int64_t flags[MPSI_CHUNK];
+      find_columns(mpm, law, k, next, flags, &block);
       mpsi_material_wave_moduli(law->material, &block, moduli + (k - begin));
     } else {
       for (int64_t q = k; q < next; q++) moduli[q - begin] = law->modulus;

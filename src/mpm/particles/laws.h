@@ -36,7 +36,6 @@ typedef struct mpsi_laws {
   bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
   bool some_open;   /* some law is frictional, */
   bool some_own;    /* takes each particle's own change of volume */
-  int64_t *flags;   /* of the laws, by sorted index */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */
   mpsi_refusal refusal;
@@ -50,7 +49,7 @@ void mpsi_mpm_begin_block(mps_material_block *block);
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
                         double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block);
 /* laws.c: the returns to the yield surface of the frictional ones among particles [begin, end), at
- * most a chunk, without strain. Their flags are added to those of the step. */
+ * most a chunk, without strain. */
 void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* laws.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);

@@ -52,19 +52,16 @@ bool mpsi_mpm_make_room(void *solver, int64_t particles) {
   const bool by_cell = mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT;
   const bool good =
       mpsi_room_ensure(context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
-      mpsi_room_ensure(context, &r->flags, particles, sizeof *mpm->laws.flags) &&
       (!by_cell || mpsi_room_ensure(context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
       (!by_cell || make_columns(mpm, &r->strain, particles, mpm->dim * mpm->dim, mpm->p.D)) &&
       (!r->force.item || mpsi_mpm_force_room(mpm, particles));
   mpm->grid.radix = r->radix.item;
-  mpm->laws.flags = r->flags.item;
   mpm->p.stencil = r->stencil.item;
   return good;
 }
 
 bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
-  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.flags, &mpm->rooms.stencil,
-                              &mpm->rooms.strain};
+  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.stencil, &mpm->rooms.strain};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
     mpsi_free(mpm->context, rooms[k]->item);
     *rooms[k] = (mpsi_room){0};

@@ -40,7 +40,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->dim * sizeof(double)},
               {mpm->rooms.strain.capacity, sizeof(double)},
               {mpm->p.stencil ? mpm->p.count : 0, sizeof *mpm->p.stencil},
-              {mpm->p.count, 2 * sizeof *mpm->grid.radix + sizeof *mpm->laws.flags}};
+              {mpm->p.count, 2 * sizeof *mpm->grid.radix}};
   int64_t bytes = 0;
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
     bytes += list[k].capacity * (int64_t)list[k].size;
