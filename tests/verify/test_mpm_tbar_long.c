@@ -44,9 +44,9 @@ static mpm_scene make_clay(double cell) {
   mps_assert_ok(context, mps_particles_fill_where(s.particles, low, high, is_outside, NULL, NULL));
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
   mps_assert_ok(context, mps_particles_set_stress(s.particles, press, NULL));
-  mps_von_mises_def law = mps_von_mises_defaults();
+  mps_material_von_mises_def law = mps_material_von_mises_defaults();
   law.young = 5e6, law.poisson = 0.45, law.yield_stress = sqrt(3.0) * COHESION;
-  mps_assert_ok(context, mps_material_von_mises(context, &law, &s.material));
+  mps_assert_ok(context, mps_material_create_von_mises(context, &law, &s.material));
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = cell;
   def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
