@@ -224,6 +224,34 @@ static void expect_warning(heard *h, int count, const char *text) {
   if (!strstr(h->last, text)) fail_msg("\"%s\" does not contain \"%s\"", h->last, text);
 }
 
+/* The shear of curved surfaces is short where the second row of particles is beyond a cell. */
+static void tells_of_large_particles(void **state) {
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    heard h = {0};
+    mps_context *own = listening(&h);
+    mpm_scene s = mpm_scene_begin(own, k % 2 ? 0.02 : 0.01, 0.0, 0.0, 1e6);
+    mps_mpm_def def = mps_mpm_defaults();
+    mps_contact_def contact = mps_contact_defaults();
+    mps_body_def place = mps_body_defaults();
+    mps_body *body = NULL;
+    def.cell = 0.02;
+    mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+    mpm_scene_solve(&s, &def);
+    place.position[0] = 0.3;
+    mps_assert_ok(own, mps_body_create_disc(own, &place, 0.1, &body));
+    if (k > 1) contact.strength = 1e3;
+    mps_assert_ok(own, mps_mpm_add_contact(s.mpm, body, &contact, NULL));
+    if (k == 3)
+      expect_warning(&h, 1, "spacing of 0.02 m is more than half a cell, 0.01 m");
+    else
+      assert_int_equal(h.warnings, 0);
+    mps_body_destroy(&body);
+    mpm_scene_end(&s);
+    mps_context_destroy(&own);
+  }
+}
+
 static void tells_of_bodies(void **state) {
   (void)state;
   heard h = {0};
@@ -374,11 +402,16 @@ static void steady_steps_allocate_nothing(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(drives_particles),        cmocka_unit_test(reads_external_forces),
-      cmocka_unit_test(refuses_bad_sides),       cmocka_unit_test(refuses_bad_boxes),
-      cmocka_unit_test(refuses_bad_loads),       cmocka_unit_test(tells_of_bodies),
-      cmocka_unit_test(tells_of_steps),          cmocka_unit_test(tells_of_nan),
-      cmocka_unit_test(survives_lack_of_memory), cmocka_unit_test(steady_steps_allocate_nothing)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(drives_particles),
+                                     cmocka_unit_test(reads_external_forces),
+                                     cmocka_unit_test(refuses_bad_sides),
+                                     cmocka_unit_test(refuses_bad_boxes),
+                                     cmocka_unit_test(refuses_bad_loads),
+                                     cmocka_unit_test(tells_of_large_particles),
+                                     cmocka_unit_test(tells_of_bodies),
+                                     cmocka_unit_test(tells_of_steps),
+                                     cmocka_unit_test(tells_of_nan),
+                                     cmocka_unit_test(survives_lack_of_memory),
+                                     cmocka_unit_test(steady_steps_allocate_nothing)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

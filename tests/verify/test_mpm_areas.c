@@ -107,14 +107,23 @@ static double turn(clay *c, double strength, double speed, int64_t steps) {
 
 /* ---- tests ----------------------------------------------------------------------------------- */
 
+static double farther(double a, double b) { return fabs(a - 1.0) > fabs(b - 1.0) ? a : b; }
+
 static void cylinders_turn(void **state) {
   (void)state;
+  double farthest = 1.0;
   for (int k = 0; k < 20; k++) {
     clay c = {.spline = 2 + k % 2, .along = 2 + k / 2 % 2, .shift = k / 4 % 2 ? 0.3 : 0.0};
     c.radius = CELL * (k < 8 ? 4.0 : k < 16 ? 8.0 : 16.0);
+    if (test_quick() && k != 5) continue;
     const double part = turn(&c, 0.5 * COHESION, 0.2, 200);
     print_message("R/h %g, degree %d, %d a cell, shifted by %g: moment %.4f\n", c.radius / CELL,
                   c.spline, c.along * c.along, c.shift, part);
+    farthest = farther(part, farthest);
+    if (k == 7 || k == 15 || k == 19) {
+      print_message("R/h %g: the moment farthest from 1 is %.4f\n", c.radius / CELL, farthest);
+      farthest = 1.0;
+    }
     mps_assert_near(part, 1.0, 0.03);
   }
 }
@@ -122,7 +131,7 @@ static void cylinders_turn(void **state) {
 /* The clay at the surface shears with it: its particles leave the rows of the lattice. */
 static void clay_flows(void **state) {
   (void)state;
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < (test_quick() ? 0 : 2); k++) {
     clay c = {.spline = 3, .along = 2 + k, .radius = 8.0 * CELL, .shift = 0.3};
     const double part = turn(&c, COHESION, 1.0, 600);
     print_message("as strong as the clay, %d a cell: moment %.4f\n", c.along * c.along, part);
@@ -132,17 +141,21 @@ static void clay_flows(void **state) {
 
 static void spheres_turn(void **state) {
   (void)state;
-  for (int k = 0; k < 2; k++) {
+  double farthest = 1.0;
+  for (int k = 0; k < (test_quick() ? 1 : 2); k++) {
     clay c = {
         .geometry = MPS_MPM_GEOMETRY_SPACE, .spline = 2 + k, .along = 2, .radius = 4.0 * CELL};
     c.shift = 0.3 * k;
     const double part = turn(&c, 0.5 * COHESION, 0.5, 120);
     print_message("sphere, degree %d: moment %.4f\n", c.spline, part);
+    farthest = farther(part, farthest);
     mps_assert_near(part, 1.0, 0.03);
   }
+  print_message("sphere: the moment farthest from 1 is %.4f\n", farthest);
 }
 
-/* A shaft beyond both ends of a ring: force strength times 2 pi R times the ring's length. */
+/* A shaft beyond both ends of a ring, the particles beside it in rows: force strength times 2 pi R
+ * times the ring's length. */
 static void shafts_are_pulled(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -160,7 +173,7 @@ static void shafts_are_pulled(void **state) {
     run_body(&s, shaft, strength, &motion, 120, &force, &moment);
     force /= strength * 2.0 * PI * c.radius * length;
     print_message("shaft, degree %d, %d a cell: force %.4f\n", c.spline, c.along * c.along, force);
-    mps_assert_near(force, 1.0, 0.03);
+    mps_assert_near(force, 1.0, 1e-3);
     mpm_scene_end(&s);
   }
 }
