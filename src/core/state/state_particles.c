@@ -226,6 +226,17 @@ static bool reserve_ids(mps_particles *p, move *m, const mps_snapshot *from) {
   return mpsi_ids_reserve(p->context, &p->ids, p->next_id, m->ids, from->particles);
 }
 
+/* In the same order, the ids to come are another number where particles that came later are gone:
+ * the map holds them all, without a particle. What it has beyond the set's own ids nobody reads. */
+static bool reserve_ids_to_come(mps_particles *p, const mps_snapshot *from) {
+  const mpsi_value *value = mpsi_values_find(&from->state, NEXT_ID);
+  const int64_t next = value ? *(const int64_t *)value->data : 0;
+  if (p->ids.sparse || next <= p->next_id) return true;
+  if (!mpsi_ids_reserve(p->context, &p->ids, p->next_id, next, from->particles)) return false;
+  for (int64_t id = p->next_id; id < next; id++) mpsi_ids_drop(&p->ids, id);
+  return true;
+}
+
 static move *new_move(mps_particles *p, const mps_snapshot *from, const int64_t *id) {
   const int64_t count = from->particles;
   move *m = mpsi_alloc(p->context, 1, sizeof *m);
@@ -251,9 +262,10 @@ mps_status mpsi_particles_prepare_state(mps_particles *p, const char *function,
   if (status == MPS_OK) status = check_particles(p, function, from, id->data);
   if (status == MPS_OK) status = check_fields(p, function, from);
   if (status == MPS_OK) status = add_missing(p, function, from);
-  if (status != MPS_OK || same_order(p, from, id->data)) return status;
-  *scratch = new_move(p, from, id->data);
-  if (*scratch) return MPS_OK;
+  if (status != MPS_OK) return status;
+  const bool same = same_order(p, from, id->data);
+  if (!same) *scratch = new_move(p, from, id->data);
+  if (same ? reserve_ids_to_come(p, from) : *scratch != NULL) return MPS_OK;
   mpsi_particles_drop_fields(p, fields);
   return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                    "could not allocate %d fields of %lld particles", p->field_count,
