@@ -111,7 +111,9 @@ MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const
  *
  *  MPS_ERROR_IO: cannot be read. MPS_ERROR_FORMAT: not a checkpoint, cut short or damaged.
  *  MPS_ERROR_UNSUPPORTED: written by a newer libmps. MPS_ERROR_ARGUMENT: of another set of
- *  particles, or another user_key. MPS_ERROR_FIELD: a field of the set has another shape. */
+ *  particles, or another user_key. MPS_ERROR_FIELD: a field of the set has another shape.
+ *  MPS_ERROR_STATE: a solver holds the set (its own function, such as mps_mpm_restore, puts both
+ *  back), or a field is being edited. */
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_read(mps_particles *particles, const char *path,
                                                      mps_checkpoint *info);
 

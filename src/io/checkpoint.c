@@ -117,64 +117,91 @@ static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoin
          write_fields(root, particles) && (!solver || mpsi_h5_write_state(root, solver, state));
 }
 
-static mps_status write_checkpoint(mps_particles *particles, const char *function, const char *path,
-                                   const mps_checkpoint *user_info, const char *solver,
-                                   const mpsi_values *state) {
-  mps_context *context = mpsi_particles_context(particles);
+/* A checkpoint that is being written, with what the caller says of it. */
+typedef struct writing {
+  mps_context *context;
+  const char *function;
   mps_checkpoint info;
-  mps_status status = check_path(context, function, path);
-  if (status == MPS_OK) status = read_info(context, function, user_info, &info);
-  if (status != MPS_OK) return status;
-  if (info.user_bytes > 0 && !info.user_data)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "user_bytes is %lld and user_data NULL",
-                     (long long)info.user_bytes);
-  if (!isfinite(info.time) || info.step < 0 || !(info.dt >= 0.0 && isfinite(info.dt)))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "time is %g s, step %lld, dt %g s: must be finite, and step and dt >= 0",
-                     info.time, (long long)info.step, info.dt);
   mpsi_replacement replacement;
-  status = mpsi_replace_begin(context, function, path, &replacement);
+} writing;
+
+/* All that can be refused before a byte is written. */
+static mps_status open_checkpoint(writing *w, const char *path, const mps_checkpoint *user_info) {
+  mps_context *context = w->context;
+  const mps_checkpoint *info = &w->info;
+  mps_status status = check_path(context, w->function, path);
+  if (status == MPS_OK) status = read_info(context, w->function, user_info, &w->info);
   if (status != MPS_OK) return status;
+  if (info->user_bytes > 0 && !info->user_data)
+    return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
+                     "user_bytes is %lld and user_data NULL", (long long)info->user_bytes);
+  if (!isfinite(info->time) || info->step < 0 || !(info->dt >= 0.0 && isfinite(info->dt)))
+    return mpsi_fail(context, w->function, MPS_ERROR_ARGUMENT,
+                     "time is %g s, step %lld, dt %g s: must be finite, and step and dt >= 0",
+                     info->time, (long long)info->step, info->dt);
+  return mpsi_replace_begin(context, w->function, path, &w->replacement);
+}
+
+static mps_status fill_checkpoint(writing *w, mps_particles *particles, const char *solver,
+                                  const mpsi_values *state) {
+  mps_status status = MPS_OK;
   mpsi_h5_file file;
   mpsi_h5_stay stay;
   mpsi_h5_enter(&stay);
-  bool good = mpsi_h5_open(&file, replacement.fd, replacement.part, true) &&
-              write_file(file.id, particles, &info, solver, state);
+  bool good = mpsi_h5_open(&file, w->replacement.fd, w->replacement.part, true) &&
+              write_file(file.id, particles, &w->info, solver, state);
   good = mpsi_h5_close(&file) && good;
   if (!good || file.error)
-    status = mpsi_h5_fail(context, function, MPS_ERROR_IO, &stay, &file, "write", replacement.part);
+    status = mpsi_h5_fail(w->context, w->function, MPS_ERROR_IO, &stay, &file, "write",
+                          w->replacement.part);
   mpsi_h5_leave(&stay);
-  if (status == MPS_OK) return mpsi_replace_commit(context, function, &replacement);
-  mpsi_replace_abandon(context, &replacement);
+  if (status == MPS_OK) return mpsi_replace_commit(w->context, w->function, &w->replacement);
+  mpsi_replace_abandon(w->context, &w->replacement);
   return status;
 }
 
 mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
                                 const mps_checkpoint *info) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  return write_checkpoint(particles, __func__, path, info, NULL, NULL);
+  writing w = {.context = mpsi_particles_context(particles), .function = __func__};
+  const mps_status status = open_checkpoint(&w, path, info);
+  return status == MPS_OK ? fill_checkpoint(&w, particles, NULL, NULL) : status;
 }
 
-mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
-                                       const char *path, const mps_checkpoint *user_info,
-                                       mps_particles *whole, const mpsi_values *state) {
+static mps_status open_solver(writing *w, const mpsi_state_of *of, const char *path,
+                              const mps_checkpoint *user_info) {
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_status status = MPS_OK;
-  if (user_info) status = MPSI_DEF_READ(of->context, function, mps_checkpoint, user_info, &info);
+  if (user_info) status = MPSI_DEF_READ(of->context, w->function, mps_checkpoint, user_info, &info);
   if (status != MPS_OK) return status;
   info.struct_size = sizeof info;
   info.time = of->time;
   info.step = of->steps;
   info.dt = of->dt;
-  return write_checkpoint(whole, function, path, &info, of->name, state);
+  return open_checkpoint(w, path, &info);
 }
 
+mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
+                                       const char *path, const mps_checkpoint *user_info,
+                                       mps_particles *whole, const mpsi_values *state) {
+  writing w = {.context = of->context, .function = function};
+  const mps_status status = open_solver(&w, of, path, user_info);
+  return status == MPS_OK ? fill_checkpoint(&w, whole, of->name, state) : status;
+}
+
+/* The file is open before the solver takes in what has been edited: a path that will not do leaves
+ * the solver as it is. */
 mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
                                 const mps_checkpoint *info) {
   mps_snapshot state = {.context = of->context};
-  mps_status status = mpsi_state_get(of, function, &state);
+  writing w = {.context = of->context, .function = function};
+  mps_status status = open_solver(&w, of, path, info);
+  if (status != MPS_OK) return status;
+  status = mpsi_state_get(of, function, &state);
   if (status == MPS_OK)
-    status = mpsi_checkpoint_save_values(of, function, path, info, of->particles, &state.state);
+    status = fill_checkpoint(&w, of->particles, of->name, &state.state);
+  else
+    mpsi_replace_abandon(of->context, &w.replacement);
   mpsi_values_free(of->context, &state.state);
   return status;
 }
@@ -474,6 +501,8 @@ mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_c
   if (!particles) return MPS_ERROR_ARGUMENT;
   reading r = reading_of(particles, __func__, path);
   mps_status status = look(&r, info, NULL);
+  if (status == MPS_OK) /* a solver would go on from fields of which it knows nothing */
+    status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = add_missing(&r);
   if (status == MPS_OK) {
     for (int32_t k = 0; k < r.values.fields.count; k++) put_field(&r, &r.values.fields.item[k]);

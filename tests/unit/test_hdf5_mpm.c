@@ -289,13 +289,30 @@ static void the_callers_bytes_come_back(void **state) {
     assert_int_equal(room[0], 'x');
     back.user_bytes = sizeof room;
     mps_assert_ok(context, k ? mps_mpm_restore(x.s.mpm, path, &back)
-                             : mps_checkpoint_read(x.s.particles, path, &back));
+                             : mps_checkpoint_info(context, path, &back));
     assert_int_equal(back.user_bytes, sizeof text);
     assert_string_equal(room, text);
     strcpy(back.user_key, "another");
     if (k) FAILS(mps_mpm_restore(x.s.mpm, path, &back), MPS_ERROR_ARGUMENT, "wanted is 'another'");
   }
   drop(&x);
+  mps_context_destroy(&context);
+}
+
+/* Fields that a solver has not read would be a wrong state without a word. */
+static void a_set_that_a_solver_holds_is_not_read_into(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_checkpoint info = mps_checkpoint_defaults();
+  mps_assert_ok(context, mps_checkpoint_write(x.s.particles, path, &info));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));
+  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 5));
+  FAILS(mps_checkpoint_read(x.s.particles, path, &info), MPS_ERROR_STATE, "held by");
+  same(&x, &twin);
+  drop(&x);
+  drop(&twin);
   mps_context_destroy(&context);
 }
 
@@ -367,6 +384,7 @@ int main(void) {
       cmocka_unit_test(other_files_and_bad_arguments),
       cmocka_unit_test(a_broken_run_goes_back),
       cmocka_unit_test(the_callers_bytes_come_back),
+      cmocka_unit_test(a_set_that_a_solver_holds_is_not_read_into),
       cmocka_unit_test(blocks_elsewhere_are_refused),
       cmocka_unit_test(refused_allocations_leave_nothing_behind),
   };

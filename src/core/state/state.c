@@ -16,17 +16,20 @@ static mps_status list(const mpsi_state_of *of, const char *function, mpsi_state
   return mpsi_fail_memory(of->context, function, (size_t)out->capacity * 2 * sizeof *out->item);
 }
 
-mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out) {
-  mpsi_state s;
-  mps_status status = of->particles ? mpsi_particles_ready(of->particles, function) : MPS_OK;
-  if (status == MPS_OK) status = list(of, function, &s);
-  if (status != MPS_OK) return status;
-  bool good = mpsi_values_reserve(of->context, &out->state, s.count);
-  for (int32_t k = 0; good && k < s.count; k++)
-    good = mpsi_value_reserve(of->context, &out->state.item[k], s.item[k].type, s.item[k].rows,
-                              s.item[k].columns);
-  for (int32_t k = 0; good && k < s.count; k++) {
-    const mpsi_state_item *from = &s.item[k];
+static mps_status reserve_values(const mpsi_state_of *of, const char *function, const mpsi_state *s,
+                                 mps_snapshot *out) {
+  bool good = mpsi_values_reserve(of->context, &out->state, s->count);
+  for (int32_t k = 0; good && k < s->count; k++)
+    good = mpsi_value_reserve(of->context, &out->state.item[k], s->item[k].type, s->item[k].rows,
+                              s->item[k].columns);
+  return good ? MPS_OK
+              : mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
+                          "could not allocate the state of the solver: %d items", s->count);
+}
+
+static void read_values(const mpsi_state *s, mps_snapshot *out) {
+  for (int32_t k = 0; k < s->count; k++) {
+    const mpsi_state_item *from = &s->item[k];
     mpsi_value *to = &out->state.item[k];
     memcpy(to->name, from->name, sizeof to->name);
     to->type = from->type;
@@ -34,11 +37,25 @@ mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_sna
     to->columns = from->columns, to->rows = from->rows;
     mpsi_state_read_item(from, to->data);
   }
-  if (good) out->state.count = s.count;
-  mpsi_free(of->context, s.item);
-  return good ? MPS_OK
-              : mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
-                          "could not allocate the state of the solver: %d items", s.count);
+  out->state.count = s->count;
+}
+
+/* `status` is that of what comes before: the ranks of a solver that takes edits in agree on it. */
+static mps_status get(const mpsi_state_of *of, const char *function, mps_status status,
+                      mps_snapshot *out) {
+  mpsi_state s = {.item = NULL};
+  if (status == MPS_OK && of->particles) status = mpsi_particles_ready(of->particles, function);
+  if (status == MPS_OK) status = list(of, function, &s);
+  const bool listed = status == MPS_OK;
+  if (listed) status = reserve_values(of, function, &s, out);
+  if (of->take_in) status = of->take_in(of->solver, function, status);
+  if (status == MPS_OK) read_values(&s, out);
+  if (listed) mpsi_free(of->context, s.item);
+  return status;
+}
+
+mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out) {
+  return get(of, function, MPS_OK, out);
 }
 
 /* ---- snapshots ----------------------------------------------------------------------------- */
@@ -102,19 +119,19 @@ static mps_status check_owner(const mpsi_state_of *of, const char *function,
  * is refused: values of the state are written after the fields' memory is there. */
 mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
                                mps_snapshot **snapshot) {
-  if (!snapshot)
-    return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT,
-                     "snapshot is NULL, must be the "
-                     "address of a pointer, which may be NULL at first");
-  mps_snapshot *made = *snapshot;
+  mps_snapshot *made = snapshot ? *snapshot : NULL;
   mps_status status = made ? check_owner(of, function, made) : MPS_OK;
-  if (status != MPS_OK) return status;
-  if (!made && !(made = new_snapshot(of)))
-    return mpsi_fail_memory(of->context, function, sizeof *made);
-  if (of->particles) status = mpsi_particles_reserve_state(of->particles, function, made);
-  if (status == MPS_OK) status = mpsi_state_get(of, function, made);
+  if (!snapshot)
+    status = mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT,
+                       "snapshot is NULL, must be the "
+                       "address of a pointer, which may be NULL at first");
+  else if (!made && !(made = new_snapshot(of)))
+    status = mpsi_fail_memory(of->context, function, sizeof *made);
+  if (status == MPS_OK && of->particles)
+    status = mpsi_particles_reserve_state(of->particles, function, made);
+  status = get(of, function, status, made);
   if (status == MPS_OK && of->particles) mpsi_particles_get_state(of->particles, made);
-  if (status != MPS_OK && !*snapshot) mps_snapshot_destroy(&made);
+  if (status != MPS_OK && snapshot && !*snapshot) mps_snapshot_destroy(&made);
   if (status == MPS_OK) *snapshot = made;
   return status;
 }

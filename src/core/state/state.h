@@ -128,6 +128,10 @@ typedef struct mpsi_state_of {
   /* May be NULL: of a solver on several ranks. What has become of all of them, when all that can
    * fail on this one is done; its own status so far is `status`. */
   mps_status (*settle)(void *solver, const char *function, mps_status status);
+  /* May be NULL, of a snapshot or file that is to hold what the caller has edited: takes it in,
+   * once all memory is there; `status` is what has become of that on this rank, and what comes back
+   * that of all. On an error nothing has been taken in. */
+  mps_status (*take_in)(void *solver, const char *function, mps_status status);
   /* May be NULL, cannot fail. `bind`: the set is back, its columns may have moved and its number of
    * particles changed; the values of the list are still to be written. `after`: they are too. */
   void (*bind)(void *solver);
