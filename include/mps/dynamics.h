@@ -280,17 +280,18 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double
 
 /** Reads displacement, velocity, rotation and spin from the fields as a new initial state without
  *  history, at time `time` (s, finite), step 0: the budget of mps_dynamics_get_totals and the
- *  reactions begin anew. */
+ *  reactions begin anew. All must be finite, and speeds (m/s; spin times spacing) at most 1e100. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time);
 
 /** Brings `acceleration` and `pressure` to the instant of the positions: what the next step would
  *  begin with, boundaries and loads included (signals are asked for it). Costs one step; nothing
- *  else changes. */
+ *  else changes. MPS_ERROR_DIVERGED, changing nothing: they would not be finite. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_refresh(mps_dynamics *dynamics);
 
 /** Keeps the state of the solver and its set (fields, order) in memory. *snapshot is made when it
- * is NULL, and otherwise filled again: one that this solver has filled. Allowed in a callback of
- *  mps_dynamics_run. */
+ * is NULL, and otherwise filled again: one that this solver has filled. Fields that were edited
+ *  are read as by a step, and left unread on an error. Allowed in a callback of mps_dynamics_run.
+ */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_snapshot(mps_dynamics *dynamics,
                                                        mps_snapshot **snapshot);
 /** Goes back to a snapshot, bit for bit, also from a run that has diverged or lost particles. Not
@@ -299,7 +300,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_snapshot(mps_dynamics *dynamics,
 MPS_API MPS_NODISCARD mps_status mps_dynamics_rollback(mps_dynamics *dynamics,
                                                        const mps_snapshot *snapshot);
 /** Writes the state to a file, as mps_dynamics_snapshot; of `info` (NULL: nothing) user_key and
- *  user_data are written too. */
+ *  user_data are written too. Where writing fails half way (a full disk; on several ranks any
+ *  failure on rank 0), fields that were edited may have been read. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path,
                                                    const mps_checkpoint *info);
 /** Puts the state of mps_dynamics_save into a solver that was built in the same way: set,

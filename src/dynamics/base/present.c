@@ -45,7 +45,7 @@ bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics) {
 }
 
 mps_status mpsi_dynamics_reserve_watch(mps_dynamics *dynamics, const char *function) {
-  if (!dynamics->def.watch_damping || dynamics->damping == MPSI_DYN_UNDAMPED) return MPS_OK;
+  if (!dynamics->def.watch_damping) return MPS_OK; /* whether it is damped may change */
   if (!dynamics->drag)
     dynamics->drag = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *dynamics->drag);
   if (dynamics->drag && mpsi_dynamics_reserve_accounts(dynamics)) return MPS_OK;

@@ -74,6 +74,8 @@ mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *functio
   double before = 0.0, after = 0.0;
   mps_status status = mpsi_domain_agree(domain, function,
                                         mpsi_dynamics_check_ground(dynamics->particles, function));
+  if (status == MPS_OK) /* refuses before anything has changed */
+    status = mpsi_domain_agree(domain, function, mpsi_dynamics_reserve_watch(dynamics, function));
   if (status == MPS_OK) status = mpsi_dynamics_present_energy(dynamics, function, &before);
   if (status != MPS_OK) return status;
   double other = mpsi_dynamics_set_coefficients(dynamics);
@@ -86,8 +88,7 @@ mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *functio
     mpsi_dynamics_forget_limit(dynamics);
     dynamics->no_rate = dynamics->forces_stale = true;
   }
-  if (status != MPS_OK) return status;
-  return mpsi_domain_agree(domain, function, mpsi_dynamics_reserve_watch(dynamics, function));
+  return status;
 }
 
 /* ---- a material ------------------------------------------------------------------------------ */

@@ -194,18 +194,28 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
 /* ---- what the caller does
  * ------------------------------------------------------------------------ */
 
-/* A state is kept between steps only, with what has been edited taken up. */
-static mps_status check_whole(mps_dynamics *dynamics, const char *function) {
-  mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
-  if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, function);
-  return status == MPS_OK ? mpsi_dynamics_take_edits(dynamics, function, MPS_OK) : status;
+/* A state is kept between steps only. */
+static mps_status check_whole(const mps_dynamics *dynamics, const char *function) {
+  const mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
+  return status == MPS_OK ? mpsi_particles_ready(dynamics->particles, function) : status;
+}
+
+static mps_status take_in(void *solver, const char *function, mps_status status) {
+  return mpsi_dynamics_take_edits(solver, function, status);
+}
+
+/* The state with what has been edited taken in, once nothing can refuse it. */
+static mpsi_state_of edited_state_of(mps_dynamics *dynamics) {
+  mpsi_state_of of = state_of(dynamics);
+  of.take_in = take_in;
+  return of;
 }
 
 mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   const mps_status status = check_whole(dynamics, __func__);
   if (status != MPS_OK) return status;
-  const mpsi_state_of of = state_of(dynamics);
+  const mpsi_state_of of = edited_state_of(dynamics);
   return mpsi_domain_agree(dynamics->domain, __func__,
                            mpsi_state_snapshot(&of, __func__, snapshot));
 }
@@ -232,7 +242,7 @@ mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   const mps_status status = check_whole(dynamics, __func__);
   if (status != MPS_OK) return status;
-  const mpsi_state_of of = state_of(dynamics);
+  const mpsi_state_of of = edited_state_of(dynamics);
   if (mpsi_domain_many(dynamics->domain))
     return mpsi_dynamics_save_partitions(dynamics, &of, __func__, path, info);
   return mpsi_checkpoint_save(&of, __func__, path, info);
@@ -248,6 +258,23 @@ mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_ch
 
 /* ---- the step to come
  * ---------------------------------------------------------------------------- */
+
+/* Of a state that a run has left when it diverged: what the next step would begin with may be no
+ * number. */
+static mps_status check_kept(mps_dynamics *dynamics, const char *function, const double *kept) {
+  const int64_t n = dynamics->count;
+  mps_status status = MPS_OK;
+  for (int64_t k = 0; k < 3 * n && status == MPS_OK; k++) {
+    if (isfinite(kept[k])) continue;
+    const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[k % n];
+    status = mpsi_fail(dynamics->context, function, MPS_ERROR_DIVERGED,
+                       "particle %lld would have acceleration (%g, %g) m/s2 and pressure %g Pa, "
+                       "must be finite: the state has diverged; mps_dynamics_rollback leads back",
+                       id, kept[k % n], kept[n + k % n], kept[2 * n + k % n]);
+    mpsi_fail_where(dynamics->context, dynamics->steps, id);
+  }
+  return mpsi_domain_agree(dynamics->domain, function, status);
+}
 
 /* Takes a step and goes back, keeping its accelerations and pressures in `kept`. */
 static mps_status look_ahead(mps_dynamics *dynamics, const char *function, double *kept) {
@@ -270,7 +297,8 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
   mpsi_state_go(&of, &back);
   const mps_status settled = settle_back(dynamics, function, MPS_OK);
-  return status == MPS_OK || status == MPS_ERROR_DIVERGED ? settled : status;
+  if (status != MPS_OK && status != MPS_ERROR_DIVERGED) return status;
+  return settled == MPS_OK ? check_kept(dynamics, function, kept) : settled;
 }
 
 mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {

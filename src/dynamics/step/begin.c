@@ -3,6 +3,7 @@
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 
+#include <float.h>
 #include <string.h>
 
 mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, double time) {
@@ -48,13 +49,16 @@ mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
                      "time is %g s, must be finite", time);
   const mpsi_dynamics_state *s = &dynamics->state;
   const double *const column[6] = {s->dx, s->dy, s->th, s->vx, s->vy, s->vth};
+  const double fastest = MPSI_DYNAMICS_FASTEST;
+  const double most[6] = {DBL_MAX, DBL_MAX, DBL_MAX, fastest, fastest, fastest / dynamics->spacing};
   for (int c = 0; c < 6 && status == MPS_OK; c++)
     for (int64_t k = 0; k < dynamics->count && status == MPS_OK; k++)
-      if (!isfinite(column[c][k]))
+      if (!(fabs(column[c][k]) <= most[c]))
         status = mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                           "the initial state of particle %lld is not finite (%g)",
+                           "the initial state of particle %lld is not finite (%g), or a speed "
+                           "beyond %g m/s",
                            (long long)mpsi_particles_integers(dynamics->particles, "id")[k],
-                           column[c][k]);
+                           column[c][k], MPSI_DYNAMICS_FASTEST);
   status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "time", time);
   if (status != MPS_OK) return status;
   return mpsi_dynamics_begin(dynamics, __func__, time);

@@ -123,8 +123,6 @@ static mps_status report_divergence(mps_dynamics *dynamics, const char *function
  * Accelerations are bounded in every step; a velocity that a caller has written, a boundary drives
  * or a torque has made may be so large that kinetic energy is no number any more. */
 
-#define FASTEST 1e100 /* m/s, also of the spin times the spacing */
-
 /* Whether a velocity (column `a`, or the change of a displacement from `b` to `a`) is beyond
  * `most`.
  */
@@ -147,7 +145,7 @@ static void check_block_speeds(void *data, int64_t b, int32_t worker) {
   (void)worker;
   dynamics->bad[b] = 0;
   for (int c = 0; c < 3; c++) {
-    const double most = c == 2 ? FASTEST / dynamics->spacing : FASTEST;
+    const double most = c == 2 ? MPSI_DYNAMICS_FASTEST / dynamics->spacing : MPSI_DYNAMICS_FASTEST;
     if (verlet ? any_beyond(now[c], old[c], block->begin, block->end, most * dynamics->lag)
                : any_beyond(v[c], NULL, block->begin, block->end, most))
       dynamics->bad[b] = 1;
@@ -170,7 +168,7 @@ static mps_status report_speed(mps_dynamics *dynamics, const char *function) {
          dynamics->bad[b] && k < dynamics->mesh.block[b].end && found < 0; k++)
       for (int c = 0; c < 3; c++)
         if (!(fabs(mpsi_dynamics_velocity(dynamics, c, k)) * (c == 2 ? dynamics->spacing : 1.0) <=
-              FASTEST))
+              MPSI_DYNAMICS_FASTEST))
           found = k;
   mps_status status = MPS_OK;
   dynamics->diverged = true;
@@ -182,7 +180,7 @@ static mps_status report_speed(mps_dynamics *dynamics, const char *function) {
                        (long long)dynamics->steps, mps_dynamics_time(dynamics), id, s->rx[found],
                        s->ry[found], mpsi_dynamics_velocity(dynamics, 0, found),
                        mpsi_dynamics_velocity(dynamics, 1, found),
-                       mpsi_dynamics_velocity(dynamics, 2, found), FASTEST);
+                       mpsi_dynamics_velocity(dynamics, 2, found), MPSI_DYNAMICS_FASTEST);
     mpsi_fail_where(dynamics->context, dynamics->steps, id);
   }
   return mpsi_domain_agree(dynamics->domain, function, status);
