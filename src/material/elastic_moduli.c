@@ -90,10 +90,41 @@ mps_status mpsi_material_check_elastic(mps_context *context, const char *functio
                    material->name);
 }
 
+enum { GROUND = 5 }; /* fields that follow from a material and a density */
+static const char *const ground[GROUND] = {"density", "young", "poisson", "shear_velocity",
+                                           "pressure_velocity"};
+
+/* Writes the fields, of which `former` are the present values. Where a holder refuses one of them,
+ * all are as before, and the holders that have read them read them again. */
+static mps_status write_ground(mps_particles *particles, const double value[GROUND], int64_t count,
+                               const int64_t *ids, double *former) {
+  const int64_t all = mps_particles_count(particles);
+  mps_status status = MPS_OK;
+  int told = 0;
+  for (int k = 0; k < GROUND; k++) {
+    double *column = mpsi_particles_column(particles, ground[k], 0);
+    memcpy(former + k * all, column, (size_t)all * sizeof *former);
+    for (int64_t i = 0; i < (ids ? count : all); i++)
+      column[ids ? mps_particles_index(particles, ids[i]) : i] = value[k];
+  }
+  for (; told < GROUND && status == MPS_OK; told++) /* masses follow from densities */
+    status = mpsi_particles_tell(particles, set_material, ground[told], told ? NULL : former);
+  if (status == MPS_OK) return MPS_OK;
+  for (int k = 0; k < GROUND; k++) {
+    double *column = mpsi_particles_column(particles, ground[k], 0);
+    for (int64_t i = 0; i < all; i++) {
+      const double refused = column[i];
+      column[i] = former[k * all + i];
+      former[k * all + i] = refused;
+    }
+  }
+  for (int k = 0; k < told - 1; k++)
+    (void)mpsi_particles_tell(particles, set_material, ground[k], k ? NULL : former);
+  return status;
+}
+
 mps_status mps_particles_set_material(mps_particles *particles, const mps_material *material,
                                       double density, int64_t count, const int64_t *ids) {
-  static const char *const names[] = {"density", "young", "poisson", "shear_velocity",
-                                      "pressure_velocity"};
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = mpsi_particles_context(particles);
   mps_moduli m = {0};
@@ -107,32 +138,15 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
     status = mpsi_as(context, __func__, mps_material_get_moduli(material, density, &m));
   if (status == MPS_OK) status = mpsi_particles_writable(particles, set_material);
   const int32_t before = mps_particles_field_count(particles);
-  for (int k = 0; k < 5 && status == MPS_OK; k++)
-    status = mpsi_as(context, __func__, mps_particles_add_field(particles, names[k], 0));
-  if (status != MPS_OK) {
-    mpsi_particles_drop_fields(particles, before);
-    return status;
-  }
   const int64_t all = mps_particles_count(particles);
-  double *former = mpsi_alloc(context, all, sizeof *former); /* densities: masses follow */
-  if (!former) status = mpsi_fail_memory(context, set_material, (size_t)all * sizeof *former);
-  /* may they be written now? From here on the solver takes them to be written. */
-  for (int k = 0; k < 5 && status == MPS_OK; k++)
-    status = mpsi_particles_tell(particles, set_material, names[k], NULL);
-  if (status != MPS_OK) {
-    mpsi_free(context, former);
-    mpsi_particles_drop_fields(particles, before);
-    return status;
-  }
-  memcpy(former, mpsi_particles_column(particles, "density", 0), (size_t)all * sizeof *former);
+  double *former = NULL;
+  for (int k = 0; k < GROUND && status == MPS_OK; k++)
+    status = mpsi_as(context, __func__, mps_particles_add_field(particles, ground[k], 0));
+  if (status == MPS_OK && !(former = mpsi_alloc(context, GROUND * all, sizeof *former)))
+    status = mpsi_fail_memory(context, set_material, (size_t)all * GROUND * sizeof *former);
   const double value[] = {density, m.young, m.poisson, m.shear_velocity, m.pressure_velocity};
-  for (int k = 0; k < 5; k++) {
-    double *column = mpsi_particles_column(particles, names[k], 0);
-    for (int64_t i = 0; i < (ids ? count : all); i++)
-      column[ids ? mps_particles_index(particles, ids[i]) : i] = value[k];
-  }
-  for (int k = 0; k < 5 && status == MPS_OK; k++)
-    status = mpsi_particles_tell(particles, set_material, names[k], k == 0 ? former : NULL);
+  if (status == MPS_OK) status = write_ground(particles, value, count, ids, former);
+  if (status != MPS_OK) mpsi_particles_drop_fields(particles, before);
   mpsi_free(context, former);
   return status;
 }
