@@ -322,7 +322,9 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(mps_elastic *e, double *
  *  loaded in proportion from rest, so that the work of the loads is half of load times
  * displacement. Works in a step are means of the forces before and after it times the displacement,
  * plus the kinetic energy that driven particles gain; the budget of mps/solver.h closes to rounding
- * (1e-10) with Newmark's average acceleration. `dissipated` is that of Rayleigh damping and
+ * (1e-10) with Newmark's average acceleration, or to 1e-14 C if that is more: C is the greatest
+ * Young's modulus over the lesser of the least one and 4 density spacing^2 / dt^2 (above a ratio of
+ * moduli of 1e8 a warning says so). `dissipated` is that of Rayleigh damping and
  * `scheme`, which for other members of the family is what the scheme takes, measured as the rest of
  * the budget. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out,

@@ -4,7 +4,10 @@
 
 #include "material/material_internal.h"
 
+#include <float.h>
 #include <string.h>
+
+#define MOST_CONTRAST 1e8 /* of Young's moduli in a body, without a warning */
 
 /* ---- material and cuts ----------------------------------------------------------------------- */
 
@@ -91,6 +94,23 @@ static mps_status read_material(mps_elastic *e, const char *function) {
   return status;
 }
 
+/* The equations of a soft body with hard inclusions are solved to the rounding of the hard ones'
+ * forces: what is left of the soft body's digits. */
+static void warn_of_contrast(const mps_elastic *e) {
+  double least = INFINITY, most = 0.0;
+  for (int64_t i = 0; i < e->n; i++) {
+    const double young = 2.0 * e->mu[i] * (1.0 + e->poisson[i]);
+    least = fmin(least, young), most = fmax(most, young);
+  }
+  if (!(most > MOST_CONTRAST * (1.0 + 1e-9) * least)) return; /* rounding */
+  mpsi_log(
+      e->context, MPS_LOG_WARNING,
+      "Young's modulus is %g to %g Pa in one body, a contrast of %.3g: above %g the budget of "
+      "energies closes to %.1g of its largest term only; particles that are to be rigid can be "
+      "held by a boundary, or be 1e4 times as stiff as the others",
+      least, most, most / least, MOST_CONTRAST, 1e-14 * most / least);
+}
+
 /* What follows from the fields `young` and `poisson`; nothing has changed on an error. */
 static mps_status renew_material(mps_elastic *e, const char *function) {
   const size_t bytes = (size_t)e->n * sizeof(double);
@@ -102,6 +122,7 @@ static mps_status renew_material(mps_elastic *e, const char *function) {
   if (status == MPS_OK) status = read_material(e, function);
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
+  if (status == MPS_OK) warn_of_contrast(e);
   for (int k = 0; k < 3 && status != MPS_OK; k++) memcpy(moduli[k], former + k * e->n, bytes);
   mpsi_free(e->context, former);
   return status;
@@ -247,6 +268,7 @@ mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool mod
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
+  if (status == MPS_OK && !moduli_known) warn_of_contrast(e);
   return status;
 }
 

@@ -1,0 +1,96 @@
+/* test_elastic_contrast.c - moduli that differ by many orders in one body: above 1e8 the log is
+ * warned, and the budget of energies closes to 1e-14 times the contrast, as mps/elastic.h states.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_common.h"
+
+#include <mps/mps.h>
+
+#define OK(call) mps_assert_ok(own, call)
+
+typedef struct journal {
+  int count;
+  char last[400];
+} journal;
+
+static void note(void *user, int32_t level, const char *message) {
+  journal *j = user;
+  if (level != MPS_LOG_WARNING) return;
+  j->count++;
+  snprintf(j->last, sizeof j->last, "%s", message);
+}
+
+static mps_context *noting(journal *j) {
+  mps_context_def def = test_context_defaults();
+  mps_context *own = NULL;
+  def.executor = MPS_EXECUTOR_SERIAL;
+  def.log = note, def.log_user = j;
+  assert_int_equal(mps_context_create(&def, &own, NULL, 0), MPS_OK);
+  return own;
+}
+
+/* A block with its lowest row held and eight particles of another modulus is loaded and set free:
+ * the largest term of the budget, and what it misses. */
+static void swing(mps_context *own, double contrast, double *missing, double *largest) {
+  static const double lo[2] = {0.0, 0.0}, hi[2] = {0.6, 0.6}, row[2] = {0.6, 0.1};
+  static const int64_t hard[8] = {14, 15, 16, 17, 20, 21, 22, 23};
+  mps_particles_def def = mps_particles_defaults();
+  mps_elastic_boundary_def bottom = mps_elastic_boundary_defaults();
+  mps_elastic_load_def load = mps_elastic_load_defaults();
+  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
+  mps_particles *set = NULL;
+  mps_material *other = NULL;
+  mps_elastic *e = NULL;
+  mps_totals t;
+  int64_t held[36];
+  def.spacing = 0.1;
+  OK(mps_particles_create(own, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_set(set, "young", 0, 1e6));
+  OK(mps_particles_set(set, "poisson", 0, 0.3));
+  OK(mps_particles_set(set, "density", 0, 1000.0));
+  OK(mps_material_linear_elastic(own, 1e6 * contrast, 0.3, &other));
+  OK(mps_elastic_create(own, set, NULL, &e));
+  bottom.ids = held;
+  OK(mps_particles_select_box(set, lo, row, 36, held, &bottom.id_count));
+  OK(mps_elastic_add_boundary(e, &bottom, NULL));
+  OK(mps_elastic_set_material(e, other, 8, hard));
+  load.force[0] = 50.0, load.force[1] = -20.0;
+  OK(mps_elastic_add_load(e, &load, NULL));
+  motion.dt = 1e-3;
+  motion.rho_inf = 1.0;
+  OK(mps_elastic_start(e, &motion));
+  *missing = *largest = 0.0;
+  for (int k = 0; k < 20; k++) {
+    OK(mps_elastic_step(e, 1));
+    OK(mps_elastic_get_totals(e, &t));
+    const double sum = t.kinetic + t.strain + t.dissipated - t.work_loads - t.work_boundaries;
+    *missing = fmax(*missing, fabs(sum));
+    *largest = fmax(*largest, fmax(t.kinetic + t.strain, fabs(t.work_loads)));
+  }
+  mps_elastic_destroy(&e);
+  mps_material_destroy(&other);
+  mps_particles_destroy(&set);
+}
+
+static void the_budget_follows_the_contrast(void **state) {
+  (void)state;
+  static const double contrasts[] = {1.0, 1e4, 1e8, 1e10, 1e12};
+  for (int k = 0; k < 5; k++) {
+    journal j = {0};
+    mps_context *own = noting(&j);
+    double missing, largest;
+    swing(own, contrasts[k], &missing, &largest);
+    const double bound = fmax(1e-10, 1e-14 * contrasts[k]);
+    print_message("contrast %g: misses %.2g of the largest term, bound %.2g\n", contrasts[k],
+                  missing / largest, bound);
+    assert_true(largest > 0.0 && missing <= bound * largest);
+    assert_int_equal(j.count, contrasts[k] > 1.01e8 ? 1 : 0);
+    if (j.count) assert_non_null(strstr(j.last, "a contrast of 1e+1"));
+    mps_context_destroy(&own);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_budget_follows_the_contrast)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
