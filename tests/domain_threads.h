@@ -1,8 +1,8 @@
 /* domain_threads.h - a transport for domains whose ranks are threads of one process, each with a
  * context of its own: for tests with sanitizers, allocations that are refused and partners that
- * are lost. Every wait ends after a time limit, with an error on all ranks. Ranks read one
- * another's memory; one that goes away early waits until nobody reads. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * are lost. Where every rank waits for another, or has ended, all waits end with an error on all
+ * ranks: that is found without a clock, however slow the machine. Ranks read one another's memory;
+ * one that goes away early waits until nobody reads. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_TEST_DOMAIN_THREADS_H
 #define MPS_TEST_DOMAIN_THREADS_H
 
@@ -11,7 +11,6 @@
 #include <mps/domain.h>
 
 #include <pthread.h>
-#include <time.h>
 
 #define TEAM_MOST 16
 #define TEAM_STARS 256
@@ -42,14 +41,16 @@ typedef struct team_member {
 
 struct team {
   int32_t size;
-  double limit; /* s, of a wait */
   pthread_mutex_t lock;
   pthread_cond_t change;
   int64_t turn;    /* meetings that have ended */
   int32_t arrived; /* at the present one */
   int32_t left;    /* ranks that are always there: they have left */
   bool mixed;      /* ranks were in different callbacks */
-  bool lost;       /* a wait has ended by the limit */
+  bool lost;       /* every rank was waiting, or has ended */
+  int64_t changes; /* of what ranks wait for; each of them has waited since change `seen` of it */
+  int64_t seen[TEAM_MOST];
+  bool asleep[TEAM_MOST], ended[TEAM_MOST];
   bool silent;     /* a rank takes no part any more: its memory must not be read */
   int32_t readers; /* ranks that read others' memory now */
   bool posted[TEAM_STARS][TEAM_MOST];
@@ -68,7 +69,6 @@ typedef struct team_star {
 static inline void team_begin(team *t, int32_t size) {
   memset(t, 0, sizeof *t);
   t->size = size;
-  t->limit = 60.0;
   pthread_mutex_init(&t->lock, NULL);
   pthread_cond_init(&t->change, NULL);
   for (int32_t r = 0; r < size; r++) {
@@ -83,20 +83,32 @@ static inline void team_end(team *t) {
   pthread_mutex_destroy(&t->lock);
 }
 
-/* With the lock held: waits until something changes; false where the limit has passed. */
-static inline bool team_wait(team *t, const struct timespec *until) {
-  if (!t->lost && pthread_cond_timedwait(&t->change, &t->lock, until) != 0) t->lost = true;
-  if (t->lost) pthread_cond_broadcast(&t->change);
-  return !t->lost;
+/* With the lock held, of all of the following. */
+static inline void team_changed(team *t) {
+  t->changes++;
+  pthread_cond_broadcast(&t->change);
 }
 
-static inline struct timespec team_limit(const team *t) {
-  struct timespec until;
-  clock_gettime(CLOCK_REALTIME, &until);
-  until.tv_sec += (time_t)t->limit;
-  until.tv_nsec += (long)((t->limit - (double)(time_t)t->limit) * 1e9);
-  if (until.tv_nsec >= 1000000000) until.tv_nsec -= 1000000000, until.tv_sec++;
-  return until;
+/* Whether no rank will change anything any more: all have ended, or wait for what has not come with
+ * the last change. */
+static inline bool team_is_stuck(const team *t) {
+  for (int32_t r = 0; r < t->size; r++)
+    if (!t->ended[r] && !(t->asleep[r] && t->seen[r] == t->changes)) return false;
+  return true;
+}
+
+/* Waits until something changes; false where nothing will. */
+static inline bool team_wait(team_member *m) {
+  team *t = m->team;
+  t->seen[m->rank] = t->changes;
+  t->asleep[m->rank] = true;
+  if (!t->lost && team_is_stuck(t)) t->lost = true;
+  if (t->lost)
+    team_changed(t);
+  else
+    pthread_cond_wait(&t->change, &t->lock);
+  t->asleep[m->rank] = false;
+  return !t->lost;
 }
 
 /* Whether this rank still takes part. */
@@ -106,10 +118,10 @@ static inline bool team_listens(team_member *m) {
 }
 
 /* From here to team_read_end the others' memory stays; false where the team falls apart first. */
-static inline bool team_read_begin(team *t) {
-  const struct timespec until = team_limit(t);
+static inline bool team_read_begin(team_member *m) {
+  team *t = m->team;
   pthread_mutex_lock(&t->lock);
-  while (t->silent && team_wait(t, &until)) {
+  while (t->silent && team_wait(m)) {
   }
   const bool good = !t->lost;
   if (good) t->readers++;
@@ -120,7 +132,7 @@ static inline bool team_read_begin(team *t) {
 static inline void team_read_end(team *t) {
   pthread_mutex_lock(&t->lock);
   t->readers--;
-  pthread_cond_broadcast(&t->change);
+  team_changed(t);
   pthread_mutex_unlock(&t->lock);
 }
 
@@ -139,17 +151,16 @@ static inline void team_arrive(team *t) {
     t->arrived = t->left;
     t->turn++;
   }
-  pthread_cond_broadcast(&t->change); /* also for those who wait for a star */
+  team_changed(t); /* also for those who wait for a star */
 }
 
 /* All ranks are here. */
 static inline mps_status team_meet(team_member *m) {
   team *t = m->team;
-  const struct timespec until = team_limit(t);
   pthread_mutex_lock(&t->lock);
   const int64_t turn = ++m->turn;
   team_arrive(t);
-  while (t->turn < turn && team_wait(t, &until)) {
+  while (t->turn < turn && team_wait(m)) {
   }
   const bool good = t->turn >= turn;
   pthread_mutex_unlock(&t->lock);
@@ -160,7 +171,7 @@ static inline mps_status team_meet(team_member *m) {
 static inline mps_status team_open(team_member *m, int32_t kind, int32_t count) {
   team *t = m->team;
   m->kind = kind, m->count = count;
-  if (team_meet(m) != MPS_OK || !team_read_begin(t)) return MPS_ERROR_IO;
+  if (team_meet(m) != MPS_OK || !team_read_begin(m)) return MPS_ERROR_IO;
   bool same = true;
   for (int32_t r = 0; r < t->size; r++)
     same = same && t->member[r].kind == kind && t->member[r].count == count;
@@ -168,7 +179,7 @@ static inline mps_status team_open(team_member *m, int32_t kind, int32_t count) 
   team_read_end(t);
   pthread_mutex_lock(&t->lock);
   t->mixed = t->lost = true;
-  pthread_cond_broadcast(&t->change);
+  team_changed(t);
   pthread_mutex_unlock(&t->lock);
   return MPS_ERROR_IO;
 }
@@ -286,7 +297,7 @@ static inline mps_status team_star_begin(void *user, void *handle, int32_t item_
   pthread_mutex_lock(&t->lock);
   m->own[star->number] = own;
   t->posted[star->number][m->rank] = true;
-  pthread_cond_broadcast(&t->change);
+  team_changed(t);
   pthread_mutex_unlock(&t->lock);
   return MPS_OK;
 }
@@ -296,7 +307,6 @@ static inline mps_status team_star_end(void *user, void *handle) {
   team_member *m = user;
   team *t = m->team;
   const team_star *star = handle;
-  const struct timespec until = team_limit(t);
   bool good = team_listens(m);
   pthread_mutex_lock(&t->lock);
   for (int32_t r = 0; good && r < t->size; r++)
@@ -304,10 +314,10 @@ static inline mps_status team_star_end(void *user, void *handle) {
       const bool elsewhere = t->member[r].turn > t->turn; /* it waits for this one too */
       t->mixed = t->mixed || elsewhere;
       t->lost = t->lost || elsewhere;
-      good = team_wait(t, &until);
+      good = team_wait(m);
     }
   pthread_mutex_unlock(&t->lock);
-  good = good && team_read_begin(t);
+  good = good && team_read_begin(m);
   for (int64_t k = 0; good && k < star->guests; k++)
     memcpy(star->to + k * star->item_bytes,
            t->member[star->rank[k]].own[star->number] + star->index[k] * star->item_bytes,
@@ -317,9 +327,9 @@ static inline mps_status team_star_end(void *user, void *handle) {
   if (good && ++t->copied[star->number] == t->size) {
     t->copied[star->number] = 0;
     memset(t->posted[star->number], 0, sizeof t->posted[star->number]);
-    pthread_cond_broadcast(&t->change);
+    team_changed(t);
   }
-  while (good && t->posted[star->number][m->rank]) good = team_wait(t, &until);
+  while (good && t->posted[star->number][m->rank]) good = team_wait(m);
   pthread_mutex_unlock(&t->lock);
   return good ? MPS_OK : team_leave(t);
 }
@@ -364,12 +374,18 @@ typedef struct team_thread {
 
 static inline void *team_thread_main(void *argument) {
   const team_thread *self = argument;
-  self->run(self->user, self->team, self->rank);
+  team *t = self->team;
+  self->run(self->user, t, self->rank);
+  pthread_mutex_lock(&t->lock);
+  t->ended[self->rank] = true;
+  team_changed(t); /* those that wait see whether they wait for this one */
+  pthread_mutex_unlock(&t->lock);
   return NULL;
 }
 
 static inline void team_run(team *t, team_fn run, void *user) {
   team_thread thread[TEAM_MOST];
+  memset(t->ended, 0, sizeof t->ended);
   for (int32_t r = 0; r < t->size; r++) {
     thread[r] = (team_thread){.team = t, .rank = r, .run = run, .user = user};
     if (pthread_create(&thread[r].thread, NULL, team_thread_main, &thread[r]) != 0) abort();

@@ -37,10 +37,9 @@ static inline void run_rank(void *user, team *t, int32_t rank) {
   mps_context_destroy(&own);
 }
 
-static inline void run_team(ranks *s, int32_t size, double limit) {
+static inline void run_team(ranks *s, int32_t size) {
   team t;
   team_begin(&t, size);
-  t.limit = limit;
   team_run(&t, run_rank, s);
   team_end(&t);
 }
@@ -58,7 +57,7 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
   for (int k = 0; k < (test_quick() ? 2 : few ? 4 : 6); k++) {
     ranks s = {.compute = run, .what = what, .threads = teams[k].threads, .length = length};
     int64_t *seen = calloc((size_t)alone.count + 1, sizeof *seen);
-    run_team(&s, teams[k].ranks, 60.0);
+    run_team(&s, teams[k].ranks);
     for (int32_t r = 0; r < teams[k].ranks; r++) {
       if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
       compare(&alone, &s.rank[r], seen);
@@ -80,7 +79,7 @@ static inline void refuse_memory(result_fn *run, int what, int64_t length, int64
   for (int64_t refuse = 3; worst != MPS_OK;
        refuse += refuse < 60 ? 1 : stride * (test_quick() ? 5 : 1)) {
     ranks s = {.compute = run, .what = what, .threads = 1, .length = length, .refuse = refuse};
-    run_team(&s, 3, 10.0);
+    run_team(&s, 3);
     worst = s.rank[1].status;
     for (int32_t r = 0; r < 3; r++) {
       if (s.rank[r].status != worst || (worst && !strstr(s.rank[r].message, "rank 1: ")))

@@ -321,7 +321,6 @@ static void test_lost_partner(void **state) {
     ranks s = {.what = STRIP, .length = SHORT_RUN};
     team t;
     team_begin(&t, 3);
-    t.limit = 0.5;
     t.member[1].deaf_at = deaf;
     team_run(&t, run_lost_rank, &s);
     team_end(&t);

@@ -249,7 +249,7 @@ static void test_troubles(void **state) {
   (void)state;
   for (int what = OTHER_BODY; what < TROUBLES; what++) {
     ranks s = {.compute = compute, .what = what, .threads = 1, .length = 5};
-    run_team(&s, 3, 10.0);
+    run_team(&s, 3);
     for (int32_t r = 0; r < 3; r++) {
       if (s.rank[r].status != expected[what].status ||
           !strstr(s.rank[r].message, expected[what].text))

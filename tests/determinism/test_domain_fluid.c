@@ -38,7 +38,7 @@ static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t 
 static void run_half(result_fn *half, int32_t size, int64_t count, const result *expected) {
   ranks s = {.compute = half, .what = COLLAPSE, .threads = 1, .length = count};
   int64_t *seen = calloc((size_t)expected->count + 1, sizeof *seen);
-  run_team(&s, size, 60.0);
+  run_team(&s, size);
   for (int32_t r = 0; r < size; r++) {
     if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
     compare(expected, &s.rank[r], seen);

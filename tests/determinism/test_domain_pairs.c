@@ -36,7 +36,6 @@ static void check_team(int32_t size) {
   pairs p = {0};
   team t;
   team_begin(&t, size);
-  t.limit = 20.0;
   team_run(&t, run_pairs, &p);
   for (int32_t r = 0; r < size; r++) {
     if (p.rank[r].bad == MPS_OK && !t.lost && !t.mixed) continue;

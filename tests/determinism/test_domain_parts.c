@@ -64,7 +64,7 @@ static void test_even(void **state) {
   (void)state;
   ranks s = {.compute = compute_fills, .what = PLANE, .threads = 1};
   int64_t least = INT64_MAX, most = 0;
-  run_team(&s, 7, 60.0);
+  run_team(&s, 7);
   for (int32_t r = 0; r < 7; r++) {
     if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
     least = s.rank[r].count < least ? s.rank[r].count : least;
@@ -218,7 +218,7 @@ static void test_refused(void **state) {
   (void)state;
   for (int what = 0; what < REFUSED; what++) {
     ranks s = {.compute = refused, .what = what, .threads = 1};
-    run_team(&s, 3, 10.0);
+    run_team(&s, 3);
     for (int32_t r = 0; r < 3; r++) {
       if (s.rank[r].status != expected[what].status ||
           !strstr(s.rank[r].message, expected[what].words))

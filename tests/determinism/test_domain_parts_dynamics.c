@@ -138,7 +138,7 @@ static mps_status columns(mps_context *own, mps_domain *domain, int what, int64_
 static void test_columns(void **state) {
   (void)state;
   ranks s = {.compute = columns, .what = LAYERS, .threads = 1};
-  run_team(&s, 3, 10.0);
+  run_team(&s, 3);
   for (int32_t r = 0; r < 3; r++) {
     assert_int_equal(s.rank[r].status, MPS_ERROR_STATE);
     assert_non_null(strstr(s.rank[r].message, "mps_domain_create_particles"));

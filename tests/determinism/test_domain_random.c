@@ -429,7 +429,6 @@ static void run_seed(uint64_t seed) {
   team t;
   s->compute = compute, s->what = (int)seed, s->threads = p.threads;
   team_begin(&t, p.ranks);
-  t.limit = 60.0;
   team_run(&t, run_rank, s);
   if (t.lost || t.mixed)
     fail_msg("seed %d (trouble %d at %d on rank %d of %d): ranks %s; rank 0: %s; rank 1: %s",

@@ -436,7 +436,6 @@ static void test_lost_partner(void **state) {
     scene s = {.what = 0};
     team t;
     team_begin(&t, 3);
-    t.limit = 0.2;
     t.member[2].deaf_at = deaf;
     team_run(&t, run_lost, &s);
     team_end(&t);
