@@ -70,6 +70,7 @@ typedef struct api_object {
   int context;     /* slot of the context that it was made from; -1: that has been destroyed */
   uint64_t serial; /* of all objects ever made; the latest has the highest */
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
+  double contrast; /* of an elastic body, the highest so far (state.c); 0: none */
   bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
   bool rewritten;  /* explicit dynamics: its set's motion has been written, and begins anew */
   bool drags;      /* nor need its momentum: it is damped, or driven by displacements */

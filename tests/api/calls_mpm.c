@@ -203,7 +203,7 @@ static void mpm_settle_sized(api *a) {
   mps_mpm_settle_def def = mps_mpm_settle_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   def.max_steps = api_least(a, "max_steps", 1, 30);
-  def.tolerance = api_optional(a, "tolerance", 5e-324, 0.999, 1e-2);
+  def.tolerance = api_optional(a, "tolerance", 5e-324, 1.0 - 0x1p-53, 1e-2);
   mps_mpm_settled out[2];
   memset(out, 0x5a, sizeof out);
   const size_t size = api_size(a, sizeof *out);

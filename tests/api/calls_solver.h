@@ -19,7 +19,7 @@ void api_stepped(api *a, mps_status status, int64_t before, int64_t after);
 /* A snapshot or checkpoint of WLS-MPM or explicit dynamics reads first what the caller has edited,
  * as a step does; one that is refused leaves the edits unread, but may have sorted the particles of
  * WLS-MPM. */
-void api_reads_edits(api *a, api_kind kind, mps_status status);
+void api_reads_edits(api *a, api_kind kind, const api_object *o, mps_status status);
 /* t_end of a run of a few steps. */
 double api_t_end(api *a, double time, double dt);
 /* Path of the file of this solver. */
@@ -27,7 +27,8 @@ void api_path(api *a, char path[300], const char *kind);
 /* In an absurd mood: damages the file. */
 void api_damage(api *a, const char *path);
 /* Before and after steps: what open sides have taken out is what the mass lacks. Where they took
- * nothing, the sum of mps_totals stays, to 1e-8 of its largest term (but of a solver that holds
+ * nothing, the sum of mps_totals stays, to 1e-8 of its largest term, or to 1e-14 times the
+ * contrast of moduli if that is more, as mps/elastic.h states (but of a solver that holds
  * particles by ids, WLS-MPM: `loose`); and where there are only boundaries and gravity, the
  * momentum changes by their impulses, to 1e-9 of what has flowed (SOLVER_MOMENTUM: not of the
  * fluid, whose header states another bound). */
@@ -181,7 +182,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     if (old && made != old->handle) api_broken(a, "changes the handle");                           \
     if (!old) (void)api_adopt(a, API_SNAPSHOT, made, a->context, o);                               \
     a->reads = true;                                                                               \
-    api_reads_edits(a, KIND, status);                                                              \
+    api_reads_edits(a, KIND, o, status);                                                           \
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_rollback(api *a) {                                                               \
@@ -201,7 +202,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     const mps_status status = mps_##S##_snapshot(s, &snapshot);                                    \
     (void)api_adopt(a, API_SNAPSHOT, snapshot, a->context, o);                                     \
     a->reads = true;                                                                               \
-    api_reads_edits(a, KIND, status);                                                              \
+    api_reads_edits(a, KIND, o, status);                                                           \
     if (!api_end(a, status)) return;                                                               \
     a->latest = true;                                                                              \
     api_read(a, KIND, o, mps_##S##_particles(s), &begin);                                          \
@@ -234,14 +235,15 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     api_begin(a, "mps_" #S "_save");                                                               \
     char path[300];                                                                                \
     mps_checkpoint info = mps_checkpoint_defaults();                                               \
-    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    api_object *o = api_any(a, KIND);                                                              \
+    mps_##S *s = o->handle;                                                                        \
     api_path(a, path, #S);                                                                         \
     const bool given = api_chance(a, 50);                                                          \
     if (given) info.struct_size = api_struct_size(a, sizeof info);                                 \
     const mps_status status =                                                                      \
         mps_##S##_save(s, api_null(a, "path") ? NULL : path, given ? &info : NULL);                \
     a->reads = true;                                                                               \
-    api_reads_edits(a, KIND, status);                                                              \
+    api_reads_edits(a, KIND, o, status);                                                           \
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_restore(api *a) {                                                                \

@@ -267,6 +267,23 @@ static void look_neighbours(look *l, mps_neighbours *neighbours) {
   add(l, "lists", hash);
 }
 
+/* The C of mps_elastic_get_totals: of which rounding in the budget of energies is a multiple. */
+static double contrast_of(mps_elastic *elastic) {
+  mps_particles *set = mps_elastic_particles(elastic);
+  mps_view young, density;
+  double least = INFINITY, most = 0.0;
+  const double dt = mps_elastic_dt(elastic), spacing = mps_particles_spacing(set);
+  if (mps_particles_view(set, "young", &young) != MPS_OK) return 0.0;
+  const bool moves = dt > 0.0 && mps_particles_view(set, "density", &density) == MPS_OK;
+  for (int64_t i = 0; i < young.shape[0]; i++) {
+    const double value = *mps_view_f64(&young, i, 0);
+    least = fmin(least, value), most = fmax(most, value);
+    if (moves)
+      least = fmin(least, 4.0 * *mps_view_f64(&density, i, 0) * spacing * spacing / dt / dt);
+  }
+  return most / least;
+}
+
 int api_look(api *a, api_kind kind, api_object *object, api_part *parts) {
   look l = {.a = a, .parts = parts, .prefix = ""};
   mps_reaction reaction;
@@ -299,6 +316,7 @@ int api_look(api *a, api_kind kind, api_object *object, api_part *parts) {
     break;
   case API_ELASTIC:
     look_elastic(&l, object->handle);
+    object->contrast = fmax(object->contrast, contrast_of(object->handle));
     break;
   case API_FLUID:
     look_fluid(&l, object->handle);

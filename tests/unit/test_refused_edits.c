@@ -1,0 +1,255 @@
+/* test_refused_edits.c - what a refused call has not taken in: a snapshot or file of explicit
+ * dynamics for which there is no memory or place, a material that a solver refuses, a state from
+ * which no motion can begin; and ids to come of a set that was brought together.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "domain_threads.h"
+#include "test_allocator.h"
+#include "unchanged.h"
+
+#include <mps/mps.h>
+
+#define OK(call) mps_assert_ok(own, call)
+#define FAILS(call, status, text) mps_assert_fails(own, call, status, text)
+
+SEEN_SOLVER(dynamics)
+
+static mps_particles *block(mps_context *own, double velocity) {
+  mps_particles_def def = mps_particles_defaults();
+  const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 0.4};
+  mps_particles *set = NULL;
+  def.spacing = 0.1;
+  OK(mps_particles_create(own, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_set(set, "density", 0, 1000.0));
+  OK(mps_particles_set(set, "velocity", 0, velocity));
+  OK(mps_particles_set(set, "shear_velocity", 0, 20.0));
+  OK(mps_particles_set(set, "pressure_velocity", 0, 40.0));
+  return set;
+}
+
+/* Its lowest row is held at a place that a signal gives. */
+static mps_dynamics *held_block(mps_context *own, mps_particles *set, bool watch) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics_boundary_def bottom = mps_dynamics_boundary_defaults();
+  mps_dynamics *made = NULL;
+  def.watch_damping = watch;
+  bottom.lower[0] = bottom.lower[1] = 0.0, bottom.upper[0] = 0.4, bottom.upper[1] = 0.1;
+  bottom.dofs = MPS_DOF_X | MPS_DOF_Y;
+  OK(mps_dynamics_create(own, set, &def, &made));
+  OK(mps_dynamics_add_boundary(made, &bottom, NULL));
+  OK(mps_dynamics_set_dt(made, 1e-4));
+  return made;
+}
+
+static mps_context *on(test_allocator *allocator) {
+  mps_context *own = test_allocator_context(allocator);
+  assert_non_null(own);
+  return own;
+}
+
+/* ---- edits ----------------------------------------------------------------------------------- */
+
+static void a_refused_snapshot_takes_no_edit_in(void **state) {
+  (void)state;
+  test_allocator memory = {0};
+  mps_context *own = on(&memory);
+  mps_particles *set = block(own, 0.0);
+  mps_dynamics *dynamics = held_block(own, set, false);
+  mps_snapshot *snapshot = NULL;
+  OK(mps_particles_set(set, "displacement", 0, 0.19));
+  const uint64_t before = seen_dynamics(dynamics, false);
+  mps_status status = MPS_ERROR_MEMORY;
+  int refusals = 0;
+  for (; status == MPS_ERROR_MEMORY; refusals++) {
+    memory.refuse_at = memory.calls + 1 + refusals;
+    status = mps_dynamics_snapshot(dynamics, &snapshot);
+    memory.refuse_at = 0;
+    if (status != MPS_OK) assert_true(seen_dynamics(dynamics, false) == before);
+  }
+  OK(status);
+  assert_true(refusals > 5);
+  assert_true(seen_dynamics(dynamics, false) != before); /* held particles are at their places */
+  mps_snapshot_destroy(&snapshot);
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+  assert_int_equal(memory.live, 0);
+}
+
+static void a_refused_file_takes_no_edit_in(void **state) {
+  (void)state;
+  test_allocator memory = {0};
+  mps_context *own = on(&memory);
+  mps_particles *set = block(own, 0.0);
+  mps_dynamics *dynamics = held_block(own, set, false);
+  mps_checkpoint info = mps_checkpoint_defaults();
+  OK(mps_particles_set(set, "displacement", 0, 0.19));
+  const uint64_t before = seen_dynamics(dynamics, false);
+  assert_int_not_equal(mps_dynamics_save(dynamics, TEST_TMP "/no/such/folder.h5", NULL), MPS_OK);
+  assert_true(seen_dynamics(dynamics, false) == before);
+  info.user_bytes = -1;
+  assert_int_not_equal(mps_dynamics_save(dynamics, TEST_TMP "/refused.h5", &info), MPS_OK);
+  assert_true(seen_dynamics(dynamics, false) == before);
+  assert_int_not_equal(mps_dynamics_save(dynamics, NULL, NULL), MPS_OK);
+  assert_true(seen_dynamics(dynamics, false) == before);
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+/* ---- materials ------------------------------------------------------------------------------- */
+
+/* Ground that becomes damped, of a solver that is to watch what damping takes, needs memory. */
+static void a_material_is_refused_as_a_whole(void **state) {
+  (void)state;
+  mps_status status = MPS_ERROR_MEMORY;
+  for (int refusals = 0; status == MPS_ERROR_MEMORY; refusals++) {
+    test_allocator memory = {0};
+    mps_context *own = on(&memory);
+    mps_particles *set = block(own, 0.1);
+    mps_dynamics *dynamics = held_block(own, set, true);
+    mps_material *stiff = NULL;
+    mps_totals totals;
+    OK(mps_material_linear_elastic(own, 4e6, 0.3, &stiff));
+    OK(mps_dynamics_step(dynamics, 3));
+    OK(mps_dynamics_get_totals(dynamics, &totals));
+    const uint64_t before = seen_dynamics(dynamics, false);
+    memory.refuse_at = memory.calls + 1 + refusals;
+    status = mps_dynamics_set_material(dynamics, stiff, 0, NULL);
+    memory.refuse_at = 0;
+    if (status != MPS_OK) assert_true(seen_dynamics(dynamics, false) == before);
+    mps_material_destroy(&stiff);
+    mps_dynamics_destroy(&dynamics);
+    mps_particles_destroy(&set);
+    mps_context_destroy(&own);
+    assert_int_equal(memory.live, 0);
+  }
+  assert_int_equal(status, MPS_OK);
+}
+
+/* WLS-MPM refuses the density where a volume is not positive: no field has another value then. */
+static void fields_of_a_material_that_is_refused_stay(void **state) {
+  (void)state;
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_particles *set = block(own, 0.0);
+  mps_mpm_def def = mps_mpm_defaults();
+  mps_material *law = NULL, *other = NULL;
+  mps_mpm *mpm = NULL;
+  mps_view view;
+  def.cell = 0.2;
+  OK(mps_material_linear_elastic(own, 1e6, 0.3, &law));
+  OK(mps_material_linear_elastic(own, 2e6, 0.2, &other));
+  OK(mps_mpm_create(own, set, law, &def, &mpm));
+  OK(mps_particles_view(set, "volume", &view));
+  *(double *)(uintptr_t)mps_view_f64(&view, 2, 0) = -1.0; /* as a run leaves it that has diverged */
+  const uint64_t before = seen_values(own, set);
+  FAILS(mps_particles_set_material(set, other, 1500.0, 0, NULL), MPS_ERROR_ARGUMENT, "volume");
+  OK(mps_particles_view(set, "density", &view));
+  for (int64_t i = 0; i < view.shape[0]; i++) assert_true(*mps_view_f64(&view, i, 0) == 1000.0);
+  for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
+    mps_field_info info;
+    OK(mps_particles_field(set, f, &info));
+    assert_string_not_equal(info.name, "young"); /* nor is there a new field */
+  }
+  assert_true(seen_values(own, set) == before);
+  mps_mpm_destroy(&mpm);
+  mps_material_destroy(&other);
+  mps_material_destroy(&law);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+/* ---- states that have diverged --------------------------------------------------------------- */
+
+static void no_motion_begins_at_a_speed_without_an_energy(void **state) {
+  (void)state;
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_particles *set = block(own, 0.0);
+  mps_dynamics *dynamics = held_block(own, set, false);
+  mps_view view;
+  OK(mps_particles_view(set, "velocity", &view));
+  *(double *)(uintptr_t)mps_view_f64(&view, 12, 0) = 1.1e100; /* as a run leaves it */
+  FAILS(mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_ARGUMENT, "beyond 1e+100 m/s");
+  OK(mps_particles_set(set, "velocity", 0, 1.0));
+  OK(mps_dynamics_restart(dynamics, 0.0));
+  OK(mps_dynamics_step(dynamics, 1));
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+/* A displacement of which the restoring force is no number, as one that has diverged. */
+static void accelerations_that_are_not_finite_are_not_shown(void **state) {
+  (void)state;
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_particles *set = block(own, 0.0);
+  mps_dynamics *dynamics = held_block(own, set, false);
+  mps_view view;
+  OK(mps_dynamics_refresh(dynamics));
+  OK(mps_particles_view(set, "displacement", &view));
+  for (int64_t i = 0; i < view.shape[0]; i++) /* as a run leaves it */
+    *(double *)(uintptr_t)mps_view_f64(&view, i, 0) = i % 2 ? 1e308 : -1e308;
+  OK(mps_dynamics_restart(dynamics, 0.0));
+  const uint64_t before = seen_dynamics(dynamics, false);
+  FAILS(mps_dynamics_refresh(dynamics), MPS_ERROR_DIVERGED, "must be finite");
+  assert_true(seen_dynamics(dynamics, false) == before);
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+/* ---- ids to come ----------------------------------------------------------------------------- */
+
+/* Ids 5 to 9 are gone: the set that was brought together knows that they were there. */
+static void ids_to_come_follow_those_that_are_gone(void **state) {
+  (void)state;
+  static const int64_t ids[10] = {5, 6, 7, 8, 9, 0, 1, 2, 3, 4};
+  static const char *const names[] = {"id"};
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  team t;
+  team_begin(&t, 1);
+  const mps_domain_def def = team_domain_def(&t, 0);
+  mps_domain *domain = NULL;
+  OK(mps_domain_create(own, &def, &domain));
+  for (int again = 0; again < 2; again++) {
+    mps_particles_def set_def = mps_particles_defaults();
+    const double places[20] = {0};
+    mps_particles *set = NULL, *whole = NULL;
+    set_def.spacing = 0.1;
+    OK(mps_particles_create(own, &set_def, &set));
+    for (int part = 0; part < 2; part++) {
+      OK(mps_particles_append(set, 5, places));
+      /* `again`: it has the same particles already when more have come and gone */
+      if (part == 0 && again) OK(mps_domain_gather_fields(domain, set, 1, names, &whole));
+    }
+    OK(mps_particles_remove(set, again ? 5 : 10, ids));
+    OK(mps_domain_gather_fields(domain, set, 1, names, &whole));
+    const int64_t left = again ? 5 : 0;
+    assert_int_equal(mps_particles_count(whole), left);
+    for (int64_t id = 0; id < 12; id++)
+      assert_int_equal(mps_particles_index(whole, id), id < left ? id : -1);
+    OK(mps_particles_append(whole, 3, places));
+    for (int64_t id = 0; id < 13; id++)
+      assert_int_equal(mps_particles_index(whole, id), id < left ? id
+                                                       : id < 10 ? -1
+                                                                 : left + id - 10);
+    mps_particles_destroy(&whole);
+    mps_particles_destroy(&set);
+  }
+  mps_domain_destroy(&domain);
+  team_end(&t);
+  mps_context_destroy(&own);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_refused_snapshot_takes_no_edit_in),
+      cmocka_unit_test(a_refused_file_takes_no_edit_in),
+      cmocka_unit_test(a_material_is_refused_as_a_whole),
+      cmocka_unit_test(fields_of_a_material_that_is_refused_stay),
+      cmocka_unit_test(no_motion_begins_at_a_speed_without_an_energy),
+      cmocka_unit_test(accelerations_that_are_not_finite_are_not_shown),
+      cmocka_unit_test(ids_to_come_follow_those_that_are_gone),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
