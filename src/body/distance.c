@@ -204,7 +204,7 @@ mps_status mps_body_distance(mps_body *body, int64_t count, const double *x, dou
   for (int64_t i = 0; i < dim * count; i++)
     if (!isfinite(x[i]))
       return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                       "point %lld has %c = %g m, must be finite", (long long)(i / dim),
+                       "x: point %lld has %c = %g m, must be finite", (long long)(i / dim),
                        "xyz"[i % dim], x[i]);
   for (int64_t i = 0; i < count; i++) {
     const mpsi_foot f = mpsi_body_foot(body, x + dim * i);

@@ -108,7 +108,7 @@ static mps_status find_normals(mps_context *context, const char *function, mpsi_
       const double *a = point(mesh, t, 0), *b = point(mesh, t, 1), *c = point(mesh, t, 2);
       return mpsi_fail(
           context, function, MPS_ERROR_ARGUMENT,
-          "triangle %lld with the corners (%g, %g, %g), (%g, %g, %g) and (%g, %g, %g) m "
+          "triangles: triangle %lld with the corners (%g, %g, %g), (%g, %g, %g) and (%g, %g, %g) m "
           "has no area",
           (long long)t, a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]);
     }
@@ -277,7 +277,7 @@ static mps_status check_arrays(mps_context *context, const char *function, int64
   for (int64_t i = 0; i < 3 * vertices; i++)
     if (!(fabs(xyz[i]) <= MPSI_BODY_FAR))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "vertex %lld has %c = %g m, must be finite", (long long)(i / 3),
+                       "xyz: vertex %lld has %c = %g m, must be finite", (long long)(i / 3),
                        "xyz"[i % 3], xyz[i]);
   for (int64_t s = 0; corner && s < 3 * triangles; s++)
     if (corner[s] < 0 || corner[s] >= vertices)

@@ -60,7 +60,7 @@ static mps_status check_corners(mps_context *context, const char *function, int6
   for (int64_t k = 0; k < 2 * vertices; k++)
     if (!(fabs(xy[k]) <= MPSI_BODY_FAR))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "corner %lld has %c = %g m, must be finite and within +-%g m",
+                       "vertices: corner %lld has %c = %g m, must be finite and within +-%g m",
                        (long long)(k / 2), names[k % 2], xy[k], MPSI_BODY_FAR);
   return mpsi_polygon_check(context, function, vertices, xy);
 }
@@ -150,11 +150,12 @@ static mps_status check_profile(mps_context *context, const char *function, int6
     const double before = rz[2 * ((k + n - 1) % n)], r = rz[2 * k], after = rz[2 * ((k + 1) % n)];
     if (r < 0.0)
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "corner %lld has r = %g m, must be >= 0", (long long)k, r);
+                       "vertices: corner %lld has r = %g m, must be >= 0", (long long)k, r);
     if (r == 0.0 && (before == 0.0) == (after == 0.0))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "corner %lld is on the axis with %s of its edges: must be with one",
-                       (long long)k, before == 0.0 ? "both" : "neither");
+      return mpsi_fail(
+          context, function, MPS_ERROR_ARGUMENT,
+          "vertices: corner %lld is on the axis with %s of its edges: must be with one",
+          (long long)k, before == 0.0 ? "both" : "neither");
   }
   return MPS_OK;
 }

@@ -28,26 +28,28 @@ mps_status mpsi_check_within(mps_context *context, const char *function, const c
 mps_status mpsi_check_elastic(mps_context *context, const char *function, double young,
                               double poisson) {
   const mps_status status =
-      mpsi_check_range(context, function, "Young's modulus", young, MPSI_RANGE_MODULUS);
+      mpsi_check_range(context, function, "young: Young's modulus", young, MPSI_RANGE_MODULUS);
   if (status != MPS_OK) return status;
-  return mpsi_check_range(context, function, "Poisson's ratio", poisson, MPSI_RANGE_POISSON);
+  return mpsi_check_range(context, function, "poisson: Poisson's ratio", poisson,
+                          MPSI_RANGE_POISSON);
 }
 
 mps_status mpsi_check_friction(mps_context *context, const char *function, double friction,
                                double dilation, double cohesion) {
-  mps_status status = mpsi_check_within(context, function, "the friction angle",
+  mps_status status = mpsi_check_within(context, function, "friction: the friction angle",
                                         " rad (angles are in radians)", friction, 0.0, RIGHT_ANGLE);
   if (status != MPS_OK) return status;
   if (!(dilation >= 0.0 && dilation <= friction))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the dilation angle is %g rad, must be >= 0 and at most the friction angle, "
-                     "%g rad",
-                     dilation, friction);
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT,
+        "dilation: the dilation angle is %g rad, must be >= 0 and at most the friction angle, "
+        "%g rad",
+        dilation, friction);
   status = mpsi_check_range_or_0(context, function, "cohesion", cohesion, MPSI_RANGE_STRESS);
   if (status != MPS_OK) return status;
   if (friction == 0.0 && cohesion == 0.0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "friction angle and cohesion are both 0: the material has no strength; one "
+                     "friction and cohesion are both 0: the material has no strength; one "
                      "must be > 0");
   return MPS_OK;
 }

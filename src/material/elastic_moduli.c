@@ -38,8 +38,8 @@ mps_status mps_moduli_from_velocities_sized(mps_context *context, double shear_v
                                             mps_moduli *out, size_t size) {
   static const char function[] = "mps_moduli_from_velocities";
   if (!context) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_check_range(context, function, "the shear wave velocity", shear_velocity,
-                                       MPSI_RANGE_WAVE_VELOCITY);
+  mps_status status = mpsi_check_range(context, function, "shear_velocity: the shear wave velocity",
+                                       shear_velocity, MPSI_RANGE_WAVE_VELOCITY);
   if (status == MPS_OK)
     status = mpsi_check_range(context, function, "the pressure wave velocity", pressure_velocity,
                               MPSI_RANGE_WAVE_VELOCITY);
@@ -50,14 +50,17 @@ mps_status mps_moduli_from_velocities_sized(mps_context *context, double shear_v
   const double poisson = 0.5 * (square - 2.0) / (square - 1.0);
   if (!(square > 4.0 / 3.0) || !mpsi_in_range(MPSI_RANGE_POISSON, poisson))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the pressure wave velocity is %g times the shear wave velocity, Poisson's "
+                     "pressure_velocity: the pressure wave velocity is %g times the shear wave "
+                     "velocity, Poisson's "
                      "ratio would be %.6g: must be -0.999 to 0.49999 (1.155 to 223 times)",
                      ratio, poisson);
   const double shear = density * shear_velocity * shear_velocity;
   mps_moduli m = moduli_of(shear, shear * (square - 4.0 / 3.0), density);
   m.shear_velocity = shear_velocity, m.pressure_velocity = pressure_velocity;
-  status = mpsi_check_range(context, function, "Young's modulus by these velocities", m.young,
-                            MPSI_RANGE_MODULUS);
+  status =
+      mpsi_check_range(context, function,
+                       "shear_velocity and pressure_velocity: Young's modulus by these velocities",
+                       m.young, MPSI_RANGE_MODULUS);
   return status == MPS_OK ? mpsi_out_write(context, function, out, size, &m, sizeof m) : status;
 }
 

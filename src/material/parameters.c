@@ -23,8 +23,8 @@ mps_status mpsi_define_von_mises(mps_context *context, const char *function, con
   const mps_material_von_mises_def *def = values;
   mps_status status = mpsi_check_elastic(context, function, def->young, def->poisson);
   if (status == MPS_OK)
-    status =
-        mpsi_check_range(context, function, "yield stress", def->yield_stress, MPSI_RANGE_STRESS);
+    status = mpsi_check_range(context, function, "yield_stress: yield stress", def->yield_stress,
+                              MPSI_RANGE_STRESS);
   if (status == MPS_OK)
     status =
         mpsi_check_range_or_0(context, function, "hardening", def->hardening, MPSI_RANGE_STRESS);
@@ -92,8 +92,8 @@ static mps_status check_newtonian(mps_context *context, const char *function,
   if (def->no_tension != 0 && def->no_tension != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "no_tension is %d, must be 0 or 1",
                      (int)def->no_tension);
-  const mps_status status =
-      mpsi_check_range(context, function, "bulk modulus", def->bulk_modulus, MPSI_RANGE_MODULUS);
+  const mps_status status = mpsi_check_range(context, function, "bulk_modulus: bulk modulus",
+                                             def->bulk_modulus, MPSI_RANGE_MODULUS);
   if (status != MPS_OK) return status;
   return mpsi_check_range_or_0(context, function, "viscosity", def->viscosity,
                                MPSI_RANGE_VISCOSITY);

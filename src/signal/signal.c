@@ -198,7 +198,7 @@ mps_status mps_signal_create_ricker(mps_context *context, double frequency, doub
   if (status != MPS_OK) return status;
   if (!isfinite(peak_time) || peak_time < 0.0)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "peak time is %g s, must be finite and >= 0", peak_time);
+                     "peak_time: peak time is %g s, must be finite and >= 0", peak_time);
   const double c = PI * frequency * PI * frequency, peak = fabs(amplitude);
   const mpsi_signal_motion peaks = {.u = peak / (2.0 * c), .v = peak / sqrt(c), .a = peak};
   if ((status = check_motion(context, __func__, amplitude, peaks)) != MPS_OK) return status;

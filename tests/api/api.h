@@ -9,6 +9,7 @@
  *   arena.c     the objects that live, by kind
  *   state.c     the state of each object, in parts that have names and hashes
  *   check.c     before and after a call
+ *   names.c     the arguments of each function, from the headers
  *   hooks.c     memory, hooks of a context, callbacks, and how they misbehave
  *   calls_*.c   one function for each function of the interface, in tables
  *   table.c     all tables; names that are deliberately in none
@@ -222,6 +223,10 @@ bool api_end_made(api *a, mps_status status, api_kind kind, void *made, const ap
 void api_count(const char *name, mps_status status);
 void api_settle(api *a); /* ends the sequence where something is broken */
 void api_print_log(const api *a, int descriptor);
+
+/* ---- names.c --------------------------------------------------------------------------------- */
+/* Whether the message has the name of a parameter of the function, or of a member of one. */
+bool api_names_argument(const char *function, const char *message);
 
 /* ---- hooks.c --------------------------------------------------------------------------------- */
 void api_hooks(api *a, mps_context_def *def);

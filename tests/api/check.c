@@ -2,7 +2,8 @@
  *
  *   the status is one of the table;
  *   an argument that no function may take is refused;
- *   the record of an error has that status, the function's name and a message;
+ *   the record of an error has that status, the function's name and a message, which names an
+ *   argument where that is refused;
  *   a call that failed has changed nothing, nor has one that only reads;
  *   after one that succeeded all is finite;
  *   a callback's status comes back, and what a callback may not do is refused.
@@ -127,6 +128,9 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
     api_broken(a, "the record names %s", record->function);
   else if (strlen(record->message) < 8)
     api_broken(a, "the record's message is \"%s\"", record->message);
+  else if (status == MPS_ERROR_ARGUMENT && !a->faulted &&
+           !api_names_argument(a->name, record->message))
+    fprintf(stderr, "NAMES %s | %s\n", a->name, record->message);
 }
 
 static void check_status(api *a, mps_status status) {

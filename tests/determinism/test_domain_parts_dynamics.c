@@ -5,8 +5,7 @@
 #include "test_common.h"
 
 #include "dynamics_scene.h"
-#include "peak_allocator.h"
-#include "ranks_team.h"
+#include "ranks_memory.h"
 
 static void test_scattered(void **state) {
   (void)state, compare_teams(compute, SCATTERED, WHOLE_RUN, false);
@@ -54,13 +53,9 @@ static void test_two(void **state) { (void)state, compare_teams(compute_two, 0, 
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-typedef struct peaks {
-  double hi[2];            /* m: upper corner of the body */
-  int64_t most[TEAM_MOST]; /* bytes */
-  mps_status status[TEAM_MOST];
-} peaks;
-
-static mps_status begin_ground(mps_context *own, mps_domain *domain, const double *hi) {
+/* `user`: upper corner of the body (m). */
+static mps_status begin_ground(mps_context *own, mps_domain *domain, const void *user) {
+  const double *hi = user;
   const double lo[2] = {0.0, 0.0};
   mps_particles_def def = mps_particles_defaults();
   mps_dynamics_def solver = mps_dynamics_defaults();
@@ -81,39 +76,9 @@ static mps_status begin_ground(mps_context *own, mps_domain *domain, const doubl
   return status;
 }
 
-static void measure(void *user, team *t, int32_t rank) {
-  peaks *p = user;
-  peak_allocator allocator = {0};
-  mps_context *own = NULL;
-  mps_domain *domain = NULL;
-  mps_context_def def = test_context_defaults();
-  const mps_domain_def domain_def = team_domain_def(t, rank);
-  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
-  peak_use(&def, &allocator);
-  mps_status status = mps_context_create(&def, &own, NULL, 0);
-  TRY(mps_domain_create(own, &domain_def, &domain));
-  TRY(begin_ground(own, t->size > 1 ? domain : NULL, p->hi));
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
-  p->status[rank] = status, p->most[rank] = allocator.most;
-}
-
-static int64_t most_of(int32_t size, double width, double height) {
-  peaks p = {.hi = {width, height}};
-  team t;
-  int64_t most = 0;
-  team_begin(&t, size);
-  team_run(&t, measure, &p);
-  team_end(&t);
-  for (int32_t r = 0; r < size; r++) {
-    assert_int_equal(p.status[r], MPS_OK);
-    most = p.most[r] > most ? p.most[r] : most;
-  }
-  return most;
-}
-
 static void compare_memory(double width, double height) {
-  const int64_t one = most_of(1, width, height), four = most_of(4, width, height);
+  const double hi[2] = {width, height};
+  const int64_t one = memory_most(1, begin_ground, hi), four = memory_most(4, begin_ground, hi);
   print_message("%g x %g particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
                 width, height, (long long)one, (long long)four, (double)four / (double)one);
   assert_true((double)four < 0.4 * (double)one);

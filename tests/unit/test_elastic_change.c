@@ -4,22 +4,9 @@
  * the start, whatever is asked in between.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
-
-static mps_context *context;
+#include "test_fixture.h"
 
 #define OK(call) mps_assert_ok(context, call)
-
-static int begin(void **state) {
-  (void)state;
-  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int end(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
 
 enum { SIDE = 5 };
 
@@ -244,5 +231,5 @@ int main(void) {
       cmocka_unit_test(a_solution_weighs_the_present_densities),
       cmocka_unit_test(a_rollback_over_a_change_leads_to_the_same),
   };
-  return cmocka_run_group_tests(tests, begin, end);
+  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -14,7 +14,7 @@ typedef struct journal {
 
 static void note(void *user, int32_t level, const char *message) {
   journal *j = user;
-  if (level != MPS_LOG_WARNING) return;
+  if (level != MPS_CONTEXT_LOG_WARNING) return;
   j->count++;
   snprintf(j->last, sizeof j->last, "%s", message);
 }
@@ -22,7 +22,7 @@ static void note(void *user, int32_t level, const char *message) {
 static mps_context *noting(journal *j) {
   mps_context_def def = test_context_defaults();
   mps_context *own = NULL;
-  def.executor = MPS_EXECUTOR_SERIAL;
+  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
   def.log = note, def.log_user = j;
   assert_int_equal(mps_context_create(&def, &own, NULL, 0), MPS_OK);
   return own;
@@ -48,7 +48,7 @@ static void swing(mps_context *own, double contrast, double *missing, double *la
   OK(mps_particles_set(set, "young", 0, 1e6));
   OK(mps_particles_set(set, "poisson", 0, 0.3));
   OK(mps_particles_set(set, "density", 0, 1000.0));
-  OK(mps_material_linear_elastic(own, 1e6 * contrast, 0.3, &other));
+  OK(mps_material_create_linear_elastic(own, 1e6 * contrast, 0.3, &other));
   OK(mps_elastic_create(own, set, NULL, &e));
   bottom.ids = held;
   OK(mps_particles_select_box(set, lo, row, 36, held, &bottom.id_count));

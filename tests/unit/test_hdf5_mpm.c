@@ -302,9 +302,9 @@ static void the_callers_bytes_come_back(void **state) {
 /* Fields that a solver has not read would be a wrong state without a word. */
 static void a_set_that_a_solver_holds_is_not_read_into(void **state) {
   (void)state;
-  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
-        twin = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, &none);
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_assert_ok(context, mps_checkpoint_write(x.s.particles, path, &info));
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));

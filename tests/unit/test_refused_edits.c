@@ -110,7 +110,7 @@ static void a_material_is_refused_as_a_whole(void **state) {
     mps_dynamics *dynamics = held_block(own, set, true);
     mps_material *stiff = NULL;
     mps_totals totals;
-    OK(mps_material_linear_elastic(own, 4e6, 0.3, &stiff));
+    OK(mps_material_create_linear_elastic(own, 4e6, 0.3, &stiff));
     OK(mps_dynamics_step(dynamics, 3));
     OK(mps_dynamics_get_totals(dynamics, &totals));
     const uint64_t before = seen_dynamics(dynamics, false);
@@ -130,15 +130,15 @@ static void a_material_is_refused_as_a_whole(void **state) {
 /* WLS-MPM refuses the density where a volume is not positive: no field has another value then. */
 static void fields_of_a_material_that_is_refused_stay(void **state) {
   (void)state;
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *set = block(own, 0.0);
   mps_mpm_def def = mps_mpm_defaults();
   mps_material *law = NULL, *other = NULL;
   mps_mpm *mpm = NULL;
   mps_view view;
   def.cell = 0.2;
-  OK(mps_material_linear_elastic(own, 1e6, 0.3, &law));
-  OK(mps_material_linear_elastic(own, 2e6, 0.2, &other));
+  OK(mps_material_create_linear_elastic(own, 1e6, 0.3, &law));
+  OK(mps_material_create_linear_elastic(own, 2e6, 0.2, &other));
   OK(mps_mpm_create(own, set, law, &def, &mpm));
   OK(mps_particles_view(set, "volume", &view));
   *(double *)(uintptr_t)mps_view_f64(&view, 2, 0) = -1.0; /* as a run leaves it that has diverged */
@@ -147,8 +147,8 @@ static void fields_of_a_material_that_is_refused_stay(void **state) {
   OK(mps_particles_view(set, "density", &view));
   for (int64_t i = 0; i < view.shape[0]; i++) assert_true(*mps_view_f64(&view, i, 0) == 1000.0);
   for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
-    mps_field_info info;
-    OK(mps_particles_field(set, f, &info));
+    mps_particles_field_info info;
+    OK(mps_particles_get_field_info(set, f, &info));
     assert_string_not_equal(info.name, "young"); /* nor is there a new field */
   }
   assert_true(seen_values(own, set) == before);
@@ -163,7 +163,7 @@ static void fields_of_a_material_that_is_refused_stay(void **state) {
 
 static void no_motion_begins_at_a_speed_without_an_energy(void **state) {
   (void)state;
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *set = block(own, 0.0);
   mps_dynamics *dynamics = held_block(own, set, false);
   mps_view view;
@@ -181,7 +181,7 @@ static void no_motion_begins_at_a_speed_without_an_energy(void **state) {
 /* A displacement of which the restoring force is no number, as one that has diverged. */
 static void accelerations_that_are_not_finite_are_not_shown(void **state) {
   (void)state;
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_particles *set = block(own, 0.0);
   mps_dynamics *dynamics = held_block(own, set, false);
   mps_view view;
@@ -205,7 +205,7 @@ static void ids_to_come_follow_those_that_are_gone(void **state) {
   (void)state;
   static const int64_t ids[10] = {5, 6, 7, 8, 9, 0, 1, 2, 3, 4};
   static const char *const names[] = {"id"};
-  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   team t;
   team_begin(&t, 1);
   const mps_domain_def def = team_domain_def(&t, 0);

@@ -2,23 +2,10 @@
  * with an error, in every solver; a reading writes no field; what is refused for its arguments has
  * changed nothing; a rollback brings back all that a boundary shows.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
 #include "unchanged.h"
 
-static mps_context *context;
-
 #define OK(call) mps_assert_ok(context, call)
-
-static int begin(void **state) {
-  (void)state;
-  context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int end(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
 
 static mps_particles *block(double velocity) {
   mps_particles_def def = mps_particles_defaults();
@@ -229,5 +216,5 @@ int main(void) {
       cmocka_unit_test(a_step_without_dt_moves_nothing),
       cmocka_unit_test(a_rollback_brings_back_what_a_free_side_shows),
   };
-  return cmocka_run_group_tests(tests, begin, end);
+  return cmocka_run_group_tests(tests, make_context, drop_context);
 }

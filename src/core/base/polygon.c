@@ -41,10 +41,11 @@ static mps_status check_corners(mps_context *context, const char *function, int6
                        "without repeating the first)",
                        (long long)k, next, a[0], a[1]);
     if (turn(a, b, c) == 0.0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "edges %lld and %lld of the polygon lie on each other at corner %lld: "
-                       "(%g, %g) m",
-                       (long long)k, next, next, b[0], b[1]);
+      return mpsi_fail(
+          context, function, MPS_ERROR_ARGUMENT,
+          "vertices: edges %lld and %lld of the polygon lie on each other at corner %lld: "
+          "(%g, %g) m",
+          (long long)k, next, next, b[0], b[1]);
   }
   return MPS_OK;
 }
@@ -56,10 +57,11 @@ static mps_status check_edges(mps_context *context, const char *function, int64_
     for (int64_t m = k + 2; m < n - (k == 0); m++) {
       const double *a = corner(n, xy, k), *c = corner(n, xy, m);
       if (segments_meet(a, corner(n, xy, k + 1), c, corner(n, xy, m + 1)))
-        return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                         "edges %lld and %lld of the polygon cross or touch: from corner (%g, %g) "
-                         "and from corner (%g, %g) m",
-                         (long long)k, (long long)m, a[0], a[1], c[0], c[1]);
+        return mpsi_fail(
+            context, function, MPS_ERROR_ARGUMENT,
+            "vertices: edges %lld and %lld of the polygon cross or touch: from corner (%g, %g) "
+            "and from corner (%g, %g) m",
+            (long long)k, (long long)m, a[0], a[1], c[0], c[1]);
     }
   return MPS_OK;
 }

@@ -98,7 +98,8 @@ static mps_status check_value(const mps_particles *p, const char *function, cons
   char whose[48] = "";
   if (particle >= 0) snprintf(whose, sizeof whose, " of particle %lld", (long long)particle);
   (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                  "field '%s'%s is %g%s%s, allowed are %g to %g", field->name, whose, value,
+                  "%s of field '%s'%s is %g%s%s, allowed are %g to %g",
+                  particle >= 0 ? "edit" : "value", field->name, whose, value,
                   *field->unit ? " " : "", strcmp(field->unit, "-") == 0 ? "" : field->unit,
                   r.lower, r.upper);
   mpsi_fail_where(p->context, -1, particle);

@@ -339,7 +339,7 @@ static const double *corner(const polygon *s, int64_t k) { return s->xy + 2 * (k
 static mps_status check_polygon(const mps_particles *p, const char *function, const polygon *s) {
   if (p->def.dim != 2)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                     "the set has %d dimensions, a polygon needs 2", p->def.dim);
+                     "particles has %d dimensions, a polygon needs 2", p->def.dim);
   if (!s->xy) return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "xy is NULL");
   if (s->n < 3 || s->n > MAX_CORNERS)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,

@@ -318,7 +318,7 @@ static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fl
     const double s = mpsi_fluid_of_wall(w, w->now.s, x[3 * k], x[3 * k + 1]);
     if (!(fabs(off) <= 0.01 * f->l0) && !(fabs(off + s) <= 0.01 * f->l0))
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
+                       "x: point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
                        (long long)k, x[3 * k], x[3 * k + 1], off, 0.01 * f->l0);
   }
   return MPS_OK;

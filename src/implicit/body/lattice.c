@@ -50,10 +50,11 @@ static mps_status read_sites(const mps_elastic *e, const char *function, int32_t
                          "are possible",
                          (long long)e->id[i], away, (long long)e->id[0], "xyz"[c], SITE_LIMIT - 1);
       if (fabs(away - near) > OFF_LATTICE)
-        return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                         "particle %lld is off the lattice: it lies %.9g spacings (%g m) from "
-                         "particle %lld along %c, which must be a whole number",
-                         (long long)e->id[i], away, e->spacing, (long long)e->id[0], "xyz"[c]);
+        return mpsi_fail(
+            e->context, function, MPS_ERROR_ARGUMENT,
+            "particles: particle %lld is off the lattice: it lies %.9g spacings (%g m) from "
+            "particle %lld along %c, which must be a whole number",
+            (long long)e->id[i], away, e->spacing, (long long)e->id[0], "xyz"[c]);
       sites[i][c] = (int32_t)near;
     }
     const uint64_t key = pack(sites[i]), slot = slot_of(t, key);

@@ -217,7 +217,8 @@ mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function) {
 
 static mps_status check_number(const mps_elastic *e, const char *function, int32_t number) {
   if (number >= 0 && number < e->boundary_count && e->boundaries[number].used) return MPS_OK;
-  return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "there is no boundary %d", number);
+  return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                   "number is %d: there is no boundary %d", number, number);
 }
 
 /* Of a boundary that could be made: all ranks are to have the same. */

@@ -222,7 +222,8 @@ static mps_status put(mps_elastic *e, const char *function, mps_status status, i
 
 static mps_status check_number(const mps_elastic *e, const char *function, int32_t number) {
   if (number >= 0 && number < e->load_count && e->loads[number].used) return MPS_OK;
-  return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "there is no load %d", number);
+  return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "number is %d: there is no load %d",
+                   number, number);
 }
 
 mps_status mps_elastic_add_load(mps_elastic *e, const mps_elastic_load_def *def, int32_t *number) {

@@ -104,7 +104,7 @@ static void warn_of_contrast(const mps_elastic *e) {
   }
   if (!(most > MOST_CONTRAST * (1.0 + 1e-9) * least)) return; /* rounding */
   mpsi_log(
-      e->context, MPS_LOG_WARNING,
+      e->context, MPS_CONTEXT_LOG_WARNING,
       "Young's modulus is %g to %g Pa in one body, a contrast of %.3g: above %g the budget of "
       "energies closes to %.1g of its largest term only; particles that are to be rigid can be "
       "held by a boundary, or be 1e4 times as stiff as the others",
