@@ -3,7 +3,7 @@
  *   the status is one of the table;
  *   an argument that no function may take is refused;
  *   the record of an error has that status, the function's name and a message, which names an
- *   argument where that is refused;
+ *   argument where that is refused (looked at where MPS_API_ARGUMENTS is set);
  *   a call that failed has changed nothing, nor has one that only reads;
  *   after one that succeeded all is finite;
  *   a callback's status comes back, and what a callback may not do is refused.
@@ -14,6 +14,7 @@
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -128,9 +129,9 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
     api_broken(a, "the record names %s", record->function);
   else if (strlen(record->message) < 8)
     api_broken(a, "the record's message is \"%s\"", record->message);
-  else if (status == MPS_ERROR_ARGUMENT && !a->faulted &&
+  else if (status == MPS_ERROR_ARGUMENT && !a->faulted && getenv("MPS_API_ARGUMENTS") &&
            !api_names_argument(a->name, record->message))
-    fprintf(stderr, "NAMES %s | %s\n", a->name, record->message);
+    api_broken(a, "the record names no argument: %.200s", record->message);
 }
 
 static void check_status(api *a, mps_status status) {
