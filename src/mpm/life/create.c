@@ -235,8 +235,8 @@ static int32_t written_count(const mps_mpm *mpm) {
 /* Whether the caller's fields, the first `fields`, are among them. */
 static bool writes_given(const mps_mpm *mpm, int32_t fields) {
   for (int32_t f = 0; f < fields; f++) {
-    mps_field_info info = {.name = ""};
-    if (mps_particles_field(mpm->particles, f, &info) != MPS_OK) return true;
+    mps_particles_field_info info = {.name = ""};
+    if (mps_particles_get_field_info(mpm->particles, f, &info) != MPS_OK) return true;
     for (int32_t c = 0; c < written_count(mpm) && info.dtype.code != 0; c++)
       if (written(mpm, c) == mpsi_particles_column(mpm->particles, info.name, 0)) return true;
   }
