@@ -341,7 +341,7 @@ void mpsi_fluid_tell_most(mps_fluid *f, int64_t count, double *values) {
 }
 
 void mpsi_fluid_tell_exact(mps_fluid *f, int32_t count, mpsi_exact *sums) {
-  if (f->share) note(f->share, mpsi_domain_sum_exact(f->share->domain, "mps_fluid", count, sums));
+  if (f->partition) note(f->partition, mpsi_domain_sum_exact(f->partition->domain, "mps_fluid", count, sums));
 }
 
 /* A sum is on its rank, and less than any number on others; what is none must not be sent. */
