@@ -1,7 +1,7 @@
 /* beside.c - what two threads cost where other programs compute too: wall and processor time of a
  * WLS-MPM step by one thread and by two, in turn. Start as many busy programs beside it as there
- * are processors (docs/verification/wls-mpm/speed.md): threads that wait must give the processor away.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * are processors (docs/verification/wls-mpm/speed.md): threads that wait must give the processor
+ * away. SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
 #include <mps/body.h>
@@ -42,7 +42,7 @@ static void make_ground(int32_t executor, int32_t threads, int64_t particles, gr
   def.gravity[1] = -9.81;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c == 0 ? side : 2.0 * side;
   check(g->context, mps_mpm_create(g->context, block, soil, &def, &g->mpm), "solver");
-  check(g->context, mps_mpm_set_side(g->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0),
+  check(g->context, mps_mpm_set_side(g->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0),
         "floor");
   mps_body_def place = mps_body_defaults();
   mps_contact_def rough = mps_contact_defaults();

@@ -47,11 +47,11 @@ static void make(problem *p, int64_t cells, double height) {
   int64_t *ids = malloc((size_t)n * sizeof *ids), count = 0;
   const double base[3] = {1, 1, set.spacing};
   if (!ids) check(NULL, MPS_ERROR_MEMORY, "ids");
-  check(p->context, mps_particles_select_box(p->particles, lo, base, n, ids, &count), "select");
+  check(p->context, mps_particles_select_box(p->particles, lo, base, n, &count, ids), "select");
   mps_elastic_boundary_def clamp = mps_elastic_boundary_defaults();
   clamp.ids = ids, clamp.id_count = count;
   check(p->context, mps_elastic_add_boundary(p->elastic, &clamp, NULL), "boundary");
-  check(p->context, mps_elastic_select_facets(p->elastic, 2, 1, NULL, NULL, n, ids, &count),
+  check(p->context, mps_elastic_select_facets(p->elastic, 2, 1, NULL, NULL, n, &count, ids),
         "facets");
   mps_elastic_load_def pull = mps_elastic_load_defaults();
   pull.kind = MPS_ELASTIC_LOAD_TRACTION;

@@ -63,7 +63,7 @@ static result measure(int32_t dim, int64_t cells, int threads, int solver) {
   const int64_t n = mps_particles_count(particles);
   int64_t *ids = malloc((size_t)n * sizeof *ids), count;
   const double base[3] = {1, dim == 2 ? set.spacing : 1, dim == 3 ? set.spacing : 1};
-  check(context, mps_particles_select_box(particles, lo, base, n, ids, &count), "select");
+  check(context, mps_particles_select_box(particles, lo, base, n, &count, ids), "select");
   const double start = seconds();
   check(context, mps_elastic_create(context, particles, &def, &elastic), "create");
   const double created = seconds();
@@ -71,7 +71,7 @@ static result measure(int32_t dim, int64_t cells, int threads, int solver) {
   clamp.ids = ids;
   clamp.id_count = count;
   check(context, mps_elastic_add_boundary(elastic, &clamp, NULL), "boundary");
-  check(context, mps_elastic_select_facets(elastic, dim - 1, 1, NULL, NULL, n, ids, &count),
+  check(context, mps_elastic_select_facets(elastic, dim - 1, 1, NULL, NULL, n, &count, ids),
         "facets");
   mps_elastic_load_def pull = mps_elastic_load_defaults();
   pull.kind = MPS_ELASTIC_LOAD_TRACTION;

@@ -35,6 +35,7 @@ typedef struct result {
 static void add_wall(mps_context *context, mps_fluid *fluid, double x, int axis, double sign,
                      mps_signal *signal) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.point[0] = x, def.normal[axis] = sign, def.signal = signal;
   check(context, mps_fluid_add_boundary(fluid, &def, NULL), "wall");
 }

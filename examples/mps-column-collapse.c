@@ -125,7 +125,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   status = mpm_model_create(m, sim->context, status, &def);
   if (status != MPS_OK) return status;
   if (isnan(s->bed_friction))
-    return mps_mpm_set_side(m->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+    return mps_mpm_set_side(m->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mps_contact_def bed = mps_contact_defaults();
   bed.friction = s->bed_friction;
   return mps_mpm_add_contact(m->mpm, m->body[0], &bed, NULL);

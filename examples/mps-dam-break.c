@@ -123,7 +123,7 @@ mps_status dam_mpm_build(mps_context *context, simulation *sim) {
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK) status = mps_experimental_mpm_transfer(sim->m.mpm, s->transfer);
   if (status == MPS_OK && s->bed == NO_SLIP)
-    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   return status;
 }
 
@@ -435,7 +435,7 @@ int main(int argc, char **argv) {
       COMMON_NUMBER_IN("viscosity", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, NULL),
       OPTION_NUMBER("sound-speed", "m/s", OPTION_SPEED, &s->sound,
                     "c, K = rho c^2 (default 10 sqrt(2 g n^2 a))"),
-      OPTION_CHOICE("state", "linear|tait", &s->state, "pressure from density"),
+      OPTION_CHOICE("state", "tait|linear", &s->state, "pressure from density"),
       OPTION_CHOICE("tension", "none|full", &s->tension, "negative pressure"),
       OPTION_CHOICE("bed", "slip|fixed", &s->bed, "bed of the tank"),
       OPTION_FLAG("rest", &s->rest, "keep the gate: water at rest"),

@@ -63,7 +63,7 @@ CALL(mpm_set_dt, mps_mpm_set_dt(s->mpm, 1e-5))
 CALL(mpm_get_totals, mps_mpm_get_totals(s->mpm, &(mps_totals){.mass = 0.0}))
 CALL(mpm_get_losses, mps_mpm_get_losses(s->mpm, &(mps_mpm_losses){0}))
 CALL(mpm_get_reaction, mps_mpm_get_reaction(s->mpm, MPS_MPM_SIDE_Y_LOWER, &(mps_reaction){0}))
-CALL(mpm_set_side, mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_FIXED, 0.0))
+CALL(mpm_set_side, mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_HELD, 0.0))
 CALL(mpm_set_boundary,
      mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_X_LOWER, &(mps_mpm_boundary_def){.struct_size = 0}))
 CALL(mpm_add_boundary, mps_mpm_add_boundary(s->mpm, NULL, NULL))

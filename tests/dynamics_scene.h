@@ -96,7 +96,7 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
   mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
   boundary.lower[0] = boundary.lower[1] = -INFINITY;
   boundary.upper[0] = INFINITY, boundary.upper[1] = 0.4;
-  boundary.kind = what == LAYERS ? MPS_DYNAMICS_BOUNDARY_VISCOUS : MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  boundary.kind = what == LAYERS ? MPS_BOUNDARY_ABSORBING : MPS_BOUNDARY_DRIVEN;
   boundary.dofs = what == LAYERS ? 0 : MPS_DOF_Y | MPS_DOF_ROTATION;
   boundary.signal[0] = signal;
   TRY(mps_dynamics_add_boundary(dynamics, &boundary, base));

@@ -25,6 +25,7 @@ static inline mps_status test_prescribe(mps_elastic *e, int component, int64_t c
   def.ids = ids;
   def.id_count = count;
   def.dofs = 1u << component;
+  def.kind = values ? MPS_BOUNDARY_DRIVEN : MPS_BOUNDARY_HELD;
   def.values = all;
   const mps_status status = mps_elastic_add_boundary(e, &def, NULL);
   free(all);
@@ -34,7 +35,7 @@ static inline mps_status test_prescribe(mps_elastic *e, int component, int64_t c
 static inline mps_status test_roller(mps_elastic *e, const double *normal, int64_t count,
                                      const int64_t *ids, const double *values) {
   mps_elastic_boundary_def def = mps_elastic_boundary_defaults();
-  def.kind = MPS_ELASTIC_BOUNDARY_ROLLER;
+  def.kind = MPS_BOUNDARY_ROLLER;
   for (int c = 0; c < test_dim(e); c++) def.normal[c] = normal[c];
   def.ids = ids;
   def.id_count = count;
@@ -177,7 +178,7 @@ static inline int64_t *test_select(const test_body *b, int32_t axis, double lo, 
   low[axis] = lo;
   high[axis] = hi;
   int64_t *ids = malloc((size_t)b->n * sizeof *ids);
-  mps_assert_ok(b->context, mps_particles_select_box(b->particles, low, high, b->n, ids, count));
+  mps_assert_ok(b->context, mps_particles_select_box(b->particles, low, high, b->n, count, ids));
   return ids;
 }
 
@@ -186,7 +187,7 @@ static inline int64_t *test_facets(const test_body *b, int32_t axis, int32_t sid
   const int64_t all = mps_elastic_facet_count(b->elastic);
   int64_t *facets = malloc((size_t)all * sizeof *facets);
   mps_assert_ok(b->context,
-                mps_elastic_select_facets(b->elastic, axis, side, NULL, NULL, all, facets, count));
+                mps_elastic_select_facets(b->elastic, axis, side, NULL, NULL, all, count, facets));
   return facets;
 }
 

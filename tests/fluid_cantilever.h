@@ -45,7 +45,7 @@ static inline void cantilever_hold(mps_context *c, cantilever *w) {
   mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
   def.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
   mps_assert_ok(c, mps_elastic_create(c, w->wall, &def, &w->elastic));
-  mps_assert_ok(c, mps_particles_select_box(w->wall, low, high, ROOM, ids, &count));
+  mps_assert_ok(c, mps_particles_select_box(w->wall, low, high, ROOM, &count, ids));
   mps_assert_ok(c, mps_elastic_cut(w->elastic, 1, -1, count, ids));
   held.ids = ids, held.id_count = count;
   mps_assert_ok(c, mps_elastic_add_boundary(w->elastic, &held, NULL));
@@ -56,7 +56,7 @@ static inline void cantilever_hold(mps_context *c, cantilever *w) {
 static inline void cantilever_rest(mps_context *c, cantilever *w, double dt, double rho_inf) {
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   mps_assert_ok(c, mps_elastic_select_facets(w->elastic, 0, -1, NULL, NULL, CANTILEVER_FACETS,
-                                             w->ids, &w->facets));
+                                             &w->facets, w->ids));
   assert_in_range(w->facets, 1, CANTILEVER_FACETS);
   w->face = (mps_elastic_facet_arrays){
       .centre = w->centre, .displacement = w->displacement, .velocity = w->velocity};
@@ -81,6 +81,7 @@ static inline void cantilever_make(mps_context *c, cantilever *w, double dt, dou
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+  wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
   mps_coupling_def agree = mps_coupling_defaults();
   mps_elastic_load_def behind = mps_elastic_load_defaults();
   int64_t back[CANTILEVER_FACETS], count;
@@ -95,7 +96,7 @@ static inline void cantilever_make(mps_context *c, cantilever *w, double dt, dou
   cantilever_hold(c, w);
   cantilever_rest(c, w, dt, rho_inf);
   mps_assert_ok(
-      c, mps_elastic_select_facets(w->elastic, 0, 1, NULL, NULL, CANTILEVER_FACETS, back, &count));
+      c, mps_elastic_select_facets(w->elastic, 0, 1, NULL, NULL, CANTILEVER_FACETS, &count, back));
   behind.kind = MPS_ELASTIC_LOAD_PRESSURE, behind.ids = back, behind.id_count = count;
   behind.force[0] = CANTILEVER_LOAD;
   mps_assert_ok(c, mps_elastic_add_load(w->elastic, &behind, NULL));

@@ -94,6 +94,7 @@ static inline forced forced_run(mps_context *c, double l0, double dt, int power,
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+  wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
   double x[3 * FORCED_POINTS], s[FORCED_POINTS], p[FORCED_POINTS], place[FORCED_POINTS],
       speed[FORCED_POINTS];
   forced_fit sum = {0};

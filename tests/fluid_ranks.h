@@ -32,6 +32,7 @@ static inline void drop_scene(scene *s) {
 static inline mps_status wall(scene *s, int32_t kind, double x, double y, double nx, double ny,
                               mps_signal *signal) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.kind = kind;
   def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
   def.signal = signal;
@@ -56,10 +57,10 @@ static inline mps_status add_float(mps_context *own, scene *s) {
   body.gravity[1] = -9.81;
   TRY(mps_body_create_polygon(own, &body, 4, xy, &s->body));
   if (domain) status = mps_domain_agree(domain, status);
-  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 0.0, 1.0, NULL));
-  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 1.0, 0.0, s->piston));
-  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 4.0, 0.0, -1.0, 0.0, NULL));
-  TRY(mps_fluid_add_body(s->fluid, s->body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
+  TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, s->piston));
+  TRY(wall(s, MPS_BOUNDARY_ROLLER, 4.0, 0.0, -1.0, 0.0, NULL));
+  TRY(mps_fluid_add_body(s->fluid, s->body, MPS_BOUNDARY_ROLLER, &number));
   TRY(mps_fluid_float_body(s->fluid, number, 1));
   mps_fluid_load_def load = mps_fluid_load_defaults();
   load.kind = MPS_FLUID_LOAD_PRESSURE;
@@ -92,10 +93,10 @@ static inline mps_status make_scene(mps_context *own, mps_domain *domain, int wh
   TRY(mps_fluid_create(own, s->set, &def, &s->fluid));
   if (what == CLASSICAL) TRY(mps_experimental_fluid_classical(s->fluid, 0.2));
   if (status != MPS_OK || what == AFLOAT) return status == MPS_OK ? add_float(own, s) : status;
-  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 0.0, 1.0, NULL));
-  TRY(wall(s, MPS_FLUID_BOUNDARY_NO_SLIP, 0.0, 0.0, 1.0, 0.0, NULL));
-  if (what == SPILL) TRY(wall(s, MPS_FLUID_BOUNDARY_OPEN, 2.02, 0.0, -1.0, 0.0, NULL));
-  if (what != SPILL) TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 2.5, 0.0, -1.0, 0.0, NULL));
+  TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
+  TRY(wall(s, MPS_BOUNDARY_HELD, 0.0, 0.0, 1.0, 0.0, NULL));
+  if (what == SPILL) TRY(wall(s, MPS_BOUNDARY_OPEN, 2.02, 0.0, -1.0, 0.0, NULL));
+  if (what != SPILL) TRY(wall(s, MPS_BOUNDARY_ROLLER, 2.5, 0.0, -1.0, 0.0, NULL));
   return status;
 }
 

@@ -34,7 +34,7 @@ static inline void read_wall(mps_context *c, mps_fluid *fluid, int32_t number, c
   const double half = 0.5 * mps_particles_spacing(mps_fluid_particles(fluid));
   double x[3 * MOST], p[MOST];
   int64_t count = 0;
-  mps_assert_ok(c, mps_fluid_get_wall(fluid, number, MOST, x, p, &count));
+  mps_assert_ok(c, mps_fluid_get_wall(fluid, number, MOST, &count, x, p));
   assert_true(count <= MOST);
   reading(r, (double)count);
   for (int64_t k = 0; k < count; k++)

@@ -21,6 +21,7 @@ typedef struct tank {
 static inline int32_t tank_wall(mps_context *c, mps_fluid *fluid, double x, double y, double nx,
                                 double ny, mps_signal *signal) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   int32_t number = -1;
   def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
   def.signal = signal;

@@ -78,7 +78,7 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
   mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
   const int32_t bed = tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(t.fluid, body, MPS_FLUID_BOUNDARY_SLIP, NULL));
+  mps_assert_ok(context, mps_fluid_add_body(t.fluid, body, MPS_BOUNDARY_ROLLER, NULL));
   double mean[3] = {0.0, 0.0, 0.0}, square = 0.0;
   int samples = 0;
   while (mps_fluid_time(t.fluid) < duration) {

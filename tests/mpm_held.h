@@ -10,7 +10,7 @@
 static inline int64_t held_select(mpm_scene *s, const double *lo, const double *hi, int64_t *ids,
                                   int64_t capacity) {
   int64_t count = 0;
-  mps_assert_ok(s->context, mps_particles_select_box(s->particles, lo, hi, capacity, ids, &count));
+  mps_assert_ok(s->context, mps_particles_select_box(s->particles, lo, hi, capacity, &count, ids));
   assert_true(count > 0 && count <= capacity);
   return count;
 }
@@ -64,11 +64,11 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_create_sine(context, 20.0, 0.0005, 0.3, &signal));
   for (int c = 0; c < dim; c += 2) {
-    mpm_scene_side(&s, 2 * c, MPS_MPM_BOUNDARY_FRICTIONAL, 0.3);
-    mpm_scene_side(&s, 2 * c + 1, MPS_MPM_BOUNDARY_ABSORBING, 0.0);
+    mpm_scene_side(&s, 2 * c, MPS_BOUNDARY_FRICTIONAL, 0.3);
+    mpm_scene_side(&s, 2 * c + 1, MPS_BOUNDARY_ABSORBING, 0.0);
   }
-  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 0, signal, 1.0);
-  mpm_scene_drive(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ABSORBING, 0.0, 0, signal, -0.1);
+  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0, 0, signal, 1.0);
+  mpm_scene_drive(&s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_ABSORBING, 0.0, 0, signal, -0.1);
   const double low[] = {0.3, 0.1, 0.02}, high[] = {0.36, 0.16, 0.05};
   const mps_mpm_boundary_def nodes = mpm_scene_box_def(s.mpm, low, high, 1, signal, 2.0);
   mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &nodes, box));

@@ -84,12 +84,12 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain, in
   int32_t number;
   mps_status status = mps_signal_create_user(own, swing, NULL, &signal);
   if (domain) status = mps_domain_agree(domain, status);
-  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.3));
+  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.3));
   TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER,
-                       what == SPREAD ? MPS_MPM_BOUNDARY_OPEN : MPS_MPM_BOUNDARY_FIXED, 0.0));
+                       what == SPREAD ? MPS_BOUNDARY_OPEN : MPS_BOUNDARY_HELD, 0.0));
   if (what == SPREAD || what == ROOM) {
     mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
-    side.kind = MPS_MPM_BOUNDARY_ABSORBING;
+    side.kind = MPS_BOUNDARY_ABSORBING;
     side.settle = what == SPREAD ? 2e-3 : 0.0;
     TRY(mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_X_LOWER, &side));
     if (what == ROOM) TRY(mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_Z_LOWER, &side));
@@ -98,11 +98,11 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain, in
   box.lower[0] = 0.55, box.upper[0] = 0.66;
   box.lower[1] = 0.3, box.upper[1] = 0.5;
   box.dofs = MPS_DOF_Y;
-  box.signal[1] = signal;
+  box.kind = MPS_BOUNDARY_DRIVEN, box.signal[1] = signal;
   TRY(mps_mpm_add_boundary(s->mpm, &box, &number));
   mps_mpm_boundary_def driven = mps_mpm_boundary_defaults();
   driven.ids = ids, driven.id_count = 5;
-  driven.signal[0] = signal;
+  driven.kind = MPS_BOUNDARY_DRIVEN, driven.signal[0] = signal;
   TRY(mps_mpm_add_boundary(s->mpm, &driven, &number));
   mps_mpm_load_def load = mps_mpm_load_defaults();
   load.ids = loaded, load.id_count = 4;
@@ -394,7 +394,7 @@ static inline mps_status put_in(mps_context *own, mps_domain *domain, int what, 
 static inline mps_status clear_box(scene *s, const double *lo, const double *hi) {
   enum { MOST = 4096 };
   int64_t ids[MOST], count = 0;
-  mps_status status = mps_particles_select_box(s->set, lo, hi, MOST, ids, &count);
+  mps_status status = mps_particles_select_box(s->set, lo, hi, MOST, &count, ids);
   TRY(mps_particles_remove(s->set, count, ids));
   return status;
 }

@@ -173,8 +173,8 @@ static inline void rest_add_bodies(rest_scene *r) {
   if (r->body[3]) rest_touch(r, r->body[3], 0.5 * r->dx);
   if (r->c->edge == REST_FRICTIONAL) {
     for (int side = MPS_MPM_SIDE_X_LOWER; side <= MPS_MPM_SIDE_Y_LOWER; side += 2)
-      mpm_scene_side(&r->s, side, MPS_MPM_BOUNDARY_FRICTIONAL, 0.5);
-    mpm_scene_side(&r->s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_FREE, 0.0);
+      mpm_scene_side(&r->s, side, MPS_BOUNDARY_FRICTIONAL, 0.5);
+    mpm_scene_side(&r->s, MPS_MPM_SIDE_Y_UPPER, MPS_BOUNDARY_FREE, 0.0);
   }
 }
 

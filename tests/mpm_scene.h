@@ -68,7 +68,7 @@ static inline void mpm_scene_side(mpm_scene *s, int32_t side, int32_t kind, doub
 static inline void mpm_scene_drive(mpm_scene *s, int32_t side, int32_t kind, double friction,
                                    int32_t component, mps_signal *signal, double factor) {
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
-  def.kind = kind;
+  def.kind = kind == MPS_BOUNDARY_HELD ? MPS_BOUNDARY_DRIVEN : kind;
   def.friction = friction;
   def.signal[component] = signal;
   def.factor[component] = factor;
@@ -82,6 +82,7 @@ static inline mps_mpm_boundary_def mpm_scene_box_def(mps_mpm *mpm, const double 
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
   const int dim = mps_particles_dim(mps_mpm_particles(mpm));
   for (int c = 0; c < dim; c++) def.lower[c] = lower[c], def.upper[c] = upper[c];
+  def.kind = MPS_BOUNDARY_DRIVEN;
   def.dofs = 1u << component;
   def.signal[component] = signal;
   def.factor[component] = factor;

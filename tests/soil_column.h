@@ -68,7 +68,8 @@ static inline mps_status soil_add_driven(mps_dynamics *dynamics, int component, 
                                          double factor, int64_t count, const int64_t *ids) {
   mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
   int32_t number;
-  def.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  def.kind = MPS_BOUNDARY_DRIVEN;
+  if (component < 2) def.dofs = 1u << component;
   def.signal[component] = signal;
   def.factor[component] = factor;
   def.ids = ids;
@@ -81,7 +82,7 @@ static inline mps_status soil_add_viscous(mps_dynamics *dynamics,
                                           const int64_t *ids) {
   mps_dynamics_boundary_def def = user_def ? *user_def : mps_dynamics_boundary_defaults();
   int32_t number;
-  def.kind = MPS_DYNAMICS_BOUNDARY_VISCOUS;
+  def.kind = MPS_BOUNDARY_ABSORBING;
   def.ids = ids;
   def.id_count = count;
   return mps_dynamics_add_boundary(dynamics, &def, &number);
@@ -94,7 +95,7 @@ static inline int64_t *soil_select(mps_context *context, mps_particles *particle
   const int64_t n = mps_particles_count(particles);
   int64_t *ids = malloc((size_t)n * sizeof *ids);
   if (!ids) abort();
-  mps_assert_ok(context, mps_particles_select_box(particles, lo, hi, n, ids, count));
+  mps_assert_ok(context, mps_particles_select_box(particles, lo, hi, n, count, ids));
   return ids;
 }
 

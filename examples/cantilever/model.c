@@ -33,7 +33,7 @@ static bool support_wall(model *m, const elastic_method *method, int64_t *ids, d
   const double hi[2] = {INFINITY, INFINITY};
   int64_t count;
   mps_view x;
-  if (!app_check(m->a, mps_particles_select_box(m->particles, lo, hi, m->ny, ids, &count)) ||
+  if (!app_check(m->a, mps_particles_select_box(m->particles, lo, hi, m->ny, &count, ids)) ||
       !app_check(m->a, mps_particles_view(m->particles, "position", &x)))
     return false;
   for (int32_t c = 0; c < 2; c++) {
@@ -62,7 +62,7 @@ static bool support_and_load(model *m, const elastic_method *method) {
   bool done = app_agree(m->a, (list && values) || app_no_memory(m->a)) &&
               support_wall(m, method, list, values);
   done = done && app_check(m->a, mps_elastic_select_facets(m->elastic, 0, -1, NULL, NULL, m->ny,
-                                                           list, &count));
+                                                           &count, list));
   done = done && elastic_pull(m->a, m->elastic, count, list, end_traction, &problem);
   free(list);
   free(values);

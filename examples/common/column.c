@@ -94,7 +94,7 @@ mps_status column_hold_sides(const column *c, mps_dynamics *dynamics, char wave)
 mps_status column_drive_base(const column *c, mps_dynamics *dynamics, char wave,
                              mps_signal *signal) {
   mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
-  def.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  def.kind = MPS_BOUNDARY_DRIVEN;
   def.dofs = across(wave);
   def.signal[column_component(wave)] = signal;
   return add(dynamics, &def, -INFINITY, INFINITY, c->spacing);
@@ -103,7 +103,7 @@ mps_status column_drive_base(const column *c, mps_dynamics *dynamics, char wave,
 mps_status column_viscous_base(const column *c, mps_dynamics *dynamics, char wave,
                                mps_signal *signal, const layer *half_space) {
   mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
-  def.kind = MPS_DYNAMICS_BOUNDARY_VISCOUS;
+  def.kind = MPS_BOUNDARY_ABSORBING;
   def.density = layers_density(half_space);
   def.shear_velocity = half_space->vs;
   def.pressure_velocity = half_space->vp;

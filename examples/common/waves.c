@@ -51,6 +51,7 @@ mps_status waves_disturb(mps_particles *water, double by, uint64_t seed) {
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.point[0] = point[0], def.point[1] = point[1];
   def.normal[0] = nx, def.normal[1] = ny;
   def.signal = signal;

@@ -21,6 +21,7 @@ static double far_wall(const settings *s) { return (s->rest ? 1.0 : s->tank) * s
 
 static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.point[0] = x;
   def.normal[0] = nx, def.normal[1] = ny;
   return mps_fluid_add_boundary(fluid, &def, NULL);

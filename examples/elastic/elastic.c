@@ -71,6 +71,7 @@ bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count
   def.ids = ids;
   def.id_count = count;
   def.dofs = 1u << component;
+  def.kind = MPS_BOUNDARY_DRIVEN;
   def.values = all;
   const bool done = app_check(a, mps_elastic_add_boundary(elastic, &def, NULL));
   free(all);

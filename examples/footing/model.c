@@ -128,7 +128,7 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_footing(context, s, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK)
-    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK) status = add_contact(s, sim);
   if (status == MPS_OK) status = mpm_course_begin(&sim->course, context, true);
   sim->m.samples = sim->rows;

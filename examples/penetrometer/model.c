@@ -165,7 +165,7 @@ static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   def.gravity[up] = -s->gravity;
   status = mpm_model_create(&r->m, p->context, status, &def);
   if (status != MPS_OK) return status;
-  return mps_mpm_set_side(r->m.mpm, 2 * up, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  return mps_mpm_set_side(r->m.mpm, 2 * up, MPS_BOUNDARY_HELD, 0.0);
 }
 
 /* ---- tip ------------------------------------------------------------------------------------- */

@@ -118,7 +118,7 @@ static mps_status agree(seawall *w, double dt) {
   mps_status status = look_at_facets(w, b->displacement, b->velocity);
   if (status == MPS_OK) status = mps_elastic_snapshot(w->wall.solver, &b->start);
   if (status == MPS_OK)
-    status = mps_coupling_get_memory(b->coupling, b->room, b->memory, &b->learnt);
+    status = mps_coupling_get_memory(b->coupling, b->room, &b->learnt, b->memory);
   if (status == MPS_OK) status = mps_coupling_begin(b->coupling, NULL, b->mean);
   while (status == MPS_OK && !done) {
     status = ask_water(w, dt);

@@ -34,6 +34,7 @@ static mps_status make_fluid(app *a, seawall *w) {
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 1.0, 0.0, w->piston, NULL);
   if (status != MPS_OK) return status;
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+  wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
   wall.point[0] = s->length;
   wall.normal[0] = -1.0;
   if (s->coupled) wall.nodes = w->wall.centre, wall.node_count = w->wall.count;

@@ -78,8 +78,8 @@ static mps_status save_wall(seawall *w) {
   mps_checkpoint info = mps_checkpoint_defaults();
   name_wall(path, sizeof path, w->s.checkpoint);
   const mps_status status =
-      app_settle(w->a, mps_coupling_get_memory(w->both.coupling, w->both.room, w->both.memory,
-                                               &w->both.learnt));
+      app_settle(w->a, mps_coupling_get_memory(w->both.coupling, w->both.room, &w->both.learnt,
+                                               w->both.memory));
   return status == MPS_OK ? mps_elastic_save(w->wall.solver, path, &info) : status;
 }
 

@@ -30,7 +30,7 @@ static mps_status take_look(seawall *w, const seawall_sample *sample) {
   mps_view u;
   mps_status status = app_settle(w->a, x ? MPS_OK : MPS_ERROR_MEMORY);
   if (status == MPS_OK)
-    status = mps_fluid_get_wall(w->fluid, SEAWALL_WALL, w->room, x, look->pressure, &look->points);
+    status = mps_fluid_get_wall(w->fluid, SEAWALL_WALL, w->room, &look->points, x, look->pressure);
   if (look->points > w->room) look->points = w->room;
   for (int64_t k = 0; status == MPS_OK && k < look->points; k++) look->y[k] = x[3 * k + 1];
   if (status == MPS_OK) status = mps_particles_view(w->wall.set, "displacement", &u);

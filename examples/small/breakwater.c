@@ -83,6 +83,7 @@ static mps_status make_caisson(mps_context *context, sea *s) {
 
 static mps_status add_wall(sea *s, double x, double nx, double ny) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.point[0] = x, def.normal[0] = nx, def.normal[1] = ny;
   if (nx > 0.0) def.signal = s->piston;
   if (nx < 0.0) def.nodes = nodes, def.node_count = 2;

@@ -32,7 +32,7 @@ static mps_status make_bar(mps_context *context, double more, double force, bar 
   def.spacing = spacing;
   mps_status status = mps_particles_create(context, &def, &b->set);
   if (status == MPS_OK) status = mps_particles_fill_box(b->set, lo, hi, NULL);
-  if (status == MPS_OK) status = mps_particles_select_box(b->set, end, hi, 2, b->ends, &count);
+  if (status == MPS_OK) status = mps_particles_select_box(b->set, end, hi, 2, &count, b->ends);
   mps_material *stuff = NULL, *heavy = NULL;
   if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, 0.0, &stuff);
   if (status == MPS_OK) status = mps_particles_set_material(b->set, stuff, density, 0, NULL);

@@ -34,7 +34,7 @@ mps_status tank_make_box(mps_context *context, tank_model *m) {
 mps_status tank_launch(tank_model *m) {
   const double load[3] = {0.0, -m->s.amplitude * tank_float_stiffness(&m->s), 0.0};
   int32_t number;
-  mps_status status = mps_fluid_add_body(m->fluid, m->box, MPS_FLUID_BOUNDARY_SLIP, &number);
+  mps_status status = mps_fluid_add_body(m->fluid, m->box, MPS_BOUNDARY_ROLLER, &number);
   if (status == MPS_OK) status = mps_fluid_float_body(m->fluid, number, 1);
   return status == MPS_OK ? mps_body_set_load(m->box, load, NULL) : status;
 }

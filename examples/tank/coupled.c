@@ -102,7 +102,7 @@ mps_status tank_make_structure(mps_context *context, tank_model *m) {
 
 mps_status tank_remember(tank_structure *p) {
   if (!p->coupling) return MPS_OK;
-  return mps_coupling_get_memory(p->coupling, p->room, p->memory, &p->learnt);
+  return mps_coupling_get_memory(p->coupling, p->room, &p->learnt, p->memory);
 }
 
 mps_status tank_recall(tank_structure *p) {

@@ -65,6 +65,7 @@ static mps_status fill_drop(const tank_settings *s, mps_particles *water) {
 /* A bed that bends has the structure's points. */
 static mps_status add_bed(tank_model *m) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.normal[1] = 1.0;
   def.nodes = m->structure.x, def.node_count = m->structure.points;
   return mps_fluid_add_boundary(m->fluid, &def, NULL);

@@ -138,7 +138,7 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("input-scale", "1", OPTION_FROM_TO(-1e6, 1e6), &s->scale, "factor on a record"),
       OPTION_CHOICE("input-unit", "file|m/s2|g|gal", &s->unit,
                     "unit of a CSV record; file: m/s2 of a CSV, what they say of the others"),
-      OPTION_CHOICE("baseline", "none|mean|linear|quadratic|cubic", &s->baseline,
+      OPTION_CHOICE("baseline", "linear|none|mean|quadratic|cubic", &s->baseline,
                     "baseline correction of a record"),
       OPTION_HEADING("Boundaries"),
       OPTION_CHOICE("base", "rigid|viscous", &s->base,

@@ -189,9 +189,9 @@ typedef struct mps_body_state {
   double spin[3];        /* rad/s, in space */
 } mps_body_state;
 /** Where the body is now and how it moves. */
-MPS_API MPS_NODISCARD mps_status mps_body_get_state_sized(mps_body *body, mps_body_state *out,
+MPS_API MPS_NODISCARD mps_status mps_body_get_state_sized(const mps_body *body, mps_body_state *out,
                                                           size_t size);
-static inline mps_status mps_body_get_state(mps_body *body, mps_body_state *out) {
+static inline mps_status mps_body_get_state(const mps_body *body, mps_body_state *out) {
   return mps_body_get_state_sized(body, out, sizeof *out);
 }
 
@@ -208,9 +208,9 @@ typedef struct mps_body_totals {
                            splitting, of either sign */
 } mps_body_totals;
 /** The sums of the present state and since creation. */
-MPS_API MPS_NODISCARD mps_status mps_body_get_totals_sized(mps_body *body, mps_body_totals *out,
-                                                           size_t size);
-static inline mps_status mps_body_get_totals(mps_body *body, mps_body_totals *out) {
+MPS_API MPS_NODISCARD mps_status mps_body_get_totals_sized(const mps_body *body,
+                                                           mps_body_totals *out, size_t size);
+static inline mps_status mps_body_get_totals(const mps_body *body, mps_body_totals *out) {
   return mps_body_get_totals_sized(body, out, sizeof *out);
 }
 
@@ -242,9 +242,10 @@ MPS_API int32_t mps_body_find_part(const mps_body *body, const char *name);
 /** What all solvers exert on one part of the body, or on the whole body (`part` -1): the sum of
  *  their contacts and of the water around it; `count` is the number of particles in contact, and of
  * wetted points (mps_fluid_get_wall). */
-MPS_API MPS_NODISCARD mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part,
+MPS_API MPS_NODISCARD mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part,
                                                              mps_reaction *out, size_t size);
-static inline mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out) {
+static inline mps_status mps_body_get_reaction(const mps_body *body, int32_t part,
+                                               mps_reaction *out) {
   return mps_body_get_reaction_sized(body, part, out, sizeof *out);
 }
 

@@ -103,9 +103,10 @@ MPS_API mps_body *mps_contact_body(const mps_contact *contact);
 /** What the particles of this solver do to part `part` of the body (mps_body_find_part), or to all
  * of it
  *  (-1); `work` is that of the body's surface on the particles. */
-MPS_API MPS_NODISCARD mps_status mps_contact_get_reaction_sized(mps_contact *contact, int32_t part,
-                                                                mps_reaction *out, size_t size);
-static inline mps_status mps_contact_get_reaction(mps_contact *contact, int32_t part,
+MPS_API MPS_NODISCARD mps_status mps_contact_get_reaction_sized(const mps_contact *contact,
+                                                                int32_t part, mps_reaction *out,
+                                                                size_t size);
+static inline mps_status mps_contact_get_reaction(const mps_contact *contact, int32_t part,
                                                   mps_reaction *out) {
   return mps_contact_get_reaction_sized(contact, part, out, sizeof *out);
 }
@@ -119,10 +120,11 @@ static inline mps_status mps_contact_get_reaction(mps_contact *contact, int32_t 
  * normal force); `foot` (m, 3 values a particle, nearest point of the surface). Forces of
  * neighbours may be shared out between them unevenly: their sum is what is determined. Costs a pass
  * over all particles. MPS_ERROR_STATE when the contact has ended. */
-MPS_API MPS_NODISCARD mps_status mps_contact_get_particles(mps_contact *contact, int64_t capacity,
-                                                           int64_t *count, int64_t *ids,
-                                                           double *gap, double *normal,
-                                                           double *force, double *foot);
+MPS_API MPS_NODISCARD mps_status mps_contact_get_particles(const mps_contact *contact,
+                                                           int64_t capacity, int64_t *count,
+                                                           int64_t *ids, double *gap,
+                                                           double *normal, double *force,
+                                                           double *foot);
 
 MPS_EXTERN_C_END
 #endif

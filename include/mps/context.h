@@ -40,13 +40,13 @@ typedef void (*mps_context_parallel_for_fn)(void *user, int64_t count, mps_conte
                                             void *task_data);
 
 typedef enum mps_context_executor {
-  MPS_CONTEXT_EXECUTOR_SERIAL = 0, /* the calling thread only */
+  MPS_CONTEXT_EXECUTOR_SERIAL = 1, /* the calling thread only */
   MPS_CONTEXT_EXECUTOR_OPENMP =
-      1, /* `threads` OpenMP threads: for programs that use OpenMP themselves. How
+      2, /* `threads` OpenMP threads: for programs that use OpenMP themselves. How
     its threads wait is the program's choice (OMP_WAIT_POLICY); by
     default they spin, which costs much where other programs compute */
-  MPS_CONTEXT_EXECUTOR_CALLER = 2, /* parallel_for below */
-  MPS_CONTEXT_EXECUTOR_THREADS = 3 /* `threads`, with the calling thread, of the context's own: they
+  MPS_CONTEXT_EXECUTOR_CALLER = 3, /* parallel_for below */
+  MPS_CONTEXT_EXECUTOR_THREADS = 0 /* `threads`, with the calling thread, of the context's own: they
                               start with the first loop, and sleep when they have waited for some
                               microseconds. All signals are blocked in them. They run where the
                               thread that starts them may: OMP_PROC_BIND in the environment binds

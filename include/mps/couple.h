@@ -101,8 +101,8 @@ static inline mps_status mps_coupling_get_report(const mps_coupling *coupling,
  *  run goes on bit for bit. Writes at most `capacity` to `values`; `count` receives how many there
  *  are. */
 MPS_API MPS_NODISCARD mps_status mps_coupling_get_memory(const mps_coupling *coupling,
-                                                         int64_t capacity, double *values,
-                                                         int64_t *count);
+                                                         int64_t capacity, int64_t *count,
+                                                         double *values);
 /** Puts them into an object of the same definition. MPS_ERROR_FORMAT: they are not of one. */
 MPS_API MPS_NODISCARD mps_status mps_coupling_set_memory(mps_coupling *coupling, int64_t count,
                                                          const double *values);

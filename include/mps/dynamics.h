@@ -137,35 +137,31 @@ MPS_API int64_t mps_dynamics_pairs(const mps_dynamics *dynamics);
 
 /* ---- boundaries: before the first step and between any two ----------------------------------- */
 
-typedef enum mps_dynamics_boundary_kind {
-  MPS_DYNAMICS_BOUNDARY_HELD = 0,   /* each of `dofs` stays where it is: a roller, a rigid base */
-  MPS_DYNAMICS_BOUNDARY_DRIVEN = 1, /* each component with a signal moves as it says, the rest of
-                                       `dofs` is held */
-  MPS_DYNAMICS_BOUNDARY_VISCOUS = 2 /* Lysmer dashpots to a half space outside, with a wave coming
-                                       in from it: traction rho V (2 v_in - v), V = Vp along the
-                                       normal and Vs across */
-} mps_dynamics_boundary_kind;
+/* Kinds (mps_boundary_kind): HELD, each of `dofs` stays where it is: a roller, a rigid base.
+ * DRIVEN, each component with a signal moves as it says, the rest of `dofs` is held. ABSORBING,
+ * Lysmer dashpots to a half space outside, with a wave coming in from it: traction rho V (2 v_in -
+ * v), V = Vp along the normal and Vs across. */
 
 /** A boundary on some particles. Where two hold or drive the same degree of freedom, the one with
  *  the higher number has it; dashpots of several (a corner) add up, and do nothing on a degree of
  *  freedom that is held or driven. */
 typedef struct mps_dynamics_boundary_def {
   uint32_t struct_size;
-  int32_t kind; /* MPS_DYNAMICS_BOUNDARY_..., default HELD */
+  int32_t kind; /* mps_boundary_kind: HELD (default), DRIVEN or ABSORBING */
   /* The particles: a list, or all whose present position lies in a box, bounds included. */
   const int64_t *ids;        /* copied; NULL (default): the box */
   int64_t id_count;          /* 0 (default): the box */
   double lower[3], upper[3]; /* m; +-infinity is allowed; NaN (default): the list */
-  uint32_t dofs;  /* MPS_DOF_X, MPS_DOF_Y, MPS_DOF_ROTATION, or-ed: held. 0 (default): those with a
-                     signal alone */
-  int32_t normal; /* viscous: direction of the face's normal, 0 x, 1 (default) y; each particle has
-                     one face of length D */
+  uint32_t dofs;  /* MPS_DOF_X, MPS_DOF_Y, MPS_DOF_ROTATION, or-ed, besides those with a signal. 0
+                     (default): all three. Not of ABSORBING */
+  int32_t normal; /* absorbing: direction of the face's normal, 0 x, 1 (default) y; each particle
+                     has one face of length D */
   /* Driven: the displacement is that of the particle when the boundary takes it, and from then on
-   * factor (u(t) - u(then)). Viscous: the incoming wave, of which the velocity is used. x and y;
+   * factor (u(t) - u(then)). Absorbing: the incoming wave, of which the velocity is used. x and y;
    * the third is NULL. Signals are kept alive. */
   mps_signal *signal[3];                             /* default NULL */
   double factor[3];                                  /* finite, default 1 */
-  double density, shear_velocity, pressure_velocity; /* viscous: of the half space; NaN (default):
+  double density, shear_velocity, pressure_velocity; /* absorbing: of the half space; NaN (default):
                                                         of each particle itself */
 } mps_dynamics_boundary_def;
 
@@ -329,9 +325,9 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, dou
  *  are not small, changes of dt, and Euler take or give. Where Rayleigh damping is not watched
  *  (mps_dynamics_def.watch_damping) the rest is all that damping takes, and `scheme` is NaN; with
  *  free-field columns it belongs to work_boundaries, and `scheme` is NaN too. */
-MPS_API MPS_NODISCARD mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics,
+MPS_API MPS_NODISCARD mps_status mps_dynamics_get_totals_sized(const mps_dynamics *dynamics,
                                                                mps_totals *out, size_t size);
-static inline mps_status mps_dynamics_get_totals(mps_dynamics *dynamics, mps_totals *out) {
+static inline mps_status mps_dynamics_get_totals(const mps_dynamics *dynamics, mps_totals *out) {
   return mps_dynamics_get_totals_sized(dynamics, out, sizeof *out);
 }
 

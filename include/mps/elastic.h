@@ -122,25 +122,24 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, i
                                                  int64_t count, const int64_t *ids);
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
-typedef enum mps_elastic_boundary_kind {
-  MPS_ELASTIC_BOUNDARY_PRESCRIBED = 0, /* the components `dofs` of the displacement */
-  MPS_ELASTIC_BOUNDARY_ROLLER = 1      /* the displacement along `normal`, free across */
-} mps_elastic_boundary_kind;
+/* Kinds (mps_boundary_kind): HELD, the components `dofs` of the displacement are 0. DRIVEN, they
+ * are what `values` and signals say. ROLLER, the displacement along `normal`, free across. */
 
 /** Displacements prescribed on some particles: those of `values`, plus factor times the signal's
  *  displacement; in motions the signal's velocity and acceleration too. */
 typedef struct mps_elastic_boundary_def {
   uint32_t struct_size;
-  int32_t kind;              /* mps_elastic_boundary_kind, default PRESCRIBED */
+  int32_t kind;              /* mps_boundary_kind: HELD (default), DRIVEN or ROLLER */
   const int64_t *ids;        /* `id_count` particles, copied; NULL (default): those of the box */
   int64_t id_count;          /* 0 with a box */
   double lower[3], upper[3]; /* m, bounds included, of the particles' centres; infinities are
                                 allowed; NaN (default): the list */
-  uint32_t dofs;             /* PRESCRIBED: MPS_DOF_X, Y, Z, or-ed; default 0: all */
+  uint32_t dofs;             /* HELD, DRIVEN: MPS_DOF_X, Y, Z, or-ed; 0 (default): all */
   int32_t reserved;
   double normal[3];      /* ROLLER: any length > 0 */
-  const double *values;  /* m, copied: PRESCRIBED 3 a particle of `ids`, ROLLER 1; NULL: 0 */
-  mps_signal *signal[3]; /* kept alive; by component; ROLLER: [0], along `normal`; NULL: holds */
+  const double *values;  /* m, copied: DRIVEN 3 a particle of `ids`, ROLLER 1; NULL: 0 */
+  mps_signal *signal[3]; /* kept alive; by component, not of HELD; ROLLER: [0], along `normal`;
+                            NULL: holds */
   double factor[3];      /* finite, default 1 */
 } mps_elastic_boundary_def;
 
@@ -164,9 +163,10 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_set_boundary(mps_elastic *e, int32_
 MPS_API MPS_NODISCARD mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number);
 /** Force and moment of the boundary on its particles, of the last solution or at the end of the
  * last step; impulse and work since the motion began. By particles: the field `reaction`. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_reaction_sized(mps_elastic *e, int32_t number,
-                                                                mps_reaction *out, size_t size);
-static inline mps_status mps_elastic_get_reaction(mps_elastic *e, int32_t number,
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_reaction_sized(const mps_elastic *e,
+                                                                int32_t number, mps_reaction *out,
+                                                                size_t size);
+static inline mps_status mps_elastic_get_reaction(const mps_elastic *e, int32_t number,
                                                   mps_reaction *out) {
   return mps_elastic_get_reaction_sized(e, number, out, sizeof *out);
 }
@@ -180,7 +180,7 @@ MPS_API int64_t mps_elastic_facet_count(const mps_elastic *e);
 MPS_API MPS_NODISCARD mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t axis,
                                                            int32_t side, const double *lo,
                                                            const double *hi, int64_t capacity,
-                                                           int64_t *facets, int64_t *count);
+                                                           int64_t *count, int64_t *facets);
 /** Where to write what of each facet; NULL: not wanted. */
 typedef struct mps_elastic_facet_arrays {
   int64_t *particle;    /* id */
@@ -193,9 +193,9 @@ typedef struct mps_elastic_facet_arrays {
 } mps_elastic_facet_arrays;
 /** Of `count` facets, or of all (facets NULL, count mps_elastic_facet_count). */
 MPS_API MPS_NODISCARD mps_status
-mps_elastic_get_facets_sized(mps_elastic *e, int64_t count, const int64_t *facets,
+mps_elastic_get_facets_sized(const mps_elastic *e, int64_t count, const int64_t *facets,
                              const mps_elastic_facet_arrays *arrays, size_t size);
-static inline mps_status mps_elastic_get_facets(mps_elastic *e, int64_t count,
+static inline mps_status mps_elastic_get_facets(const mps_elastic *e, int64_t count,
                                                 const int64_t *facets,
                                                 const mps_elastic_facet_arrays *arrays) {
   return mps_elastic_get_facets_sized(e, count, facets, arrays, sizeof *arrays);
@@ -252,8 +252,9 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_set_load(mps_elastic *e, int32_t nu
 MPS_API MPS_NODISCARD mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number);
 /** Resultant of the present loads and of `external_force`: force (3 values, N) and moment (3, N m,
  *  about `about`, 3 values, NULL: the origin). Either may be NULL. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_load_resultant(mps_elastic *e, const double *about,
-                                                                double *force, double *moment);
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_load_resultant(const mps_elastic *e,
+                                                                const double *about, double *force,
+                                                                double *moment);
 
 /* ---- statics --------------------------------------------------------------------------------- */
 /** What the solution takes, known before it is made. */
@@ -311,12 +312,12 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_update_stress(mps_elastic *e);
 /** Force (3 values, N) and moment (3, N m, about `about`, 3 values, NULL: origin) that the part of
  *  the body with x[axis] > position exerts on the rest, from the static balance of the rest's
  *  particles: normal force N, shear Q and bending moment M of the section. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_section(mps_elastic *e, int32_t axis,
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_section(const mps_elastic *e, int32_t axis,
                                                          double position, const double *about,
                                                          double *force, double *moment);
 /** Strain energy (J) now; `stabilising` (may be NULL) receives its part in the stabilising pairs.
  */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(mps_elastic *e, double *strain,
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(const mps_elastic *e, double *strain,
                                                         double *stabilising);
 /** Sums over the body. Since the motion began, or of the last static solution, which counts as
  *  loaded in proportion from rest, so that the work of the loads is half of load times
@@ -327,9 +328,9 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(mps_elastic *e, double *
  * moduli of 1e8 a warning says so). `dissipated` is that of Rayleigh damping and
  * `scheme`, which for other members of the family is what the scheme takes, measured as the rest of
  * the budget. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out,
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(const mps_elastic *e, mps_totals *out,
                                                               size_t size);
-static inline mps_status mps_elastic_get_totals(mps_elastic *e, mps_totals *out) {
+static inline mps_status mps_elastic_get_totals(const mps_elastic *e, mps_totals *out) {
   return mps_elastic_get_totals_sized(e, out, sizeof *out);
 }
 

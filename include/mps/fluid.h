@@ -95,14 +95,14 @@ static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
-typedef enum mps_fluid_boundary_kind {
-  MPS_FLUID_BOUNDARY_SLIP = 0,    /* no flow across, no shear */
-  MPS_FLUID_BOUNDARY_NO_SLIP = 1, /* no flow across; the fluid's viscosity holds it at the wall,
-                                     which does not move along itself */
-  MPS_FLUID_BOUNDARY_OPEN = 2     /* no wall: the end of a step removes what has passed it, and its
-                                     reaction counts that; the pressure there is the air's, as where
-                                     water falls over an edge. It does not move */
-} mps_fluid_boundary_kind;
+/* Kinds (mps_boundary_kind) of a wall and of a body's surface:
+ *
+ * HELD    no flow across; the fluid's viscosity, where it has one, holds it at the wall, which does
+ *         not move along itself
+ * DRIVEN  the same, moved along the normal by a signal
+ * ROLLER  no flow across, no shear: slip; at rest or moved along the normal by a signal
+ * OPEN    no wall: the end of a step removes what has passed it, and its reaction counts that; the
+ *         pressure there is the air's, as where water falls over an edge. It does not move */
 
 #define MPS_FLUID_MAX_BOUNDARIES 16
 
@@ -112,13 +112,13 @@ typedef enum mps_fluid_boundary_kind {
  * 90 degrees or more; of a bed and a slope, add the bed first. */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
-  int32_t kind;        /* mps_fluid_boundary_kind, default SLIP */
+  int32_t kind;        /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */
   double point[3];     /* m, of the wall at time 0; its pressures are sampled from here on, every
                           l0: choose the corner */
   double normal[3];    /* into the fluid, any length > 0; [2] must be 0; no default */
   mps_signal *signal;  /* displacement along the normal: factor times that of the signal, from its
                           value at the time when the boundary is added; NULL (default): at rest.
-                          Kept alive */
+                          Not of HELD. Kept alive */
   double factor;       /* default 1 */
   const double *nodes; /* of a wall that bends: points along it (3 values each, m, in any order;
                           their distance from the plane does not count), read at once; NULL
@@ -161,9 +161,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_wall_motion(mps_fluid *fluid, int
  *  points of mps_fluid_get_wall. Impulse, moment_impulse and work have besides what collisions with
  *  the wall and the smoothing of velocities at it give: in breakers some hundredths of the impulse.
  */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_reaction_sized(mps_fluid *fluid, int32_t number,
-                                                              mps_reaction *out, size_t size);
-static inline mps_status mps_fluid_get_reaction(mps_fluid *fluid, int32_t number,
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_reaction_sized(const mps_fluid *fluid,
+                                                              int32_t number, mps_reaction *out,
+                                                              size_t size);
+static inline mps_status mps_fluid_get_reaction(const mps_fluid *fluid, int32_t number,
                                                 mps_reaction *out) {
   return mps_fluid_get_reaction_sized(fluid, number, out, sizeof *out);
 }
@@ -172,30 +173,30 @@ static inline mps_status mps_fluid_get_reaction(mps_fluid *fluid, int32_t number
  * wetted points every l0. Writes at most `capacity` points: `x` (3 values a point, m) and
  * `pressure` (Pa), NULL where not wanted; `count` receives how many there are. Each point stands
  * for the area l0 times `measure`. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_wall(mps_fluid *fluid, int32_t number,
-                                                    int64_t capacity, double *x, double *pressure,
-                                                    int64_t *count);
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_wall(const mps_fluid *fluid, int32_t number,
+                                                    int64_t capacity, int64_t *count, double *x,
+                                                    double *pressure);
 /** Pressure (Pa) at `count` points of a wall, likewise: x[3 * k], ... in m, to a hundredth of l0 on
  *  it as it is or as it was added; 0 where there is no water. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(mps_fluid *fluid, int32_t number,
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(const mps_fluid *fluid, int32_t number,
                                                         int64_t count, const double *x,
                                                         double *pressure);
 /** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
  *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
  *  where there is no surface. It is that of the fields position and surface_rise; in an open step
  *  these are of its beginning. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t count,
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, int64_t count,
                                                       const double *station, double *level);
 
 /* ---- bodies ---------------------------------------------------------------------------------- */
 
 /** Puts a rigid body into the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
- * together may have 16 edges. `kind` is that of its surface, mps_fluid_boundary_kind. The caller
- *  moves it (mps_body_advance, mps_body_set_motion), or another solver does: where it is and how
- *  fast when a step is made, or solved for in parts, is taken as the end of that step. At the end
- *  of each step it feels the water's forces (mps_body_get_reaction; a free body moves by them). It
- *  is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less
+ * together may have 16 edges. `kind` is that of its surface, HELD (no slip) or ROLLER (slip). The
+ * caller moves it (mps_body_advance, mps_body_set_motion), or another solver does: where it is and
+ * how fast when a step is made, or solved for in parts, is taken as the end of that step. At the
+ * end of each step it feels the water's forces (mps_body_get_reaction; a free body moves by them).
+ * It is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less
  *  than 15 degrees of fluid between an edge and the boundary that it stands on (a body that rolls
  *  there later has a warning in the log, once). */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
@@ -214,9 +215,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, int32_t 
 /** What the fluid exerts on a body; moments about its reference point, moment_impulse about where
  *  that is now. Force and moment are those of the pressures, impulses have collisions and smoothing
  *  too, as those of mps_body_get_reaction; a body that floats feels these one step later. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_reaction_sized(mps_fluid *fluid, int32_t number,
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_reaction_sized(const mps_fluid *fluid,
+                                                                   int32_t number,
                                                                    mps_reaction *out, size_t size);
-static inline mps_status mps_fluid_get_body_reaction(mps_fluid *fluid, int32_t number,
+static inline mps_status mps_fluid_get_body_reaction(const mps_fluid *fluid, int32_t number,
                                                      mps_reaction *out) {
   return mps_fluid_get_body_reaction_sized(fluid, number, out, sizeof *out);
 }
@@ -335,9 +337,9 @@ MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
  * that move the particles, and smoothing, shifts and cut velocities are not the same from both
  * sides of a pair. In waves and impacts it is some hundredths of the terms, more where breakers
  * plunge. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(mps_fluid *fluid, mps_totals *out,
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(const mps_fluid *fluid, mps_totals *out,
                                                             size_t size);
-static inline mps_status mps_fluid_get_totals(mps_fluid *fluid, mps_totals *out) {
+static inline mps_status mps_fluid_get_totals(const mps_fluid *fluid, mps_totals *out) {
   return mps_fluid_get_totals_sized(fluid, out, sizeof *out);
 }
 

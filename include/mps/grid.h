@@ -25,9 +25,9 @@ typedef struct mps_grid_info {
   int32_t spline;   /* degree of the weights, 2 or 3 */
 } mps_grid_info;
 /** Where the nodes lie. */
-MPS_API MPS_NODISCARD mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out,
+MPS_API MPS_NODISCARD mps_status mps_grid_get_info_sized(const mps_grid *grid, mps_grid_info *out,
                                                          size_t size);
-static inline mps_status mps_grid_get_info(mps_grid *grid, mps_grid_info *out) {
+static inline mps_status mps_grid_get_info(const mps_grid *grid, mps_grid_info *out) {
   return mps_grid_get_info_sized(grid, out, sizeof *out);
 }
 
@@ -42,7 +42,7 @@ static inline mps_status mps_grid_get_info(mps_grid *grid, mps_grid_info *out) {
  *  views are then stale. On several ranks (collective) each gets nodes of its own blocks, every
  *  node on one rank; all together they are those of one rank. MPS_ERROR_STATE: a step has failed, a
  *  field is being edited, or new particles have no density. */
-MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity,
+MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity,
                                                     int64_t *count, double *position, double *mass,
                                                     double *velocity, double *force);
 

@@ -131,8 +131,8 @@ typedef struct mps_material_mohr_coulomb_def {
 
 /** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */
 typedef enum mps_material_state_equation {
-  MPS_MATERIAL_STATE_LINEAR = 0, /* p = K (r - 1) */
-  MPS_MATERIAL_STATE_TAIT = 1    /* p = K/7 (r^7 - 1) */
+  MPS_MATERIAL_STATE_LINEAR = 1, /* p = K (r - 1) */
+  MPS_MATERIAL_STATE_TAIT = 0    /* p = K/7 (r^7 - 1) */
 } mps_material_state_equation;
 
 /** Weakly compressible Newtonian fluid: sigma = -p 1 + 2 viscosity dev(d). */

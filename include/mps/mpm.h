@@ -79,7 +79,7 @@ typedef struct mps_mpm_def {
   uint32_t struct_size;
   int32_t geometry;   /* mps_mpm_geometry, default PLANE_STRAIN; of as many dimensions as the set.
                          In 2D the third value of each array below is not read */
-  int32_t spline;     /* degree of the B-spline weights: 3 (default, Nakamura (36)) or 2 */
+  int32_t spline;     /* degree of the B-spline weights: 3 (Nakamura (36)) or 2; 0 (default): 3 */
   int32_t volumetric; /* mps_mpm_volumetric, default POINT */
   int32_t step_from;  /* mps_mpm_step_from, default SPEED */
   int32_t budget;     /* 1: each step counts what becomes of the energy, see mps_mpm_get_totals; it
@@ -157,8 +157,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *bod
                                                      mps_contact **contact);
 
 /** What the solver was made from: the definition as completed by it. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size);
-static inline mps_status mps_mpm_get_def(mps_mpm *mpm, mps_mpm_def *out) {
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_def_sized(const mps_mpm *mpm, mps_mpm_def *out,
+                                                       size_t size);
+static inline mps_status mps_mpm_get_def(const mps_mpm *mpm, mps_mpm_def *out) {
   return mps_mpm_get_def_sized(mpm, out, sizeof *out);
 }
 /** The set, the context; NULL for NULL. Lent: they live at least as long as the solver. */
@@ -187,47 +188,41 @@ typedef enum mps_mpm_side {
   MPS_MPM_SIDE_Z_UPPER = 5
 } mps_mpm_side;
 
-/** Sides may be all but PRESCRIBED; boxes and particles are PRESCRIBED. The axis r = 0 may be a
- *  roller or fixed. */
-typedef enum mps_mpm_boundary_kind {
-  MPS_MPM_BOUNDARY_ROLLER = 0,     /* no velocity across */
-  MPS_MPM_BOUNDARY_FIXED = 1,      /* no velocity at all */
-  MPS_MPM_BOUNDARY_FRICTIONAL = 2, /* no velocity into the side, and Coulomb's friction along it; it
-                                      pushes but never pulls, so that material may leave */
-  MPS_MPM_BOUNDARY_ABSORBING =
-      3,                           /* Lysmer dashpots: traction R - rho c_p v across and R - rho c_s
-                                      v  along, with rho, c_p and c_s of the particles in the cells at
-                                      the side (elastic; under a user's law c_s = c_p/sqrt(3)). The
-                                      constant R is the traction at rest: see `settle`. Nodes that
-                                      become active later carry no R. Stable for every dt. Particles
-                                      move with the waves: one that passes the side has left the
-                                      domain. A signal's velocity v enters as a wave of v/2 */
-  MPS_MPM_BOUNDARY_FREE = 4,       /* an edge where nodes end and nothing is held */
-  MPS_MPM_BOUNDARY_PRESCRIBED = 5, /* the components `dofs`, of a box of nodes or of particles */
-  MPS_MPM_BOUNDARY_OPEN = 6 /* an edge as FREE; particles that pass it leave the set at the end of
-                               the step. The reaction's `removed` and `removed_mass` count them, its
-                               `count` those of the last step; its impulses and `work` are less the
-                               momentum and kinetic energy that they carry out */
-} mps_mpm_boundary_kind;
+/* Kinds (mps_boundary_kind). Boxes and particles are HELD or DRIVEN, the components `dofs`. Sides:
+ *
+ * ROLLER      no velocity across
+ * HELD        no velocity at all; DRIVEN: that of the signals
+ * FRICTIONAL  no velocity into the side, and Coulomb's friction along it; it pushes but never
+ * pulls, so that material may leave ABSORBING   Lysmer dashpots: traction R - rho c_p v across and
+ * R - rho c_s v along, with rho, c_p and c_s of the particles in the cells at the side (elastic;
+ * under a user's law c_s = c_p/sqrt(3)). The constant R is the traction at rest: see `settle`.
+ * Nodes that become active later carry no R. Stable for every dt. Particles move with the waves:
+ * one that passes the side has left the domain. A signal's velocity v enters as a wave of v/2 FREE
+ * an edge where nodes end and nothing is held OPEN        the same; particles that pass it leave
+ * the set at the end of the step. The reaction's `removed` and `removed_mass` count them, its
+ * `count` those of the last step; its impulses and `work` are less the momentum and kinetic energy
+ * that they carry out
+ *
+ * The axis r = 0 may be ROLLER, HELD or DRIVEN along itself. */
 
 typedef struct mps_mpm_boundary_def {
   uint32_t struct_size;
-  int32_t kind;       /* mps_mpm_boundary_kind; default PRESCRIBED */
+  int32_t kind;       /* mps_boundary_kind, default HELD */
   double lower[3];    /* m, a box of nodes: default +-infinity; */
   double upper[3];    /* in 2D the third value is not read */
   const int64_t *ids; /* `id_count` particles in place of a box, copied; NULL: a box */
   int64_t id_count;   /* 0 with a box or side */
-  uint32_t dofs;      /* MPS_DOF_X, Y, Z or-ed, of PRESCRIBED; default 0: all */
+  uint32_t dofs;      /* MPS_DOF_X, Y, Z or-ed, of boxes and particles; 0 (default): all */
   int32_t reserved;
-  mps_signal
-      *signal[3];   /* by component, kept alive; NULL: at rest. Of a roller only the one across */
-  double factor[3]; /* default 1 */
-  double friction;  /* Coulomb's mu of FRICTIONAL, >= 0; default 0 */
-  double settle;    /* s, >= 0: so long an ABSORBING side is held as a fixed one, and R is the
-                       mean traction then. 0 (default): R balances the other forces at the nodes
-                       in the first step. On the grid, stress and gravity that balance in theory
-                       leave up to a percent unbalanced; without settling, the dashpots
-                       move under that */
+  mps_signal *signal[3]; /* by component, kept alive, not of HELD; NULL: at rest. Of a roller the
+                            one across */
+  double factor[3];      /* default 1 */
+  double friction;       /* Coulomb's mu of FRICTIONAL, >= 0; default 0 */
+  double settle;         /* s, >= 0: so long an ABSORBING side is held as a fixed one, and R is the
+                            mean traction then. 0 (default): R balances the other forces at the nodes
+                            in the first step. On the grid, stress and gravity that balance in theory
+                            leave up to a percent unbalanced; without settling, the dashpots
+                            move under that */
 } mps_mpm_boundary_def;
 
 MPS_API mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size);
@@ -251,9 +246,10 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t numb
 /** Lets the nodes or particles go; a side becomes FREE. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number);
 /** What boundary `number` exerts on the particles. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number,
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_reaction_sized(const mps_mpm *mpm, int32_t number,
                                                             mps_reaction *out, size_t size);
-static inline mps_status mps_mpm_get_reaction(mps_mpm *mpm, int32_t number, mps_reaction *out) {
+static inline mps_status mps_mpm_get_reaction(const mps_mpm *mpm, int32_t number,
+                                              mps_reaction *out) {
   return mps_mpm_get_reaction_sized(mpm, number, out, sizeof *out);
 }
 /** Shorthand: the side `side` of the domain becomes of `kind`, at rest, with `friction`. */
@@ -338,9 +334,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt);
  *  supports. `kinetic` is that of the particles' velocities alone. `work_boundaries` and
  *  `work_bodies` are always there; the others NaN unless the definition asks for the budget, which
  *  mps/mpm_energy.h explains. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out,
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals_sized(const mps_mpm *mpm, mps_totals *out,
                                                           size_t size);
-static inline mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_totals *out) {
+static inline mps_status mps_mpm_get_totals(const mps_mpm *mpm, mps_totals *out) {
   return mps_mpm_get_totals_sized(mpm, out, sizeof *out);
 }
 
@@ -351,9 +347,9 @@ typedef struct mps_mpm_usage {
   int64_t sweeps; /* over the contacts of the last step; 0: there was none by METHOD_IMPULSE */
   double left; /* relative change of all impulses in the last sweep (mps_contact_def.tolerance) */
 } mps_mpm_usage;
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_usage_sized(mps_mpm *mpm, mps_mpm_usage *out,
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_usage_sized(const mps_mpm *mpm, mps_mpm_usage *out,
                                                          size_t size);
-static inline mps_status mps_mpm_get_usage(mps_mpm *mpm, mps_mpm_usage *out) {
+static inline mps_status mps_mpm_get_usage(const mps_mpm *mpm, mps_mpm_usage *out) {
   return mps_mpm_get_usage_sized(mpm, out, sizeof *out);
 }
 

@@ -48,9 +48,9 @@ typedef struct mps_mpm_losses {
                         of the shape functions, or (F-bar) from means of cells. Of both signs */
 } mps_mpm_losses;
 /** MPS_ERROR_STATE: the definition's `budget` is 0. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out,
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_losses_sized(const mps_mpm *mpm, mps_mpm_losses *out,
                                                           size_t size);
-static inline mps_status mps_mpm_get_losses(mps_mpm *mpm, mps_mpm_losses *out) {
+static inline mps_status mps_mpm_get_losses(const mps_mpm *mpm, mps_mpm_losses *out) {
   return mps_mpm_get_losses_sized(mpm, out, sizeof *out);
 }
 

@@ -160,8 +160,8 @@ MPS_NODISCARD static inline mps_status mps_particles_get_field_info(const mps_pa
  *  `count` receives how many there are. */
 MPS_API MPS_NODISCARD mps_status mps_particles_select_box(mps_particles *particles,
                                                           const double *lo, const double *hi,
-                                                          int64_t capacity, int64_t *ids,
-                                                          int64_t *count);
+                                                          int64_t capacity, int64_t *count,
+                                                          int64_t *ids);
 /** Present index of the particle `id` in every view, or -1. */
 MPS_API int64_t mps_particles_index(const mps_particles *particles, int64_t id);
 /** Id of the particle nearest to x (dim values, m), the lowest of equally near ones; -1 for an

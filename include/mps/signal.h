@@ -20,9 +20,9 @@ typedef struct mps_signal mps_signal;
 
 /** What the samples of a table or record are. */
 typedef enum mps_signal_quantity {
-  MPS_SIGNAL_QUANTITY_DISPLACEMENT = 0, /* m */
+  MPS_SIGNAL_QUANTITY_DISPLACEMENT = 2, /* m */
   MPS_SIGNAL_QUANTITY_VELOCITY = 1,     /* m/s */
-  MPS_SIGNAL_QUANTITY_ACCELERATION = 2  /* m/s2 */
+  MPS_SIGNAL_QUANTITY_ACCELERATION = 0  /* m/s2 */
 } mps_signal_quantity;
 
 /** Baseline correction of an accelerogram, made before it is integrated. T is its length, and v its
@@ -32,9 +32,9 @@ typedef enum mps_signal_quantity {
  *  acceleration. An offset of the instrument is a velocity trend of degree 1, a linear drift one of
  *  degree 2, a parabolic drift one of degree 3. */
 typedef enum mps_signal_baseline {
-  MPS_SIGNAL_BASELINE_NONE = 0,      /* integrate as it is */
-  MPS_SIGNAL_BASELINE_MEAN = 1,      /* a - v(T)/T: the mean over time, so that v(T) = 0 */
-  MPS_SIGNAL_BASELINE_LINEAR = 2,    /* a - c1 */
+  MPS_SIGNAL_BASELINE_NONE = 1,      /* integrate as it is */
+  MPS_SIGNAL_BASELINE_MEAN = 2,      /* a - v(T)/T: the mean over time, so that v(T) = 0 */
+  MPS_SIGNAL_BASELINE_LINEAR = 0,    /* a - c1 */
   MPS_SIGNAL_BASELINE_QUADRATIC = 3, /* a - c1 - 2 c2 t */
   MPS_SIGNAL_BASELINE_CUBIC = 4      /* a - c1 - 2 c2 t - 3 c3 t^2 */
 } mps_signal_baseline;

@@ -46,6 +46,21 @@ MPS_EXTERN_C_BEGIN
 #define MPS_DOF_Z 4u
 #define MPS_DOF_ROTATION 8u /* about z, where particles have a rotation of their own */
 
+/** What a boundary does: the same words and values in all solvers. Each has some of them, as its
+ *  header says, and refuses the others by name (MPS_ERROR_ARGUMENT). */
+typedef enum mps_boundary_kind {
+  MPS_BOUNDARY_HELD = 0,   /* at rest: the components `dofs`, where the solver has them (0: all that
+                              exist); takes no signal. In a fluid: no flow across, and none along */
+  MPS_BOUNDARY_DRIVEN = 1, /* the same, with the motion that signals, or values, say */
+  MPS_BOUNDARY_ROLLER = 2, /* no motion across, free along. In a fluid: slip */
+  MPS_BOUNDARY_FRICTIONAL = 3, /* no motion into it, Coulomb's friction along it */
+  MPS_BOUNDARY_ABSORBING = 4,  /* Lysmer dashpots: waves leave */
+  MPS_BOUNDARY_FREE_FIELD = 5, /* reserved: endless ground beside it. No solver has it as a kind
+                                  yet; explicit dynamics has mps_dynamics_add_free_field */
+  MPS_BOUNDARY_FREE = 6,       /* an edge of the domain where nothing is held */
+  MPS_BOUNDARY_OPEN = 7        /* the same, and particles that pass it leave the set */
+} mps_boundary_kind;
+
 /** What something exerts over time. Of a boundary: on the particles that it holds or drives. Of a
  *  contact or a body: on the body, by the particles. Forces and moments are means over the last
  *  step; before the first step all is 0. */

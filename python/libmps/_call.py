@@ -278,6 +278,9 @@ def call(name, owner, values, members):
         elif constant and _is_struct(kind) and word == "def" and not (given and isinstance(given[0], dict)):
             arguments.append(state.struct(kind.item, members))
             members_used = True
+        elif word == "count" and "capacity" in state.lengths and kind.cname == "int64_t *":
+            outputs.append(_output(kind))  # how many there are stands before the arrays
+            arguments.append(outputs[-1])
         elif given:
             value = given.pop(0)
             arguments.append(state.to_c(value, kind, constant))

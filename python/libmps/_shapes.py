@@ -71,7 +71,7 @@ STRUCTS = {
     "mps_dynamics_boundary_def": {"ids": "id_count"},
     "mps_dynamics_load_def": {"ids": "id_count"},
     "mps_elastic_boundary_def": {"ids": "id_count",
-                                  "values": "id_count if kind == MPS_ELASTIC_BOUNDARY_ROLLER else 3 * id_count"},
+                                  "values": "id_count if kind == MPS_BOUNDARY_ROLLER else 3 * id_count"},
     "mps_elastic_load_def": {"ids": "id_count",
                              "values": "id_count if kind == MPS_ELASTIC_LOAD_PRESSURE else 3 * id_count"},
     "mps_elastic_facet_arrays": {"particle": "count", "centre": "3 * count", "normal": "3 * count",

@@ -167,8 +167,8 @@ void mps_contact_destroy(mps_contact **pointer) {
 
 mps_body *mps_contact_body(const mps_contact *contact) { return contact ? contact->body : NULL; }
 
-mps_status mps_contact_get_reaction_sized(mps_contact *contact, int32_t part, mps_reaction *out,
-                                          size_t size) {
+mps_status mps_contact_get_reaction_sized(const mps_contact *contact, int32_t part,
+                                          mps_reaction *out, size_t size) {
   static const char function[] = "mps_contact_get_reaction";
   if (!contact) return MPS_ERROR_ARGUMENT;
   mps_reaction sum;
@@ -178,9 +178,10 @@ mps_status mps_contact_get_reaction_sized(mps_contact *contact, int32_t part, mp
   return mpsi_out_write(contact->context, function, out, size, &sum, sizeof sum);
 }
 
-mps_status mps_contact_get_particles(mps_contact *contact, int64_t capacity, int64_t *count,
+mps_status mps_contact_get_particles(const mps_contact *handle, int64_t capacity, int64_t *count,
                                      int64_t *ids, double *gap, double *normal, double *force,
                                      double *foot) {
+  mps_contact *contact = (mps_contact *)handle; /* scratch and messages only: the state stays */
   if (!contact) return MPS_ERROR_ARGUMENT;
   if (capacity < 0 || !count)
     return mpsi_fail(contact->context, __func__, MPS_ERROR_ARGUMENT,

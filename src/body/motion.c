@@ -366,7 +366,7 @@ mps_status mps_body_set_load(mps_body *body, const double *force, const double *
   return MPS_OK;
 }
 
-mps_status mps_body_get_state_sized(mps_body *body, mps_body_state *out, size_t size) {
+mps_status mps_body_get_state_sized(const mps_body *body, mps_body_state *out, size_t size) {
   if (!body) return MPS_ERROR_ARGUMENT;
   const mpsi_pose *p = &body->pose;
   mps_body_state state = {.time = body->time};
@@ -380,7 +380,7 @@ mps_status mps_body_get_state_sized(mps_body *body, mps_body_state *out, size_t 
   return mpsi_out_write(body->context, "mps_body_get_state", out, size, &state, sizeof state);
 }
 
-mps_status mps_body_get_totals_sized(mps_body *body, mps_body_totals *out, size_t size) {
+mps_status mps_body_get_totals_sized(const mps_body *body, mps_body_totals *out, size_t size) {
   if (!body) return MPS_ERROR_ARGUMENT;
   const mpsi_pose *p = &body->pose;
   mps_body_totals t = {.mass = body->def.mass,

@@ -102,7 +102,7 @@ mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
   return MPS_OK;
 }
 
-mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part, mps_reaction *out,
+mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part, mps_reaction *out,
                                        size_t size) {
   static const char function[] = "mps_body_get_reaction";
   if (!body) return MPS_ERROR_ARGUMENT;

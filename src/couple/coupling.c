@@ -226,8 +226,8 @@ mps_status mps_coupling_get_report_sized(const mps_coupling *c, mps_coupling_rep
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-mps_status mps_coupling_get_memory(const mps_coupling *c, int64_t capacity, double *values,
-                                   int64_t *count) {
+mps_status mps_coupling_get_memory(const mps_coupling *c, int64_t capacity, int64_t *count,
+                                   double *values) {
   if (!c) return MPS_ERROR_ARGUMENT;
   if (!count || capacity < 0 || (capacity > 0 && !values))
     return mpsi_fail(c->context, __func__, MPS_ERROR_ARGUMENT, "%s",

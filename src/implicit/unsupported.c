@@ -94,8 +94,8 @@ mps_status mps_elastic_remove_boundary(mps_elastic *elastic, int32_t number) {
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_get_reaction_sized(mps_elastic *elastic, int32_t number, mps_reaction *out,
-                                          size_t size) {
+mps_status mps_elastic_get_reaction_sized(const mps_elastic *elastic, int32_t number,
+                                          mps_reaction *out, size_t size) {
   (void)elastic;
   (void)number;
   (void)out;
@@ -110,7 +110,7 @@ int64_t mps_elastic_facet_count(const mps_elastic *elastic) {
 
 mps_status mps_elastic_select_facets(const mps_elastic *elastic, int32_t axis, int32_t side,
                                      const double *lo, const double *hi, int64_t capacity,
-                                     int64_t *facets, int64_t *count) {
+                                     int64_t *count, int64_t *facets) {
   (void)elastic;
   (void)axis;
   (void)side;
@@ -122,7 +122,8 @@ mps_status mps_elastic_select_facets(const mps_elastic *elastic, int32_t axis, i
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_get_facets_sized(mps_elastic *elastic, int64_t count, const int64_t *facets,
+mps_status mps_elastic_get_facets_sized(const mps_elastic *elastic, int64_t count,
+                                        const int64_t *facets,
                                         const mps_elastic_facet_arrays *arrays, size_t size) {
   (void)elastic;
   (void)count;
@@ -154,8 +155,8 @@ mps_status mps_elastic_remove_load(mps_elastic *elastic, int32_t number) {
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_get_load_resultant(mps_elastic *elastic, const double *about, double *force,
-                                          double *moment) {
+mps_status mps_elastic_get_load_resultant(const mps_elastic *elastic, const double *about,
+                                          double *force, double *moment) {
   (void)elastic;
   (void)about;
   (void)force;
@@ -197,7 +198,7 @@ mps_status mps_elastic_update_stress(mps_elastic *elastic) {
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_get_section(mps_elastic *elastic, int32_t axis, double position,
+mps_status mps_elastic_get_section(const mps_elastic *elastic, int32_t axis, double position,
                                    const double *about, double *force, double *moment) {
   (void)elastic;
   (void)axis;
@@ -208,14 +209,14 @@ mps_status mps_elastic_get_section(mps_elastic *elastic, int32_t axis, double po
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_get_energy(mps_elastic *elastic, double *strain, double *stabilising) {
+mps_status mps_elastic_get_energy(const mps_elastic *elastic, double *strain, double *stabilising) {
   (void)elastic;
   (void)strain;
   (void)stabilising;
   return MPS_ERROR_UNSUPPORTED;
 }
 
-mps_status mps_elastic_get_totals_sized(mps_elastic *elastic, mps_totals *out, size_t size) {
+mps_status mps_elastic_get_totals_sized(const mps_elastic *elastic, mps_totals *out, size_t size) {
   (void)elastic;
   (void)out;
   (void)size;

@@ -88,7 +88,7 @@ static mps_status check_newtonian(mps_context *context, const char *function,
                                   const mps_material_newtonian_def *def) {
   if (def->state != MPS_MATERIAL_STATE_LINEAR && def->state != MPS_MATERIAL_STATE_TAIT)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "state is %d, must be 0 (linear) or 1 (Tait)", (int)def->state);
+                     "state is %d, must be 0 (Tait) or 1 (linear)", (int)def->state);
   if (def->no_tension != 0 && def->no_tension != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "no_tension is %d, must be 0 or 1",
                      (int)def->no_tension);

@@ -92,7 +92,10 @@ static mps_status remove_trend(mps_context *context, const char *function, int d
 mps_status mpsi_baseline_correct(mps_context *context, const char *function, int32_t baseline,
                                  int64_t count, const double *times, double *accelerations) {
   if (baseline == MPS_SIGNAL_BASELINE_NONE) return MPS_OK;
-  const int degree = (int)baseline - MPS_SIGNAL_BASELINE_MEAN; /* 0: no fit */
+  const int degree = baseline == MPS_SIGNAL_BASELINE_MEAN        ? 0 /* no fit */
+                     : baseline == MPS_SIGNAL_BASELINE_LINEAR    ? 1
+                     : baseline == MPS_SIGNAL_BASELINE_QUADRATIC ? 2
+                                                                 : 3;
   if (count < degree + 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "baseline %d needs at least %d samples, the record has %lld", (int)baseline,

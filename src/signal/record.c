@@ -105,14 +105,14 @@ static mps_status check_def(mps_context *context, const char *function,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "format is %d, allowed are 0 (recognised), 1 (AT2), 2 (K-NET), 3 (CSV)",
                      def->format);
-  if (def->quantity < MPS_SIGNAL_QUANTITY_DISPLACEMENT ||
-      def->quantity > MPS_SIGNAL_QUANTITY_ACCELERATION)
+  if (def->quantity < MPS_SIGNAL_QUANTITY_ACCELERATION ||
+      def->quantity > MPS_SIGNAL_QUANTITY_DISPLACEMENT)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "quantity is %d, allowed are 0 (displacement), 1 (velocity), 2 (acceleration)",
+                     "quantity is %d, allowed are 0 (acceleration), 1 (velocity), 2 (displacement)",
                      def->quantity);
-  if (def->baseline < MPS_SIGNAL_BASELINE_NONE || def->baseline > MPS_SIGNAL_BASELINE_CUBIC)
+  if (def->baseline < MPS_SIGNAL_BASELINE_LINEAR || def->baseline > MPS_SIGNAL_BASELINE_CUBIC)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "baseline is %d, allowed are 0 (none), 1 (mean), 2 (linear), 3 (quadratic), "
+                     "baseline is %d, allowed are 0 (linear), 1 (none), 2 (mean), 3 (quadratic), "
                      "4 (cubic)",
                      def->baseline);
   if (!isfinite(def->scale) || def->scale == 0.0)

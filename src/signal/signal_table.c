@@ -115,9 +115,9 @@ static mps_status fit_displacements(mps_context *context, const char *function, 
 
 static mps_status check_table(mps_context *context, const char *function, int32_t quantity,
                               int64_t count, const double *times, const double *values) {
-  if (quantity < MPS_SIGNAL_QUANTITY_DISPLACEMENT || quantity > MPS_SIGNAL_QUANTITY_ACCELERATION)
+  if (quantity < MPS_SIGNAL_QUANTITY_ACCELERATION || quantity > MPS_SIGNAL_QUANTITY_DISPLACEMENT)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "quantity is %d, allowed are 0 (displacement), 1 (velocity), 2 (acceleration)",
+                     "quantity is %d, allowed are 0 (acceleration), 1 (velocity), 2 (displacement)",
                      quantity);
   if (count < 2 || count >= INT32_MAX)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2..%d",

@@ -94,7 +94,7 @@ static void draw_boundary(api *a, mps_dynamics *dynamics, mps_dynamics_boundary_
   *def = mps_dynamics_boundary_defaults();
   def->struct_size = api_struct_size(a, sizeof *def);
   const int before = a->wrong;
-  def->kind = api_choice(a, "kind", 3);
+  def->kind = api_choice(a, "kind", 8);
   draw_place(a, mps_dynamics_particles(dynamics), &def->ids, &def->id_count, ids, def->lower,
              def->upper);
   if (a->wrong < before) a->wrong = before;

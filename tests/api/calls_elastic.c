@@ -87,7 +87,7 @@ static int64_t base(mps_particles *set, int64_t *ids) {
   int64_t count = 0;
   const int last = mps_particles_dim(set) == 3 ? 2 : 1;
   hi[last] = 0.075;
-  if (mps_particles_select_box(set, lo, hi, MOST, ids, &count) != MPS_OK || count > MOST) return 0;
+  if (mps_particles_select_box(set, lo, hi, MOST, &count, ids) != MPS_OK || count > MOST) return 0;
   return count;
 }
 
@@ -115,12 +115,13 @@ static void draw_boundary(api *a, mps_elastic *e, mps_elastic_boundary_def *def,
   def->ids = ids;
   def->id_count = a->latest || api_chance(a, 60) ? base(set, ids) : api_ids(a, set, 4, ids);
   if (!a->latest) {
-    def->kind = api_choice(a, "kind", 2);
-    if (def->kind == MPS_ELASTIC_BOUNDARY_PRESCRIBED)
+    def->kind = api_choice(a, "kind", 3);
+    if (def->kind != MPS_BOUNDARY_ROLLER)
       def->dofs = api_below(a, 4);
     else
       api_vector(a, "normal", 3, 0.0, 1.0, def->normal);
-    if (a->wrong && def->kind && mps_particles_dim(set) == 2 && !isfinite(def->normal[2]))
+    if (a->wrong && def->kind == MPS_BOUNDARY_ROLLER && mps_particles_dim(set) == 2 &&
+        !isfinite(def->normal[2]))
       a->wrong = 0;
     if (api_chance(a, 20)) {
       for (int64_t k = 0; k < 3 * def->id_count && k < 3 * MOST; k++) values[k] = 1e-4;
@@ -237,7 +238,7 @@ static void elastic_select_facets(api *a) {
   if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
   facets[capacity < 0 ? 0 : capacity] = -7;
   const mps_status status =
-      mps_elastic_select_facets(e, axis, side, NULL, NULL, capacity, facets, &count);
+      mps_elastic_select_facets(e, axis, side, NULL, NULL, capacity, &count, facets);
   if (facets[capacity < 0 ? 0 : capacity] != -7) api_broken(a, "writes behind the capacity");
   a->reads = true;
   (void)api_end(a, status);

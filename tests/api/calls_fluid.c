@@ -52,6 +52,7 @@ static void draw_boundary(api *a, mps_fluid_boundary_def *def, int which, double
   *def = mps_fluid_boundary_defaults();
   def->struct_size = api_struct_size(a, sizeof *def);
   if (!a->latest) def->kind = api_choice(a, "kind", 3);
+  if (def->kind == MPS_BOUNDARY_HELD && api_chance(a, 30)) def->kind = MPS_BOUNDARY_OPEN;
   for (int c = 0; c < 2; c++) {
     def->point[c] = a->latest ? points[which][c] : api_near(a, "point", points[which][c], 0.02);
     def->normal[c] = a->latest ? normals[which][c] : api_near(a, "normal", normals[which][c], 0.1);
@@ -125,7 +126,7 @@ static void fluid_get_wall(api *a) {
   int64_t capacity = (int64_t)api_below(a, 33);
   if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
   const mps_status status =
-      mps_fluid_get_wall(fluid, number, capacity, api_chance(a, 80) ? x : NULL, pressure, &count);
+      mps_fluid_get_wall(fluid, number, capacity, &count, api_chance(a, 80) ? x : NULL, pressure);
   for (int64_t k = 0; status == MPS_OK && k < count && k < capacity; k++)
     if (!isfinite(pressure[k])) api_broken(a, "pressure %g", pressure[k]);
   a->reads = false; /* readings before a step fill `surface_rise` and others */
@@ -164,7 +165,9 @@ static void fluid_add_body(api *a) {
   int32_t number = -1;
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   mps_body *body = api_any(a, API_BODY)->handle;
-  (void)api_end(a, mps_fluid_add_body(fluid, body, api_choice(a, "kind", 2), &number));
+  int32_t kind = api_choice(a, "kind", 2); /* a body is HELD or ROLLER, not DRIVEN between them */
+  kind = kind == 1 ? MPS_BOUNDARY_ROLLER : kind == 2 ? MPS_BOUNDARY_DRIVEN : kind;
+  (void)api_end(a, mps_fluid_add_body(fluid, body, kind, &number));
 }
 
 static void fluid_remove_body(api *a) {

@@ -89,7 +89,8 @@ static void draw_boundary(api *a, mps_mpm *mpm, mps_mpm_boundary_def *def, int64
                           bool side) {
   *def = mps_mpm_boundary_defaults();
   def->struct_size = api_struct_size(a, sizeof *def);
-  if (side || api_chance(a, 10)) def->kind = api_choice(a, "kind", 7);
+  if (!side) def->kind = api_chance(a, 70) ? MPS_BOUNDARY_DRIVEN : MPS_BOUNDARY_HELD;
+  if (side || api_chance(a, 10)) def->kind = api_choice(a, "kind", 8);
   if (!side && api_chance(a, 50)) {
     def->id_count = api_ids(a, mps_mpm_particles(mpm), 4, ids);
     def->ids = def->id_count ? ids : NULL;
@@ -108,9 +109,8 @@ static void draw_boundary(api *a, mps_mpm *mpm, mps_mpm_boundary_def *def, int64
     def->factor[c] = api_near(a, "factor", 1.0, 0.5);
     if (!def->signal[c] && !isfinite(def->factor[c])) a->wrong = 0;
   }
-  if (def->kind == MPS_MPM_BOUNDARY_FRICTIONAL)
-    def->friction = api_real(a, "friction", 0.0, 1e3, 0.3);
-  if (def->kind == MPS_MPM_BOUNDARY_ABSORBING && api_chance(a, 50))
+  if (def->kind == MPS_BOUNDARY_FRICTIONAL) def->friction = api_real(a, "friction", 0.0, 1e3, 0.3);
+  if (def->kind == MPS_BOUNDARY_ABSORBING && api_chance(a, 50))
     def->settle = api_real(a, "settle", 0.0, DBL_MAX, 0.01);
 }
 

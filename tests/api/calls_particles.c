@@ -311,8 +311,8 @@ static void particles_select_box(api *a) {
   if (mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
   ids[capacity < 0 ? 0 : capacity] = -7;
   const bool none = capacity > 0 && api_null(a, "ids");
-  const mps_status status = mps_particles_select_box(set, lo, hi, capacity, none ? NULL : ids,
-                                                     api_null(a, "count") ? NULL : &count);
+  const mps_status status = mps_particles_select_box(
+      set, lo, hi, capacity, api_null(a, "count") ? NULL : &count, none ? NULL : ids);
   if (ids[capacity < 0 ? 0 : capacity] != -7) api_broken(a, "writes behind the capacity");
   a->reads = true;
   (void)api_end(a, status);

@@ -231,7 +231,7 @@ static void coupling_memory(api *a) {
   int64_t capacity = (int64_t)api_below(a, 2) * 512;
   if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
   const mps_coupling *coupling = api_any(a, API_COUPLING)->handle;
-  const mps_status status = mps_coupling_get_memory(coupling, capacity, values, &count);
+  const mps_status status = mps_coupling_get_memory(coupling, capacity, &count, values);
   a->reads = true;
   if (!api_end(a, status) || count > capacity) return;
   api_begin(a, "mps_coupling_set_memory");

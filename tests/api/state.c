@@ -253,7 +253,7 @@ static void look_coupling(look *l, mps_coupling *coupling) {
     add_whole(l, "steps", r.steps);
     add_whole(l, "repeats", r.all_repeats);
   }
-  if (mps_coupling_get_memory(coupling, API_COUNT(values), values, &count) == MPS_OK)
+  if (mps_coupling_get_memory(coupling, API_COUNT(values), &count, values) == MPS_OK)
     add(l, "memory", fold_reals((uint64_t)count, count < 512 ? (int)count : 512, values));
 }
 

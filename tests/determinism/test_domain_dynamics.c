@@ -213,7 +213,7 @@ static mps_status step_with_signal(mps_context *own, mps_dynamics *dynamics, int
       mps_signal_create_user(own, what == SIGNAL_FAILS ? failing : differing, u, &signal);
   load.kind = MPS_DYNAMICS_LOAD_BODY;
   load.acceleration[0] = 1.0;
-  base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  base.kind = MPS_BOUNDARY_DRIVEN;
   base.ids = &id, base.id_count = 1, base.dofs = MPS_DOF_X;
   load.signal[0] = base.signal[0] = signal;
   if (what == DRIVEN_DIFFERS) TRY(mps_dynamics_add_boundary(dynamics, &base, NULL));

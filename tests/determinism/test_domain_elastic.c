@@ -120,7 +120,7 @@ static mps_status make_set(mps_context *own, int what, mps_particles **set) {
   TRY(mps_particles_set(*set, "poisson", 0, 0.3));
   TRY(mps_particles_set(*set, "density", 0, 2.0));
   TRY(mps_particles_set(*set, "young", 0, 50.0));
-  TRY(mps_particles_select_box(*set, lo, stiff, 512, ids, &count));
+  TRY(mps_particles_select_box(*set, lo, stiff, 512, &count, ids));
   mps_edit edit;
   TRY(mps_particles_edit(*set, "young", &edit));
   if (status != MPS_OK) return status;
@@ -144,6 +144,7 @@ static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset
   if (what == SIGNAL_FAILS) status = mps_signal_create_user(own, failing, u, &signal);
   if (what == SIGNAL_DIFFERS || what == FACTOR_DIFFERS)
     status = mps_signal_create_user(own, differing, u, &signal);
+  if (signal) held.kind = MPS_BOUNDARY_DRIVEN;
   if (what != FACTOR_DIFFERS) held.signal[0] = signal;
   if (what == FACTOR_DIFFERS) weight.signal[1] = signal;
   const int32_t rank = u->domain ? mps_domain_rank(u->domain) : 0;
@@ -154,10 +155,10 @@ static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset
   TRY(mps_elastic_add_load(elastic, &weight, NULL));
   if (what == OTHER_REMOVED) TRY(mps_elastic_remove_load(elastic, rank));
   /* The surface passes through the particles of one side: its pressure has moments. */
-  TRY(mps_particles_select_box(mps_elastic_particles(elastic), lo, hi, 512, ids, &count));
+  TRY(mps_particles_select_box(mps_elastic_particles(elastic), lo, hi, 512, &count, ids));
   if (u->domain) status = mps_domain_agree(u->domain, status);
   TRY(mps_elastic_cut(elastic, 0, -1, count, ids));
-  TRY(mps_elastic_select_facets(elastic, 0, 1, NULL, NULL, 512, facets, &count));
+  TRY(mps_elastic_select_facets(elastic, 0, 1, NULL, NULL, 512, &count, facets));
   push.ids = facets, push.id_count = count, push.force[0] = 0.3;
   if (u->domain) status = mps_domain_agree(u->domain, status);
   TRY(mps_elastic_add_load(elastic, &push, NULL));

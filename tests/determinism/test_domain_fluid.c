@@ -140,10 +140,10 @@ static mps_status define_otherwise(mps_context *own, scene *s, int what, int32_t
   const mps_body_def def = mps_body_defaults();
   mps_status status = mps_signal_create_sine(
       own, 1.0, what == OTHER_SIGNAL ? 0.01 + 0.001 * rank : 0.01, 0.0, &signal);
-  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.6, 0.0, -1.0, 0.0, signal));
+  TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.6, 0.0, -1.0, 0.0, signal));
   mps_signal_destroy(&signal);
   TRY(mps_body_create_polygon(own, &def, 4, corner, &body));
-  TRY(mps_fluid_add_body(s->fluid, body, MPS_FLUID_BOUNDARY_SLIP, NULL));
+  TRY(mps_fluid_add_body(s->fluid, body, MPS_BOUNDARY_ROLLER, NULL));
   load.acceleration[0] = what == OTHER_LOAD ? 0.1 * rank : 0.1;
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
@@ -165,9 +165,8 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_particles_fill_box(s.set, lower, upper, NULL));
   if (what == OTHER_SET && rank == 1) TRY(mps_particles_append(s.set, 1, extra));
   TRY(mps_fluid_create(own, s.set, &def, &s.fluid));
-  TRY(wall(&s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 0.0, 1.0, NULL));
-  TRY(wall(&s, MPS_FLUID_BOUNDARY_SLIP, what == OTHER_WALL ? -0.1 * rank : 0.0, 0.0, 1.0, 0.0,
-           NULL));
+  TRY(wall(&s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
+  TRY(wall(&s, MPS_BOUNDARY_ROLLER, what == OTHER_WALL ? -0.1 * rank : 0.0, 0.0, 1.0, 0.0, NULL));
   const mps_fluid_solver_def solver = {
       .struct_size = sizeof solver, .matrix = no_matrix, .solve = no_solve};
   if (what == SOLVER) TRY(mps_fluid_set_solver(s.fluid, &solver));

@@ -148,7 +148,7 @@ static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) 
   TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
-  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_FREE, 0.0));
+  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FREE, 0.0));
   if (status == MPS_OK) status = mps_mpm_step(s->mpm, 1000);
   if (status != MPS_ERROR_DIVERGED || mps_context_error(own)->particle < 0)
     return MPS_ERROR_INTERNAL;
@@ -319,10 +319,9 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   }
   if (what == CALLBACK_FAILS) TRY(mps_mpm_run(s.mpm, 1.0, 5, refuse_callback, &rank));
   if (what == OTHER_BOUNDARY)
-    TRY(mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.1 * rank));
+    TRY(mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.1 * rank));
   if (what == BAD_BOUNDARY)
-    TRY(mps_mpm_set_side(s.mpm, rank == 1 ? -1 : MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED,
-                         0.0));
+    TRY(mps_mpm_set_side(s.mpm, rank == 1 ? -1 : MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0));
   if (what == OTHER_REMOVED)
     TRY(mps_mpm_remove_boundary(s.mpm, rank == 1 ? MPS_MPM_SIDE_Y_LOWER : MPS_MPM_SIDE_X_UPPER));
   if (what == MANY_IDS)

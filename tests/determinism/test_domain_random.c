@@ -115,8 +115,7 @@ static mps_status add_body(subject *s, plan *p, double width, double height, int
 }
 
 static mps_status make_mpm(subject *s, plan *p, mps_domain *domain, bool odd) {
-  static const int32_t kinds[3] = {MPS_MPM_BOUNDARY_ROLLER, MPS_MPM_BOUNDARY_FIXED,
-                                   MPS_MPM_BOUNDARY_FRICTIONAL};
+  static const int32_t kinds[3] = {MPS_BOUNDARY_ROLLER, MPS_BOUNDARY_HELD, MPS_BOUNDARY_FRICTIONAL};
   const double width = uniform(p, 0.8, 1.6), height = uniform(p, 0.3, 0.6), h = 0.08;
   const int body = p->springs || pick(p, 3) > 0, other = otherwise(p, body ? 10 : 7, odd);
   mps_mpm_def def = mps_mpm_defaults();
@@ -141,7 +140,7 @@ static mps_status make_mpm(subject *s, plan *p, mps_domain *domain, bool odd) {
   TRY(mps_mpm_create(s->own, s->set, s->material, &def, &s->mpm));
   if (transfer) TRY(mps_experimental_mpm_transfer(s->mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT));
   TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_Y_LOWER, side, other == 6 ? 0.31 : 0.3));
-  if (pick(p, 2)) TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_OPEN, 0.0));
+  if (pick(p, 2)) TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_OPEN, 0.0));
   TRY(edit_velocity(s, 0.0, uniform(p, -3.0, 3.0)));
   if (status == MPS_OK && body) status = add_body(s, p, width, height, other - 7);
   return status;
@@ -161,6 +160,7 @@ static mps_status make_fluid(subject *s, plan *p, mps_domain *domain, bool odd) 
   TRY(mps_fluid_create(s->own, s->set, &def, &s->fluid));
   for (int k = 0; k < 3; k++) {
     mps_fluid_boundary_def b = mps_fluid_boundary_defaults();
+    b.kind = MPS_BOUNDARY_ROLLER; /* slip */
     for (int c = 0; c < 2; c++) b.point[c] = wall[k][c], b.normal[c] = wall[k][2 + c];
     if (other == 3 && k == 2) b.point[0] += 1e-9;
     TRY(mps_fluid_add_boundary(s->fluid, &b, &s->wall));
@@ -194,7 +194,7 @@ static mps_status make_dynamics(subject *s, plan *p, mps_domain *domain, bool od
   floor.lower[1] = -1.0, floor.upper[1] = other == 3 ? 0.2 : 0.1;
   TRY(mps_signal_create_user(s->own, shake, other == 4 ? &any : NULL, &signal));
   if (shaken || other == 4) {
-    floor.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+    floor.kind = MPS_BOUNDARY_DRIVEN;
     floor.dofs = MPS_DOF_X | MPS_DOF_Y, floor.signal[0] = signal;
   }
   if (other == 5) floor.dofs = MPS_DOF_X;
@@ -256,8 +256,9 @@ static mps_status back_and_forth(subject *s) {
 
 static mps_status set_boundary(subject *s, double x) {
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+  wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
   wall.point[0] = 2.5 + x, wall.normal[0] = -1.0;
-  if (s->mpm) return mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_FRICTIONAL, x);
+  if (s->mpm) return mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FRICTIONAL, x);
   return s->fluid ? mps_fluid_set_boundary(s->fluid, s->wall, &wall)
                   : mps_dynamics_set_dt(s->dynamics, 1e-4 * (1.0 + x));
 }

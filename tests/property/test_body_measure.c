@@ -58,7 +58,7 @@ static tank make_water(double measure, mps_body *box) {
   tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(context, t.fluid, 0.6, 0.0, -1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(t.fluid, box, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(context, mps_fluid_add_body(t.fluid, box, MPS_BOUNDARY_ROLLER, &number));
   return t;
 }
 

@@ -51,12 +51,12 @@ static void add_everything(mps_dynamics *d, mps_particles *set, bool external) {
   def.lower[0] = def.lower[1] = -INFINITY;
   def.upper[0] = 0.5, def.upper[1] = INFINITY;
   mps_assert_ok(context, mps_dynamics_add_boundary(d, &def, &number));
-  def.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN; /* the base */
+  def.kind = MPS_BOUNDARY_DRIVEN; /* the base */
   def.dofs = MPS_DOF_Y;
   def.upper[0] = INFINITY, def.upper[1] = 0.5;
   def.signal[0] = wave;
   mps_assert_ok(context, mps_dynamics_add_boundary(d, &def, &number));
-  def.kind = MPS_DYNAMICS_BOUNDARY_VISCOUS; /* the top, with a wave from above */
+  def.kind = MPS_BOUNDARY_ABSORBING; /* the top, with a wave from above */
   def.dofs = 0;
   def.lower[1] = 5.5, def.upper[1] = INFINITY;
   def.signal[0] = NULL, def.signal[1] = wave;
@@ -165,7 +165,7 @@ static void impulses_are_changes_of_momentum(void **state) {
     mps_assert_ok(context, mps_dynamics_add_boundary(d, &def, &number[0]));
     mps_assert_ok(context, mps_dynamics_step(d, 57));
     def = mps_dynamics_boundary_defaults();
-    def.kind = MPS_DYNAMICS_BOUNDARY_VISCOUS;
+    def.kind = MPS_BOUNDARY_ABSORBING;
     def.lower[0] = -INFINITY, def.lower[1] = 5.5;
     def.upper[0] = def.upper[1] = INFINITY;
     mps_assert_ok(context, mps_dynamics_add_boundary(d, &def, &number[1]));

@@ -92,7 +92,7 @@ static void check_patch(test_body *b, double young, double nu, int plane_stress)
   const int64_t all = mps_elastic_facet_count(b->elastic);
   int64_t *facets = malloc((size_t)all * sizeof *facets);
   mps_assert_ok(b->context,
-                mps_elastic_select_facets(b->elastic, 0, 0, NULL, NULL, all, facets, &count));
+                mps_elastic_select_facets(b->elastic, 0, 0, NULL, NULL, all, &count, facets));
   assert_int_equal(count, all);
   mps_assert_ok(b->context, test_traction_fn(b->elastic, count, facets, affine_traction, &a));
   free(facets);
@@ -173,20 +173,20 @@ static double *pressed(mps_context *context, int m, bool half, int64_t *count) {
   int64_t ids[512], facets[512], n;
   if (half) {
     const double edge[2] = {1.0 + 0.6 * D, 9.0}, left[2] = {-1.0, -1.0};
-    mps_assert_ok(context, mps_particles_select_box(b.particles, left, edge, 512, ids, &n));
+    mps_assert_ok(context, mps_particles_select_box(b.particles, left, edge, 512, &n, ids));
     assert_int_equal(n, m);
     mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, n, ids));
     mps_assert_ok(context, test_prescribe(b.elastic, 0, n, ids, NULL));
   }
-  mps_assert_ok(context, mps_particles_select_box(b.particles, lo, hi, 512, ids, &n));
+  mps_assert_ok(context, mps_particles_select_box(b.particles, lo, hi, 512, &n, ids));
   for (int c = 0; c < 2; c++) mps_assert_ok(context, test_prescribe(b.elastic, c, n, ids, NULL));
-  mps_assert_ok(context, mps_elastic_select_facets(b.elastic, 1, 1, NULL, NULL, 512, facets, &n));
+  mps_assert_ok(context, mps_elastic_select_facets(b.elastic, 1, 1, NULL, NULL, 512, &n, facets));
   mps_assert_ok(context, test_load(b.elastic, MPS_ELASTIC_LOAD_TRACTION, n, facets, top, false));
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
   mps_view u;
   int64_t *seen = malloc(4096 * sizeof *seen);
   mps_assert_ok(context, mps_particles_view(b.particles, "displacement", &u));
-  mps_assert_ok(context, mps_particles_select_box(b.particles, plane, high, 4096, seen, count));
+  mps_assert_ok(context, mps_particles_select_box(b.particles, plane, high, 4096, count, seen));
   double *uy = malloc((size_t)*count * sizeof *uy);
   for (int64_t k = 0; k < *count; k++)
     uy[k] = *mps_view_f64(&u, mps_particles_index(b.particles, seen[k]), 1);

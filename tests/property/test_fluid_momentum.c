@@ -112,8 +112,9 @@ static void closed_tank(mps_context *c) {
       {0.0, 0.0, 0.0, 1.0}, {0.0, 0.0, 1.0, 0.0}, {0.4, 0.0, -1.0, 0.0}, {0.0, 0.2, 0.0, -1.0}};
   for (int k = 0; k < 4; k++) {
     mps_fluid_boundary_def b = mps_fluid_boundary_defaults();
+    b.kind = MPS_BOUNDARY_ROLLER; /* slip */
     memcpy(b.point, wall[k], 2 * sizeof(double)), memcpy(b.normal, wall[k] + 2, 16);
-    if (k % 2 == 0) b.kind = MPS_FLUID_BOUNDARY_NO_SLIP;
+    if (k % 2 == 0) b.kind = MPS_BOUNDARY_HELD;
     mps_assert_ok(c, mps_fluid_add_boundary(fluid, &b, NULL));
   }
   mps_assert_ok(c, mps_signal_create_sine(c, 3.0, 2.0, 0.0, &shake.signal[0]));
@@ -149,7 +150,7 @@ static void floating_box(mps_context *c) {
   def.gravity[1] = -TANK_G, def.position[0] = 0.35, def.position[1] = 0.37;
   def.rotation[2] = 0.1, def.velocity[1] = -1.0;
   mps_assert_ok(c, mps_body_create_polygon(c, &def, 4, xy, &body));
-  mps_assert_ok(c, mps_fluid_add_body(t.fluid, body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(c, mps_fluid_add_body(t.fluid, body, MPS_BOUNDARY_ROLLER, &number));
   mps_assert_ok(c, mps_fluid_float_body(t.fluid, number, 1));
   mps_assert_ok(c, mps_fluid_step(t.fluid, test_quick() ? 60 : 200));
   const balance b = check(c, t.fluid, 3, 1);
@@ -261,7 +262,7 @@ static void a_body_gets_what_a_particle_loses(void **state) {
   def.motion = MPS_BODY_MOTION_FREE, def.mass = 40.0, def.inertia[2] = 1.0;
   def.position[0] = -0.1, def.position[1] = 0.5;
   mps_assert_ok(context, mps_body_create_polygon(context, &def, 4, xy, &body));
-  mps_assert_ok(context, mps_fluid_add_body(s.fluid, body, MPS_FLUID_BOUNDARY_SLIP, NULL));
+  mps_assert_ok(context, mps_fluid_add_body(s.fluid, body, MPS_BOUNDARY_ROLLER, NULL));
   for (int k = 0; k < 40; k++) {
     mps_assert_ok(context, mps_fluid_step(s.fluid, 1));
     mps_assert_ok(context, mps_body_advance(body, 5e-4));

@@ -108,6 +108,7 @@ static void closes_with_lists_of_particles(void **state) {
       int32_t numbers[2];
       for (int k = 0; k < 30; k++) ids[k] = 3 * k;
       mps_mpm_boundary_def held = mps_mpm_boundary_defaults();
+      held.kind = MPS_BOUNDARY_DRIVEN;
       held.ids = ids, held.id_count = 20, held.signal[0] = shake;
       mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &held, &numbers[0]));
       held.ids = ids + 10, held.dofs = MPS_DOF_X, held.factor[0] = -0.5;
@@ -217,7 +218,7 @@ static void sliding_box(void **state, bool body) {
     mps_assert_ok(context, mps_body_create_half_plane(context, &plane, up, &floor));
     mpm_scene_contact(&s, floor, mu);
   } else {
-    mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, mu);
+    mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, mu);
   }
   double before = 0.0, after = 0.0;
   mps_view x = mpm_scene_view(&s, "position");

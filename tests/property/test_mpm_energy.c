@@ -62,7 +62,7 @@ static double run_scattered(int32_t geometry, int32_t spline, int32_t walls, uin
   mpm_scene_solve(&s, &def);
   for (int32_t side = 0; side < 2 * dim; side++)
     if (walls == MPS_MPM_WALLS_MIRROR || side % 2 == 1)
-      mpm_scene_side(&s, side, MPS_MPM_BOUNDARY_FREE, 0.0);
+      mpm_scene_side(&s, side, MPS_BOUNDARY_FREE, 0.0);
   const double start = mpm_scene_totals(&s).kinetic;
   double most = 0.0;
   for (int step = 0; step < 6; step++) {

@@ -40,8 +40,8 @@ static void momentum_is_balanced(void **state) {
     for (int step = 0; step < 60; step++) {
       if (step == 20) mps_assert_ok(context, mps_mpm_remove_load(s.mpm, loads[0]));
       if (step == 30)
-        mps_assert_ok(context, mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_X_LOWER,
-                                                MPS_MPM_BOUNDARY_ABSORBING, 0.0));
+        mps_assert_ok(context,
+                      mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_ABSORBING, 0.0));
       if (step == 40) push_anew(&s, loads[1]);
       const double t = mps_mpm_time(s.mpm);
       mps_assert_ok(context, mps_mpm_step(s.mpm, 1));

@@ -209,14 +209,14 @@ static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body,
   mpm_scene_solve(&s, &def);
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_create_sine(context, 20.0, 0.0005, 0.3, &signal));
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.2);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_BOUNDARY_FRICTIONAL, 0.2);
   if (moves) {
-    mpm_scene_drive(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0, 0, signal, 0.7);
-    mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 0, signal, 1.0);
+    mpm_scene_drive(&s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0, 0, signal, 0.7);
+    mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0, 0, signal, 1.0);
     if (dim == 3)
-      mpm_scene_drive(&s, MPS_MPM_SIDE_Z_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 1, signal, -0.5);
+      mpm_scene_drive(&s, MPS_MPM_SIDE_Z_LOWER, MPS_BOUNDARY_HELD, 0.0, 1, signal, -0.5);
   }
   mps_signal_destroy(&signal);
   if (!body) return s;
@@ -293,7 +293,7 @@ static void moments_are_balanced(void **state) {
   for (int variant = 0; variant < 4; variant++) {
     const int32_t geometry = variant / 2 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
     mpm_scene s = turmoil(geometry, 2 + variant % 2, true, 0, 0);
-    mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
+    mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
     memset(s.mpm->def.gravity, 0, sizeof s.mpm->def.gravity);
     double impulse[3], moment[3], worst = 0.0, size = 0.0;
     const mps_totals a = mpm_scene_totals(&s);

@@ -54,7 +54,7 @@ static mpm_scene begin(mps_context *own, const sand *c, mps_body **strip) {
     mps_assert_ok(own, mps_mpm_set_material(s.mpm, law, count, ids));
   }
   mps_material_destroy(&law);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mps_body_def body = mps_body_defaults();
   body.position[1] = c->dim == 3 ? 0.65 : 0.55, body.position[2] = c->dim == 3 ? 0.1 : 0.0;
   const double corners[] = {-0.15, -0.05, 0.15, -0.05, 0.15, 0.05, -0.15, 0.05};

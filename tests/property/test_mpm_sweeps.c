@@ -17,7 +17,7 @@ static press make_press(int32_t sweeps, double tolerance) {
   def.lower[0] = 0.0, def.upper[0] = 0.2, def.lower[1] = -0.095, def.upper[1] = 0.205;
   mpm_scene_solve(&p.s, &def);
   for (int32_t side = MPS_MPM_SIDE_X_LOWER; side <= MPS_MPM_SIDE_X_UPPER; side++)
-    mpm_scene_side(&p.s, side, MPS_MPM_BOUNDARY_ROLLER, 0.0);
+    mpm_scene_side(&p.s, side, MPS_BOUNDARY_ROLLER, 0.0);
   const double up[] = {0.0, 1.0}, down[] = {0.0, -1.0};
   mps_body_def at = mps_body_defaults();
   mps_assert_ok(context, mps_body_create_half_plane(context, &at, up, &p.plate));

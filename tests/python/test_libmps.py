@@ -51,10 +51,9 @@ class Values(unittest.TestCase):
         del solver
         gc.collect()
         self.assertEqual(grid.get_info().cell, 0.2)  # the grid keeps its solver
-        count = np.zeros(1, np.int64)
-        grid.get_nodes(0, count, None, None, None, None)
-        mass = np.zeros(int(count[0]))
-        grid.get_nodes(mass.size, count, None, mass, None, None)
+        count = grid.get_nodes(0, None, None, None, None)
+        mass = np.zeros(count)
+        grid.get_nodes(mass.size, None, mass, None, None)
         self.assertAlmostEqual(mass.sum(), 1800.0, delta=1e-9)
         v = np.zeros(2)
         grid.evaluate("velocity", -1, 1, [0.5, 5.5, 0.0], v, None)
@@ -140,7 +139,7 @@ class Values(unittest.TestCase):
         sand.set("pressure_velocity", 0, 200.0)
         solver = context.dynamics_create(sand)
         sine = context.signal_create_sine(1.0, 0.01, 0.0)
-        number = solver.add_boundary(kind=mps.DYNAMICS_BOUNDARY_DRIVEN, lower=[-1, 4.9, 0],
+        number = solver.add_boundary(kind=mps.BOUNDARY_DRIVEN, lower=[-1, 4.9, 0],
                                      upper=[2, 5.1, 0], signal=[sine, None, None])
         self.assertEqual(number, 0)
         solver.run(0.25, 100, None)
@@ -342,7 +341,7 @@ class Arrays(unittest.TestCase):
             lambda: strip.distance(2, [0, 0, 1, 1], np.zeros(2), np.zeros(3), None, None),
             lambda: solver.add_load(id_count=2, ids=[0, 1], area=[1.0], traction=[1, 0, 0]),
             lambda: solver.grid().evaluate("velocity", -1, 2, np.zeros(6), np.zeros(3), None),
-            lambda: solver.grid().get_nodes(5, np.zeros(1, np.int64), None, np.zeros(4), None, None),
+            lambda: solver.grid().get_nodes(5, None, np.zeros(4), None, None),
             lambda: context.coupling_create(size=4).begin(None, np.zeros(3)),
             lambda: context.material_create_user(update=print, wave_modulus=1e6, history_count=2,
                                           history=["one"]),
@@ -410,7 +409,7 @@ class Callbacks(unittest.TestCase):
         sand = block(context)
         solver = falling(context, sand)
         with self.assertRaisesRegex(KeyError, "a signal"):
-            solver.add_boundary(ids=sand["id"], id_count=100, kind=mps.MPM_BOUNDARY_PRESCRIBED,
+            solver.add_boundary(ids=sand["id"], id_count=100, kind=mps.BOUNDARY_DRIVEN,
                                 signal=[context.signal_create_user(motion), None, None])
             solver.step(1)
         self.assertEqual(solver.steps(), 0)

@@ -142,7 +142,7 @@ static void make_mpm(scene *s) {
   def.cell = 0.2;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 0.8;
   mps_assert_ok(context, mps_mpm_create(context, s->set, material, &def, (mps_mpm **)&s->solver));
-  side.kind = MPS_MPM_BOUNDARY_FIXED;
+  side.kind = MPS_BOUNDARY_DRIVEN;
   side.signal[0] = s->signal;
   mps_assert_ok(context, mps_mpm_set_boundary(s->solver, MPS_MPM_SIDE_Y_LOWER, &side));
   mps_material_destroy(&material);
@@ -155,7 +155,7 @@ static void make_dynamics(scene *s) {
   make_set(s, 0.1);
   def.material = stuff();
   mps_assert_ok(context, mps_dynamics_create(context, s->set, &def, (mps_dynamics **)&s->solver));
-  base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  base.kind = MPS_BOUNDARY_DRIVEN;
   base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.1;
   base.dofs = MPS_DOF_Y;
   base.signal[0] = s->signal;
@@ -172,7 +172,7 @@ static void make_elastic(scene *s) {
   def.material = stuff();
   mps_assert_ok(context, mps_elastic_create(context, s->set, &def, (mps_elastic **)&s->solver));
   foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
-  foot.signal[0] = s->signal;
+  foot.kind = MPS_BOUNDARY_DRIVEN, foot.signal[0] = s->signal;
   mps_assert_ok(context, mps_elastic_add_boundary(s->solver, &foot, NULL));
   motion.dt = 4e-3;
   mps_assert_ok(context, mps_elastic_start(s->solver, &motion));
@@ -186,6 +186,7 @@ static void make_fluid(scene *s) {
   mps_assert_ok(context, mps_fluid_create(context, s->set, NULL, (mps_fluid **)&s->solver));
   for (int k = 0; k < 3; k++) {
     mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+    def.kind = MPS_BOUNDARY_ROLLER; /* slip */
     for (int c = 0; c < 2; c++) def.point[c] = wall[k][c], def.normal[c] = wall[k][2 + c];
     if (k == 1) def.signal = s->signal;
     mps_assert_ok(context, mps_fluid_add_boundary(s->solver, &def, NULL));

@@ -25,7 +25,7 @@ static void definitions_carry_their_size_and_defaults(void **state) {
   const mps_dynamics_boundary_def v = mps_dynamics_boundary_defaults();
   assert_int_equal(v.struct_size, sizeof v);
   assert_int_equal(v.normal, 1);
-  assert_int_equal(v.kind, MPS_DYNAMICS_BOUNDARY_HELD);
+  assert_int_equal(v.kind, MPS_BOUNDARY_HELD);
   for (int c = 0; c < 3; c++) {
     mps_assert_near(v.factor[c], 1.0, 0.0);
     assert_true(isnan(v.lower[c]) && isnan(v.upper[c]));

@@ -35,7 +35,6 @@ static void bad_boundaries_are_refused(void **state) {
   mps_signal *signal = sine(0.0);
   const int64_t ids[2] = {0, 9};
   int32_t number = -7;
-  mps_assert_fails(context, soil_add_held(d, 0, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 0");
   mps_assert_fails(context, soil_add_held(d, 16, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 16");
   mps_assert_fails(context, soil_add_held(d, 4, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 4");
   mps_assert_fails(context, soil_add_held(d, 1, 0, ids), MPS_ERROR_ARGUMENT, "id_count is 0");
@@ -57,14 +56,17 @@ static void bad_boundaries_are_refused(void **state) {
     double density, vs, vp, factor, lower, upper;
     const char *text;
   } cases[] = {
-      {3, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 3, allowed are 0 (held)"},
-      {2, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "dofs is 1, allowed is 0 of a viscous"},
-      {2, 2, 0, NAN, NAN, NAN, 1.0, NAN, NAN, "normal is 2, allowed are 0 (x) and 1 (y)"},
-      {2, 1, 0, -1.0, NAN, NAN, 1.0, NAN, NAN, "density is -1, must be in 1e-6..1e9, or NaN"},
-      {2, 1, 0, NAN, 0.0, NAN, 1.0, NAN, NAN, "shear_velocity is 0"},
-      {2, 1, 0, NAN, NAN, INFINITY, 1.0, NAN, NAN, "pressure_velocity is inf"},
-      {2, 1, 0, NAN, NAN, NAN, NAN, NAN, NAN, "factor[0] is nan"},
-      {2, 1, 0, NAN, NAN, NAN, 1.0, 0.0, 1.0, "both a list and a box"}};
+      {3, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 3 (FRICTIONAL)"},
+      {2, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 2 (ROLLER)"},
+      {5, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 5 (FREE_FIELD)"},
+      {8, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 8 (of no name)"},
+      {4, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "dofs is 1, allowed is 0 of an absorbing"},
+      {4, 2, 0, NAN, NAN, NAN, 1.0, NAN, NAN, "normal is 2, allowed are 0 (x) and 1 (y)"},
+      {4, 1, 0, -1.0, NAN, NAN, 1.0, NAN, NAN, "density is -1, must be in 1e-6..1e9, or NaN"},
+      {4, 1, 0, NAN, 0.0, NAN, 1.0, NAN, NAN, "shear_velocity is 0"},
+      {4, 1, 0, NAN, NAN, INFINITY, 1.0, NAN, NAN, "pressure_velocity is inf"},
+      {4, 1, 0, NAN, NAN, NAN, NAN, NAN, NAN, "factor[0] is nan"},
+      {4, 1, 0, NAN, NAN, NAN, 1.0, 0.0, 1.0, "both a list and a box"}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
     def.ids = ids;
@@ -106,6 +108,15 @@ static void bad_boundaries_are_refused(void **state) {
   mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
   mps_assert_ok(context, mps_dynamics_step(d, 10));
   for (int64_t id = 0; id < 9; id++) mps_assert_near(value(set, "velocity", id, 0), 0.5, 1e-12);
+  /* dofs 0 are all that a particle has */
+  mps_assert_ok(context, soil_add_held(d, 0, 1, ids));
+  mps_assert_ok(context, mps_particles_set(set, "velocity", 1, 0.5));
+  mps_assert_ok(context, mps_particles_set(set, "spin", 0, 0.5));
+  mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
+  mps_assert_ok(context, mps_dynamics_step(d, 10));
+  for (int c = 0; c < 2; c++) mps_assert_near(value(set, "velocity", 0, c), 0.0, 1e-12);
+  mps_assert_near(value(set, "spin", 0, 0), 0.0, 1e-12);
+  assert_true(fabs(value(set, "velocity", 8, 1)) > 0.1);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
   mps_signal_destroy(&signal);

@@ -41,7 +41,7 @@ static int64_t *between(mps_particles *set, int axis, double lo, double hi, int6
   int64_t *ids = malloc((size_t)n * sizeof *ids);
   if (!ids) abort();
   low[axis] = lo, high[axis] = hi;
-  mps_assert_ok(context, mps_particles_select_box(set, low, high, n, ids, count));
+  mps_assert_ok(context, mps_particles_select_box(set, low, high, n, count, ids));
   return ids;
 }
 
@@ -58,7 +58,7 @@ static void load(mps_elastic *e) {
   def.force[1] = -9.81;
   mps_assert_ok(context, mps_elastic_add_load(e, &def, NULL));
   int64_t facets[512], count;
-  mps_assert_ok(context, mps_elastic_select_facets(e, 0, -1, NULL, NULL, 512, facets, &count));
+  mps_assert_ok(context, mps_elastic_select_facets(e, 0, -1, NULL, NULL, 512, &count, facets));
   def = mps_elastic_load_defaults();
   def.kind = MPS_ELASTIC_LOAD_PRESSURE;
   def.ids = facets;
@@ -210,7 +210,7 @@ static void uniform_stress_is_exact_for_every_weight(void **state) {
     mps_assert_ok(context, test_prescribe(e, 1, 1, corner, NULL));
     mps_assert_ok(context, mps_elastic_cut(e, 0, -1, count, left));
     const double traction[2] = {1e5, 0.0};
-    mps_assert_ok(context, mps_elastic_select_facets(e, 0, 1, NULL, NULL, 64, facets, &count));
+    mps_assert_ok(context, mps_elastic_select_facets(e, 0, 1, NULL, NULL, 64, &count, facets));
     mps_assert_ok(context, test_traction(e, count, facets, traction));
     mps_assert_ok(context, mps_elastic_solve(e));
     for (int64_t i = 0; i < mps_particles_count(set); i++) {

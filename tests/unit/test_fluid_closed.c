@@ -153,7 +153,7 @@ static void a_body_moves_in_a_full_box(void **state) {
   tank_wall(context, t.fluid, LENGTH, 0.0, -1.0, 0.0, NULL);
   tank_wall(context, t.fluid, 0.0, DEPTH, 0.0, -1.0, NULL);
   mps_assert_ok(context, mps_body_create_box(context, &at, 0.12, 0.08, &body));
-  mps_assert_ok(context, mps_fluid_add_body(t.fluid, body, MPS_FLUID_BOUNDARY_SLIP, NULL));
+  mps_assert_ok(context, mps_fluid_add_body(t.fluid, body, MPS_BOUNDARY_ROLLER, NULL));
   mps_body_motion motion = mps_body_motion_defaults();
   motion.position[0] = 0.2, motion.position[1] = 0.1;
   for (int k = 1; k <= 100; k++) {

@@ -19,7 +19,7 @@ static void pressures_of_still_water(void **state) {
   int64_t count = 0;
   const int32_t walls[] = {TANK_BED, TANK_LEFT, TANK_RIGHT};
   for (int w = 0; w < 3; w++) {
-    mps_assert_ok(context, mps_fluid_get_wall(t.fluid, walls[w], 64, x, p, &count));
+    mps_assert_ok(context, mps_fluid_get_wall(t.fluid, walls[w], 64, &count, x, p));
     assert_int_equal(count, walls[w] == TANK_BED ? 24 : 20);
     double force = 0.0;
     for (int64_t k = 0; k < count; k++) {
@@ -36,9 +36,9 @@ static void pressures_of_still_water(void **state) {
                     1e-6 * size);
   }
   /* A list too short tells how many there are. */
-  mps_assert_ok(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 2, NULL, p, &count));
+  mps_assert_ok(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 2, &count, NULL, p));
   assert_int_equal(count, 20);
-  mps_assert_ok(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 0, NULL, NULL, &count));
+  mps_assert_ok(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 0, &count, NULL, NULL));
   assert_int_equal(count, 20);
   tank_free(&t);
 }
@@ -68,9 +68,9 @@ static void bad_questions_are_refused(void **state) {
                    MPS_ERROR_ARGUMENT, "count is -1");
   mps_assert_fails(context, mps_fluid_get_pressure(t.fluid, TANK_LEFT, 1, NULL, &p),
                    MPS_ERROR_ARGUMENT, "must be given");
-  mps_assert_fails(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, -1, NULL, NULL, &count),
+  mps_assert_fails(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, -1, &count, NULL, NULL),
                    MPS_ERROR_ARGUMENT, "capacity is -1");
-  mps_assert_fails(context, mps_fluid_get_wall(t.fluid, 5, 0, NULL, NULL, &count),
+  mps_assert_fails(context, mps_fluid_get_wall(t.fluid, 5, 0, &count, NULL, NULL),
                    MPS_ERROR_ARGUMENT, "number 5");
   assert_true(p == 7.0 && count == -1);
   tank_free(&t);

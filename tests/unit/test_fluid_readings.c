@@ -41,7 +41,7 @@ static void add_box(scene *s) {
   def.position[0] = 0.3, def.position[1] = 0.4;
   def.mass = 12.0, def.inertia[2] = 0.04;
   mps_assert_ok(context, mps_body_create_box(context, &def, 0.1, 0.2, &s->body));
-  mps_assert_ok(context, mps_fluid_add_body(s->t.fluid, s->body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(context, mps_fluid_add_body(s->t.fluid, s->body, MPS_BOUNDARY_ROLLER, &number));
   mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, number, 1));
 }
 
@@ -50,6 +50,7 @@ static scene make(int kind) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_load_def load = mps_fluid_load_defaults();
   mps_fluid_boundary_def end = mps_fluid_boundary_defaults();
+  end.kind = MPS_BOUNDARY_ROLLER; /* slip */
   set.spacing = SPACING;
   mps_assert_ok(context, mps_particles_create(context, &set, &s.t.water));
   tank_fill(context, s.t.water, 0.6, 0.4, NULL, NULL);
@@ -58,7 +59,7 @@ static scene make(int kind) {
   tank_wall(context, s.t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, s.t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   end.point[0] = kind == SPILLS ? 0.65 : s.right, end.normal[0] = -1.0;
-  if (kind == SPILLS) end.kind = MPS_FLUID_BOUNDARY_OPEN;
+  if (kind == SPILLS) end.kind = MPS_BOUNDARY_OPEN;
   mps_assert_ok(context, mps_fluid_add_boundary(s.t.fluid, &end, NULL));
   load.lower[0] = 0.5, load.acceleration[0] = 1.0;
   mps_assert_ok(context, mps_fluid_add_load(s.t.fluid, &load, NULL));

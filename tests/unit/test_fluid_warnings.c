@@ -68,6 +68,7 @@ static mps_status bend(mps_context *own, double slope) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+  wall.kind = MPS_BOUNDARY_ROLLER; /* slip */
   int32_t number;
   set.spacing = L0, def.dt = dt, def.level = 0.2;
   mps_assert_ok(own, mps_particles_create(own, &set, &t.water));
@@ -139,7 +140,7 @@ static void lower_box(mps_context *own, double to, int steps) {
   tank_wall(own, t.fluid, lo[0], 0.0, 1.0, 0.0, NULL);
   tank_wall(own, t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
   tank_wall(own, t.fluid, 0.0, lo[1], 0.0, 1.0, NULL);
-  mps_assert_ok(own, mps_fluid_add_body(t.fluid, box, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(own, mps_fluid_add_body(t.fluid, box, MPS_BOUNDARY_ROLLER, &number));
   for (int k = 1; k <= steps; k++) {
     tilt(17.0 + (to - 17.0) * k / steps, motion.position, &motion.rotation[2]);
     motion.spin[2] = (to - 17.0) * TANK_PI / 180.0 / (steps * 2e-3);

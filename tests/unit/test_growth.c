@@ -246,7 +246,7 @@ static mps_status use_contact(const void *def) {
 
 static void need_mpm_boundary(void *def) {
   mps_mpm_boundary_def *d = def;
-  d->kind = MPS_MPM_BOUNDARY_PRESCRIBED;
+  d->kind = MPS_BOUNDARY_DRIVEN;
   d->ids = first_id, d->id_count = 1;
   d->dofs = MPS_DOF_X;
 }

@@ -411,7 +411,7 @@ static void particles_are_removed_and_keep_their_ids(void **state) {
   assert_int_equal(mps_particles_index(set, 16), 13);
   int64_t found[16], count;
   const double lo[2] = {0.0, 0.0}, hi[2] = {9.0, 9.0};
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 16, found, &count));
+  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 16, &count, found));
   assert_int_equal(count, 14);
   assert_int_equal(found[0], 1);
   assert_int_equal(found[13], 16);

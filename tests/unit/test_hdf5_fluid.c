@@ -80,7 +80,7 @@ static tank make_afloat(mps_context *c, mps_body **box) {
   def.mass = 10.0, def.inertia[2] = 0.04;
   mps_assert_ok(c, mps_body_create_box(c, &def, 0.1, 0.2, box));
   mps_assert_ok(c, mps_body_set_load(*box, load, NULL));
-  mps_assert_ok(c, mps_fluid_add_body(t.fluid, *box, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(c, mps_fluid_add_body(t.fluid, *box, MPS_BOUNDARY_ROLLER, &number));
   mps_assert_ok(c, mps_fluid_float_body(t.fluid, number, 1));
   return t;
 }

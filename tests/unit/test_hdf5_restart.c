@@ -61,7 +61,7 @@ static body build(const run *r, double dt) {
   const double base_lo[2] = {-20.0, 0.0}, base_hi[2] = {20.0, 1.0};
   int64_t ids[64], count;
   mps_signal *wave = NULL;
-  mps_assert_ok(context, mps_particles_select_box(b.set, base_lo, base_hi, 64, ids, &count));
+  mps_assert_ok(context, mps_particles_select_box(b.set, base_lo, base_hi, 64, &count, ids));
   mps_assert_ok(context, mps_signal_create_ricker(context, 9.0, 0.05, 0.01, &wave));
   if (r->driven) {
     mps_assert_ok(context, soil_add_held(b.solver, MPS_DOF_Y, count, ids));
@@ -177,7 +177,7 @@ static void so_does_one_that_was_dug_into(void **state) {
     body whole = build(&r, 7e-4);
     mps_assert_ok(context, mps_dynamics_step(whole.solver, STEPS_BEFORE));
     mps_assert_ok(context, mps_dynamics_save(whole.solver, before, NULL));
-    mps_assert_ok(context, mps_particles_select_box(whole.set, lo, hi, 32, ids, &count));
+    mps_assert_ok(context, mps_particles_select_box(whole.set, lo, hi, 32, &count, ids));
     mps_assert_ok(context, mps_particles_remove(whole.set, count, ids));
     mps_assert_ok(context, mps_dynamics_step(whole.solver, 5));
     checkpoint(&whole);

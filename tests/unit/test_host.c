@@ -121,7 +121,7 @@ static void make_ground(host *h) {
                 mps_dynamics_create(context, set, &def, (mps_dynamics **)&h->solver[GROUND]));
   mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   mps_assert_ok(context, mps_signal_create_user(context, shake, h, &h->shake));
-  base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  base.kind = MPS_BOUNDARY_DRIVEN;
   base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.3;
   base.dofs = MPS_DOF_Y;
   base.signal[0] = h->shake;
@@ -135,8 +135,8 @@ static void start_wall(host *h) {
   motion.dt = STEP / 2.0;
   motion.time = h->time;
   mps_assert_ok(context, mps_elastic_start(h->solver[WALL], &motion));
-  mps_assert_ok(context, mps_elastic_select_facets(h->solver[WALL], 0, 1, NULL, NULL, 32, h->facets,
-                                                   &h->facet_count));
+  mps_assert_ok(context, mps_elastic_select_facets(h->solver[WALL], 0, 1, NULL, NULL, 32,
+                                                   &h->facet_count, h->facets));
 }
 
 static void make_wall(host *h) {
@@ -162,6 +162,7 @@ static void make_water(host *h) {
   mps_assert_ok(context, mps_fluid_create(context, set, NULL, (mps_fluid **)&h->solver[WATER]));
   for (int k = 0; k < 3; k++) {
     mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+    def.kind = MPS_BOUNDARY_ROLLER; /* slip */
     int32_t number;
     for (int c = 0; c < 2; c++) def.point[c] = wall[k][c], def.normal[c] = wall[k][2 + c];
     mps_assert_ok(context, mps_fluid_add_boundary(h->solver[WATER], &def, &number));
@@ -251,7 +252,7 @@ static void trade(host *h, int step) {
   mps_particles *wall = h->verb[WALL]->particles(h->solver[WALL]);
   int64_t top[8], count;
   const double lo[2] = {-1.0, 1.1}, hi[2] = {9.0, 9.0};
-  mps_assert_ok(context, mps_particles_select_box(wall, lo, hi, 8, top, &count));
+  mps_assert_ok(context, mps_particles_select_box(wall, lo, hi, 8, &count, top));
   mps_assert_ok(context, mps_particles_remove(wall, count, top));
   mps_elastic_load_def none = mps_elastic_load_defaults(); /* loads do not go back: begin alike */
   none.kind = MPS_ELASTIC_LOAD_PRESSURE;

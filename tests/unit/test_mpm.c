@@ -448,7 +448,7 @@ static void variants_are_chosen_first(void **state) {
                    "strain is 2");
   mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.5), MPS_ERROR_ARGUMENT,
                    "flip is 1.5");
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_ABSORBING, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_ABSORBING, 0.0);
   mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_ARGUMENT,
                    "boundary 0 is absorbing");
   mps_assert_ok(context, mps_mpm_step(s.mpm, 1));

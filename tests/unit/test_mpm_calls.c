@@ -91,7 +91,7 @@ static mps_status tries_everything(void *user, mps_mpm *mpm) {
   p->seen[p->count++] = mps_mpm_step(mpm, 1);
   p->seen[p->count++] = mps_mpm_run(mpm, 1.0, 1, NULL, NULL);
   p->seen[p->count++] = mps_mpm_set_dt(mpm, NAN);
-  p->seen[p->count++] = mps_mpm_set_side(mpm, 0, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  p->seen[p->count++] = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_HELD, 0.0);
   p->seen[p->count++] = mps_mpm_remove_boundary(mpm, 0);
   p->seen[p->count++] = mps_mpm_remove_load(mpm, 0);
   p->seen[p->count++] = mps_mpm_rollback(mpm, p->start);

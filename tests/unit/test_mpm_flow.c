@@ -14,7 +14,7 @@ enum { MOST = 10000 };
 static int64_t above(mps_particles *set, double y, int64_t *ids) {
   const double lo[3] = {-INFINITY, y, -INFINITY}, hi[3] = {INFINITY, INFINITY, INFINITY};
   int64_t count = 0;
-  assert_int_equal(mps_particles_select_box(set, lo, hi, MOST, ids, &count), MPS_OK);
+  assert_int_equal(mps_particles_select_box(set, lo, hi, MOST, &count, ids), MPS_OK);
   assert_true(count <= MOST);
   return count;
 }

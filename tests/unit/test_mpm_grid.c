@@ -248,7 +248,7 @@ static void nodes_fill_a_set(void **state) {
     int64_t ids[100], count = 0;
     const double lo[2] = {0.0, 0.0}, hi[2] = {9.0, 1.2};
     if (k == 0) {
-      mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 100, ids, &count));
+      mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 100, &count, ids));
       mps_assert_ok(context, mps_particles_remove(s.particles, count, ids));
     } else {
       mps_assert_ok(context, mps_mpm_step(s.mpm, 60));

@@ -23,7 +23,7 @@ static mpm_scene channel(mps_context *context, double gravity) {
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1024.0));
   mps_assert_ok(context, mps_particles_set(s.particles, "velocity", 0, 2.0));
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_OPEN, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_OPEN, 0.0);
   return s;
 }
 
@@ -117,7 +117,7 @@ static void goes_back_and_leaves_again(void **state) {
                   2.0 * MASS * 256, 1e-9);
   mps_snapshot_destroy(&snapshot);
   /* What a roller holds, and an open side that is not passed, change nothing. */
-  mpm_scene_side(&other, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
+  mpm_scene_side(&other, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_ROLLER, 0.0);
   mps_assert_ok(context, mps_mpm_step(other.mpm, 20));
   assert_int_equal(side_of(&other, 1).removed, 0);
   mpm_scene_end(&s);
@@ -130,15 +130,15 @@ static void an_open_side_takes_no_motion(void **state) {
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mpm_scene s = channel(context, 0.0);
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
-  def.kind = MPS_MPM_BOUNDARY_OPEN;
+  def.kind = MPS_BOUNDARY_OPEN;
   FAILS(mps_mpm_set_boundary(s.mpm, MPS_MPM_SIDE_Y_UPPER, &def), MPS_ERROR_ARGUMENT, "no upper");
   def.friction = 0.5;
   FAILS(mps_mpm_set_boundary(s.mpm, 1, &def), MPS_ERROR_ARGUMENT, "friction is 0.5");
   def.friction = 0.0;
   int32_t number;
-  FAILS(mps_mpm_add_boundary(s.mpm, &def, &number), MPS_ERROR_ARGUMENT, "kind is 6");
-  def.kind = 7;
-  FAILS(mps_mpm_set_boundary(s.mpm, 1, &def), MPS_ERROR_ARGUMENT, "and 6 (open)");
+  FAILS(mps_mpm_add_boundary(s.mpm, &def, &number), MPS_ERROR_ARGUMENT, "kind is 7 (OPEN)");
+  def.kind = 8;
+  FAILS(mps_mpm_set_boundary(s.mpm, 1, &def), MPS_ERROR_ARGUMENT, "and 7 (OPEN)");
   mpm_scene_end(&s);
   mps_context_destroy(&context);
 }

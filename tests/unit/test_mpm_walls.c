@@ -36,20 +36,21 @@ static void refuses_bad_sides(void **state) {
   REFUSES("no lower side across z", mps_mpm_set_side(m, MPS_MPM_SIDE_Z_LOWER, 0, 0.0));
   REFUSES("boundary is -1", mps_mpm_set_side(m, -1, 0, 0.0));
   REFUSES("no upper side across x", mps_mpm_set_side(m, MPS_MPM_SIDE_X_UPPER, 0, 0.0));
-  REFUSES("kind is 5", mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, 5, 0.0));
-  REFUSES("friction is -0.1", mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, 2, -0.1));
-  REFUSES("with a boundary of kind 1",
-          mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.1));
+  REFUSES("kind is 5 (FREE_FIELD)", mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, 5, 0.0));
+  REFUSES("friction is -0.1",
+          mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, -0.1));
+  REFUSES("with a boundary of kind 0",
+          mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.1));
   REFUSES("def is NULL", mps_mpm_set_boundary(m, 0, NULL));
-  mps_mpm_boundary_def def = side_def(MPS_MPM_BOUNDARY_ROLLER);
+  mps_mpm_boundary_def def = side_def(MPS_BOUNDARY_ROLLER);
   def.signal[0] = signal, def.factor[0] = NAN;
   REFUSES("factor[0] is nan", mps_mpm_set_boundary(m, 0, &def));
   def.factor[0] = 1.0;
   REFUSES("signal[0] is given", mps_mpm_set_boundary(m, MPS_MPM_SIDE_Y_LOWER, &def));
-  def = side_def(MPS_MPM_BOUNDARY_FIXED);
+  def = side_def(MPS_BOUNDARY_HELD);
   def.ids = ids, def.id_count = 1;
   REFUSES("are not for sides", mps_mpm_set_boundary(m, 0, &def));
-  def = side_def(MPS_MPM_BOUNDARY_ABSORBING);
+  def = side_def(MPS_BOUNDARY_ABSORBING);
   def.settle = -1.0;
   REFUSES("settle is -1 s", mps_mpm_set_boundary(m, 0, &def));
   REFUSES("no upper side", mps_mpm_get_reaction(m, MPS_MPM_SIDE_Y_UPPER, &r));
@@ -62,13 +63,13 @@ static void refuses_bad_sides(void **state) {
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &solver, &s.mpm));
   mps_assert_ok(context, mps_experimental_mpm_standard(s.mpm, 1.0));
   REFUSES("the standard method does not allow",
-          mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
+          mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_ABSORBING, 0.0));
   mps_mpm_destroy(&s.mpm);
   solver.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &solver, &s.mpm));
-  REFUSES("on the axis r = 0", mps_mpm_set_side(s.mpm, 0, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
+  REFUSES("on the axis r = 0", mps_mpm_set_side(s.mpm, 0, MPS_BOUNDARY_ABSORBING, 0.0));
   REFUSES("cannot be free", mps_mpm_remove_boundary(s.mpm, 0));
-  def = side_def(MPS_MPM_BOUNDARY_FIXED);
+  def = side_def(MPS_BOUNDARY_HELD);
   def.signal[0] = signal;
   REFUSES("on the axis r = 0", mps_mpm_set_boundary(s.mpm, 0, &def));
   mps_signal_destroy(&signal);
@@ -90,8 +91,8 @@ static void refuses_bad_boxes(void **state) {
   mps_reaction r;
   int32_t box = -1;
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
-  def.kind = MPS_MPM_BOUNDARY_FIXED;
-  REFUSES("kind is 1, boxes of nodes", mps_mpm_add_boundary(s.mpm, &def, &box));
+  def.kind = MPS_BOUNDARY_ROLLER;
+  REFUSES("kind is 2 (ROLLER), boxes of nodes", mps_mpm_add_boundary(s.mpm, &def, &box));
   REFUSES("dofs is 4", add_box(&s, lower, upper, 2, &box));
   REFUSES("must hold a node", add_box(&s, low, high, 0, &box));
   REFUSES("must hold a node", add_box(&s, upper, lower, 0, &box));
@@ -160,6 +161,8 @@ static void drives_particles(void **state) {
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
   const int64_t ids[] = {0, 17, 99};
   def.ids = ids, def.id_count = 3, def.dofs = MPS_DOF_X, def.signal[0] = signal;
+  REFUSES("make its kind DRIVEN", mps_mpm_add_boundary(s.mpm, &def, NULL));
+  def.kind = MPS_BOUNDARY_DRIVEN;
   int32_t number = -1;
   mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &def, &number));
   mps_view x = mpm_scene_view(&s, "position");
@@ -358,9 +361,9 @@ static mps_status make(mps_context *c, int what) {
   if (status == MPS_OK) status = mps_material_create_linear_elastic(c, 1e5, 0.3, &material);
   if (status == MPS_OK) status = mps_mpm_create(c, particles, material, &def, &mpm);
   if (status == MPS_OK) status = mps_signal_create_ramp(c, 0.0, 1.0, 1.0, &signal);
-  mps_mpm_boundary_def base = side_def(MPS_MPM_BOUNDARY_ABSORBING), box, list = base;
+  mps_mpm_boundary_def base = side_def(MPS_BOUNDARY_ABSORBING), box, list = base;
   base.signal[0] = signal;
-  list.kind = MPS_MPM_BOUNDARY_PRESCRIBED;
+  list.kind = MPS_BOUNDARY_DRIVEN;
   list.ids = ids, list.id_count = 2;
   const mps_mpm_load_def load = mpm_scene_load_def(2, ids, area, lo, 2, signal);
   if (status == MPS_OK) box = mpm_scene_box_def(mpm, lo, hi, 0, signal, 1.0);
@@ -391,8 +394,7 @@ static void steady_steps_allocate_nothing(void **state) {
   int64_t calls = 0;
   for (int round = 0; round < 5; round++) {
     if (round == 2) calls = allocator.calls;
-    mps_assert_ok(own,
-                  mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
+    mps_assert_ok(own, mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_ABSORBING, 0.0));
     mps_assert_ok(own, mps_mpm_step(s.mpm, 5));
   }
   assert_int_equal(allocator.calls, calls);

@@ -158,7 +158,7 @@ static mpm_scene flying(int32_t volumetric) {
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.3, def.upper[1] = 0.4;
   mps_assert_ok(context, mps_particles_set(s.particles, "velocity", 0, 3.0));
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_FREE, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FREE, 0.0);
   return s;
 }
 
@@ -223,7 +223,7 @@ static void a_step_that_loses_a_particle_is_whole(void **state) {
       lose_one(&s);
       int64_t outside[400], count;
       const double lo[2] = {0.3, -9.0}, hi[2] = {9.0, 9.0};
-      mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 400, outside, &count));
+      mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 400, &count, outside));
       assert_true(count > 0);
       mps_assert_ok(context, mps_particles_remove(s.particles, count, outside));
       mps_assert_ok(context, mps_mpm_step(s.mpm, 1));

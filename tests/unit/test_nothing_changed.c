@@ -58,7 +58,7 @@ static void make_mpm(scene *s) {
   def.gravity[1] = -9.81;
   for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 0.8;
   OK(mps_mpm_create(s->own, s->set, s->material, &def, &s->mpm));
-  side.kind = MPS_MPM_BOUNDARY_ABSORBING;
+  side.kind = MPS_BOUNDARY_ABSORBING;
   OK(mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_X_LOWER, &side));
   side = mps_mpm_boundary_defaults();
   side.ids = some, side.id_count = 1;
@@ -108,7 +108,7 @@ static mps_status mpm_set_boundary(scene *s) {
 }
 static mps_status mpm_set_side(scene *s) {
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
-  def.kind = MPS_MPM_BOUNDARY_FREE;
+  def.kind = MPS_BOUNDARY_FREE;
   return mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_X_UPPER, &def);
 }
 static mps_status mpm_add_load(scene *s) {
@@ -435,6 +435,7 @@ static void make_fluid(scene *s) {
   OK(create_fluid(s));
   for (int k = 0; k < 3; k++) {
     mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+    def.kind = MPS_BOUNDARY_ROLLER; /* slip */
     for (int c = 0; c < 2; c++) def.point[c] = wall[k][c], def.normal[c] = wall[k][2 + c];
     OK(mps_fluid_add_boundary(s->fluid, &def, NULL));
   }
@@ -466,11 +467,13 @@ static mps_status fluid_run(scene *s) {
 static mps_status fluid_begin_step(scene *s) { return mps_fluid_begin_step(s->fluid, 1e-3); }
 static mps_status fluid_add_boundary(scene *s) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.point[1] = -1.0, def.normal[1] = 1.0;
   return mps_fluid_add_boundary(s->fluid, &def, NULL);
 }
 static mps_status fluid_set_boundary(scene *s) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.point[0] = -0.1, def.normal[0] = 1.0;
   return mps_fluid_set_boundary(s->fluid, 1, &def);
 }
@@ -485,7 +488,7 @@ static mps_status fluid_set_load(scene *s) {
   return mps_fluid_set_load(s->fluid, 0, &def);
 }
 static mps_status fluid_add_body(scene *s) {
-  return mps_fluid_add_body(s->fluid, s->other, MPS_FLUID_BOUNDARY_SLIP, NULL);
+  return mps_fluid_add_body(s->fluid, s->other, MPS_BOUNDARY_ROLLER, NULL);
 }
 static mps_status fluid_pressure(scene *s) {
   const double x[3] = {0.4, 0.0, 0.0};
@@ -494,7 +497,7 @@ static mps_status fluid_pressure(scene *s) {
 }
 static mps_status fluid_wall(scene *s) {
   int64_t count;
-  return mps_fluid_get_wall(s->fluid, 0, 0, NULL, NULL, &count);
+  return mps_fluid_get_wall(s->fluid, 0, 0, &count, NULL, NULL);
 }
 static mps_status fluid_levels(scene *s) {
   const double station = 0.4;

@@ -299,7 +299,7 @@ static void sorting_takes_every_field_along(void **state) {
   }
   assert_int_equal(mps_particles_nearest(set, x2), 2);
   const double lo[2] = {0.0, -2.0}, hi[2] = {3.0, INFINITY};
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 5, ids, &count));
+  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 5, &count, ids));
   assert_int_equal(count, 4);
   for (int k = 0; k < 4; k++) assert_int_equal(ids[k], k);
   const double more[2] = {7, 7};
@@ -314,22 +314,22 @@ static void selection_takes_the_closed_box(void **state) {
   mps_particles *set = make_five();
   const double lo[2] = {1, -3}, hi[2] = {3, 0}, empty[2] = {2, -INFINITY};
   int64_t ids[2] = {-7, -7}, count = -1;
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 0, NULL, &count));
+  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 0, &count, NULL));
   assert_int_equal(count, 3);
-  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 1, ids, &count));
+  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 1, &count, ids));
   assert_int_equal(count, 3);
   assert_int_equal(ids[0], 1);
   assert_int_equal(ids[1], -7); /* not past the capacity */
-  mps_assert_fails(context, mps_particles_select_box(set, lo, empty, 2, ids, &count),
+  mps_assert_fails(context, mps_particles_select_box(set, lo, empty, 2, &count, ids),
                    MPS_ERROR_ARGUMENT, "the box in y is [-3, -inf]");
   const double bad[2] = {NAN, 0};
-  mps_assert_fails(context, mps_particles_select_box(set, bad, hi, 2, ids, &count),
+  mps_assert_fails(context, mps_particles_select_box(set, bad, hi, 2, &count, ids),
                    MPS_ERROR_ARGUMENT, "the box in x is [nan, 3]");
-  mps_assert_fails(context, mps_particles_select_box(set, lo, hi, -1, ids, &count),
+  mps_assert_fails(context, mps_particles_select_box(set, lo, hi, -1, &count, ids),
                    MPS_ERROR_ARGUMENT, "capacity is -1");
-  mps_assert_fails(context, mps_particles_select_box(set, lo, hi, 1, NULL, &count),
+  mps_assert_fails(context, mps_particles_select_box(set, lo, hi, 1, &count, NULL),
                    MPS_ERROR_ARGUMENT, "capacity is 1");
-  mps_assert_fails(context, mps_particles_select_box(set, NULL, hi, 0, NULL, &count),
+  mps_assert_fails(context, mps_particles_select_box(set, NULL, hi, 0, &count, NULL),
                    MPS_ERROR_ARGUMENT, "lo is NULL");
   mps_assert_fails(context, mps_particles_select_box(set, lo, hi, 0, NULL, NULL),
                    MPS_ERROR_ARGUMENT, "count is NULL");

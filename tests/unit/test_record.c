@@ -209,8 +209,10 @@ static void the_trend_of_its_degree_is_removed(void **state) {
     for (int uneven = 0; uneven < 2; uneven++) {
       double drift[3] = {0.3, -0.2, 0.05};
       for (int k = degree; k < 3; k++) drift[k] = 0.0;
-      mps_signal *clean = drifting(none, uneven, MPS_SIGNAL_BASELINE_MEAN + degree);
-      mps_signal *drifted = drifting(drift, uneven, MPS_SIGNAL_BASELINE_MEAN + degree);
+      static const int32_t of[] = {MPS_SIGNAL_BASELINE_MEAN, MPS_SIGNAL_BASELINE_LINEAR,
+                                   MPS_SIGNAL_BASELINE_QUADRATIC, MPS_SIGNAL_BASELINE_CUBIC};
+      mps_signal *clean = drifting(none, uneven, of[degree]);
+      mps_signal *drifted = drifting(drift, uneven, of[degree]);
       /* steps of at most 1.3 T/800: the parabola's integral differs by h^2/12 6 c3 T at most */
       const double h = 1.3 * T / 800.0, same = degree == 3 ? h * h / 2.0 * 0.05 * T : 1e-13;
       for (int i = 0; i <= 100; i++) {

@@ -189,7 +189,7 @@ static void a_rollback_brings_back_what_a_free_side_shows(void **state) {
   OK(mps_material_create_linear_elastic(context, 1e6, 0.3, &law));
   OK(mps_mpm_create(context, set, law, &def, &mpm));
   OK(mps_mpm_step(mpm, 20));
-  side.kind = MPS_MPM_BOUNDARY_FREE;
+  side.kind = MPS_BOUNDARY_FREE;
   OK(mps_mpm_set_boundary(mpm, MPS_MPM_SIDE_Y_LOWER, &side));
   OK(mps_mpm_get_reaction(mpm, MPS_MPM_SIDE_Y_LOWER, &before));
   assert_true(before.force[1] > 0.0 && before.count > 0);

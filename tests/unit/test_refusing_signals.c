@@ -78,7 +78,7 @@ static mps_mpm *begin_mpm(scene *s) {
 
 static void mpm_boundary(scene *s) {
   mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
-  side.kind = MPS_MPM_BOUNDARY_FIXED;
+  side.kind = MPS_BOUNDARY_DRIVEN;
   side.signal[0] = s->signal;
   mps_assert_ok(context, mps_mpm_set_boundary(begin_mpm(s), MPS_MPM_SIDE_Y_LOWER, &side));
   s->object = "boundary 2", s->signal_name = "signal[0] of boundary 2";
@@ -112,7 +112,7 @@ static void begin_dynamics(scene *s) {
 static void dynamics_boundary(scene *s) {
   mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
   begin_dynamics(s);
-  base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  base.kind = MPS_BOUNDARY_DRIVEN;
   base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.1;
   base.dofs = MPS_DOF_Y;
   base.signal[1] = s->signal;
@@ -138,6 +138,7 @@ static void begin_elastic(scene *s, mps_signal *base, mps_signal *load) {
   def.material = stuff();
   mps_assert_ok(context, mps_elastic_create(context, s->set, &def, (mps_elastic **)&s->solver));
   foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  foot.kind = base ? MPS_BOUNDARY_DRIVEN : MPS_BOUNDARY_HELD;
   foot.signal[0] = base;
   mps_assert_ok(context, mps_elastic_add_boundary(s->solver, &foot, NULL));
   weight.kind = MPS_ELASTIC_LOAD_GRAVITY;
@@ -164,6 +165,7 @@ static void begin_fluid(scene *s, mps_signal *piston) {
   mps_assert_ok(context, mps_fluid_create(context, s->set, NULL, (mps_fluid **)&s->solver));
   for (int k = 0; k < 3; k++) {
     mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+    def.kind = MPS_BOUNDARY_ROLLER; /* slip */
     for (int c = 0; c < 2; c++) def.point[c] = wall[k][c], def.normal[c] = wall[k][2 + c];
     if (k == 1) def.signal = piston;
     mps_assert_ok(context, mps_fluid_add_boundary(s->solver, &def, NULL));
@@ -328,7 +330,7 @@ static void boundaries_of_mpm_are_not_made(void **state) {
   mps_mpm *mpm = begin_mpm(&s);
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
   int32_t number = -5;
-  def.signal[1] = s.signal;
+  def.kind = MPS_BOUNDARY_DRIVEN, def.signal[1] = s.signal;
   def.ids = some_ids, def.id_count = 2;
   s.object = "boundary 6", s.signal_name = "signal[1] of boundary 6";
   REFUSED(&s, mps_mpm_add_boundary(mpm, &def, &number), "mps_mpm_add_boundary",
@@ -355,6 +357,7 @@ static void steps_of_a_fluid_in_parts_go_on(void **state) {
     fluid_boundary(&s);
     mps_fluid *fluid = s.solver;
     mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+    def.kind = MPS_BOUNDARY_ROLLER; /* slip */
     def.point[0] = -0.2, def.normal[0] = 1.0, def.signal = s.signal;
     s.object = "boundary 3", s.signal_name = "signal of boundary 3";
     if (refuses)

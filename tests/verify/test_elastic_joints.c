@@ -94,7 +94,7 @@ static void load_laminate(test_body *b, laminate *l) {
   const int64_t all = mps_elastic_facet_count(b->elastic);
   int64_t *facets = malloc((size_t)all * sizeof *facets);
   mps_assert_ok(b->context,
-                mps_elastic_select_facets(b->elastic, 0, 0, NULL, NULL, all, facets, &count));
+                mps_elastic_select_facets(b->elastic, 0, 0, NULL, NULL, all, &count, facets));
   mps_assert_ok(b->context, test_traction_fn(b->elastic, count, facets, laminate_traction, l));
   free(facets);
   hold_corner(b, l, corner, 0);

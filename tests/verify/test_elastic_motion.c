@@ -24,6 +24,7 @@ static void drive_wall(test_body *b, mps_signal *x, mps_signal *y) {
   wall.lower[0] = wall.lower[1] = -1.0;
   wall.upper[0] = 0.3;
   wall.upper[1] = INFINITY;
+  wall.kind = MPS_BOUNDARY_DRIVEN;
   wall.signal[0] = x;
   wall.signal[1] = y;
   wall.factor[1] = 0.5;

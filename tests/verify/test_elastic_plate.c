@@ -163,7 +163,7 @@ static double kirsch_concentration(mps_context *context, int m) {
     double from[2] = {-INFINITY, -INFINITY};
     from[axis] = (cells - 1) * l0;
     mps_assert_ok(context,
-                  mps_elastic_select_facets(b.elastic, axis, 1, from, NULL, all, facets, &count));
+                  mps_elastic_select_facets(b.elastic, axis, 1, from, NULL, all, &count, facets));
     mps_assert_ok(context, test_traction_fn(b.elastic, count, facets, kirsch_traction, &a));
     free(facets);
   }

@@ -42,7 +42,7 @@ static void launch(scene *s) {
   tank_wall(context, s->t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, s->t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(context, s->t.fluid, s->length, 0.0, -1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(s->t.fluid, s->body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(context, mps_fluid_add_body(s->t.fluid, s->body, MPS_BOUNDARY_ROLLER, &number));
   mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, number, 1));
 }
 
@@ -339,7 +339,7 @@ static void bad_bodies_are_refused(void **state) {
   int32_t number;
   def.position[0] = 0.4, def.position[1] = 0.4;
   mps_assert_ok(context, mps_body_create_box(context, &def, 0.4, 0.2, &held));
-  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, held, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, held, MPS_BOUNDARY_ROLLER, &number));
   mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, number, 1), MPS_ERROR_ARGUMENT,
                    "must be free");
   mps_body_destroy(&held);

@@ -42,7 +42,7 @@ static scene make_scene(double x, double y, double width, double height, double 
   tank_wall(context, s.t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, s.t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(context, s.t.fluid, 1.2, 0.0, -1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, s.body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, s.body, MPS_BOUNDARY_ROLLER, &number));
   assert_int_equal(number, 0);
   return s;
 }

@@ -104,6 +104,7 @@ static tank bending_tank(double l0, double depth) {
   double nodes[3 * NODES];
   tank t = tank_make(context, 0.6, depth, l0, NULL, 1e-3);
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   mps_assert_ok(context, mps_fluid_remove_boundary(t.fluid, TANK_RIGHT));
   for (int k = 0; k < NODES; k++)
     nodes[3 * k] = 0.6, nodes[3 * k + 1] = depth * (1.0 - k / (NODES - 1.0)),

@@ -62,7 +62,7 @@ static mpm_scene make_clay(clay *c, double cohesion) {
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   for (int32_t side = 0; side < 2 * set.dim; side++)
     if (c->geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC || side != 0)
-      mpm_scene_side(&s, side, MPS_MPM_BOUNDARY_FIXED, 0.0);
+      mpm_scene_side(&s, side, MPS_BOUNDARY_HELD, 0.0);
   return s;
 }
 

@@ -70,7 +70,7 @@ static mpm_scene thrown(int dim, int32_t volumetric) {
   def.upper[2] = 0.02;
   def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 300));
   return s;
 }

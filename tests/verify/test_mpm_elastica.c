@@ -131,7 +131,7 @@ static double bend_for(double periods, int32_t spline, int cells, int across, do
   mpm_scene_box(&s, 0.0, -0.5 * DEPTH, LENGTH, 0.5 * DEPTH);
   const double lo[2] = {LENGTH - spacing, -INFINITY}, hi[2] = {INFINITY, INFINITY};
   int64_t ids[64], count;
-  mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 64, ids, &count));
+  mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 64, &count, ids));
   assert_int_equal(count, across * cells);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = cell;
@@ -139,7 +139,7 @@ static double bend_for(double periods, int32_t spline, int cells, int across, do
   def.lower[0] = 0.0;
   def.gravity[1] = -g;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_HELD, 0.0);
   const double frequency = 3.516 * sqrt(bending() / (DENSITY * DEPTH)) / (LENGTH * LENGTH);
   while (mps_mpm_time(s.mpm) < periods * 2.0 * 3.14159265358979 / frequency) {
     damp(&s, 2.0 * frequency * mps_mpm_dt(s.mpm));

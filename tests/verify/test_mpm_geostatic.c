@@ -66,7 +66,7 @@ static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_
   print_message(
       "geometry %d, spline %d, %s floor, %s: at most %.2g mm/s; stress moves by %.3g %% at "
       "the floor, %.3g %% at the surface, %.3g %% elsewhere\n",
-      (int)geometry, (int)spline, floor == MPS_MPM_BOUNDARY_FIXED ? "fixed" : "roller",
+      (int)geometry, (int)spline, floor == MPS_BOUNDARY_HELD ? "fixed" : "roller",
       walls == MPS_MPM_WALLS_FIT ? "fit" : "mirror", 1e3 * fastest, 100.0 * change.floor,
       100.0 * change.surface, 100.0 * change.inside);
   assert_true(fastest < 1e-3); /* free fall in this time: 1 m/s */
@@ -80,7 +80,7 @@ static void layers_stay_at_rest(void **state) {
   for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_AXISYMMETRIC;
        geometry++)
     for (int32_t spline = 2; spline <= 3; spline++)
-      for (int32_t floor = MPS_MPM_BOUNDARY_ROLLER; floor <= MPS_MPM_BOUNDARY_FIXED; floor++) {
+      for (int32_t floor = MPS_BOUNDARY_ROLLER; floor <= MPS_BOUNDARY_HELD; floor++) {
         const double most = geometry == MPS_MPM_GEOMETRY_PLANE_STRAIN ? 8e-4 : 3e-3;
         const part_changes c = rest(geometry, spline, MPS_MPM_WALLS_MIRROR, floor);
         assert_true(c.floor < most);
@@ -96,7 +96,7 @@ static void fit_moves_it_at_walls(void **state) {
   for (int32_t geometry = MPS_MPM_GEOMETRY_PLANE_STRAIN; geometry <= MPS_MPM_GEOMETRY_AXISYMMETRIC;
        geometry++)
     for (int32_t spline = 2; spline <= 3; spline++) {
-      const part_changes c = rest(geometry, spline, MPS_MPM_WALLS_FIT, MPS_MPM_BOUNDARY_ROLLER);
+      const part_changes c = rest(geometry, spline, MPS_MPM_WALLS_FIT, MPS_BOUNDARY_ROLLER);
       assert_true(c.floor < most[geometry][spline - 2]);
       assert_true(c.inside < 6e-3);
     }

@@ -12,7 +12,7 @@
 static void lay(mpm_scene *s, mps_material *material, double y) {
   const double lo[] = {-1e3, y}, hi[] = {1e3, 1e3};
   int64_t ids[4096], count = 0;
-  mps_assert_ok(context, mps_particles_select_box(s->particles, lo, hi, 4096, ids, &count));
+  mps_assert_ok(context, mps_particles_select_box(s->particles, lo, hi, 4096, &count, ids));
   assert_in_range(count, 1, 4096);
   mps_assert_ok(context, mps_mpm_set_material(s->mpm, material, count, ids));
 }

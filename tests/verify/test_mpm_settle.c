@@ -65,7 +65,7 @@ static void floor_bears_the_weight(void **state) {
     def.local_damping = viscous ? 0.0 : 0.7;
     def.viscous_damping = viscous ? 30.0 : 0.0;
     mpm_scene_solve(&s, &def);
-    mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+    mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
     mps_assert_ok(context, mps_mpm_step(s.mpm, 4000));
     double force[3];
     mpm_scene_force(&s, MPS_MPM_SIDE_Y_LOWER, force);
@@ -222,7 +222,7 @@ static mpm_scene slope(double gravity) {
   def.cell = 0.25, def.gravity[1] = -gravity;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 8.0;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   return s;
 }
 
@@ -334,7 +334,7 @@ static footing make_footing(void) {
   def.cell = 0.1;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
   mpm_scene_solve(&f.s, &def);
-  mpm_scene_side(&f.s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&f.s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mps_body_def body = mps_body_defaults();
   body.position[1] = 1.45;
   mps_assert_ok(context, mps_body_create_box(context, &body, 1.0, 0.5, &f.strip));

@@ -54,7 +54,7 @@ static void solve(mpm_scene *s, const tube *t, double g, double courant) {
   def.gravity[up] = -g;
   def.dt = courant * t->cell / sqrt(E_ * 0.7 / (1.3 * 0.4) / RHO);
   mpm_scene_solve(s, &def);
-  if (g > 0.0) mpm_scene_side(s, 2 * up, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  if (g > 0.0) mpm_scene_side(s, 2 * up, MPS_BOUNDARY_HELD, 0.0);
 }
 
 /* Means over mass: outward velocity, upward velocity. */

@@ -172,7 +172,7 @@ static double deflection(int32_t spline, int32_t volumetric) {
   def.lower[0] = 0.0;
   def.gravity[1] = -g;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_HELD, 0.0);
   const double load = rho * g * height, plane = E / (1.0 - nu * nu), shear = 0.5 * E / (1.0 + nu);
   const double exact = load * pow(length, 4.0) / (8.0 * plane * pow(height, 3.0) / 12.0) +
                        load * length * length / (2.0 * 5.0 / 6.0 * shear * height);
@@ -259,7 +259,7 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   def.cell = 0.1, def.spline = spline, def.volumetric = volumetric;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.1 * NX;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   mps_signal *down = NULL;
   mps_body *body = NULL;
   mps_body_def plate = mps_body_defaults();

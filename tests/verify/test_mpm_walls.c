@@ -71,10 +71,10 @@ static double reflected(int shear, int32_t wall, int32_t spline) {
 static void waves_leave(void **state) {
   (void)state;
   for (int shear = 0; shear < 2; shear++) {
-    const double held = reflected(shear, MPS_MPM_BOUNDARY_FIXED, 3);
+    const double held = reflected(shear, MPS_BOUNDARY_HELD, 3);
     assert_true(held > 0.6); /* the measure sees what comes back */
     for (int32_t spline = 2; spline <= 3; spline++) {
-      const double part = reflected(shear, MPS_MPM_BOUNDARY_ABSORBING, spline);
+      const double part = reflected(shear, MPS_BOUNDARY_ABSORBING, spline);
       print_message("%s wave, spline %d: %.3f %% of the energy comes back (fixed wall: %.0f %%)\n",
                     shear ? "S" : "P", spline, 100.0 * part, 100.0 * held);
       assert_true(part < 0.01);
@@ -104,7 +104,7 @@ static void absorbing_wall_carries(void **state) {
     def.gravity[1] = -g;
     mpm_scene_solve(&s, &def);
     mps_mpm_boundary_def base = mps_mpm_boundary_defaults();
-    base.kind = MPS_MPM_BOUNDARY_ABSORBING;
+    base.kind = MPS_BOUNDARY_ABSORBING;
     base.settle = 0.2;
     if (turned) mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
     mps_assert_ok(context, mps_mpm_set_boundary(s.mpm, MPS_MPM_SIDE_Y_LOWER, &base));
@@ -162,7 +162,7 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
   def.gravity[0] = g * sin(slope), def.gravity[1] = -g * cos(slope);
   mpm_scene_solve(&s, &def);
   mps_signal *signal = constant_velocity(belt);
-  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, mu, 0, signal, 1.0);
+  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, mu, 0, signal, 1.0);
   mps_signal_destroy(&signal);
   /* It starts with a shiver, during which friction acts across the slope too, and goes on bouncing
    * a little; places at three instants tell the acceleration without that. */
@@ -220,7 +220,7 @@ static void wall_lets_go(void **state) {
   def.cell = 0.02;
   def.lower[1] = 0.0;
   mpm_scene_solve(&s, &def);
-  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.5);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.5);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
   const mps_totals t = mpm_scene_totals(&s);
   mps_assert_near(t.linear[0], 0.5 * t.mass, 1e-12 * t.mass);
@@ -249,7 +249,7 @@ static void moves_as_one(void **state) {
       const mps_mpm_boundary_def nodes = mpm_scene_box_def(s.mpm, lower, upper, 0, signal, 0.7);
       mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &nodes, &box));
     } else {
-      mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 0, signal, 0.7);
+      mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0, 0, signal, 0.7);
     }
     mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
     mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
@@ -287,7 +287,7 @@ static void shake(int32_t geometry, bool absorbing) {
   }
   mpm_scene_solve(&s, &def);
   mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER,
-                  absorbing ? MPS_MPM_BOUNDARY_ABSORBING : MPS_MPM_BOUNDARY_ROLLER, 0.0, 1, signal,
+                  absorbing ? MPS_BOUNDARY_ABSORBING : MPS_BOUNDARY_ROLLER, 0.0, 1, signal,
                   absorbing ? 2.0 : 1.0);
   const int64_t id = mps_particles_nearest(s.particles, (double[]){0.02, height, 0.02});
   double worst = 0.0;
@@ -326,7 +326,7 @@ static mpm_scene pulled(double traction, double duration, double t_end) {
   mpm_scene_solve(&s, &def);
   int64_t ids[8], count = 0;
   const double lo[] = {0.99, 0.0}, hi[] = {1.0, 1.0}, pull[] = {traction, 0.0};
-  mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 8, ids, &count));
+  mps_assert_ok(context, mps_particles_select_box(s.particles, lo, hi, 8, &count, ids));
   assert_int_equal(count, 8);
   mps_signal *signal = NULL;
   int32_t load = -1;

@@ -27,9 +27,9 @@ static mps_status refuse(char *text, size_t size, mps_status status, const char 
 
 static mps_status check_def(const mps_context_def *def, char *text, size_t size) {
   char why[160];
-  if (def->executor < MPS_CONTEXT_EXECUTOR_SERIAL || def->executor > MPS_CONTEXT_EXECUTOR_THREADS) {
+  if (def->executor < MPS_CONTEXT_EXECUTOR_THREADS || def->executor > MPS_CONTEXT_EXECUTOR_CALLER) {
     snprintf(why, sizeof why,
-             "executor is %d, allowed are 0 (serial), 1 (OpenMP), 2 (caller), 3 (threads)",
+             "executor is %d, allowed are 0 (threads), 1 (serial), 2 (OpenMP), 3 (caller)",
              def->executor);
     return refuse(text, size, MPS_ERROR_ARGUMENT, why);
   }

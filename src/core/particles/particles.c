@@ -258,7 +258,7 @@ static mps_status select_few(const mps_particles *p, const char *function, const
 }
 
 mps_status mps_particles_select_box(mps_particles *particles, const double *lo, const double *hi,
-                                    int64_t capacity, int64_t *ids, int64_t *count) {
+                                    int64_t capacity, int64_t *count, int64_t *ids) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
   if (status != MPS_OK) return status;

@@ -1,6 +1,7 @@
 /* boundary.c - boundaries of the explicit MPS solver as the caller defines them: which particles,
  * which degrees of freedom, and the lists that a step works through (constrain.c).
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/boundary_kind.h"
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 #include "signal/signal_internal.h"
@@ -10,7 +11,7 @@
 
 static const mps_dynamics_boundary_def boundary_defaults = {
     .struct_size = sizeof(mps_dynamics_boundary_def),
-    .kind = MPS_DYNAMICS_BOUNDARY_HELD,
+    .kind = MPS_BOUNDARY_HELD,
     .lower = {NAN, NAN, NAN},
     .upper = {NAN, NAN, NAN},
     .normal = 1,
@@ -31,19 +32,21 @@ static mps_status check_def(mps_dynamics *dynamics, const char *function,
                             const mps_dynamics_boundary_def *def) {
   mps_context *context = dynamics->context;
   const uint32_t all = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION;
-  const bool viscous = def->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS;
-  if (def->kind < MPS_DYNAMICS_BOUNDARY_HELD || def->kind > MPS_DYNAMICS_BOUNDARY_VISCOUS)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d, allowed are 0 (held), 1 (driven), 2 (viscous)", def->kind);
-  if ((def->dofs & ~all) || (viscous && def->dofs) ||
-      (def->kind == MPS_DYNAMICS_BOUNDARY_HELD && !def->dofs))
+  const bool absorbing = def->kind == MPS_BOUNDARY_ABSORBING;
+  if (!mpsi_boundary_kind_in(def->kind, 1u << MPS_BOUNDARY_HELD | 1u << MPS_BOUNDARY_DRIVEN |
+                                            1u << MPS_BOUNDARY_ABSORBING))
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT,
+        "kind is %d (%s), explicit dynamics has 0 (HELD), 1 (DRIVEN) and 4 (ABSORBING)", def->kind,
+        mpsi_boundary_kind_name(def->kind));
+  if ((def->dofs & ~all) || (absorbing && def->dofs))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dofs is %u, allowed is %s", def->dofs,
-                     viscous ? "0 of a viscous boundary"
-                             : "a combination of 1 (x), 2 (y) and 8 (rotation)");
-  if (def->kind == MPS_DYNAMICS_BOUNDARY_HELD && (def->signal[0] || def->signal[1]))
+                     absorbing ? "0 of an absorbing boundary"
+                               : "a combination of 1 (x), 2 (y) and 8 (rotation), 0 for all");
+  if (def->kind == MPS_BOUNDARY_HELD && (def->signal[0] || def->signal[1]))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "a held boundary takes no signal: make its kind driven");
-  if (def->kind == MPS_DYNAMICS_BOUNDARY_DRIVEN && !def->signal[0] && !def->signal[1])
+                     "a held boundary takes no signal: make its kind DRIVEN");
+  if (def->kind == MPS_BOUNDARY_DRIVEN && !def->signal[0] && !def->signal[1])
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "a driven boundary needs a signal: signal[0] and signal[1] are NULL");
   if (def->normal != 0 && def->normal != 1)
@@ -98,9 +101,10 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
   b->kind = def.kind;
   b->normal = def.normal;
   b->dofs = def.dofs;
+  if (def.dofs == 0 && def.kind != MPS_BOUNDARY_ABSORBING)
+    b->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION;
   for (int c = 0; c < 2; c++)
-    if (def.kind == MPS_DYNAMICS_BOUNDARY_DRIVEN && def.signal[c])
-      b->dofs |= c == 0 ? MPS_DOF_X : MPS_DOF_Y;
+    if (def.kind == MPS_BOUNDARY_DRIVEN && def.signal[c]) b->dofs |= c == 0 ? MPS_DOF_X : MPS_DOF_Y;
   b->density = def.density;
   b->shear = def.shear_velocity;
   b->pressure = def.pressure_velocity;
@@ -203,7 +207,7 @@ static void list_dashpots(const mps_dynamics *dynamics, const int32_t *owner, li
     l->dashpot[l->dashpots++] = dynamics->column_dashpot[k];
   for (int32_t number = 0; number < dynamics->boundary_room; number++) {
     const mpsi_dynamics_boundary *b = dynamics->boundary[number];
-    if (!b || b->kind != MPS_DYNAMICS_BOUNDARY_VISCOUS) continue;
+    if (!b || b->kind != MPS_BOUNDARY_ABSORBING) continue;
     for (int64_t p = 0; p < b->part.count; p++)
       for (int c = 0; c < 2; c++)
         l->dashpot[l->dashpots++] = (mpsi_dynamics_dashpot){
@@ -222,7 +226,7 @@ mps_status mpsi_dynamics_reserve_lists(mps_dynamics *dynamics, const char *funct
   for (int32_t k = 0; k < dynamics->boundary_room; k++) {
     const mpsi_dynamics_boundary *b = dynamics->boundary[k];
     for (int c = 0; b && c < 3; c++) bounds += b->dofs & dof_of[c] ? b->part.listed : 0;
-    if (b && b->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS) dashpots += 2 * b->part.listed;
+    if (b && b->kind == MPS_BOUNDARY_ABSORBING) dashpots += 2 * b->part.listed;
   }
   *out = (lists){0};
   out->owner = mpsi_alloc(context, 3 * particles, sizeof *out->owner);
@@ -288,7 +292,7 @@ void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
 /* Where the signals of a driven boundary are at time t. */
 static mps_status evaluate(mps_dynamics *dynamics, const char *function, int32_t number,
                            mpsi_dynamics_boundary *b, double t) {
-  if (!b || b->kind != MPS_DYNAMICS_BOUNDARY_DRIVEN) return MPS_OK;
+  if (!b || b->kind != MPS_BOUNDARY_DRIVEN) return MPS_OK;
   for (int c = 0; c < 2; c++) {
     mpsi_signal_motion at;
     const mpsi_signal_use use = {dynamics->context, function, "boundary", number, c};

@@ -34,7 +34,7 @@ mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *functio
       if (!b->part.signal[c]) continue;
       const mpsi_signal_use use = {dynamics->context, function, "boundary", k, c};
       mps_status status = mpsi_signal_evaluate(b->part.signal[c], use, now, &start);
-      if (status == MPS_OK && b->kind == MPS_DYNAMICS_BOUNDARY_DRIVEN) {
+      if (status == MPS_OK && b->kind == MPS_BOUNDARY_DRIVEN) {
         status = mpsi_signal_evaluate(b->part.signal[c], use, then, &end);
         if (status != MPS_OK) return status;
         b->reach[c] = factor * end.u;

@@ -121,7 +121,7 @@ static int64_t tally_part(const mps_dynamics *dynamics, tally *t, const mpsi_dyn
     const int64_t at = t->index_of ? t->index_of[id] : mps_particles_index(dynamics->particles, id);
     if (at < 0) continue;
     present++;
-    if (b->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS) t->dashpots += 2;
+    if (b->kind == MPS_BOUNDARY_ABSORBING) t->dashpots += 2;
     for (int c = 0; c < 3; c++) {
       if (!(b->dofs & dof[c]) || t->taken[c * t->count + at]) continue;
       t->taken[c * t->count + at] = 1;

@@ -218,7 +218,8 @@ static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_
   return status;
 }
 
-mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics, mps_totals *out, size_t size) {
+mps_status mps_dynamics_get_totals_sized(const mps_dynamics *handle, mps_totals *out, size_t size) {
+  mps_dynamics *dynamics = (mps_dynamics *)handle; /* scratch and messages only: the state stays */
   static const char *const function = "mps_dynamics_get_totals";
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_totals t;

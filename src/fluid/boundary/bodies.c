@@ -219,9 +219,10 @@ static mps_status check_body(mps_fluid *f, const char *function, const mps_body 
   if (body->context != f->context || body->dim != 2 || body->shape != MPSI_POLYGON)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the body is no polygon in the plane of the fluid's context");
-  if (kind != MPS_FLUID_BOUNDARY_SLIP && kind != MPS_FLUID_BOUNDARY_NO_SLIP)
+  if (kind != MPS_BOUNDARY_ROLLER && kind != MPS_BOUNDARY_HELD)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the body is %d, allowed are 0 (slip) and 1 (no slip)", kind);
+                     "kind of the body is %d, allowed are 0 (HELD: no slip) and 2 (ROLLER: slip)",
+                     kind);
   for (int64_t k = 0; k < body->edges; k++) {
     const double *a = body->xy + 2 * k, *b = a + 2;
     const double *c = k + 1 < body->edges ? b + 2 : body->xy + 2;
@@ -366,8 +367,9 @@ mps_status mps_fluid_remove_body(mps_fluid *f, int32_t number) {
   return MPS_OK;
 }
 
-mps_status mps_fluid_get_body_reaction_sized(mps_fluid *f, int32_t number, mps_reaction *out,
-                                             size_t size) {
+mps_status mps_fluid_get_body_reaction_sized(const mps_fluid *handle, int32_t number,
+                                             mps_reaction *out, size_t size) {
+  mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return MPS_ERROR_ARGUMENT;
   const mps_status status = check_number(f, "mps_fluid_get_body_reaction", number);
   if (status != MPS_OK) return status;

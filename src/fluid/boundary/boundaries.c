@@ -2,6 +2,8 @@
  * come, change and go.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
+
+#include "core/base/boundary_kind.h"
 #include "signal/signal_internal.h"
 
 #define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
@@ -16,11 +18,16 @@ mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size)
 static mps_status check_boundary(mps_fluid *f, const char *function,
                                  const mps_fluid_boundary_def *d) {
   const double length = hypot(d->normal[0], d->normal[1]);
-  if (d->kind < MPS_FLUID_BOUNDARY_SLIP || d->kind > MPS_FLUID_BOUNDARY_OPEN)
+  if (!mpsi_boundary_kind_in(d->kind, 1u << MPS_BOUNDARY_HELD | 1u << MPS_BOUNDARY_DRIVEN |
+                                          1u << MPS_BOUNDARY_ROLLER | 1u << MPS_BOUNDARY_OPEN))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the boundary is %d, allowed are 0 (slip), 1 (no slip) and 2 (open)",
-                     d->kind);
-  if (d->kind == MPS_FLUID_BOUNDARY_OPEN && (d->signal || d->node_count > 0))
+                     "kind of the boundary is %d (%s), the fluid has 0 (HELD), 1 (DRIVEN), 2 "
+                     "(ROLLER) and 7 (OPEN)",
+                     d->kind, mpsi_boundary_kind_name(d->kind));
+  if (d->kind == MPS_BOUNDARY_HELD && d->signal)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "a held boundary takes no signal: make its kind DRIVEN, or ROLLER for slip");
+  if (d->kind == MPS_BOUNDARY_OPEN && (d->signal || d->node_count > 0))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the open boundary has a signal or nodes: an open side does not move");
   if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
@@ -115,7 +122,7 @@ static mps_status make_wall(mps_fluid *f, const char *function,
   if (status == MPS_OK) status = check_boundary(f, function, &def);
   if (status != MPS_OK) return status;
   const double length = hypot(def.normal[0], def.normal[1]);
-  const bool open = def.kind == MPS_FLUID_BOUNDARY_OPEN;
+  const bool open = def.kind == MPS_BOUNDARY_OPEN;
   mpsi_fluid_wall w = {.used = !open, .open = open, .kind = def.kind, .factor = def.factor};
   for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
   status = start_motion(f, function, def.signal, number, &w);

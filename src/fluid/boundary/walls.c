@@ -215,7 +215,8 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
     room = true;
     for (int b = 0; b < MPSI_FLUID_WALLS; b++)
       f->bent |= (uint32_t)(f->wall[b].used && !f->wall[b].of_body && f->wall[b].nodes > 1) << b,
-          f->sticky |= (uint32_t)(f->wall[b].used && f->wall[b].kind == MPS_FLUID_BOUNDARY_NO_SLIP)
+          f->sticky |= (uint32_t)(f->wall[b].used && (f->wall[b].kind == MPS_BOUNDARY_HELD ||
+                                                      f->wall[b].kind == MPS_BOUNDARY_DRIVEN))
                        << b;
     for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
       if (f->wall[b].used) room = mirror_all(f, b);

@@ -279,7 +279,7 @@ mps_particles *mps_fluid_particles(const mps_fluid *f) { return f ? f->particles
 
 mps_context *mps_fluid_context(const mps_fluid *f) { return f ? f->context : NULL; }
 
-mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size) {
+mps_status mps_fluid_get_totals_sized(const mps_fluid *f, mps_totals *out, size_t size) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const double volume = f->l0 * f->l0 * f->def.measure, mass = f->def.density * volume;
   const double *x = mpsi_particles_column(f->particles, "position", 0);

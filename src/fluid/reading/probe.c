@@ -245,14 +245,14 @@ mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
   return mpsi_fluid_settle(f, function, status);
 }
 
-static mps_status check_wall(mps_fluid *f, const char *function, int32_t number) {
+static mps_status check_wall(const mps_fluid *f, const char *function, int32_t number) {
   if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the fluid has no boundary of number %d", number);
   return MPS_OK;
 }
 
-mps_status mps_fluid_get_reaction_sized(mps_fluid *f, int32_t number, mps_reaction *out,
+mps_status mps_fluid_get_reaction_sized(const mps_fluid *f, int32_t number, mps_reaction *out,
                                         size_t size) {
   if (!f) return MPS_ERROR_ARGUMENT;
   if (!MPSI_FLUID_IS_BOUNDARY(f, number)) return check_wall(f, "mps_fluid_get_reaction", number);
@@ -293,8 +293,9 @@ static void list_point(void *user, const double *x, double p) {
   if (list->pressure) list->pressure[k] = p;
 }
 
-mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, double *x,
-                              double *pressure, int64_t *count) {
+mps_status mps_fluid_get_wall(const mps_fluid *handle, int32_t number, int64_t capacity,
+                              int64_t *count, double *x, double *pressure) {
+  mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_wall(f, __func__, number);
   if (status != MPS_OK) return status;
@@ -324,8 +325,9 @@ static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fl
   return MPS_OK;
 }
 
-mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, const double *x,
-                                  double *pressure) {
+mps_status mps_fluid_get_pressure(const mps_fluid *handle, int32_t number, int64_t count,
+                                  const double *x, double *pressure) {
+  mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_wall(f, __func__, number);
   if (status == MPS_OK && (count < 0 || (count > 0 && (!x || !pressure))))
@@ -358,7 +360,9 @@ mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, c
 
 /* ---- level ----------------------------------------------------------------------------------- */
 
-mps_status mps_fluid_get_levels(mps_fluid *f, int64_t count, const double *station, double *level) {
+mps_status mps_fluid_get_levels(const mps_fluid *handle, int64_t count, const double *station,
+                                double *level) {
+  mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return MPS_ERROR_ARGUMENT;
   if (count < 0 || (count > 0 && (!station || !level)))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,

@@ -47,7 +47,7 @@ static void centre_of(const mps_elastic *e, const mpsi_facet *f, double *centre)
 
 mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t axis, int32_t side,
                                      const double *lo, const double *hi, int64_t capacity,
-                                     int64_t *facets, int64_t *count) {
+                                     int64_t *count, int64_t *facets) {
   if (!e) return MPS_ERROR_ARGUMENT;
   if (axis < 0 || axis >= e->dim || side < -1 || side > 1)
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
@@ -141,8 +141,10 @@ static mps_status write_motion(mps_elastic *e, const char *function, int64_t cou
   return status;
 }
 
-mps_status mps_elastic_get_facets_sized(mps_elastic *e, int64_t count, const int64_t *facets,
+mps_status mps_elastic_get_facets_sized(const mps_elastic *handle, int64_t count,
+                                        const int64_t *facets,
                                         const mps_elastic_facet_arrays *arrays, size_t size) {
+  mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   static const char function[] = "mps_elastic_get_facets";
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_elastic_facet_arrays a = {0};

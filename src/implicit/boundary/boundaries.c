@@ -4,6 +4,7 @@
 #include "implicit/base/defs.h"
 #include "implicit/elastic_private.h"
 
+#include "core/base/boundary_kind.h"
 #include "core/context/retain.h"
 #include "signal/signal_internal.h"
 
@@ -55,15 +56,22 @@ static mps_status check_kind(const mps_elastic *e, const char *function,
                              const mps_elastic_boundary_def *def) {
   const uint32_t all = e->dim == 2 ? MPS_DOF_X | MPS_DOF_Y : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
   double square = 0.0;
-  if (def->kind < MPS_ELASTIC_BOUNDARY_PRESCRIBED || def->kind > MPS_ELASTIC_BOUNDARY_ROLLER)
+  if (!mpsi_boundary_kind_in(def->kind, 1u << MPS_BOUNDARY_HELD | 1u << MPS_BOUNDARY_DRIVEN |
+                                            1u << MPS_BOUNDARY_ROLLER))
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d, allowed are 0 (PRESCRIBED) and 1 (ROLLER)", def->kind);
+                     "kind is %d (%s), implicit elasticity has 0 (HELD), 1 (DRIVEN) and 2 (ROLLER)",
+                     def->kind, mpsi_boundary_kind_name(def->kind));
+  if (def->kind == MPS_BOUNDARY_HELD &&
+      (def->values || def->signal[0] || def->signal[1] || (e->dim == 3 && def->signal[2])))
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                     "a held boundary takes no %s: make its kind DRIVEN",
+                     def->values ? "values" : "signal");
   for (int c = 0; c < e->dim; c++) square += def->normal[c] * def->normal[c];
-  if (def->kind == MPS_ELASTIC_BOUNDARY_ROLLER &&
+  if (def->kind == MPS_BOUNDARY_ROLLER &&
       !(isfinite(square) && sqrt(square) > 1e-150)) /* its square must not underflow */
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "the length of normal is %g, must be finite and > 0", sqrt(square));
-  if (def->kind == MPS_ELASTIC_BOUNDARY_PRESCRIBED && (def->dofs & ~all))
+  if (def->kind != MPS_BOUNDARY_ROLLER && (def->dofs & ~all))
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u: a particle has only MPS_DOF_X, Y%s", def->dofs,
                      e->dim == 3 ? ", Z" : "");
@@ -71,7 +79,7 @@ static mps_status check_kind(const mps_elastic *e, const char *function,
     if (!isfinite(def->factor[c]))
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "factor[%d] is %g, must be finite",
                        c, def->factor[c]);
-  const int64_t each = def->kind == MPS_ELASTIC_BOUNDARY_ROLLER ? 1 : 3;
+  const int64_t each = def->kind == MPS_BOUNDARY_ROLLER ? 1 : 3;
   for (int64_t k = 0; def->values && k < def->id_count * each; k++)
     if (!isfinite(def->values[k]) && k % each < e->dim)
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
@@ -112,7 +120,7 @@ static mps_status make(mps_elastic *e, const char *function, const mps_elastic_b
   if (status == MPS_OK) status = check_kind(e, function, &def);
   if (status == MPS_OK) status = check_place(e, function, &def);
   if (status != MPS_OK) return status;
-  const bool box = has_box(e, &def), roller = def.kind == MPS_ELASTIC_BOUNDARY_ROLLER;
+  const bool box = has_box(e, &def), roller = def.kind == MPS_BOUNDARY_ROLLER;
   const int64_t each = roller ? 1 : 3;
   const uint32_t all = MPS_DOF_X | MPS_DOF_Y | (e->dim == 3 ? MPS_DOF_Z : 0);
   mpsi_elastic_boundary b = {.used = true, .kind = def.kind, .dofs = def.dofs ? def.dofs : all};
@@ -150,7 +158,7 @@ typedef struct new_supports {
 static mps_status add_boundary_rows(const mps_elastic *e, const char *function, int32_t number,
                                     new_supports *to) {
   const mpsi_elastic_boundary *b = &e->boundaries[number];
-  const bool roller = b->kind == MPS_ELASTIC_BOUNDARY_ROLLER;
+  const bool roller = b->kind == MPS_BOUNDARY_ROLLER;
   for (int64_t k = 0; b->used && k < b->count; k++) {
     const int64_t i = mpsi_elastic_find(e, b->id[k]);
     if (i < 0) continue;
@@ -223,7 +231,7 @@ static mps_status check_number(const mps_elastic *e, const char *function, int32
 
 /* Of a boundary that could be made: all ranks are to have the same. */
 static void give(mpsi_given *list, const mpsi_elastic_boundary *b) {
-  const size_t each = b->kind == MPS_ELASTIC_BOUNDARY_ROLLER ? 1 : 3, count = (size_t)b->count;
+  const size_t each = b->kind == MPS_BOUNDARY_ROLLER ? 1 : 3, count = (size_t)b->count;
   MPSI_GIVE(list, b, kind);
   MPSI_GIVE(list, b, dofs);
   mpsi_give(list, "id_count", (double)b->count);
@@ -302,7 +310,7 @@ mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number) {
   return mpsi_elastic_leave(e, status);
 }
 
-mps_status mps_elastic_get_reaction_sized(mps_elastic *e, int32_t number, mps_reaction *out,
+mps_status mps_elastic_get_reaction_sized(const mps_elastic *e, int32_t number, mps_reaction *out,
                                           size_t size) {
   static const char function[] = "mps_elastic_get_reaction";
   if (!e) return MPS_ERROR_ARGUMENT;

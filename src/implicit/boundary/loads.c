@@ -440,8 +440,9 @@ static mps_status give_resultant(const mps_elastic *e, const char *function, con
   return MPS_OK;
 }
 
-mps_status mps_elastic_get_load_resultant(mps_elastic *e, const double *about, double *force,
-                                          double *moment) {
+mps_status mps_elastic_get_load_resultant(const mps_elastic *handle, const double *about,
+                                          double *force, double *moment) {
+  mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;

@@ -83,7 +83,8 @@ static void sum_momenta(const mps_elastic *e, mps_totals *t) {
   }
 }
 
-mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out, size_t size) {
+mps_status mps_elastic_get_totals_sized(const mps_elastic *handle, mps_totals *out, size_t size) {
+  mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   static const char function[] = "mps_elastic_get_totals";
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_check_between(e, function);

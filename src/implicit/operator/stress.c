@@ -188,8 +188,9 @@ mps_status mps_elastic_update_stress(mps_elastic *e) {
 
 /* ---- sections and energy --------------------------------------------------------------------- */
 
-mps_status mps_elastic_get_section(mps_elastic *e, int32_t axis, double position,
+mps_status mps_elastic_get_section(const mps_elastic *handle, int32_t axis, double position,
                                    const double *about, double *force, double *moment) {
+  mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   if (!e) return MPS_ERROR_ARGUMENT;
   if (axis < 0 || axis >= e->dim || !isfinite(position))
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
@@ -227,7 +228,8 @@ static void add_pairs(const mps_elastic *e, mpsi_exact *sum) {
   }
 }
 
-mps_status mps_elastic_get_energy(mps_elastic *e, double *strain, double *stabilising) {
+mps_status mps_elastic_get_energy(const mps_elastic *handle, double *strain, double *stabilising) {
+  mps_elastic *e = (mps_elastic *)handle; /* scratch and messages only: the state stays */
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;

@@ -38,7 +38,7 @@ void mpsi_mpm_apply_dashpot(const mps_mpm *mpm, const mpsi_boundary *hold, mpsi_
 bool mpsi_mpm_absorbs(const mps_mpm *mpm) {
   bool any = false;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    any = any || mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING;
+    any = any || mpm->boundaries.hold[k].kind == MPS_BOUNDARY_ABSORBING;
   return any;
 }
 
@@ -168,7 +168,7 @@ void mpsi_mpm_place_dashpots(mps_mpm *mpm, const mpsi_dashpot_parcels *parcels,
                              const mpsi_dashpot *old_dashpot) {
   const int plane = mpm->grid.block_nodes / MPSI_SIDE;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING) add_wall(mpm, parcels, k);
+    if (mpm->boundaries.hold[k].kind == MPS_BOUNDARY_ABSORBING) add_wall(mpm, parcels, k);
   int64_t from = 0;
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];

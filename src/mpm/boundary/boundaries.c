@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/particles.h"
 
+#include "core/base/boundary_kind.h"
 #include "core/context/retain.h"
 #include "signal/signal_internal.h"
 
@@ -12,7 +13,7 @@
 #define ROUGHEST 1e3 /* friction */
 
 static const mps_mpm_boundary_def boundary_defaults = {.struct_size = sizeof(mps_mpm_boundary_def),
-                                                       .kind = MPS_MPM_BOUNDARY_PRESCRIBED,
+                                                       .kind = MPS_BOUNDARY_HELD,
                                                        .lower = {-INFINITY, -INFINITY, -INFINITY},
                                                        .upper = {INFINITY, INFINITY, INFINITY},
                                                        .factor = {1.0, 1.0, 1.0}};
@@ -55,15 +56,20 @@ static mps_status check_motion(mps_mpm *mpm, const char *function, int32_t numbe
 
 static mps_status check_numbers(mps_mpm *mpm, const char *function, int32_t number,
                                 const mps_mpm_boundary_def *def) {
-  const bool frictional = def->kind == MPS_MPM_BOUNDARY_FRICTIONAL;
+  const bool frictional = def->kind == MPS_BOUNDARY_FRICTIONAL;
   if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !frictional))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "friction is %g with a boundary of kind %d, must be in 0 to %g, and 0 for "
-                     "other than frictional ones (2)",
+                     "other than frictional ones (3)",
                      def->friction, def->kind, ROUGHEST);
   if (!isfinite(def->settle) || def->settle < 0.0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "settle is %g s, must be finite and >= 0", def->settle);
+  for (int c = 0; c < mpm->dim && def->kind == MPS_BOUNDARY_HELD; c++)
+    if (def->signal[c])
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "signal[%d] is given and a held boundary takes none: make its kind DRIVEN",
+                       c);
   return check_motion(mpm, function, number, def);
 }
 
@@ -73,28 +79,28 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "the domain has no %s side across %c (boundary %d)",
                      number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
-  const bool open = def->kind == MPS_MPM_BOUNDARY_OPEN;
-  if (def->kind < MPS_MPM_BOUNDARY_ROLLER || (def->kind > MPS_MPM_BOUNDARY_FREE && !open))
+  const bool open = def->kind == MPS_BOUNDARY_OPEN;
+  if (!mpsi_boundary_kind_in(def->kind, ~(1u << MPS_BOUNDARY_FREE_FIELD)))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d, allowed on a side are 0 (roller), 1 (fixed), 2 (frictional), 3 "
-                     "(absorbing), 4 (free) and 6 (open)",
-                     def->kind);
+                     "kind is %d (%s), WLS-MPM has on a side 0 (HELD), 1 (DRIVEN), 2 (ROLLER), 3 "
+                     "(FRICTIONAL), 4 (ABSORBING), 6 (FREE) and 7 (OPEN)",
+                     def->kind, mpsi_boundary_kind_name(def->kind));
   if (def->ids || def->id_count != 0 || def->dofs != 0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
                      (long long)def->id_count, def->dofs);
-  if (mpm->standard && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
+  if (mpm->standard && def->kind == MPS_BOUNDARY_ABSORBING)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is 3 (absorbing), which the standard method does not allow: its splines "
+                     "kind is 4 (ABSORBING), which the standard method does not allow: its splines "
                      "reach over the side");
-  if (on_axis(mpm, number) && (def->kind > MPS_MPM_BOUNDARY_FIXED || def->signal[0]))
+  if (on_axis(mpm, number) && (def->kind > MPS_BOUNDARY_ROLLER || def->signal[0]))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d with signal[0] %s on the axis r = 0: allowed are 0 (roller) and 1 "
-                     "(fixed), and the radial velocity is 0",
+                     "kind is %d with signal[0] %s on the axis r = 0: allowed are 0 (HELD), 1 "
+                     "(DRIVEN) and 2 (ROLLER), and the radial velocity is 0",
                      def->kind, def->signal[0] ? "given" : "NULL");
   for (int c = 0; c < mpm->dim; c++)
-    if (def->signal[c] && (def->kind == MPS_MPM_BOUNDARY_FREE || open ||
-                           (def->kind == MPS_MPM_BOUNDARY_ROLLER && c != number / 2)))
+    if (def->signal[c] && (def->kind == MPS_BOUNDARY_FREE || open ||
+                           (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given, and a side of kind %d does not hold that component", c,
                        def->kind);
@@ -135,9 +141,10 @@ static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_bo
 static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t number,
                                    const mps_mpm_boundary_def *def, mpsi_boundary *out) {
   const uint32_t all = mpm->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
-  if (def->kind != MPS_MPM_BOUNDARY_PRESCRIBED)
+  if (def->kind != MPS_BOUNDARY_HELD && def->kind != MPS_BOUNDARY_DRIVEN)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is %d, boxes of nodes and particles are 5 (prescribed)", def->kind);
+                     "kind is %d (%s), boxes of nodes and particles are 0 (HELD) or 1 (DRIVEN)",
+                     def->kind, mpsi_boundary_kind_name(def->kind));
   if (def->dofs & ~all)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
@@ -163,9 +170,9 @@ static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
   else
     hold->last[axis] = mpm->grid.low[axis];
   hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
-  hold->finds = kind == MPS_MPM_BOUNDARY_ABSORBING;
+  hold->finds = kind == MPS_BOUNDARY_ABSORBING;
   hold->found = 0.0;
-  hold->kind = kind == MPS_MPM_BOUNDARY_FREE ? MPSI_BOUNDARY_NONE : kind;
+  hold->kind = kind == MPS_BOUNDARY_FREE ? MPSI_BOUNDARY_NONE : kind;
 }
 
 /* Sums of a new boundary, from 0; memory of a number stays. */
@@ -179,7 +186,7 @@ bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_BOUNDARY_NONE;
   for (int32_t k = 0; k < MPSI_SIDES && good; k++) {
     if (!has_side(mpm, k)) continue;
-    place_side(mpm, k, MPS_MPM_BOUNDARY_ROLLER);
+    place_side(mpm, k, MPS_BOUNDARY_ROLLER);
     good = make_sums(mpm, &mpm->boundaries.hold[k]);
   }
   return good;
@@ -188,7 +195,7 @@ bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
 mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function) {
   mpsi_boundary *hold = mpm->boundaries.hold;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING)
+    if (hold[k].kind == MPS_BOUNDARY_ABSORBING)
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "boundary %d is absorbing, which the standard method does not allow", k);
   for (int32_t k = 0; k < MPSI_SIDES; k++)
@@ -228,7 +235,7 @@ void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
 static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t number,
                                   const mps_mpm_boundary_def *def) {
   mpsi_boundary *hold = &mpm->boundaries.hold[number];
-  mpsi_boundary made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
+  mpsi_boundary made = {.kind = MPS_BOUNDARY_DRIVEN,
                         .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
   mps_status status = check_prescribed(mpm, function, number, def, &made);
   if (status == MPS_OK && !make_sums(mpm, hold))
@@ -345,8 +352,10 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
   if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, number, &def);
   status = mpsi_mpm_agree(mpm, __func__, check_side(mpm, __func__, number, &def));
   if (status != MPS_OK) return status;
-  if (hold->kind != def.kind || def.kind == MPS_MPM_BOUNDARY_ABSORBING) {
-    place_side(mpm, number, def.kind);
+  /* a side that is driven is held, and moves with its signals; DRIVEN is of boxes and particles */
+  const int32_t kind = def.kind == MPS_BOUNDARY_DRIVEN ? MPS_BOUNDARY_HELD : def.kind;
+  if (hold->kind != kind || kind == MPS_BOUNDARY_ABSORBING) {
+    place_side(mpm, number, kind);
     mpm->boundaries.outdated = true;
   }
   take_numbers(hold, &def);
@@ -401,8 +410,9 @@ static mps_status sum_ranks(mps_mpm *mpm, const char *function, const mpsi_bound
                                out->step);
 }
 
-mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number, mps_reaction *out,
+mps_status mps_mpm_get_reaction_sized(const mps_mpm *handle, int32_t number, mps_reaction *out,
                                       size_t size) {
+  mps_mpm *mpm = (mps_mpm *)handle; /* scratch and messages only: the state stays */
   static const char function[] = "mps_mpm_get_reaction";
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mpsi_boundary_sums sums;

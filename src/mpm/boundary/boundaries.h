@@ -8,7 +8,7 @@
 #include "mpm/life/restart.h"
 #include "core/base/room.h"
 
-enum { MPSI_BOUNDARY_NONE = -1 }; /* besides mps_mpm_boundary_kind */
+enum { MPSI_BOUNDARY_NONE = -1 }; /* besides mps_boundary_kind */
 
 /* What a boundary has given, of this rank's share, exactly: no sum depends on order or ranks. */
 enum {
@@ -25,7 +25,7 @@ typedef struct mpsi_boundary_sums {
 
 /* A boundary: nodes first to last, or the particles `ids`. */
 typedef struct mpsi_boundary {
-  int32_t kind;              /* mps_mpm_boundary_kind, or MPSI_BOUNDARY_NONE; a FREE side is NONE */
+  int32_t kind;              /* mps_boundary_kind, or MPSI_BOUNDARY_NONE; a FREE side is NONE */
   int32_t axis;              /* across a side */
   int64_t first[3], last[3]; /* nodes */
   int64_t *ids;              /* NULL: nodes */

@@ -19,7 +19,7 @@ static void sum_border(mps_mpm *mpm, double *out) {
     for (int32_t side = 0; side < MPSI_SIDES; side++, out += plane_doubles(mpm)) {
       double tile[MPSI_DASH_PLANE][2];
       memset(out, 0, bytes);
-      if (mpm->boundaries.hold[side].kind == MPS_MPM_BOUNDARY_ABSORBING &&
+      if (mpm->boundaries.hold[side].kind == MPS_BOUNDARY_ABSORBING &&
           mpsi_mpm_sum_dashpots(mpm, &mpm->grid.cells[mpm->partition->border[k]], side, tile))
         memcpy(out, tile, bytes);
     }
@@ -285,8 +285,7 @@ mps_status mpsi_mpm_take_dashpots(mps_mpm *mpm, const char *function, const mpsi
     for (int32_t side = 0; side < MPSI_SIDES; side++) {
       const mpsi_boundary *hold = &mpm->boundaries.hold[side];
       mpsi_range r;
-      if (hold->kind != MPS_MPM_BOUNDARY_ABSORBING ||
-          !mpsi_find_range(mpm->dim, nodes[g].at, hold, &r))
+      if (hold->kind != MPS_BOUNDARY_ABSORBING || !mpsi_find_range(mpm->dim, nodes[g].at, hold, &r))
         continue;
       if (nodes[g].own && from + plane <= dashpots->rows) {
         memmove(dashpot + to, dashpot + from, bytes);

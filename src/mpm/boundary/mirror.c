@@ -11,7 +11,7 @@ enum { LAYERS = 2 }; /* of ghosts: the second only by what arithmetic rounds */
 static bool is_mirror(const mps_mpm *mpm, int32_t k) {
   const int32_t kind = mpm->boundaries.hold[k].kind;
   return mpm->def.walls == MPS_MPM_WALLS_MIRROR && !mpm->standard &&
-         (kind == MPS_MPM_BOUNDARY_ROLLER || kind == MPS_MPM_BOUNDARY_FIXED);
+         (kind == MPS_BOUNDARY_ROLLER || kind == MPS_BOUNDARY_HELD);
 }
 
 static void find_sides(mps_mpm *mpm) {
@@ -90,7 +90,7 @@ static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k,
               .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
               .inwards = k % 2 ? -1 : 1};
   for (int a = 0; a < 3; a++) {
-    const bool turns = hold->kind == MPS_MPM_BOUNDARY_FIXED || a == c;
+    const bool turns = hold->kind == MPS_BOUNDARY_HELD || a == c;
     out.keeps[a] = turns ? -1.0 : 1.0;
     out.velocity[a] = turns ? 2.0 * hold->v[a] : 0.0;
   }

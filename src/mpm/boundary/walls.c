@@ -21,11 +21,10 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashpots) {
     for (int32_t k = 0; k < MPSI_HOLDS; k++) {
       mpsi_range r;
       const int32_t kind = mpm->boundaries.hold[k].kind;
-      if (kind == MPSI_BOUNDARY_NONE || kind == MPS_MPM_BOUNDARY_OPEN ||
-          mpm->boundaries.hold[k].ids ||
+      if (kind == MPSI_BOUNDARY_NONE || kind == MPS_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
           !mpsi_find_range(mpm->dim, nodes->at, &mpm->boundaries.hold[k], &r))
         continue;
-      const bool absorbs = kind == MPS_MPM_BOUNDARY_ABSORBING;
+      const bool absorbs = kind == MPS_BOUNDARY_ABSORBING;
       if (*count < mpm->boundaries.held_room.capacity) {
         held[*count] =
             (mpsi_held){.hold = k,
@@ -265,7 +264,7 @@ void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g) {
   for (int pass = 0; pass < 2; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
       const mpsi_boundary *hold = &mpm->boundaries.hold[first[t].hold];
-      const bool holds_all = hold->kind == MPS_MPM_BOUNDARY_FIXED;
+      const bool holds_all = hold->kind == MPS_BOUNDARY_HELD;
       if (mpsi_is_mirror(mpm, first[t].hold) && holds_all == (pass == 1))
         for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
     }
@@ -280,10 +279,9 @@ void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
   static const struct {
     int32_t kind;
     hold_fn work;
-  } order[] = {
-      {MPS_MPM_BOUNDARY_ROLLER, hold_across},     {MPS_MPM_BOUNDARY_ABSORBING, absorb},
-      {MPS_MPM_BOUNDARY_FRICTIONAL, stop_inward}, {MPS_MPM_BOUNDARY_FRICTIONAL, apply_friction},
-      {MPS_MPM_BOUNDARY_FIXED, prescribe},        {MPS_MPM_BOUNDARY_PRESCRIBED, prescribe}};
+  } order[] = {{MPS_BOUNDARY_ROLLER, hold_across},     {MPS_BOUNDARY_ABSORBING, absorb},
+               {MPS_BOUNDARY_FRICTIONAL, stop_inward}, {MPS_BOUNDARY_FRICTIONAL, apply_friction},
+               {MPS_BOUNDARY_HELD, prescribe},         {MPS_BOUNDARY_DRIVEN, prescribe}};
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   if (nodes->holds == 0) return;
   mpsi_held *first = mpm->boundaries.held + nodes->first_held;

@@ -17,7 +17,7 @@
 #define COARSEST 100.0
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
-                                         .spline = 3,
+                                         .spline = 0,
                                          .lower = {-INFINITY, -INFINITY, -INFINITY},
                                          .upper = {INFINITY, INFINITY, INFINITY},
                                          .measure = NAN,
@@ -42,9 +42,9 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "geometry is %d, allowed are 0 (plane strain), 1 (axisymmetric) and 2 (space)",
                      d->geometry);
-  if (d->spline != 2 && d->spline != 3)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "spline is %d, allowed are 2 and 3",
-                     d->spline);
+  if (d->spline != 0 && d->spline != 2 && d->spline != 3)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "spline is %d, allowed are 2 and 3, and 0 for 3", d->spline);
   if (d->volumetric < MPS_MPM_VOLUMETRIC_POINT || d->volumetric > MPS_MPM_VOLUMETRIC_NODES)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "volumetric is %d, allowed are 0 (point), 1 (cell) and 2 (nodes)",
@@ -90,6 +90,7 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
 /* The degree of the caller's weights, which must be those of the grid. */
 static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
   const int32_t kind = mps_kernel_get_kind(d->kernel);
+  if (d->spline == 0) d->spline = 3;
   if (!d->kernel) return MPS_OK;
   if (kind != MPS_KERNEL_SPLINE2 && kind != MPS_KERNEL_SPLINE3)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -562,7 +563,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mpsi_context_release(context);
 }
 
-mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size) {
+mps_status mps_mpm_get_def_sized(const mps_mpm *mpm, mps_mpm_def *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   return mpsi_def_write(mpm->context, "mps_mpm_get_def", out, size, &mpm->def, sizeof mpm->def);
 }

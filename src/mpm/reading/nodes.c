@@ -8,7 +8,7 @@
 
 mps_grid *mps_mpm_grid(mps_mpm *mpm) { return mpm ? &mpm->reader : NULL; }
 
-mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out, size_t size) {
+mps_status mps_grid_get_info_sized(const mps_grid *grid, mps_grid_info *out, size_t size) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   const mps_mpm *mpm = grid->mpm;
   mps_grid_info info = {.cell = mpm->def.cell, .dim = mpm->dim, .spline = mpm->def.spline};
@@ -82,8 +82,8 @@ static void put(double *array, int64_t n, const double *value) {
   for (int c = 0; array && c < 3; c++) array[3 * n + c] = value[c];
 }
 
-mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity, int64_t *count, double *position,
-                              double *mass, double *velocity, double *force) {
+mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity, int64_t *count,
+                              double *position, double *mass, double *velocity, double *force) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   mps_mpm *mpm = grid->mpm;
   mps_status status = MPS_OK;

@@ -111,7 +111,8 @@ static mps_status sum_energies(mps_mpm *mpm, const char *function, double *out) 
   return status;
 }
 
-mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) {
+mps_status mps_mpm_get_totals_sized(const mps_mpm *handle, mps_totals *out, size_t size) {
+  mps_mpm *mpm = (mps_mpm *)handle; /* scratch and messages only: the state stays */
   static const char function[] = "mps_mpm_get_totals";
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mpsi_exact sum[SUMS] = {{{0}}};
@@ -141,7 +142,8 @@ mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) 
   return mpsi_out_write(mpm->context, function, out, size, &t, sizeof t);
 }
 
-mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out, size_t size) {
+mps_status mps_mpm_get_losses_sized(const mps_mpm *handle, mps_mpm_losses *out, size_t size) {
+  mps_mpm *mpm = (mps_mpm *)handle; /* scratch and messages only: the state stays */
   static const char function[] = "mps_mpm_get_losses";
   if (!mpm) return MPS_ERROR_ARGUMENT;
   if (!mpm->energy.counts)
@@ -164,7 +166,7 @@ mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out, size_t si
   return mpsi_out_write(mpm->context, function, out, size, &l, sizeof l);
 }
 
-mps_status mps_mpm_get_usage_sized(mps_mpm *mpm, mps_mpm_usage *out, size_t size) {
+mps_status mps_mpm_get_usage_sized(const mps_mpm *mpm, mps_mpm_usage *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mps_mpm_usage usage = {.blocks = mpm->grid.cell_count,
                                .nodes = mpm->grid.node_count * mpm->grid.block_nodes,

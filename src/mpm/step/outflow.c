@@ -13,7 +13,7 @@ mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function) {
   mpsi_boundaries *b = &mpm->boundaries;
   b->open = 0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (b->hold[k].kind == MPS_MPM_BOUNDARY_OPEN) b->open |= 1u << k;
+    if (b->hold[k].kind == MPS_BOUNDARY_OPEN) b->open |= 1u << k;
   bool any = b->open != 0;
   for (int32_t c = 0; c < mpm->contact.bodies; c++) any = any || takes_away(mpm->contact.handle[c]);
   if (!any || mpsi_room_ensure(mpm->context, &mpm->rooms.gone, mpm->p.count, 1)) return MPS_OK;
