@@ -69,7 +69,6 @@ int main(int argc, char **argv) {
     return 2;
   }
   team_begin(&t, ranks);
-  t.limit = 3600.0;
   team_run(&t, run, &m);
   int64_t all = 0, most = 0, sum = 0, now = 0;
   for (int32_t r = 0; r < ranks; r++) {

@@ -54,7 +54,7 @@ static mpm_scene make_clay(double cell) {
   def.upper[0] = def.upper[1] = SOIL;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   for (int32_t side = 0; side < 4; side++)
-    if (side != 2) mpm_scene_side(&s, side, MPS_MPM_BOUNDARY_FIXED, 0.0);
+    if (side != 2) mpm_scene_side(&s, side, MPS_BOUNDARY_HELD, 0.0);
   return s;
 }
 
