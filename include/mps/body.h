@@ -35,7 +35,7 @@ typedef enum mps_body_motion_kind {
  * and [1], velocity[2], spin[0] and [1], gravity[2], inertia[0] and [1]) must then be 0. */
 typedef struct mps_body_def {
   uint32_t struct_size;
-  int32_t motion;     /* mps_body_motion_kind, default PRESCRIBED */
+  int32_t motion;     /* mps_body_motion_kind, default DRIVEN */
   double position[3]; /* m, at most 1e9: of the reference point at time 0 */
   double rotation[3]; /* rad, rotation vector (axis times angle) from the body's frame to space at
                          time 0; 2D: [2] is the angle, anticlockwise */

@@ -101,8 +101,7 @@ MPS_API void mps_contact_destroy(mps_contact **contact);
 MPS_API mps_body *mps_contact_body(const mps_contact *contact);
 
 /** What the particles of this solver do to part `part` of the body (mps_body_find_part), or to all
- * of it
- *  (-1); `work` is that of the body's surface on the particles. */
+ *  of it (-1); `work` is that of the body's surface on the particles. */
 MPS_API MPS_NODISCARD mps_status mps_contact_get_reaction_sized(const mps_contact *contact,
                                                                 int32_t part, mps_reaction *out,
                                                                 size_t size);

@@ -39,18 +39,16 @@ typedef void (*mps_context_task_fn)(void *task, int64_t index, int32_t worker);
 typedef void (*mps_context_parallel_for_fn)(void *user, int64_t count, mps_context_task_fn task,
                                             void *task_data);
 
+/* With OPENMP, for programs that use OpenMP themselves, how the threads wait is the program's
+ * choice (OMP_WAIT_POLICY): by default they spin, which costs much where other programs compute.
+ * The threads of THREADS start with the first loop and sleep when they have waited for some
+ * microseconds; all signals are blocked in them; they run where the thread that starts them may:
+ * OMP_PROC_BIND in the environment binds that to one processor, which they then share. */
 typedef enum mps_context_executor {
-  MPS_CONTEXT_EXECUTOR_SERIAL = 1, /* the calling thread only */
-  MPS_CONTEXT_EXECUTOR_OPENMP =
-      2, /* `threads` OpenMP threads: for programs that use OpenMP themselves. How
-    its threads wait is the program's choice (OMP_WAIT_POLICY); by
-    default they spin, which costs much where other programs compute */
-  MPS_CONTEXT_EXECUTOR_CALLER = 3, /* parallel_for below */
-  MPS_CONTEXT_EXECUTOR_THREADS = 0 /* `threads`, with the calling thread, of the context's own: they
-                              start with the first loop, and sleep when they have waited for some
-                              microseconds. All signals are blocked in them. They run where the
-                              thread that starts them may: OMP_PROC_BIND in the environment binds
-                              that to one processor, which they then share */
+  MPS_CONTEXT_EXECUTOR_THREADS = 0, /* `threads` of the context's own, with the calling thread */
+  MPS_CONTEXT_EXECUTOR_SERIAL = 1,  /* the calling thread only */
+  MPS_CONTEXT_EXECUTOR_OPENMP = 2,  /* `threads` OpenMP threads */
+  MPS_CONTEXT_EXECUTOR_CALLER = 3   /* parallel_for below */
 } mps_context_executor;
 
 typedef enum mps_context_log_level {

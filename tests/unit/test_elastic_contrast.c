@@ -51,7 +51,7 @@ static void swing(mps_context *own, double contrast, double *missing, double *la
   OK(mps_material_create_linear_elastic(own, 1e6 * contrast, 0.3, &other));
   OK(mps_elastic_create(own, set, NULL, &e));
   bottom.ids = held;
-  OK(mps_particles_select_box(set, lo, row, 36, held, &bottom.id_count));
+  OK(mps_particles_select_box(set, lo, row, 36, &bottom.id_count, held));
   OK(mps_elastic_add_boundary(e, &bottom, NULL));
   OK(mps_elastic_set_material(e, other, 8, hard));
   load.force[0] = 50.0, load.force[1] = -20.0;

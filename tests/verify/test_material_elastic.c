@@ -241,7 +241,8 @@ static mps_material *fluid(int32_t state_equation, double viscosity, int32_t no_
 static void fluid_pressure_follows_its_state_equation(void **state) {
   (void)state;
   for (int tait = 0; tait < 2; tait++) {
-    mps_material *material = fluid(tait, 0.0, 0);
+    mps_material *material =
+        fluid(tait ? MPS_MATERIAL_STATE_TAIT : MPS_MATERIAL_STATE_LINEAR, 0.0, 0);
     for (double j = 0.9; j < 1.06; j += 0.05) {
       mps_material_point point = point_under(material, 0.0);
       const double squeeze[9] = {j - 1.0, 0, 0, 0, 0, 0, 0, 0, 0};

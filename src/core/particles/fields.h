@@ -100,7 +100,7 @@
     "WLS-MPM with a plastic law of the library", "after a step or a run")                            \
   X(opening, F64, 1, "-", "volume strain of the gap between grains that were drawn apart", \
     "WLS-MPM with a frictional law of the library", "after a step or a run")                         \
-  X(material, I64, 1, "-", "number of the law: 0 that of creation, then as mps_mpm_set_material met them", \
+  X(material, I64, 1, "-", "number of the law: 0 that of creation, then in the order of mps_mpm_set_material", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
 
