@@ -339,6 +339,7 @@ static mps_status make_body(mps_context *context, const char *function, const mp
                             const int32_t *corner, mps_body **out) {
   mpsi_mesh *mesh = NULL;
   mps_status status = mpsi_mesh_create(context, function, vertices, xyz, triangles, corner, &mesh);
+  if (!corner) status = mpsi_fail_of(context, status, "path"); /* a file of triangles */
   if (status == MPS_OK)
     status = mpsi_body_new(context, function, def, 3, MPSI_MESH, triangles, out);
   if (status == MPS_OK)

@@ -40,6 +40,10 @@ mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t b
 /* `status` is that of a public function which the library itself has called: where it is an error,
  * the record becomes one of `function`, that the caller has called. Returns `status`. */
 mps_status mpsi_as(mps_context *context, const char *function, mps_status status);
+/* `status` is of what the caller has given as `argument` ("particles", "lo, hi"), and was found by
+ * a check that serves several functions: an MPS_ERROR_ARGUMENT gets that name before its message.
+ * Returns `status`. */
+mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *argument);
 int64_t mpsi_failures(const mps_context *context); /* how many records there have been */
 void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI_PRINTF(3, 4);
 

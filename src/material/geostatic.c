@@ -46,21 +46,22 @@ static mps_status check_layers(const geostatic *g) {
     if (!mpsi_in_range(MPSI_RANGE_LENGTH, layer->thickness) &&
         !(lowest && layer->thickness == INFINITY))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layer %d has thickness %g m, must be > 0 (1e-9 to 1e9)%s", (int)k,
+                       "layers: layer %d has thickness %g m, must be > 0 (1e-9 to 1e9)%s", (int)k,
                        layer->thickness, lowest ? "" : "; only the lowest may be infinite");
     if (layer->k0 != 0.0 && !mpsi_in_range(MPSI_RANGE_STRESS_RATIO, layer->k0))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layer %d has k0 %g, must be 0 or 1e-9 to 1e6", (int)k, layer->k0);
+                       "layers: layer %d has k0 %g, must be 0 or 1e-9 to 1e6", (int)k, layer->k0);
     if (layer->density != 0.0 && !mpsi_in_range(MPSI_RANGE_DENSITY, layer->density))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layer %d has density %g kg/m3, must be 1e-9 to 1e9, or 0 for the "
+                       "layers: layer %d has density %g kg/m3, must be 1e-9 to 1e9, or 0 for the "
                        "particles'",
                        (int)k, layer->density);
     if (layer->density == 0.0 && !g->density_field)
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_FIELD,
-                       "layer %d has density 0, but the set has no field 'density' to take it "
-                       "from",
-                       (int)k);
+      return mpsi_fail(
+          g->context, set_geostatic, MPS_ERROR_FIELD,
+          "layers: layer %d has density 0, but the set has no field 'density' to take it "
+          "from",
+          (int)k);
   }
   return MPS_OK;
 }
@@ -203,7 +204,7 @@ static mps_status take_densities(geostatic *g, double *density) {
   for (int32_t k = 0; k < n; k++)
     if (density[k] == 0.0 && k < n - 1)
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layer %d has density 0 and no particle to take it from", (int)k);
+                       "layers: layer %d has density 0 and no particle to take it from", (int)k);
   return MPS_OK;
 }
 

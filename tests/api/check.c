@@ -3,7 +3,7 @@
  *   the status is one of the table;
  *   an argument that no function may take is refused;
  *   the record of an error has that status, the function's name and a message, which names an
- *   argument where that is refused (looked at where MPS_API_ARGUMENTS is set);
+ *   argument where that is refused;
  *   a call that failed has changed nothing, nor has one that only reads;
  *   after one that succeeded all is finite;
  *   a callback's status comes back, and what a callback may not do is refused.
@@ -129,7 +129,7 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
     api_broken(a, "the record names %s", record->function);
   else if (strlen(record->message) < 8)
     api_broken(a, "the record's message is \"%s\"", record->message);
-  else if (status == MPS_ERROR_ARGUMENT && !a->faulted && getenv("MPS_API_ARGUMENTS") &&
+  else if (status == MPS_ERROR_ARGUMENT && !a->faulted &&
            !api_names_argument(a->name, record->message))
     api_broken(a, "the record names no argument: %.200s", record->message);
 }

@@ -64,6 +64,21 @@ mps_status mpsi_as(mps_context *context, const char *function, mps_status status
   return status;
 }
 
+mps_status mpsi_fail_of(mps_context *context, mps_status status, const char *argument) {
+  if (status != MPS_ERROR_ARGUMENT || !context) return status;
+  mps_error *error = &context->error;
+  char *message = error->message;
+  const size_t room = sizeof error->message, most = room / 4;
+  const size_t length = strlen(argument) < most ? strlen(argument) : most, before = length + 2;
+  if (strncmp(message, argument, length) == 0 && message[length] == ':') return status;
+  const size_t rest = strlen(message) + before < room ? strlen(message) : room - 1 - before;
+  memmove(message + before, message, rest);
+  memcpy(message, argument, length);
+  memcpy(message + length, ": ", 2);
+  message[before + rest] = '\0';
+  return status;
+}
+
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes) {
   return mpsi_fail(context, function, MPS_ERROR_MEMORY, "could not allocate %zu bytes", bytes);
 }

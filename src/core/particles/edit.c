@@ -132,8 +132,10 @@ mps_status mpsi_particles_tell(mps_particles *p, const char *function, const cha
   mps_status status = MPS_OK;
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
     if (h->commit)
-      status = h->commit(h->self, function, field,
-                         h->compares && h->compares(h->self, field) ? former : NULL);
+      status = mpsi_fail_of(p->context,
+                            h->commit(h->self, function, field,
+                                      h->compares && h->compares(h->self, field) ? former : NULL),
+                            "particles");
   return status;
 }
 

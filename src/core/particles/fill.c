@@ -137,9 +137,15 @@ static void put_sites(mps_particles *p, const mpsi_site_runs *fresh, mpsi_slab *
   }
 }
 
+/* Who fills: the function, and its arguments that give the shape. */
+typedef struct filler {
+  const char *function, *shape;
+} filler;
+
 /* Adds the particles of `count` free sites, or this rank's part of them. */
-static mps_status put_fresh(mps_particles *p, const char *function, mps_status status,
+static mps_status put_fresh(mps_particles *p, filler by, mps_status status,
                             const mpsi_site_runs *fresh, int64_t count) {
+  const char *function = by.function;
   const int64_t first = p->count, id = p->next_id;
   const bool deals = mpsi_particles_deals(p);
   mpsi_slab slab = {.count = count};
@@ -156,21 +162,21 @@ static mps_status put_fresh(mps_particles *p, const char *function, mps_status s
     put_sites(p, fresh, deals ? &slab : NULL, id, first);
     mpsi_particles_number(p, first);
   }
-  return mpsi_particles_arrive(p, function, status, first);
+  return mpsi_particles_arrive(p, function, by.shape, status, first);
 }
 
 /* Puts particles at the sites of `runs` that are free, and takes the runs' memory in any case.
  * `status`: what has become of them; `complete` false: memory for them ran out. */
-static mps_status put_runs(mps_particles *p, const char *function, mps_status status,
-                           mpsi_site_runs *runs, bool complete, int64_t *added) {
+static mps_status put_runs(mps_particles *p, filler by, mps_status status, mpsi_site_runs *runs,
+                           bool complete, int64_t *added) {
   mps_context *context = p->context;
   mpsi_site_runs fresh = {0}, sites = {0};
   if (status == MPS_OK && !(complete && runs_subtract(context, runs, &p->sites, &fresh) &&
                             runs_unite(context, &p->sites, &fresh, &sites)))
-    status = mpsi_fail(context, function, MPS_ERROR_MEMORY,
+    status = mpsi_fail(context, by.function, MPS_ERROR_MEMORY,
                        "could not allocate the list of lattice sites");
   const int64_t count = (int64_t)runs_sites(&fresh);
-  status = put_fresh(p, function, status, &fresh, count);
+  status = put_fresh(p, by, status, &fresh, count);
   if (status == MPS_OK) {
     const mpsi_site_runs former = p->sites;
     p->sites = sites;
@@ -190,8 +196,9 @@ typedef struct site_box {
   int64_t begin[3], end[3];
 } site_box;
 
-static mps_status read_box(const mps_particles *p, const char *function, const double *lo,
-                           const double *hi, site_box *out) {
+static mps_status read_box(const mps_particles *p, filler by, const double *lo, const double *hi,
+                           site_box *out) {
+  const char *function = by.function;
   if (!lo || !hi)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "%s is NULL", lo ? "hi" : "lo");
   *out = (site_box){.end = {1, 1, 1}};
@@ -201,16 +208,19 @@ static mps_status read_box(const mps_particles *p, const char *function, const d
     if (status == MPS_OK) status = check_bound(p, function, "hi", c, hi[c]);
     if (status != MPS_OK) return status;
     if (!(lo[c] < hi[c]))
-      return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                       "the box in %c is [%g, %g) m, must have lo < hi", "xyz"[c], lo[c], hi[c]);
+      return mpsi_fail(
+          p->context, function, MPS_ERROR_ARGUMENT,
+          "%s: the box in %c is [%.17g, %.17g) m, its upper bound must be above the lower "
+          "one",
+          by.shape, "xyz"[c], lo[c], hi[c]);
     out->begin[c] = first_site(p, c, lo[c]);
     out->end[c] = first_site(p, c, hi[c]);
     sites *= (double)(out->end[c] - out->begin[c]);
   }
   if (sites > MAX_SITES)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                     "the box holds %.4g sites of spacing %g m, allowed are 2^31 (2.1e9)", sites,
-                     p->def.spacing);
+                     "%s: the box holds %.4g sites of spacing %g m, allowed are 2^31 (2.1e9)",
+                     by.shape, sites, p->def.spacing);
   return MPS_OK;
 }
 
@@ -255,24 +265,25 @@ static mps_status box_runs(const mps_particles *p, const char *function, const s
 }
 
 /* Where `status`, of the caller's own arguments, is well. */
-static mps_status fill_box(mps_particles *p, const char *function, mps_status status,
-                           const double *lo, const double *hi, mps_particles_predicate_fn inside,
-                           void *user, int64_t *added) {
+static mps_status fill_box(mps_particles *p, filler by, mps_status status, const double *lo,
+                           const double *hi, mps_particles_predicate_fn inside, void *user,
+                           int64_t *added) {
+  const char *function = by.function;
   site_box box;
   mpsi_site_runs runs = {0};
   bool complete = true;
   const mps_status busy = mpsi_particles_outside_callbacks(p, function);
   if (busy != MPS_OK) return busy;
   if (status == MPS_OK) status = mpsi_particles_check_free(p, function);
-  if (status == MPS_OK) status = read_box(p, function, lo, hi, &box);
+  if (status == MPS_OK) status = read_box(p, by, lo, hi, &box);
   if (status == MPS_OK) status = box_runs(p, function, &box, inside, user, &runs, &complete);
-  return put_runs(p, function, status, &runs, complete, added);
+  return put_runs(p, by, status, &runs, complete, added);
 }
 
 mps_status mps_particles_fill_box(mps_particles *particles, const double *lo, const double *hi,
                                   int64_t *added) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  return fill_box(particles, __func__, MPS_OK, lo, hi, NULL, NULL, added);
+  return fill_box(particles, (filler){__func__, "lo, hi"}, MPS_OK, lo, hi, NULL, NULL, added);
 }
 
 mps_status mps_particles_fill_where(mps_particles *particles, const double *lo, const double *hi,
@@ -281,7 +292,7 @@ mps_status mps_particles_fill_where(mps_particles *particles, const double *lo, 
   mps_status status = MPS_OK;
   if (!inside)
     status = mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "inside is NULL");
-  return fill_box(particles, __func__, status, lo, hi, inside, user, added);
+  return fill_box(particles, (filler){__func__, "lo, hi"}, status, lo, hi, inside, user, added);
 }
 
 typedef struct ball {
@@ -324,7 +335,8 @@ mps_status mps_particles_fill_ball(mps_particles *particles, const double *centr
     lo[c] = b.centre[c] - radius;
     hi[c] = b.centre[c] + radius;
   }
-  return fill_box(particles, __func__, status, lo, hi, in_ball, &b, added);
+  return fill_box(particles, (filler){__func__, "centre, radius"}, status, lo, hi, in_ball, &b,
+                  added);
 }
 
 /* ---- polygon --------------------------------------------------------------------------------- */
@@ -346,7 +358,7 @@ static mps_status check_polygon(const mps_particles *p, const char *function, co
                      "vertices is %lld, allowed are 3 to %d", (long long)s->n, MAX_CORNERS);
   mps_status status = MPS_OK;
   for (int64_t k = 0; k < 2 * s->n && status == MPS_OK; k++)
-    status = check_bound(p, function, "a corner", k % 2, s->xy[k]);
+    status = check_bound(p, function, "xy: a corner", k % 2, s->xy[k]);
   return status == MPS_OK ? mpsi_polygon_check(p->context, function, s->n, s->xy) : status;
 }
 
@@ -406,7 +418,7 @@ static mps_status fill_shape(const mps_particles *p, const char *function, const
   mpsi_free(context, sites);
   if (!more) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                   "the polygon holds more than 2^31 sites of spacing %g m", p->def.spacing);
+                   "xy: the polygon holds more than 2^31 sites of spacing %g m", p->def.spacing);
 }
 
 mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices, const double *xy,
@@ -420,5 +432,5 @@ mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices
   status = mpsi_particles_check_free(particles, __func__);
   if (status == MPS_OK) status = check_polygon(particles, __func__, &shape);
   if (status == MPS_OK) status = fill_shape(particles, __func__, &shape, &runs, &complete);
-  return put_runs(particles, __func__, status, &runs, complete, added);
+  return put_runs(particles, (filler){__func__, "xy"}, status, &runs, complete, added);
 }

@@ -118,8 +118,8 @@ void mpsi_particles_number(mps_particles *p, int64_t first) {
   for (int64_t i = first; i < p->count; i++) mpsi_ids_put(&p->ids, id[i], i);
 }
 
-mps_status mpsi_particles_arrive(mps_particles *p, const char *function, mps_status status,
-                                 int64_t first) {
+mps_status mpsi_particles_arrive(mps_particles *p, const char *function, const char *places,
+                                 mps_status status, int64_t first) {
   const int64_t count = p->count - first;
   if (mpsi_particles_deals(p)) status = p->deal->settle(p->deal->self, function, status);
   for (mpsi_holder *h = p->holders; h; h = h->next)
@@ -130,7 +130,8 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, mps_sta
     return status;
   }
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
-    if (h->insert) status = h->insert(h->self, function, first, count);
+    if (h->insert)
+      status = mpsi_fail_of(p->context, h->insert(h->self, function, first, count), places);
   if (status != MPS_OK) {
     const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
     for (int64_t k = first; p->ids.sparse && k < p->count; k++) mpsi_ids_drop(&p->ids, id[k]);
@@ -157,8 +158,9 @@ static mps_status check_positions(const mps_particles *p, const char *function, 
     for (int32_t c = 0; c < dim; c++)
       if (!(fabs(positions[i * dim + c]) <= MPSI_FARTHEST))
         return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                         "position %lld has %c = %g m, allowed are %g to %g m", (long long)i,
-                         "xyz"[c], positions[i * dim + c], -MPSI_FARTHEST, MPSI_FARTHEST);
+                         "positions: position %lld has %c = %g m, allowed are %g to %g m",
+                         (long long)i, "xyz"[c], positions[i * dim + c], -MPSI_FARTHEST,
+                         MPSI_FARTHEST);
   return MPS_OK;
 }
 
@@ -181,7 +183,7 @@ static mps_status append_part(mps_particles *p, const char *function, mps_status
     for (int64_t i = begin; i < end; i++) x[first + i - begin] = positions[i * dim + c];
   }
   if (status == MPS_OK) mpsi_particles_number(p, first);
-  return mpsi_particles_arrive(p, function, status, first);
+  return mpsi_particles_arrive(p, function, "positions", status, first);
 }
 
 mps_status mps_particles_append(mps_particles *particles, int64_t count, const double *positions) {
@@ -199,7 +201,7 @@ mps_status mps_particles_append(mps_particles *particles, int64_t count, const d
     double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
     for (int64_t i = 0; i < count; i++) x[first + i] = positions[i * dim + c];
   }
-  return mpsi_particles_arrive(particles, __func__, status, first);
+  return mpsi_particles_arrive(particles, __func__, "positions", status, first);
 }
 
 /* ---- removal --------------------------------------------------------------------------------- */
@@ -295,7 +297,8 @@ static mps_status ask_holders(const mps_particles *p, const char *function, int6
                      who);
   mps_status status = MPS_OK;
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
-    if (h->remove) status = h->remove(h->self, function, count, ids);
+    if (h->remove)
+      status = mpsi_fail_of(p->context, h->remove(h->self, function, count, ids), "ids");
   if (status != MPS_OK) renew_holders(p);
   return status;
 }

@@ -76,8 +76,8 @@ static mps_status count_selected(mps_dynamics *dynamics, const char *function,
                      (long long)s->id_count, (long long)sum[1]);
   if (part->total == 0)
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                     "no particle lies in the box from (%g, %g) m to (%g, %g) m", s->lower[0],
-                     s->lower[1], s->upper[0], s->upper[1]);
+                     "lower and upper: no particle lies in the box from (%g, %g) m to (%g, %g) m",
+                     s->lower[0], s->lower[1], s->upper[0], s->upper[1]);
   return MPS_OK;
 }
 

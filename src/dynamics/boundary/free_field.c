@@ -75,7 +75,8 @@ static mps_status append_column(mps_context *context, mps_particles *particles, 
   const int64_t first = mps_particles_count(particles);
   const int32_t fields = mps_particles_field_count(particles);
   mps_status status = mps_particles_add_field(particles, "free_field", 0);
-  if (status == MPS_OK) status = mps_particles_append(particles, e->count, at);
+  if (status == MPS_OK)
+    status = mpsi_fail_of(context, mps_particles_append(particles, e->count, at), "gap");
   if (status == MPS_OK) status = copy_fields(particles, e, first, side, shift);
   if (status != MPS_OK) mpsi_particles_drop_fields(particles, fields);
   mpsi_free(context, at);

@@ -87,7 +87,7 @@ static mps_status check_state(mps_context *context, mps_particles *particles) {
       for (int64_t k = 0; column && k < n; k++)
         if (!isfinite(column[k]))
           return mpsi_fail(context, "mps_dynamics_create", MPS_ERROR_ARGUMENT,
-                           "%s of particle %lld is %g, must be finite", names[f],
+                           "particles: %s of particle %lld is %g, must be finite", names[f],
                            (long long)mpsi_particles_integers(particles, "id")[k], column[k]);
     }
   return MPS_OK;
@@ -200,7 +200,9 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
   if (status == MPS_OK && dynamics->def.material)
     status = mpsi_dynamics_write_material(dynamics->particles, function, dynamics->def.material, 0,
                                           NULL);
-  if (status == MPS_OK) status = mpsi_dynamics_check_ground(dynamics->particles, function);
+  if (status == MPS_OK)
+    status = mpsi_fail_of(dynamics->context,
+                          mpsi_dynamics_check_ground(dynamics->particles, function), "particles");
   if (mpsi_domain_many(dynamics->domain)) {
     status = mpsi_dynamics_take_partition(dynamics, function, status, &made, former, backup);
   } else {

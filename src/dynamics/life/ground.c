@@ -72,8 +72,8 @@ mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *func
 mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function) {
   mps_domain *domain = dynamics->domain;
   double before = 0.0, after = 0.0;
-  mps_status status = mpsi_domain_agree(domain, function,
-                                        mpsi_dynamics_check_ground(dynamics->particles, function));
+  mps_status status = mpsi_dynamics_check_ground(dynamics->particles, function);
+  status = mpsi_domain_agree(domain, function, mpsi_fail_of(dynamics->context, status, "dynamics"));
   if (status == MPS_OK) /* refuses before anything has changed */
     status = mpsi_domain_agree(domain, function, mpsi_dynamics_reserve_watch(dynamics, function));
   if (status == MPS_OK) status = mpsi_dynamics_present_energy(dynamics, function, &before);

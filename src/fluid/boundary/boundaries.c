@@ -81,8 +81,8 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
     const double d = mpsi_fluid_distance(w, w->now.s, x[i], y[i]);
     if (d < LEAST_WALL * f->l0)
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "particle %lld at (%g, %g) m is %g m inside the boundary, must be at least "
-                       "%g l0 = %g m",
+                       "point: particle %lld at (%g, %g) m is %g m inside the boundary, must be at "
+                       "least %g l0 = %g m",
                        (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], d,
                        LEAST_WALL, LEAST_WALL * f->l0);
   }

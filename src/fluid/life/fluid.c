@@ -92,8 +92,9 @@ static mps_status check_particles(mps_context *context, mps_particles *particles
       for (int64_t i = 0; value && i < n; i++)
         if (!(fabs(value[i]) <= 1e12))
           return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                           "%s of particle %lld is %g, must be finite and at most 1e12", names[f],
-                           (long long)mpsi_particles_integers(particles, "id")[i], value[i]);
+                           "particles: %s of particle %lld is %g, must be finite and at most 1e12",
+                           names[f], (long long)mpsi_particles_integers(particles, "id")[i],
+                           value[i]);
     }
   return MPS_OK;
 }

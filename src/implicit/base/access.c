@@ -137,6 +137,7 @@ mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function, double *
                                       "allowed is 1e-30 to 1e30 (kg/m3)");
     mass[i] *= e->volume[i];
   }
+  status = mpsi_fail_of(e->context, status, "e");
   if (status == MPS_OK)
     use_mass(e, mass);
   else

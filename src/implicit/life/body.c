@@ -119,7 +119,7 @@ static mps_status renew_material(mps_elastic *e, const char *function) {
   if (!former) return mpsi_fail_memory(e->context, function, 3 * bytes);
   for (int k = 0; k < 3; k++) memcpy(former + k * e->n, moduli[k], bytes);
   mps_status status = mpsi_elastic_note_strain(e, function);
-  if (status == MPS_OK) status = read_material(e, function);
+  if (status == MPS_OK) status = mpsi_fail_of(e->context, read_material(e, function), "e");
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
   if (status == MPS_OK) warn_of_contrast(e);

@@ -117,16 +117,16 @@ void mps_elastic_destroy(mps_elastic **elastic) {
 static mps_status build(mps_elastic *e, const char *function) {
   mps_status status = mpsi_elastic_allocate(e, function);
   if (status == MPS_OK && e->def.material) status = mpsi_elastic_add_material(e, function);
-  if (status == MPS_OK) {
-    memcpy(e->id, mpsi_particles_integers(e->particles, "id"), (size_t)e->n * sizeof *e->id);
-    mpsi_elastic_sort_ids(e->n, e->id);
-  }
-  if (status == MPS_OK) status = mpsi_elastic_read(e, function, "position", e->x, e->dim);
+  if (status != MPS_OK) return status;
+  memcpy(e->id, mpsi_particles_integers(e->particles, "id"), (size_t)e->n * sizeof *e->id);
+  mpsi_elastic_sort_ids(e->n, e->id);
+  status = mpsi_elastic_read(e, function, "position", e->x, e->dim);
   for (int64_t i = 0; i < e->n * e->dim && status == MPS_OK; i++)
     if (!isfinite(e->x[i]))
       status =
           mpsi_elastic_bad_value(e, function, "position", i / e->dim, e->x[i], "must be finite");
   if (status == MPS_OK) status = mpsi_elastic_make_body(e, function, false);
+  status = mpsi_fail_of(e->context, status, "particles");
   if (status == MPS_OK)
     status =
         mpsi_as(e->context, function, mps_particles_add_field(e->particles, "displacement", 0));

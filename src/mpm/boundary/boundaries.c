@@ -77,8 +77,8 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
                              const mps_mpm_boundary_def *def) {
   if (!has_side(mpm, number))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "the domain has no %s side across %c (boundary %d)",
-                     number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
+                     "number is %d, and the domain has no %s side across %c", number,
+                     number % 2 ? "upper" : "lower", "xyz"[number / 2]);
   const bool open = def->kind == MPS_BOUNDARY_OPEN;
   if (!mpsi_boundary_kind_in(def->kind, ~(1u << MPS_BOUNDARY_FREE_FIELD)))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -121,10 +121,11 @@ static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_bou
     out->first[c] = box_node(mpm, c, def->lower[c], false);
     out->last[c] = box_node(mpm, c, def->upper[c], true);
     if (!(def->lower[c] <= def->upper[c]) || out->first[c] > out->last[c])
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "the box is [%g, %g] m in %c, must hold a node: origin %g m plus a multiple "
-                       "of the cell %g m",
-                       def->lower[c], def->upper[c], "xyz"[c], mpm -> def.origin[c], mpm->def.cell);
+      return mpsi_fail(
+          mpm->context, function, MPS_ERROR_ARGUMENT,
+          "lower and upper: the box is [%g, %g] m in %c, must hold a node: origin %g m "
+          "plus a multiple of the cell %g m",
+          def->lower[c], def->upper[c], "xyz"[c], mpm -> def.origin[c], mpm->def.cell);
   }
   return MPS_OK;
 }
@@ -332,12 +333,13 @@ static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
     return MPS_OK;
   if (side)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "the domain has no %s side across %c (boundary %d)",
-                     number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
-  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                   "boundary is %d, must be that of a side of the domain (0 to 5) or a number that "
-                   "mps_mpm_add_boundary gave",
-                   number);
+                     "number is %d, and the domain has no %s side across %c", number,
+                     number % 2 ? "upper" : "lower", "xyz"[number / 2]);
+  return mpsi_fail(
+      mpm->context, function, MPS_ERROR_ARGUMENT,
+      "number: boundary is %d, must be that of a side of the domain (0 to 5) or a number that "
+      "mps_mpm_add_boundary gave",
+      number);
 }
 
 mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {
@@ -368,7 +370,7 @@ mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
   if (status == MPS_OK) status = find(mpm, __func__, number);
   if (status == MPS_OK && on_axis(mpm, number))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                       "boundary is 0, the axis r = 0, which cannot be free");
+                       "number: boundary is 0, the axis r = 0, which cannot be free");
   if (mpm->partition)
     status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "boundary", number);
   if (status != MPS_OK) return status;
