@@ -6,12 +6,13 @@
 #include "peak_allocator.h"
 #include "ranks_team.h"
 
-/* What is computed on each rank; `domain` NULL: by one alone. */
-typedef mps_status memory_fn(mps_context *own, mps_domain *domain, const void *user);
+/* What is computed on each rank; `domain` NULL: by one alone. The allocator is the context's. */
+typedef mps_status memory_fn(mps_context *own, mps_domain *domain, const peak_allocator *allocator,
+                             void *user);
 
 typedef struct memory_peaks {
   memory_fn *run;
-  const void *user;
+  void *user;
   int64_t most[TEAM_MOST]; /* bytes */
   mps_status status[TEAM_MOST];
 } memory_peaks;
@@ -27,14 +28,14 @@ static inline void memory_measure(void *user, team *t, int32_t rank) {
   peak_use(&def, &allocator);
   mps_status status = mps_context_create(&def, &own, NULL, 0);
   TRY(mps_domain_create(own, &domain_def, &domain));
-  TRY(p->run(own, t->size > 1 ? domain : NULL, p->user));
+  TRY(p->run(own, t->size > 1 ? domain : NULL, &allocator, p->user));
   mps_domain_destroy(&domain);
   mps_context_destroy(&own);
   p->status[rank] = status, p->most[rank] = allocator.most;
 }
 
 /* Bytes of the rank that has most, of `size` ranks. */
-static inline int64_t memory_most(int32_t size, memory_fn *run, const void *user) {
+static inline int64_t memory_most(int32_t size, memory_fn *run, void *user) {
   memory_peaks p = {.run = run, .user = user};
   team t;
   int64_t most = 0;

@@ -15,7 +15,7 @@ typedef struct bisection_def {
   double lower, upper; /* s: first bounds, lower < upper; NaN: from the linear limit. They are tried
                           and moved apart until one is stable and the other not */
   mps_domain *domain;  /* of the solver; NULL: one process */
-  mps_context_progress_fn hook; /* told of each run, may be NULL */
+  mps_context_progress_fn hook; /* called at each run, may be NULL */
   void *user;
 } bisection_def;
 

@@ -103,15 +103,15 @@ static mps_status write_ground(mps_particles *particles, const double value[GROU
                                const int64_t *ids, double *former) {
   const int64_t all = mps_particles_count(particles);
   mps_status status = MPS_OK;
-  int told = 0;
+  int read = 0;
   for (int k = 0; k < GROUND; k++) {
     double *column = mpsi_particles_column(particles, ground[k], 0);
     memcpy(former + k * all, column, (size_t)all * sizeof *former);
     for (int64_t i = 0; i < (ids ? count : all); i++)
       column[ids ? mps_particles_index(particles, ids[i]) : i] = value[k];
   }
-  for (; told < GROUND && status == MPS_OK; told++) /* masses follow from densities */
-    status = mpsi_particles_tell(particles, set_material, ground[told], told ? NULL : former);
+  for (; read < GROUND && status == MPS_OK; read++) /* masses follow from densities */
+    status = mpsi_particles_tell(particles, set_material, ground[read], read ? NULL : former);
   if (status == MPS_OK) return MPS_OK;
   for (int k = 0; k < GROUND; k++) {
     double *column = mpsi_particles_column(particles, ground[k], 0);
@@ -121,7 +121,7 @@ static mps_status write_ground(mps_particles *particles, const double value[GROU
       former[k * all + i] = refused;
     }
   }
-  for (int k = 0; k < told - 1; k++)
+  for (int k = 0; k < read - 1; k++)
     (void)mpsi_particles_tell(particles, set_material, ground[k], k ? NULL : former);
   return status;
 }

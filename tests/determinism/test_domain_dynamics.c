@@ -123,6 +123,8 @@ enum {
   CALLBACK_FAILS,
   UNKNOWN_ID,
   REMOVAL,
+  EDIT_SNAPSHOT, /* an edit is open on rank 1 */
+  EDIT_SAVE,
   OTHER_LOAD,
   OTHER_SIGNAL,
   NO_LOAD,
@@ -146,6 +148,8 @@ static const struct {
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
     [REMOVAL] = {MPS_ERROR_UNSUPPORTED, "the particles lie on 3 ranks"},
+    [EDIT_SNAPSHOT] = {MPS_ERROR_STATE, "rank 1: field 'velocity' is being edited"},
+    [EDIT_SAVE] = {MPS_ERROR_STATE, "rank 1: field 'velocity' is being edited"},
     [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [NO_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: def is NULL"},
@@ -225,6 +229,19 @@ static mps_status step_with_signal(mps_context *own, mps_dynamics *dynamics, int
   return status;
 }
 
+static mps_status keep_while_edited(mps_dynamics *dynamics, int what, int32_t rank) {
+  mps_particles *set = mps_dynamics_particles(dynamics);
+  mps_snapshot *snapshot = NULL;
+  mps_edit edit;
+  mps_status status = MPS_OK;
+  if (rank == 1) status = mps_particles_edit(set, "velocity", &edit);
+  if (status == MPS_OK)
+    status = what == EDIT_SAVE ? mps_dynamics_save(dynamics, TEST_TMP "/edited.h5", NULL)
+                               : mps_dynamics_snapshot(dynamics, &snapshot);
+  if (rank == 1 && mps_particles_commit(set, &edit) != MPS_OK) status = MPS_ERROR_INTERNAL;
+  return status;
+}
+
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
   mps_particles *set = NULL;
   mps_dynamics *dynamics = NULL;
@@ -261,6 +278,8 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
     const int64_t gone[1] = {*mps_view_i64(&id, 0, 0)};
     TRY(mps_particles_remove(set, 1, gone));
   }
+  if (status == MPS_OK && (what == EDIT_SNAPSHOT || what == EDIT_SAVE))
+    status = keep_while_edited(dynamics, what, u.rank);
   if (status == MPS_OK && what >= OTHER_LOAD)
     status = define_otherwise(own, dynamics, what, u.rank);
   mps_dynamics_destroy(&dynamics);

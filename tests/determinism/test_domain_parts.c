@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #define RANKS_IN_PARTS true
 #include "mpm_ranks.h"
-#include "peak_allocator.h"
+#include "ranks_memory.h"
 #include "ranks_team.h"
 
 #include <mps/dynamics.h>
@@ -89,15 +89,13 @@ static void test_refused_memory(void **state) { (void)state, refuse_memory(compu
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-typedef struct peaks {
-  int64_t most[TEAM_MOST];                    /* bytes */
-  int64_t beside[TEAM_MOST], here[TEAM_MOST]; /* bytes beside those of the solver when it is made,
-                                                 particles */
-  mps_status status[TEAM_MOST];
-} peaks;
+typedef struct creation { /* by rank: bytes beside those of the solver when it is made; particles */
+  int64_t beside[TEAM_MOST], here[TEAM_MOST];
+} creation;
 
-static mps_status begin_wide(mps_context *own, mps_domain *domain, peaks *p,
-                             const peak_allocator *allocator) {
+static mps_status begin_wide(mps_context *own, mps_domain *domain, const peak_allocator *allocator,
+                             void *user) {
+  creation *made = user;
   const int32_t rank = domain ? mps_domain_rank(domain) : 0;
   scene s = {.set = NULL};
   mps_status status = make_set(own, domain, WIDE, &s.set);
@@ -105,49 +103,19 @@ static mps_status begin_wide(mps_context *own, mps_domain *domain, peaks *p,
   TRY(mps_material_create_linear_elastic(own, 1e6, 0.3, &s.material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s.set, s.material[0], &def, &s.mpm));
-  p->beside[rank] = allocator->most - allocator->now;
-  p->here[rank] = mps_particles_count(s.set);
+  made->beside[rank] = allocator->most - allocator->now;
+  made->here[rank] = mps_particles_count(s.set);
   TRY(mps_mpm_step(s.mpm, 2));
   end_scene(&s);
   return status;
 }
 
-static void measure(void *user, team *t, int32_t rank) {
-  peaks *p = user;
-  peak_allocator allocator = {0};
-  mps_context *own = NULL;
-  mps_domain *domain = NULL;
-  mps_context_def def = test_context_defaults();
-  const mps_domain_def domain_def = team_domain_def(t, rank);
-  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
-  peak_use(&def, &allocator);
-  mps_status status = mps_context_create(&def, &own, NULL, 0);
-  TRY(mps_domain_create(own, &domain_def, &domain));
-  TRY(begin_wide(own, t->size > 1 ? domain : NULL, p, &allocator));
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
-  p->status[rank] = status, p->most[rank] = allocator.most;
-}
-
-static int64_t most_of(int32_t size) {
-  peaks p = {.most = {0}};
-  team t;
-  int64_t most = 0;
-  team_begin(&t, size);
-  team_run(&t, measure, &p);
-  team_end(&t);
-  for (int32_t r = 0; r < size; r++) {
-    assert_int_equal(p.status[r], MPS_OK);
-    most = p.most[r] > most ? p.most[r] : most;
-    /* ids, places, densities and velocities are not copied to make the solver: 48 B a particle */
-    if (size > 1) assert_true(p.beside[r] < 24 * p.here[r]);
-  }
-  return most;
-}
-
 static void test_memory(void **state) {
   (void)state;
-  const int64_t one = most_of(1), four = most_of(4);
+  creation made = {.here = {0}};
+  const int64_t one = memory_most(1, begin_wide, &made), four = memory_most(4, begin_wide, &made);
+  /* ids, places, densities and velocities are not copied to make the solver: 48 B a particle */
+  for (int r = 0; r < 4; r++) assert_true(made.beside[r] < 24 * made.here[r]);
   print_message("9600 particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
                 (long long)one, (long long)four, (double)four / (double)one);
   assert_true((double)four < 0.4 * (double)one);

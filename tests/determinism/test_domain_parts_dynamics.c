@@ -54,8 +54,10 @@ static void test_two(void **state) { (void)state, compare_teams(compute_two, 0, 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
 /* `user`: upper corner of the body (m). */
-static mps_status begin_ground(mps_context *own, mps_domain *domain, const void *user) {
+static mps_status begin_ground(mps_context *own, mps_domain *domain,
+                               const peak_allocator *allocator, void *user) {
   const double *hi = user;
+  (void)allocator;
   const double lo[2] = {0.0, 0.0};
   mps_particles_def def = mps_particles_defaults();
   mps_dynamics_def solver = mps_dynamics_defaults();
@@ -77,7 +79,7 @@ static mps_status begin_ground(mps_context *own, mps_domain *domain, const void 
 }
 
 static void compare_memory(double width, double height) {
-  const double hi[2] = {width, height};
+  double hi[2] = {width, height};
   const int64_t one = memory_most(1, begin_ground, hi), four = memory_most(4, begin_ground, hi);
   print_message("%g x %g particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
                 width, height, (long long)one, (long long)four, (double)four / (double)one);

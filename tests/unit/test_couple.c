@@ -2,6 +2,7 @@
  * repeats each method takes, guesses, what is learnt and kept, refusals.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
+#include "test_journal.h"
 
 #include <mps/couple.h>
 
@@ -180,18 +181,6 @@ static void what_is_learnt_can_be_kept(void **state) {
   mps_coupling_destroy(&d);
 }
 
-typedef struct journal {
-  int count;
-  char last[512];
-} journal;
-
-static void note(void *user, int32_t level, const char *message) {
-  journal *j = user;
-  if (level != MPS_CONTEXT_LOG_WARNING) return;
-  j->count++;
-  snprintf(j->last, sizeof j->last, "%s", message);
-}
-
 /* Warnings of 300 accepted steps of two values: `large` cos(w n) about a mean of 5, waves of .04
  * rad a step and an amplitude of 1, and `noise`. */
 static int warnings(journal *j, double large, double w, double noise) {
@@ -200,7 +189,7 @@ static int warnings(journal *j, double large, double w, double noise) {
   uint64_t seed = 7;
   *j = (journal){0};
   def.size = 2, def.floor = 1e-3;
-  mps_context_set_log(context, note, j);
+  mps_context_set_log(context, journal_note, j);
   mps_assert_ok(context, mps_coupling_create(context, &def, &c));
   for (int n = 0; n < 300; n++) {
     double x[2];

@@ -1,32 +1,11 @@
 /* test_elastic_contrast.c - moduli that differ by many orders in one body: above 1e8 the log is
  * warned, and the budget of energies closes to 1e-14 times the contrast, as mps/elastic.h states.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "test_common.h"
+#include "test_journal.h"
 
 #include <mps/mps.h>
 
 #define OK(call) mps_assert_ok(own, call)
-
-typedef struct journal {
-  int count;
-  char last[400];
-} journal;
-
-static void note(void *user, int32_t level, const char *message) {
-  journal *j = user;
-  if (level != MPS_CONTEXT_LOG_WARNING) return;
-  j->count++;
-  snprintf(j->last, sizeof j->last, "%s", message);
-}
-
-static mps_context *noting(journal *j) {
-  mps_context_def def = test_context_defaults();
-  mps_context *own = NULL;
-  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
-  def.log = note, def.log_user = j;
-  assert_int_equal(mps_context_create(&def, &own, NULL, 0), MPS_OK);
-  return own;
-}
 
 /* A block with its lowest row held and eight particles of another modulus is loaded and set free:
  * the largest term of the budget, and what it misses. */
@@ -77,7 +56,7 @@ static void the_budget_follows_the_contrast(void **state) {
   static const double contrasts[] = {1.0, 1e4, 1e8, 1e10, 1e12};
   for (int k = 0; k < 5; k++) {
     journal j = {0};
-    mps_context *own = noting(&j);
+    mps_context *own = journal_context(&j, NULL);
     double missing, largest;
     swing(own, contrasts[k], &missing, &largest);
     const double bound = fmax(1e-10, 1e-14 * contrasts[k]);

@@ -1,7 +1,7 @@
 /* test_fluid_warnings.c - what the model does not hold for is refused, or the log is warned: walls
  * that go or bend too far, bodies that roll onto the bed, velocities for which a run would not end.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "test_common.h"
+#include "test_journal.h"
 
 #include "fluid_tank.h"
 
@@ -11,29 +11,7 @@
 
 #define L0 0.02
 
-typedef struct journal {
-  int count, asked; /* warnings; calls of the cancel hook */
-  char last[400];
-} journal;
-
-static void note(void *user, int32_t level, const char *message) {
-  journal *j = user;
-  if (level != MPS_CONTEXT_LOG_WARNING) return;
-  j->count++;
-  snprintf(j->last, sizeof j->last, "%s", message);
-}
-
 static int32_t stop_at_the_third(void *user) { return ++((journal *)user)->asked >= 3; }
-
-static mps_context *noting(journal *j, bool cancels) {
-  mps_context_def def = test_context_defaults();
-  mps_context *own;
-  def.executor = MPS_CONTEXT_EXECUTOR_SERIAL;
-  def.log = note, def.log_user = j;
-  if (cancels) def.cancel = stop_at_the_third, def.cancel_user = j;
-  assert_int_equal(mps_context_create(&def, &own, NULL, 0), MPS_OK);
-  return own;
-}
 
 /* The left wall goes `part` of l0 in a step of 2 ms. */
 static mps_status go(mps_context *own, double part) {
@@ -50,7 +28,7 @@ static mps_status go(mps_context *own, double part) {
 static void a_wall_that_goes_far_in_a_step(void **state) {
   (void)state;
   journal j = {0};
-  mps_context *own = noting(&j, false);
+  mps_context *own = journal_context(&j, NULL);
   assert_int_equal(go(own, 0.4), MPS_OK);
   assert_int_equal(j.count, 0);
   assert_int_equal(go(own, 0.8), MPS_OK);
@@ -92,7 +70,7 @@ static mps_status bend(mps_context *own, double slope) {
 static void a_wall_that_bends_far(void **state) {
   (void)state;
   journal j = {0};
-  mps_context *own = noting(&j, false);
+  mps_context *own = journal_context(&j, NULL);
   assert_int_equal(bend(own, 0.08), MPS_OK);
   assert_int_equal(j.count, 0);
   assert_int_equal(bend(own, 0.2), MPS_OK);
@@ -154,7 +132,7 @@ static void lower_box(mps_context *own, double to, int steps) {
 static void a_body_that_rolls_onto_the_bed(void **state) {
   (void)state;
   journal j = {0};
-  mps_context *own = noting(&j, false);
+  mps_context *own = journal_context(&j, NULL);
   lower_box(own, 15.2, 10);
   assert_int_equal(j.count, 0);
   lower_box(own, 14.0, 20); /* below 15 degrees for the last six steps: once */
@@ -169,7 +147,7 @@ static void a_run_does_not_choose_endless_steps(void **state) {
   (void)state;
   for (int weightless = 0; weightless < 2; weightless++) {
     journal j = {0};
-    mps_context *own = noting(&j, false);
+    mps_context *own = journal_context(&j, NULL);
     mps_particles_def set = mps_particles_defaults();
     mps_fluid_def def = mps_fluid_defaults();
     tank t;
@@ -194,7 +172,7 @@ static void a_run_does_not_choose_endless_steps(void **state) {
 static void the_density_of_a_wide_kernel_can_be_cancelled(void **state) {
   (void)state;
   journal j = {0};
-  mps_context *own = noting(&j, true);
+  mps_context *own = journal_context(&j, stop_at_the_third);
   mps_kernel *kernel;
   double n0 = -1.0;
   mps_assert_ok(own, mps_kernel_create(own, MPS_KERNEL_SMOOTH, 1.0, &kernel));

@@ -100,7 +100,7 @@ mps_status mpsi_field_check_value(const mps_particles *particles, const char *fu
 /* ---- population.c ---------------------------------------------------------------------------- */
 
 /* Tells the holders of the particles from index `first` on, which have been added with their
- * positions; where one refuses they are gone again. `status`: what has become of adding them;
+ * positions; where one refuses they are gone again. `status`: that of adding them;
  * `places`: the arguments that have given the positions. */
 mps_status mpsi_particles_arrive(mps_particles *particles, const char *function, const char *places,
                                  mps_status status, int64_t first);

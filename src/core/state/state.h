@@ -129,7 +129,7 @@ typedef struct mpsi_state_of {
    * fail on this one is done; its own status so far is `status`. */
   mps_status (*settle)(void *solver, const char *function, mps_status status);
   /* May be NULL, of a snapshot or file that is to hold what the caller has edited: takes it in,
-   * once all memory is there; `status` is what has become of that on this rank, and what comes back
+   * once all memory is there; `status` is that of this rank so far, and what comes back
    * that of all. On an error nothing has been taken in. */
   mps_status (*take_in)(void *solver, const char *function, mps_status status);
   /* May be NULL, cannot fail. `bind`: the set is back, its columns may have moved and its number of

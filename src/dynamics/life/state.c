@@ -194,10 +194,13 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
 /* ---- what the caller does
  * ------------------------------------------------------------------------ */
 
-/* A state is kept between steps only. */
+/* A state is kept between steps only, and of a set without an open edit, on all ranks. The guard is
+ * asked alone: a callback that calls may run on one rank. */
 static mps_status check_whole(const mps_dynamics *dynamics, const char *function) {
   const mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
-  return status == MPS_OK ? mpsi_particles_ready(dynamics->particles, function) : status;
+  if (status != MPS_OK) return status;
+  return mpsi_domain_agree(dynamics->domain, function,
+                           mpsi_particles_ready(dynamics->particles, function));
 }
 
 static mps_status take_in(void *solver, const char *function, mps_status status) {
