@@ -7,6 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What a checkpoint of this program says it is of. */
+static mps_checkpoint own_checkpoint(void) {
+  mps_checkpoint info = mps_checkpoint_defaults();
+  snprintf(info.user_key, sizeof info.user_key, "mps-wave 1");
+  return info;
+}
+
 static char *join(const char *directory, const char *name) {
   const size_t size = strlen(directory) + strlen(name) + 2;
   char *path = malloc(size);
@@ -16,7 +23,7 @@ static char *join(const char *directory, const char *name) {
 
 bool files_peek(app *a, settings *s) {
   if (!s->restart) return true;
-  mps_checkpoint info = mps_checkpoint_defaults();
+  mps_checkpoint info = own_checkpoint();
   if (!app_check(a, mps_checkpoint_info(a->context, s->restart, &info))) return false;
   s->dt = info.dt; /* a run goes on with its own time step */
   return true;
@@ -30,7 +37,7 @@ mps_status files_gather(files *f, mps_particles **whole) {
 }
 
 static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const files *f) {
-  mps_checkpoint info = mps_checkpoint_defaults();
+  mps_checkpoint info = own_checkpoint();
   if (!app_agree(a, app_check(a, mps_checkpoint_info(a->context, s->restart, &info)))) return false;
   const int64_t size = info.user_bytes;
   info.user_data = malloc(size > 0 ? (size_t)size : 1);
@@ -71,7 +78,7 @@ static bool open_recorder(app *a, const settings *s, double now, files *f) {
 /* Saves what the files `user` are of. */
 static mps_status write_checkpoint(void *user) {
   const files *f = user;
-  mps_checkpoint info = mps_checkpoint_defaults();
+  mps_checkpoint info = own_checkpoint();
   mps_status status = field_join(f->so_far->peaks, f->domain);
   if (status != MPS_OK) return status;
   info.user_data = restart_pack(f->so_far, &info.user_bytes);

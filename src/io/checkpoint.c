@@ -61,7 +61,8 @@ static bool write_field(hid_t group, const mps_particles_field_info *info, const
   const hid_t target = H5Screate_simple(2, size, NULL),
               source = H5Screate_simple(1, size + 1, NULL);
   const hid_t dataset = mpsi_h5_dataset(group, info->name, type, target);
-  bool good = source >= 0 && dataset >= 0;
+  bool good = source >= 0 && dataset >= 0 &&
+              (!info->unit[0] || mpsi_h5_attribute_text(dataset, "unit", info->unit));
   for (int64_t c = 0; good && c < view->shape[1] && view->shape[0] > 0; c++) {
     const hsize_t start[2] = {(hsize_t)c, 0}, count[2] = {1, size[1]};
     const char *column = (const char *)view->data + 8 * c * view->stride[1];

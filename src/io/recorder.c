@@ -327,7 +327,8 @@ static bool make_file(mps_recorder *recorder) {
       group[k] = H5Gcreate2(recorder->file.id, path[k], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     good = group[k] >= 0;
   }
-  good = good && make_attributes(recorder, group[ROOT], group[STEPS_GROUP]) &&
+  good = good && mpsi_h5_attribute_text(recorder->file.id, "library", mps_version()) &&
+         make_attributes(recorder, group[ROOT], group[STEPS_GROUP]) &&
          make_datasets(recorder, group[ROOT], group[POINT_DATA]);
   for (int k = 0; k < GROUPS; k++)
     if (group[k] >= 0) H5Gclose(group[k]);
