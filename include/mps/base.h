@@ -47,7 +47,12 @@ MPS_EXTERN_C_BEGIN
   X(ERROR_NUMERIC, 10, "a numerical method failed to converge or met a singular system")           \
   X(ERROR_INTERNAL, 11, "an internal invariant is broken: please report it")
 
-/** Outcome of every fallible call. MPS_OK is zero. Values are never renumbered. */
+/** Outcome of every fallible call. MPS_OK is zero. Values are never renumbered. The comment of a
+ *  function names the statuses that it returns. Beyond these, any function may return
+ *  MPS_ERROR_ARGUMENT for a NULL object, array or struct, or a struct_size unknown to this library;
+ *  MPS_ERROR_MEMORY where it allocates; MPS_ERROR_STATE where it changes an object whose callback
+ *  is running, or where the caller's executor has lost a unit of work; and, on the ranks of a
+ *  domain, the status of a rank that has failed. */
 typedef enum mps_status {
 #define MPS_STATUS_ENTRY(name, value, text) MPS_##name = value,
   MPS_STATUS_TABLE(MPS_STATUS_ENTRY)
@@ -99,7 +104,7 @@ typedef struct mps_dtype {
   uint16_t lanes; /* 1 */
 } mps_dtype;
 
-#define MPS_VIEW_READONLY 1u /* flag: the caller may read but not write */
+#define MPS_VIEW_READONLY 1u /* flag: read only */
 
 /** A borrowed array, for reading: nothing is copied. Element (i, c) lies at
  *  data + (i * stride[0] + c * stride[1]) elements. Valid until the owner is destroyed or its

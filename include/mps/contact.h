@@ -1,13 +1,13 @@
 /* mps/contact.h - the contact of one solver with one rigid body: friction, stiffness, reactions by
- * part of the surface, and the particles that touch. By impulses at the surface (docs/theory/
- * contact.md), or by springs at the particles (Nakamura 5).
+ * part of the surface, and the particles in contact. By impulses at the surface
+ * (docs/theory/contact.md), or by penalty springs at the particles (Nakamura 5).
  *
  * A solver makes it (mps_mpm_add_contact, mps/mpm.h). A body may be in contact with several solvers
- * at once; it feels the sum of their forces. Who moves it is stated once: one of the solvers, or
- * the caller by mps_body_advance.
+ * at once; it receives the sum of their forces. One of the solvers advances it, or the caller by
+ * mps_body_advance (`mover`).
  *
- * The handle is the caller's; destroying it ends the contact. When the solver goes first, the
- * contact has ended and still answers what it last saw. Thread rule: as of its solver.
+ * The handle is the caller's; destroying it ends the contact. When the solver is destroyed first,
+ * the contact has ended, and its queries return their last values. Thread rule: as of its solver.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_CONTACT_H
 #define LIBMPS_CONTACT_H
@@ -18,25 +18,25 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_contact mps_contact;
 
-/** Who moves the body. */
+/** Which object advances the body. */
 typedef enum mps_contact_mover {
   MPS_CONTACT_MOVER_SOLVER = 0, /* this solver, at the end of each of its steps */
   MPS_CONTACT_MOVER_OTHER = 1   /* another solver, or the caller by mps_body_advance */
 } mps_contact_mover;
 
-/** What becomes of particles whose centres lie inside the body when the contact is made. */
+/** Treatment of particles whose centres lie inside the body when the contact is made. */
 typedef enum mps_contact_inside {
-  MPS_CONTACT_INSIDE_REFUSE = 0, /* an error that counts them */
-  MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and are pushed out: a twentieth of the way in each
-                                   step, or with the contact stiffness */
-  MPS_CONTACT_INSIDE_REMOVE = 2  /* they leave the set, as before each step those that are deeper
-                                    than `depth`; the reaction counts them */
+  MPS_CONTACT_INSIDE_REFUSE = 0, /* MPS_ERROR_ARGUMENT, with their number */
+  MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and the contact moves them out: a twentieth of the
+                                    overlap in each step, or with the contact stiffness */
+  MPS_CONTACT_INSIDE_REMOVE =
+      2 /* removed now, and before each step when deeper than `depth`; the reaction counts them */
 } mps_contact_inside;
 
-/** How the contact keeps particles out of the body. */
+/** Method of contact. */
 typedef enum mps_contact_method {
-  MPS_CONTACT_METHOD_IMPULSE = 0, /* impulses at the surface, such that nothing enters it and
-                                     friction holds; without a stiffness */
+  MPS_CONTACT_METHOD_IMPULSE = 0, /* impulses at the surface, such that no particle enters it and
+                                     Coulomb's law of friction holds; without a stiffness */
   MPS_CONTACT_METHOD_PENALTY = 1  /* Nakamura 5: springs at the particles (28), friction at the
                                      nodes (31)-(34) */
 } mps_contact_method;
@@ -45,9 +45,9 @@ typedef struct mps_contact_def {
   uint32_t struct_size;
   int32_t mover;   /* mps_contact_mover, default SOLVER */
   int32_t method;  /* mps_contact_method, default IMPULSE */
-  int32_t sweeps;  /* sweeps of Gauss and Seidel over the contacts of a step, 1 to 1000, by
-                      METHOD_IMPULSE; 0 (default): 10, with a tolerance at most 30. Each step begins
-                      with the last's impulses; the solver takes the most that a contact asks for */
+  int32_t sweeps;  /* Gauss-Seidel sweeps over the contacts of a step, 1 to 1000, by METHOD_IMPULSE;
+                      0 (default): 10, with a tolerance at most 30. Each step is warm-started from
+                      the last impulses; the solver makes the largest number of all its contacts */
   double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
   double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of
                       thickness; in axisymmetry per m of radius and rad, times the particle's
@@ -56,35 +56,36 @@ typedef struct mps_contact_def {
   double xi;       /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
                       particles a cell, in 3D times the cell's size; n and CFL are those of the
                       solver's definition. NaN (default): not used. Giving both is an error */
-  double offset;  /* m, >= 0: half the size of a particle, which is pushed where it is nearer to the
-                     surface; by impulses it changes with the particle's elastic strain across the
-                     surface. NaN (default): half the particles' spacing */
-  double depth;   /* m, > 0: a step that finds a particle deeper below the surface than this fails
-                     before anything moves.
-                     NaN (default): one cell; with INSIDE_PUSH no bound; with INSIDE_REMOVE,
-                     where such particles are removed instead, half the particles' spacing */
-  int32_t thin;   /* for METHOD_PENALTY, where momentum passes through a body thinner than two cells
-                     somewhere: 0 (default): it is refused; 1: it is allowed, and the log is warned.
-                     By impulses such a body keeps the sides apart, unless the solver has a contact
-                     by the penalty too */
-  int32_t inside; /* mps_contact_inside, default REFUSE */
-  double adhesion;  /* Pa, >= 0: shear stress that the surface bears besides friction times the
-                       pressure, wherever soil is pressed on it; default 0 */
-  double strength;  /* Pa, > 0: the most shear stress that it bears, such as alpha times the
-                       undrained strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,
-                       over the area that soil covers: within 3 %, of curved surfaces with a
-                       spacing of more than half a cell a fifth short, with a warning */
+  double offset; /* m, >= 0: half the size of a particle, which is in contact where it is nearer to
+                    the surface; by impulses it changes with the particle's elastic strain across
+                    the surface. NaN (default): half the particles' spacing */
+  double depth;  /* m, > 0: a step that finds a particle deeper below the surface than this fails
+                    before anything moves.
+                    NaN (default): one cell; with INSIDE_PUSH unbounded; with INSIDE_REMOVE,
+                    where such particles are removed instead, half the particles' spacing */
+  int32_t thin;  /* for METHOD_PENALTY, where momentum passes through a body thinner than two cells:
+                    0 (default): MPS_ERROR_ARGUMENT; 1: allowed, with a warning. With METHOD_IMPULSE
+                    such a body separates its sides, unless the solver has a penalty contact too */
+  int32_t inside;   /* mps_contact_inside, default REFUSE */
+  double adhesion;  /* Pa, >= 0: shear strength of the surface besides friction times the pressure,
+                       where it is under pressure; default 0 */
+  double strength;  /* Pa, > 0: upper bound of its shear stress, such as alpha times the undrained
+                       strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,  over the
+                       area that soil covers: within 3 %, of curved surfaces with a  spacing of more
+                       than half a cell a fifth short, with a warning */
   double corner;    /* m, >= 0: radius by which edges and corners of the body are rounded for the
-                       particles, so that the grid can show how soil flows round them; less than
+                       particles, so that the grid resolves the flow of soil around them; less than
                        half of the body's thinnest wall. 0 (default): not at all. Not for
                        METHOD_PENALTY */
   double tolerance; /* in [0, 1): sweeps end before `sweeps` once one changes the impulses by less
                        than this part of them (of the block of cells with the largest, roots of sums
                        of squares; looked at after 10, 14, 18, ... sweeps: on ranks a reduction each
-                       time). 0, NaN (default): all sweeps are made. The solver takes the least of
-                       its contacts; mps_mpm_get_usage has what is left */
+                       time). 0, NaN (default): all sweeps are made. The solver uses the least of
+                       its contacts; mps_mpm_get_usage reports the change of the last sweep */
 } mps_contact_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);
 static inline mps_contact_def mps_contact_defaults(void) {
   mps_contact_def def;
@@ -93,15 +94,16 @@ static inline mps_contact_def mps_contact_defaults(void) {
   return def;
 }
 
-/** Ends the contact, gives up the handle and nulls it; accepts NULL. In a callback of the solver
- *  it does nothing but record MPS_ERROR_STATE. */
+/** Ends the contact, gives up the handle and nulls it; accepts NULL. In a callback of the solver it
+ *  only records MPS_ERROR_STATE. */
 MPS_API void mps_contact_destroy(mps_contact **contact);
 
 /** The body; NULL for NULL. Lives at least as long as the contact. */
 MPS_API mps_body *mps_contact_body(const mps_contact *contact);
 
-/** What the particles of this solver do to part `part` of the body (mps_body_find_part), or to all
- *  of it (-1); `work` is that of the body's surface on the particles. */
+/** Reaction of the particles of this solver on part `part` of the body (mps_body_find_part), or on
+ *  all of it (-1); `work` is that of the body's surface on the particles. MPS_ERROR_ARGUMENT: no
+ *  part of that number, NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_contact_get_reaction_sized(const mps_contact *contact,
                                                                 int32_t part, mps_reaction *out,
                                                                 size_t size);
@@ -110,15 +112,15 @@ static inline mps_status mps_contact_get_reaction(const mps_contact *contact, in
   return mps_contact_get_reaction_sized(contact, part, out, sizeof *out);
 }
 
-/** The particles that touch the body, in the set's order: `count` receives their number; at most
- *  `capacity` (>= 0) of them are written. By impulses those that the body has pushed in the last
- *  step; by the penalty those nearer than `offset` where particles and body now are. Each array may
- *  be NULL: `ids`; `gap` (m: the surface's present distance less half the particle's size);
- * `normal` (3 values a particle, outward unit vector of the surface); `force` (N, 3 values a
- * particle, on the particle: normal force and friction in the last step; by the penalty the present
- * normal force); `foot` (m, 3 values a particle, nearest point of the surface). Forces of
- * neighbours may be shared out between them unevenly: their sum is what is determined. Costs a pass
- * over all particles. MPS_ERROR_STATE when the contact has ended. */
+/** Particles in contact with the body, in the set's order: `count` receives their number; at most
+ *  `capacity` (>= 0) of them are written. METHOD_IMPULSE: those with an impulse in the last step;
+ *  METHOD_PENALTY: those nearer than `offset` at the present positions. Each array may be NULL:
+ *  `ids`; `gap` (m: the surface's present distance less half the particle's size); `normal` (3
+ *  values a particle, outward unit vector of the surface); `force` (N, 3 values a particle, on the
+ *  particle: normal force and friction in the last step; by the penalty the present normal force);
+ *  `foot` (m, 3 values a particle, nearest point of the surface). The distribution of force between
+ *  neighbours may be uneven: only its sum is determined. Takes time in proportion to the number of
+ *  particles. MPS_ERROR_ARGUMENT: `capacity` below 0; MPS_ERROR_STATE: the contact has ended. */
 MPS_API MPS_NODISCARD mps_status mps_contact_get_particles(const mps_contact *contact,
                                                            int64_t capacity, int64_t *count,
                                                            int64_t *ids, double *gap,

@@ -33,9 +33,9 @@ typedef void (*mps_context_free_fn)(void *user, void *memory);
 /** One unit of work. `worker` is in [0, workers) and unique among the units running at once. */
 typedef void (*mps_context_task_fn)(void *task, int64_t index, int32_t worker);
 /** A caller's own executor: runs task(task_data, i, worker) once for each i in [0, count), in any
- *  order and concurrently, and returns when all are done. It is tried when the context is created.
- *  A unit with a worker or index out of range is left out: the call, or the next step of a solver,
- *  is then MPS_ERROR_STATE. */
+ *  order and concurrently, and returns when all are done. It is tested when the context is created.
+ *  A unit with a worker or index out of range is left out, and the call, or the next step of a
+ *  solver, returns MPS_ERROR_STATE. */
 typedef void (*mps_context_parallel_for_fn)(void *user, int64_t count, mps_context_task_fn task,
                                             void *task_data);
 
@@ -59,7 +59,7 @@ typedef enum mps_context_log_level {
 
 typedef void (*mps_context_log_fn)(void *user, int32_t level, const char *message);
 
-/** What a progress hook is told. */
+/** Progress of the running call, as the progress hook receives it. */
 typedef struct mps_context_progress {
   const char *task; /* short name of what is running */
   int64_t step;
@@ -94,8 +94,8 @@ typedef struct mps_context_def {
   void *cancel_user;
 } mps_context_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT for NULL or a size that
- *  this library does not know. */
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_context_def_init(mps_context_def *def, size_t size);
 
 static inline mps_context_def mps_context_defaults(void) {
@@ -106,11 +106,14 @@ static inline mps_context_def mps_context_defaults(void) {
 }
 
 /** Creates a context. `def` NULL: the defaults. `error_text` (may be NULL, of `error_size` bytes)
- *  receives the reason of a failure, since no context exists to hold it. */
+ *  receives the reason of a failure, since no context exists to hold it. MPS_ERROR_ARGUMENT: a
+ *  member of `def` out of range, or an executor that does not run each index once;
+ *  MPS_ERROR_MEMORY; MPS_ERROR_UNSUPPORTED: OpenMP, or an instruction level, that this build or
+ *  processor lacks. */
 MPS_API MPS_NODISCARD mps_status mps_context_create(const mps_context_def *def, mps_context **out,
                                                     char *error_text, size_t error_size);
 
-/** Destroys and nulls; accepts NULL. Objects made from the context stay usable: its memory goes
+/** Destroys and nulls; accepts NULL. Objects made from the context stay usable: its memory is freed
  *  with the last of them. */
 MPS_API void mps_context_destroy(mps_context **context);
 
@@ -120,18 +123,20 @@ MPS_API const mps_error *mps_context_error(const mps_context *context);
 /** Empties the record: status MPS_OK, no message. */
 MPS_API void mps_context_clear_error(mps_context *context);
 /** Makes the record of a failure of the caller's own, such as one in a callback, whose status the
- *  library then returns with this message in its own. `function` (NULL: "caller") is who has
- * failed, `message` (cut to the record's length) why. Returns `status`; MPS_ERROR_ARGUMENT,
- * recorded as such, where it is no error of the library or message is NULL. Allowed within
- * callbacks. */
+ *  library then returns with this message in its own. `function` (NULL: "caller") names the
+ *  function that has failed, `message` (cut to the record's length) the reason. Returns `status`;
+ *  MPS_ERROR_ARGUMENT, recorded as such, where it is no error of the library or message is NULL.
+ *  Allowed within callbacks. */
 MPS_API mps_status mps_context_set_error(mps_context *context, mps_status status,
                                          const char *function, const char *message);
 
-/** Replace a hook and its `user`; NULL: none. Not while a function of the context or of its objects
- *  runs in another thread. */
+/** Replaces the log hook and its `user`; NULL: none. Not while a function of the context or of its
+ *  objects runs in another thread. */
 MPS_API void mps_context_set_log(mps_context *context, mps_context_log_fn log, void *user);
+/** Replaces the progress hook and its `user`, as mps_context_set_log. */
 MPS_API void mps_context_set_progress(mps_context *context, mps_context_progress_fn progress,
                                       void *user);
+/** Replaces the cancel hook and its `user`, as mps_context_set_log. */
 MPS_API void mps_context_set_cancel(mps_context *context, mps_context_cancel_fn cancel, void *user);
 
 /** x86-64 level of the inner loops in use: 1, 3 or 4. */
@@ -141,7 +146,8 @@ MPS_API int32_t mps_context_instruction_level(const mps_context *context);
 MPS_API int32_t mps_context_threads(const mps_context *context);
 
 /** Runs task(data, i, worker) for i in [0, count) on the context's executor and waits. The task
- *  must not use this context or its objects except to read them. */
+ *  must not use this context or its objects except to read them. MPS_ERROR_ARGUMENT: `task` NULL,
+ *  `count` below 0; MPS_ERROR_STATE: the caller's executor has left a unit out. */
 MPS_API MPS_NODISCARD mps_status mps_context_parallel_for(mps_context *context, int64_t count,
                                                           mps_context_task_fn task, void *data);
 

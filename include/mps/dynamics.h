@@ -1,7 +1,7 @@
-/* mps/dynamics.h - explicit MPS elastodynamics (Yoshida): earthquake response of an elastic body
- * of particles in plane strain, with Verlet, leapfrog and Euler time integration, Rayleigh
- * damping, held, driven, viscous and free-field boundaries, and the stability limit of the time
- * step. docs/dynamics.md is a guide.
+/* mps/dynamics.h - explicit MPS elastodynamics (Yoshida): earthquake response of an elastic body of
+ * particles in plane strain, with Verlet, leapfrog and Euler time integration, Rayleigh damping,
+ * held, driven, viscous and free-field boundaries, and the stability limit of the time step.
+ * docs/dynamics.md is a guide.
  *
  * Three unknowns a particle: two displacements (m) and a rotation (rad); every force, mass and
  * energy is that of the thickness `measure`. Neighbours and the weight function come from the
@@ -20,18 +20,18 @@
  *
  * After a step to time t = mps_dynamics_time the positions, displacements and rotations are those
  * of t; accelerations, pressures and reactions those that the step began with, of t - dt
- * (mps_dynamics_refresh brings accelerations and pressures to t); velocity and spin those of
- * t - dt/2 (Verlet, leapfrog) or of t (Euler).
+ * (mps_dynamics_refresh brings accelerations and pressures to t); velocity and spin those of t -
+ * dt/2 (Verlet, leapfrog) or of t (Euler).
  *
- * Between two steps particles may be removed (mps_particles_remove): erosion, excavation. The rest
- * moves on, without the forces of those that have gone, as a new solver on it would; boundaries and
- * loads lose them, dt is checked or chosen anew. They come back, to boundaries and loads too, with
- * a state from before (mps_dynamics_rollback, mps_dynamics_restore). None can be added: a newcomer
- * has no reference position in a body that has moved.
+ * Between two steps particles may be removed (mps_particles_remove): erosion, excavation. The other
+ * particles continue without the forces of the removed ones, as in a new solver; boundaries and
+ * loads drop them, dt is checked or chosen again. Removed particles are restored, also in
+ * boundaries and loads, with an earlier state (mps_dynamics_rollback, mps_dynamics_restore). None
+ * can be added: an added particle has no reference position in a body that has moved.
  *
- * Ranks (mps/domain.h) each make the same whole set, of which the solver leaves each its share, and
- * all free-field columns. All functions but those that only tell (get_def, particles, context,
- * pairs, limit, time, steps) are collective; lists of ids name particles of any rank. None can be
+ * Ranks (mps/domain.h) each make the same whole set, of which each keeps its part and all
+ * free-field columns. All functions are collective except the queries get_def, particles, context,
+ * pairs, limit, time and steps; lists of ids name particles of any rank. No particle can be
  * removed. Rank 0 writes files, all read them, on any number of ranks. Thread rule: one thread at a
  * time per context; a step runs on its executor, with the same bits for every number of threads and
  * ranks. SPDX-License-Identifier: BSD-3-Clause */
@@ -56,8 +56,8 @@ typedef enum mps_dynamics_integrator {
   MPS_DYNAMICS_INTEGRATOR_EULER = 2     /* Yoshida (2), (3) corrected: grows without damping */
 } mps_dynamics_integrator;
 
-/** How the rigid rotation is taken out of a pair's relative position r: u = r - R r0, with R of
- *  the rotations th_i, th_j of the two particles. */
+/** Removal of the rigid rotation from a pair's relative position r: u = r - R r0, with R of the
+ *  rotations th_i, th_j of the two particles. */
 typedef enum mps_dynamics_rotation {
   MPS_DYNAMICS_ROTATION_MEAN_MATRIX = 0, /* (R(th_i) + R(th_j))/2, Yoshida (12) */
   MPS_DYNAMICS_ROTATION_MEAN_ANGLE = 1   /* R((th_i + th_j)/2), Yoshida (11) */
@@ -79,26 +79,28 @@ typedef struct mps_dynamics_def {
   int32_t damping;    /* MPS_DYNAMICS_DAMPING_..., default PAIR */
   double dt; /* s, 1e-12 to 1e9; NaN (default): `courant` times the linear limit, found at the first
                 step */
-  double courant;        /* fraction of the linear limit for dt, in (0, 1]; default 0.9 */
-  double radius_ratio;   /* re / D, in (1, 4]; default 1.5. Not read with a kernel */
-  double f1, f2;         /* Rayleigh damping has the ratio h at these frequencies, Hz, 1e-20 to 1e9;
-                            default 1 and 14 */
-  double period_x;       /* m, > 0: the body repeats itself in x with this period; NaN (default): it
-                            does not */
-  double divergence;     /* m/s2, > 0: |acceleration| beyond it stops the run; default 1e15 */
-  double measure;        /* thickness, m, 1e-9 to 1e9; default 1 */
-  int32_t watch_damping; /* 1: sum up in each step what Rayleigh damping takes, so that the budget
-                            of mps_dynamics_get_totals shows it apart from what the time integration
-                            takes or gives; costs about a tenth of a step. 0 (default): the two are
-                            found together */
-  int32_t reserved;      /* 0 */
-  mps_material *material; /* linear elastic, of all particles; NULL (default): what the fields say.
-                             Kept alive */
+  double courant;      /* fraction of the linear limit for dt, in (0, 1]; default 0.9 */
+  double radius_ratio; /* re / D, in (1, 4]; default 1.5. Not read with a kernel */
+  double f1, f2;       /* Rayleigh damping has the ratio h at these frequencies, Hz, 1e-20 to 1e9;
+                          default 1 and 14 */
+  double period_x;     /* m, > 0: the body repeats itself in x with this period; NaN (default): it
+                          does not */
+  double divergence;   /* m/s2, > 0: |acceleration| beyond it stops the run; default 1e15 */
+  double measure;      /* thickness, m, 1e-9 to 1e9; default 1 */
+  int32_t
+      watch_damping;      /* 1: each step sums the dissipation of Rayleigh damping, so that
+                             mps_dynamics_get_totals reports it apart from that of the time integration;
+                             costs about a tenth of a step. 0 (default): reports their sum */
+  int32_t reserved;       /* 0 */
+  mps_material *material; /* linear elastic, of all particles; NULL (default): the moduli of the
+                             fields. Kept alive */
   mps_kernel *kernel; /* weight function, its radius in (1, 4] spacings; NULL (default): re/r - 1
                          with radius_ratio, Yoshida (A8). Kept alive */
   mps_domain *domain; /* ranks that share the body; NULL (default): none. Kept alive */
 } mps_dynamics_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size);
 static inline mps_dynamics_def mps_dynamics_defaults(void) {
   mps_dynamics_def def;
@@ -108,43 +110,49 @@ static inline mps_dynamics_def mps_dynamics_defaults(void) {
 }
 
 /** Creates a solver for the 2D set `particles`, sorting it (its epoch changes). `def` NULL:
- *  defaults. On an error the set is as before: fields, values, order, epoch. */
+ *  defaults. On an error the set is as before: fields, values, order, epoch. MPS_ERROR_ARGUMENT: a
+ *  member of `def` or a field value out of range; MPS_ERROR_FIELD: a field that is needed is
+ *  missing; MPS_ERROR_STATE: another solver holds the set; MPS_ERROR_UNSUPPORTED: a set that is not
+ *  2D; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
                                                      const mps_dynamics_def *def,
                                                      mps_dynamics **out);
-/** Releases and nulls; accepts NULL. In a callback of the solver itself it does nothing but record
+/** Releases and nulls; accepts NULL. In a callback of the solver itself it only records
  *  MPS_ERROR_STATE. */
 MPS_API void mps_dynamics_destroy(mps_dynamics **dynamics);
 
-/** The definition in use, with dt as set since (NaN: not yet chosen). */
+/** The definition in use, with dt as set since (NaN: not yet chosen). MPS_ERROR_ARGUMENT: NULL, or
+ *  a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_get_def_sized(const mps_dynamics *dynamics,
                                                             mps_dynamics_def *out, size_t size);
 static inline mps_status mps_dynamics_get_def(const mps_dynamics *dynamics, mps_dynamics_def *out) {
   return mps_dynamics_get_def_sized(dynamics, out, sizeof *out);
 }
-/** The set and the context that it was created with, or NULL of NULL. */
+/** The set of the solver; NULL for NULL. Lent. */
 MPS_API mps_particles *mps_dynamics_particles(const mps_dynamics *dynamics);
+/** The context of the solver; NULL for NULL. Lent. */
 MPS_API mps_context *mps_dynamics_context(const mps_dynamics *dynamics);
-/** Says what the particles `ids` (NULL with count 0: all) are made of, before the first step or
+/** Assigns a material to the particles `ids` (NULL with count 0: all), before the first step or
  *  between two: writes `shear_velocity` and `pressure_velocity` from the constants of `material`
- *  and the particles' `density`. MPS_ERROR_UNSUPPORTED: not linear elastic. On an error nothing has
- *  changed. */
+ *  and the particles' `density`. MPS_ERROR_UNSUPPORTED: not linear elastic; MPS_ERROR_FIELD: no
+ *  field `density`; MPS_ERROR_STATE: a field is being edited, or a callback of the solver is
+ *  running. On an error nothing has changed. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_set_material(mps_dynamics *dynamics,
                                                            const mps_material *material,
                                                            int64_t count, const int64_t *ids);
-/** Number of interacting pairs (each once). */
+/** Number of interacting pairs (each once); 0 for NULL. */
 MPS_API int64_t mps_dynamics_pairs(const mps_dynamics *dynamics);
 
 /* ---- boundaries: before the first step and between any two ----------------------------------- */
 
-/* Kinds (mps_boundary_kind): HELD, each of `dofs` stays where it is: a roller, a rigid base.
- * DRIVEN, each component with a signal moves as it says, the rest of `dofs` is held. ABSORBING,
- * Lysmer dashpots to a half space outside, with a wave coming in from it: traction rho V (2 v_in -
- * v), V = Vp along the normal and Vs across. */
+/* Kinds (mps_boundary_kind): HELD, each of `dofs` is at rest: a roller, a rigid base. DRIVEN, each
+ * component with a signal follows it, the rest of `dofs` is held. ABSORBING, Lysmer dashpots to a
+ * half space outside, with a wave coming in from it: traction rho V (2 v_in - v), V = Vp along the
+ * normal and Vs across. */
 
-/** A boundary on some particles. Where two hold or drive the same degree of freedom, the one with
- *  the higher number has it; dashpots of several (a corner) add up, and do nothing on a degree of
- *  freedom that is held or driven. */
+/** A boundary on some particles. Where two prescribe the same degree of freedom, the one with the
+ *  higher number prevails; dashpots of several (a corner) add up, and do not act on a prescribed
+ *  degree of freedom. */
 typedef struct mps_dynamics_boundary_def {
   uint32_t struct_size;
   int32_t kind; /* mps_boundary_kind: HELD (default), DRIVEN or ABSORBING */
@@ -156,15 +164,17 @@ typedef struct mps_dynamics_boundary_def {
                      (default): all three. Not of ABSORBING */
   int32_t normal; /* absorbing: direction of the face's normal, 0 x, 1 (default) y; each particle
                      has one face of length D */
-  /* Driven: the displacement is that of the particle when the boundary takes it, and from then on
-   * factor (u(t) - u(then)). Absorbing: the incoming wave, of which the velocity is used. x and y;
-   * the third is NULL. Signals are kept alive. */
+  /* Driven: the displacement is that of the particle when the boundary is added, plus factor (u(t)
+   * - u(then)). Absorbing: the incoming wave, of which the velocity is used. x and y; the third is
+   * NULL. Signals are kept alive. */
   mps_signal *signal[3];                             /* default NULL */
   double factor[3];                                  /* finite, default 1 */
   double density, shear_velocity, pressure_velocity; /* absorbing: of the half space; NaN (default):
                                                         of each particle itself */
 } mps_dynamics_boundary_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_dynamics_boundary_def_init(mps_dynamics_boundary_def *def, size_t size);
 static inline mps_dynamics_boundary_def mps_dynamics_boundary_defaults(void) {
   mps_dynamics_boundary_def def;
@@ -173,22 +183,28 @@ static inline mps_dynamics_boundary_def mps_dynamics_boundary_defaults(void) {
   return def;
 }
 
-/** Adds a boundary; `number` receives the lowest free number, from 0. Before the first step what is
- *  held starts at rest and what is driven with the signal's velocity; later the first step stops
- *  it, or brings it to the signal's velocity. Dashpots act with the mean of the velocities before
- *  and after a step, so that they do not lower the stable time step (Euler: explicitly). */
+/** Adds a boundary; `number` receives the lowest free number, from 0. Before the first step, held
+ *  degrees of freedom start at rest and driven ones with the signal's velocity; later the next step
+ *  brings them to that velocity. Dashpots act with the mean of the velocities before and after a
+ *  step, so that they do not lower the stable time step (Euler: explicitly). MPS_ERROR_ARGUMENT: a
+ *  member of `def` out of range, or an unknown id; MPS_ERROR_STATE: a callback of the solver is
+ *  running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics,
                                                            const mps_dynamics_boundary_def *def,
                                                            int32_t *number);
-/** Gives a boundary another definition; what it has exerted so far stays counted. A degree of
- *  freedom that it has already goes on from where it is. */
+/** Gives a boundary another definition; its impulse and work are kept. A degree of freedom that it
+ *  prescribes already continues from its present value. MPS_ERROR_ARGUMENT: no boundary `number`;
+ *  otherwise errors as mps_dynamics_add_boundary. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_set_boundary(mps_dynamics *dynamics, int32_t number,
                                                            const mps_dynamics_boundary_def *def);
-/** Its particles are free from the next step on, with the velocity that they have. */
+/** Removes a boundary: its particles are free from the next step on, with their present velocity.
+ *  MPS_ERROR_ARGUMENT: no boundary `number`; MPS_ERROR_STATE: a callback of the solver is running.
+ *  */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_remove_boundary(mps_dynamics *dynamics,
                                                               int32_t number);
-/** Force, moment, impulse and work of what holds, drives or absorbs, on its particles; particle by
- *  particle, of all boundaries, in the field `reaction` if the set has it. */
+/** Force, moment, impulse and work of the boundary on its particles; the field `reaction`, if the
+ *  set has it, holds the force on each particle, of all boundaries. MPS_ERROR_ARGUMENT: no boundary
+ *  `number`, NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics,
                                                                  int32_t number, mps_reaction *out,
                                                                  size_t size);
@@ -205,10 +221,12 @@ typedef enum mps_dynamics_side {
 /** Before mps_dynamics_create: appends a free-field column beside the vertical left or right edge
  *  (MPS_DYNAMICS_SIDE_...) of the set, `gap` spacings away (2 to 1000000): one copy, fields
  *  included, of each particle of that edge, marked in the field `free_field`. The solver moves the
- *  column as horizontally endless ground, gives the edge the forces of the ground that is missing
- *  beside it, and puts dashpots between edge and column, so that level ground responds exactly as
- *  the column and waves from inside leave. Base conditions must include the column: select by a
- *  box wide enough. */
+ *  column as horizontally infinite ground, applies to the edge the forces of the missing ground
+ *  beside it, and couples edge and column by dashpots, so that level ground responds exactly as the
+ *  column and waves from inside leave. Base conditions must include the column: select by a box
+ *  wide enough. MPS_ERROR_ARGUMENT: `side` or `gap` out of range, or no 2D body; MPS_ERROR_STATE: a
+ *  solver holds the set, the set lies in parts on ranks, or it has such a column already;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_add_free_field(mps_particles *particles, int32_t side,
                                                              int32_t gap);
 
@@ -236,6 +254,8 @@ typedef struct mps_dynamics_load_def {
   double factor[3];      /* finite, default 1 */
 } mps_dynamics_load_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_dynamics_load_def_init(mps_dynamics_load_def *def, size_t size);
 static inline mps_dynamics_load_def mps_dynamics_load_defaults(void) {
   mps_dynamics_load_def def;
@@ -244,87 +264,103 @@ static inline mps_dynamics_load_def mps_dynamics_load_defaults(void) {
   return def;
 }
 
-/** As boundaries: `number` receives the lowest free number, from 0. */
+/** Adds a load; `number` (may be NULL) receives the lowest free number, from 0. MPS_ERROR_ARGUMENT:
+ *  a member of `def` out of range, or an unknown id; MPS_ERROR_STATE: a callback of the solver is
+ *  running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_add_load(mps_dynamics *dynamics,
                                                        const mps_dynamics_load_def *def,
                                                        int32_t *number);
+/** Gives load `number` another definition. MPS_ERROR_ARGUMENT: no load `number`; otherwise errors
+ *  as mps_dynamics_add_load. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_set_load(mps_dynamics *dynamics, int32_t number,
                                                        const mps_dynamics_load_def *def);
+/** Removes load `number`. MPS_ERROR_ARGUMENT: no load of that number; MPS_ERROR_STATE: a callback
+ *  of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_remove_load(mps_dynamics *dynamics, int32_t number);
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/** Takes `count` (>= 0) steps of dt, then brings all fields up to date. The cancel hook is asked
+/** Takes `count` (>= 0) steps of dt, then brings all fields up to date. The cancel hook is called
  *  before the first and some ten times a second: MPS_ERROR_CANCELLED, after whole steps.
  *  MPS_ERROR_DIVERGED: an acceleration beyond the limit of the definition or not finite, or at the
  *  end a velocity beyond 1e100 m/s; the record names step, time and particle; fields show the state
- *  after that step, `pressure` of its positions; _rollback, _restore and _restart lead back. */
+ *  after that step, `pressure` of its positions; mps_dynamics_rollback, _restore and _restart
+ *  continue, other calls return MPS_ERROR_STATE. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end, with fields up to date.
- *  It may read everything of the solver; whatever would change it is MPS_ERROR_STATE. A status
- * other than MPS_OK ends the run, which returns it. */
+ *  It may query the solver; functions that change it return MPS_ERROR_STATE. A status other than
+ *  MPS_OK ends the run, which returns it. */
 typedef mps_status (*mps_dynamics_fn)(void *user, mps_dynamics *dynamics);
 
 /** Goes to exactly t_end (s, not before the present time), in equal steps of at most dt; dt itself
  *  stays. Runs of one length after the other so have one step length. Calls `callback` (may be
  *  NULL) every `every` (>= 1) steps, the context's progress hook at least about 100 times, and its
- *  cancel hook with it: some ten times a second. */
+ *  cancel hook some ten times a second. MPS_ERROR_ARGUMENT: `t_end` or `every` out of range;
+ *  otherwise errors as mps_dynamics_step, or the status of `callback`. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end,
                                                   int64_t every, mps_dynamics_fn callback,
                                                   void *user);
 
 /** Reads displacement, velocity, rotation and spin from the fields as a new initial state without
  *  history, at time `time` (s, finite), step 0: the budget of mps_dynamics_get_totals and the
- *  reactions begin anew. All must be finite, and speeds (m/s; spin times spacing) at most 1e100. */
+ *  reactions start from 0. MPS_ERROR_ARGUMENT: a value that is not finite, or a speed (m/s; spin
+ *  times spacing) above 1e100; MPS_ERROR_STATE: a field is being edited, or a callback of the
+ *  solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time);
 
-/** Brings `acceleration` and `pressure` to the instant of the positions: what the next step would
- *  begin with, boundaries and loads included (signals are asked for it). Costs one step; nothing
- *  else changes. MPS_ERROR_DIVERGED, changing nothing: they would not be finite. */
+/** Computes `acceleration` and `pressure` at the time of the positions, boundaries and loads
+ *  included (signals are evaluated). Costs one step; nothing else changes. MPS_ERROR_DIVERGED,
+ *  changing nothing: they would not be finite. MPS_ERROR_STATE: the run has diverged before. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_refresh(mps_dynamics *dynamics);
 
-/** Keeps the state of the solver and its set (fields, order) in memory. *snapshot is made when it
- * is NULL, and otherwise filled again: one that this solver has filled. Fields that were edited
- *  are read as by a step, and left unread on an error. Allowed in a callback of mps_dynamics_run.
- */
+/** Keeps the state of the solver and its set (fields, order) in memory. *snapshot is created when
+ *  it is NULL; a snapshot of this solver is filled again. Edited fields are read as by a step, and
+ *  not read on an error. Allowed in a callback of mps_dynamics_run. MPS_ERROR_ARGUMENT: a snapshot
+ *  of another solver; MPS_ERROR_STATE: a step is running, or a field is being edited;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_snapshot(mps_dynamics *dynamics,
                                                        mps_snapshot **snapshot);
-/** Goes back to a snapshot, bit for bit, also from a run that has diverged or lost particles. Not
- * in the snapshot: loads, signals, and what reads them. MPS_ERROR_STATE, changing nothing: the
+/** Restores a snapshot, bit for bit, also after a run that has diverged or particles that were
+ *  removed. Not in the snapshot: loads and signals. MPS_ERROR_STATE, changing nothing: the
  *  boundaries are on other particles than then. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_rollback(mps_dynamics *dynamics,
                                                        const mps_snapshot *snapshot);
 /** Writes the state to a file, as mps_dynamics_snapshot; of `info` (NULL: nothing) user_key and
- *  user_data are written too. Where writing fails half way (a full disk; on several ranks any
- *  failure on rank 0), fields that were edited may have been read. */
+ *  user_data are written too. After a failure while writing (a full disk; on several ranks any
+ *  failure on rank 0), edited fields may have been read. MPS_ERROR_IO: the file cannot be written;
+ *  MPS_ERROR_STATE: a step is running, or a field is being edited; MPS_ERROR_UNSUPPORTED: no HDF5.
+ *  */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path,
                                                    const mps_checkpoint *info);
 /** Puts the state of mps_dynamics_save into a solver that was built in the same way: set,
- *  definition (but dt), boundaries. What has been removed since, in the file or here, goes or comes
- *  back. Coefficients follow the fields in the file. MPS_ERROR_FORMAT,
- *  changing nothing: a file of another model, the message says in what. `info` (NULL: not wanted)
- *  as for mps_checkpoint_info. */
+ *  definition (but dt), boundaries. Particles are removed or restored as in the file. Coefficients
+ *  follow the fields in the file. MPS_ERROR_FORMAT, changing nothing: a file of another model, the
+ *  message says in what. `info` (NULL: not wanted) as for mps_checkpoint_info. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path,
                                                       mps_checkpoint *info);
 
-MPS_API double mps_dynamics_time(const mps_dynamics *dynamics); /* s */
+/** Time (s); 0 for NULL. */
+MPS_API double mps_dynamics_time(const mps_dynamics *dynamics);
+/** Number of steps taken; 0 for NULL. */
 MPS_API int64_t mps_dynamics_steps(const mps_dynamics *dynamics);
-/** Time step (s); finds it first when the definition left it to the library. 0 on failure. */
+/** Time step (s), computed first where the definition leaves it to the library. 0 on failure. */
 MPS_API double mps_dynamics_dt(mps_dynamics *dynamics);
 /** Sets the time step (s, 1e-12 to 1e9). A warning is logged when it is above the linear limit. At
- *  a change the velocity is kept, and forces act for the mean of the two steps. */
+ *  a change the velocity is kept, and forces act for the mean of the two steps. MPS_ERROR_ARGUMENT:
+ *  out of range; MPS_ERROR_STATE: a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt);
 
 /** Sums over the body; free-field columns are not counted. Kinetic energy is v-.M.v+ / 2 with v-
- * the velocity half a step before the state and v+ the one that the restoring forces alone lead to
+ *  the velocity half a step before the state and v+ the one that the restoring forces alone lead to
  *  half a step after it (Euler: v.M.v / 2); works are forces times the mean of the velocities
  *  before and after a step. So for a linear body (small strains and rotations), Verlet or leapfrog
  *  and constant dt the budget of mps/solver.h closes by itself, to 1e-10 of its largest term or of
- *  the largest rotation (rad), whichever is more. `scheme` is the rest of it: what rotations that
- *  are not small, changes of dt, and Euler take or give. Where Rayleigh damping is not watched
- *  (mps_dynamics_def.watch_damping) the rest is all that damping takes, and `scheme` is NaN; with
- *  free-field columns it belongs to work_boundaries, and `scheme` is NaN too. */
+ *  the largest rotation (rad), whichever is more. `scheme` is the remainder: the effect of
+ *  rotations that are not small, changes of dt, and Euler. Without mps_dynamics_def.watch_damping
+ *  the remainder is the dissipation of damping, and `scheme` is NaN; with free-field columns it
+ *  belongs to work_boundaries, and `scheme` is NaN too. MPS_ERROR_ARGUMENT: NULL, or a `size`
+ *  unknown to this library; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_get_totals_sized(const mps_dynamics *dynamics,
                                                                mps_totals *out, size_t size);
 static inline mps_status mps_dynamics_get_totals(const mps_dynamics *dynamics, mps_totals *out) {
@@ -341,7 +377,7 @@ MPS_API double mps_dynamics_limit(const mps_dynamics *dynamics);
 /** Limit by linear theory: the highest eigenfrequency of the tangent at the reference state. */
 typedef struct mps_dynamics_linear_limit {
   double dt;       /* largest stable step, s; Euler without damping: 0 unless `duration` was given;
-                      infinite where nothing can move against anything else */
+                      infinite where no relative motion is possible */
   double omega;    /* highest eigenfrequency of the undamped set, rad/s */
   double residual; /* relative bound on the error of omega^2 */
   int64_t iterations;
@@ -351,7 +387,8 @@ typedef struct mps_dynamics_linear_limit {
  *  differ from particle to particle. Costs from some tens to a few thousand steps, once as long as
  *  nothing changes. `duration` (s, >= 0): for Euler, which has no limit without damping but grows
  *  slowly, the largest step (up to 4/omega) whose amplification over `duration` stays below 1e15;
- *  0: the asymptotic limit. Other integrators ignore it. */
+ *  0: the asymptotic limit. Other integrators ignore it. MPS_ERROR_ARGUMENT: `duration` below 0 or
+ *  not finite; MPS_ERROR_NUMERIC: no convergence; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics,
                                                                double duration,
                                                                mps_dynamics_linear_limit *out,
@@ -361,7 +398,7 @@ static inline mps_status mps_dynamics_find_limit(mps_dynamics *dynamics, double 
   return mps_dynamics_find_limit_sized(dynamics, duration, out, sizeof *out);
 }
 
-/** What mps_dynamics_predict is asked: uniform ground, no particles needed. */
+/** Input of mps_dynamics_predict: uniform ground, without particles. */
 typedef struct mps_dynamics_predict_def {
   uint32_t struct_size;
   int32_t integrator; /* MPS_DYNAMICS_INTEGRATOR_VERLET (default) or _LEAPFROG */
@@ -372,6 +409,8 @@ typedef struct mps_dynamics_predict_def {
   double radius_ratio;                      /* default 1.5 */
 } mps_dynamics_predict_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_dynamics_predict_def_init(mps_dynamics_predict_def *def, size_t size);
 static inline mps_dynamics_predict_def mps_dynamics_predict_defaults(void) {
   mps_dynamics_predict_def def;
@@ -382,9 +421,11 @@ static inline mps_dynamics_predict_def mps_dynamics_predict_defaults(void) {
 
 typedef struct mps_dynamics_prediction {
   double dt;    /* s: a stable time step by linear theory, edges of a body allowed for */
-  double omega; /* rad/s, highest eigenfrequency of the endless lattice */
+  double omega; /* rad/s, highest eigenfrequency of the infinite lattice */
 } mps_dynamics_prediction;
 
+/** Stable time step of a body of uniform ground by linear theory, without a solver.
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_predict_sized(mps_context *context,
                                                             const mps_dynamics_predict_def *def,
                                                             mps_dynamics_prediction *out,

@@ -15,17 +15,19 @@
  * `acceleration`, and when asked the stresses. Vectors have three components in 2D too; the third
  * is not read, and written as 0. In 2D all forces, masses and energies are those of the `measure`.
  *
- * In a libmps built without CHOLMOD mps_elastic_create returns MPS_ERROR_UNSUPPORTED.
+ *
  *
  * The set may be sorted while a solver uses it, and particles may be removed (mps_particles_remove:
- * excavation): what is left must be a body still, boundaries and loads lose what has gone, facets
- * are numbered anew, a motion ends. A rollback or restore brings them back. None can be added.
+ * excavation): the rest must be a connected body; boundaries and loads drop removed particles,
+ * facets are renumbered, a motion ends. A rollback or restore restores removed particles. None can
+ * be added.
  *
  * Thread rule: one thread at a time per context; the work is shared among the context's threads, of
- * BLAS and CHOLMOD too (docs/elastic.md). The cancel hook is asked before the ordering, the
- * analysis and the factorisation, each of which runs to its end once begun, every 64 iterations of
- * CG and before each step. From hooks, signals and callbacks the solver may be asked, but not
- * changed: MPS_ERROR_STATE. SPDX-License-Identifier: BSD-3-Clause */
+ * BLAS and CHOLMOD too (docs/elastic.md). The cancel hook is called (MPS_ERROR_CANCELLED) before
+ * the ordering, the analysis and the factorisation, which are not interrupted, every 64 iterations
+ * of CG and before each step. Hooks, signals and callbacks may query the solver, not change it:
+ * MPS_ERROR_STATE. A function without a solver (NULL) returns MPS_ERROR_ARGUMENT; in a libmps
+ * without CHOLMOD all return MPS_ERROR_UNSUPPORTED. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_ELASTIC_H
 #define LIBMPS_ELASTIC_H
 
@@ -53,7 +55,7 @@ typedef enum mps_elastic_solver {
 } mps_elastic_solver;
 
 typedef enum mps_elastic_ordering {
-  MPS_ELASTIC_ORDERING_BEST = 0, /* AMD and METIS are tried, the smaller factor is kept */
+  MPS_ELASTIC_ORDERING_BEST = 0, /* AMD and METIS are compared, the smaller factor is kept */
   MPS_ELASTIC_ORDERING_AMD = 1,
   MPS_ELASTIC_ORDERING_METIS = 2
 } mps_elastic_ordering;
@@ -71,7 +73,8 @@ typedef struct mps_elastic_def {
   int64_t iterations;  /* CG: most iterations; 0 (default): ten times the unknowns */
   int32_t refinements; /* steps of iterative refinement after a direct solution, 0..10; default 1 */
   int32_t blas_threads;   /* most threads of BLAS, up to 1024; 0 (default): the context's. LLT gives
-                             the same bits for the same number only; all else does for every number */
+                             the same bits for the same number only; all other results are the same
+                             for every number */
   mps_material *material; /* linear elastic, of all; NULL (default): the fields'. Kept alive */
   mps_kernel *kernel;     /* weight of the pairs, its radius in (1, 4] spacings, in place of
                              radius_ratio; kept alive; NULL (default): re/r - 1 */
@@ -80,6 +83,8 @@ typedef struct mps_elastic_def {
   mps_domain *domain; /* ranks that solve together: mps/elastic_solver.h; NULL (default): none */
 } mps_elastic_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_elastic_def_init(mps_elastic_def *def, size_t size);
 static inline mps_elastic_def mps_elastic_defaults(void) {
   mps_elastic_def def;
@@ -89,41 +94,52 @@ static inline mps_elastic_def mps_elastic_defaults(void) {
 }
 
 /** Creates a solver for the particles of `particles`, which must lie on a lattice of the set's
- *  spacing (any origin), each with a neighbour along every axis. Reads `young` and `poisson`.
- *  `def` NULL: defaults. On an error the set is as before. */
+ *  spacing (any origin), each with a neighbour along every axis. Reads `young` and `poisson`. `def`
+ *  NULL: defaults. On an error the set is as before. MPS_ERROR_ARGUMENT: a member of `def`, a
+ *  modulus or the lattice is not allowed; MPS_ERROR_FIELD: no `young` or `poisson`;
+ *  MPS_ERROR_STATE: another solver holds the set; MPS_ERROR_UNSUPPORTED: no CHOLMOD;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
                                                     const mps_elastic_def *def, mps_elastic **out);
-/** Destroys and nulls; accepts NULL. From within a callback of the solver: nothing happens. */
+/** Destroys and nulls; accepts NULL. In a callback of the solver it only records MPS_ERROR_STATE.
+ *  */
 MPS_API void mps_elastic_destroy(mps_elastic **e);
-/** What the solver was made from, completed. */
+/** The definition of the solver, with its defaults completed. MPS_ERROR_ARGUMENT: NULL, or a `size`
+ *  unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_def_sized(const mps_elastic *e,
                                                            mps_elastic_def *out, size_t size);
 static inline mps_status mps_elastic_get_def(const mps_elastic *e, mps_elastic_def *out) {
   return mps_elastic_get_def_sized(e, out, sizeof *out);
 }
-/** The set and the context; NULL for NULL. Lent: they live at least as long as the solver. */
+/** The set; NULL for NULL. Lent: it lives at least as long as the solver. */
 MPS_API mps_particles *mps_elastic_particles(const mps_elastic *e);
+/** The context; NULL for NULL. Lent: it lives at least as long as the solver. */
 MPS_API mps_context *mps_elastic_context(const mps_elastic *e);
 
-/** Reads `young` and `poisson` again after the caller has changed them; on an error it goes on with
- *  the former ones. The symbolic factorisation is kept where joints are still on the same faces. */
+/** Reads `young` and `poisson` again after the caller has changed them; on an error the former ones
+ *  stay. The symbolic factorisation is kept where joints are on the same faces. MPS_ERROR_ARGUMENT:
+ *  a modulus out of range; MPS_ERROR_STATE: a callback of the solver is running, or a field is
+ *  being edited; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *e);
 
-/** Says what the particles `ids` (NULL with count 0: all) are made of: writes `young` and
- * `poisson`, then as mps_elastic_update_material. MPS_ERROR_UNSUPPORTED: not linear elastic. */
+/** Assigns a material to the particles `ids` (NULL with count 0: all): writes `young` and
+ *  `poisson`, then as mps_elastic_update_material, also for errors. MPS_ERROR_UNSUPPORTED: not
+ *  linear elastic. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_set_material(mps_elastic *e,
                                                           const mps_material *material,
                                                           int64_t count, const int64_t *ids);
 
 /** The surface passes through these particles: the half of their cells on `side` (-1 or +1) of
- *  `axis` does not belong to the body. Refused where a particle has a neighbour on that side. Ends
- *  a motion under way. Loads on facets set before keep the areas that they had. */
+ *  `axis` does not belong to the body. Ends a motion under way. Loads on facets set before keep
+ *  their areas. MPS_ERROR_ARGUMENT: `axis`, `side` or an id is not allowed; MPS_ERROR_STATE: a
+ *  particle has a neighbour on that side, or as mps_elastic_update_material. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side,
                                                  int64_t count, const int64_t *ids);
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
 /* Kinds (mps_boundary_kind): HELD, the components `dofs` of the displacement are 0. DRIVEN, they
- * are what `values` and signals say. ROLLER, the displacement along `normal`, free across. */
+ * are given by `values` and signals. ROLLER, the displacement along `normal` is prescribed, the
+ * others are free. */
 
 /** Displacements prescribed on some particles: those of `values`, plus factor times the signal's
  *  displacement; in motions the signal's velocity and acceleration too. */
@@ -143,6 +159,8 @@ typedef struct mps_elastic_boundary_def {
   double factor[3];      /* finite, default 1 */
 } mps_elastic_boundary_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_elastic_boundary_def_init(mps_elastic_boundary_def *def, size_t size);
 static inline mps_elastic_boundary_def mps_elastic_boundary_defaults(void) {
   mps_elastic_boundary_def def;
@@ -152,17 +170,23 @@ static inline mps_elastic_boundary_def mps_elastic_boundary_defaults(void) {
 }
 
 /** Adds a boundary; `number` (may be NULL) receives the lowest free number, from 0. Where two fix
- *  the same direction of a particle, the one with the higher number has it. MPS_ERROR_STATE where a
- *  direction is fixed already by two or three others of that particle. */
+ *  the same direction of a particle, the one with the higher number prevails. MPS_ERROR_ARGUMENT: a
+ *  member of `def` out of range, or an unknown id; MPS_ERROR_STATE: a direction is fixed already by
+ *  two or three others of that particle, or as mps_elastic_update_material; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_add_boundary(mps_elastic *e,
                                                           const mps_elastic_boundary_def *def,
                                                           int32_t *number);
-/** Another definition; impulse and work go on. The same directions keep the factor. */
+/** Gives a boundary another definition; its impulse and work are kept. With the same directions the
+ *  factor of the matrix is kept. MPS_ERROR_ARGUMENT: no boundary `number`; otherwise errors as
+ *  mps_elastic_add_boundary. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_set_boundary(mps_elastic *e, int32_t number,
                                                           const mps_elastic_boundary_def *def);
+/** Removes boundary `number`. MPS_ERROR_ARGUMENT: no boundary of that number; MPS_ERROR_STATE: as
+ *  mps_elastic_update_material. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number);
 /** Force and moment of the boundary on its particles, of the last solution or at the end of the
- * last step; impulse and work since the motion began. By particles: the field `reaction`. */
+ *  last step; impulse and work since the motion began. By particles: the field `reaction`.
+ *  MPS_ERROR_ARGUMENT: no boundary `number`, NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_reaction_sized(const mps_elastic *e,
                                                                 int32_t number, mps_reaction *out,
                                                                 size_t size);
@@ -172,16 +196,18 @@ static inline mps_status mps_elastic_get_reaction(const mps_elastic *e, int32_t 
 }
 
 /* ---- facets ---------------------------------------------------------------------------------- */
-/** The surface is made of facets, faces that no neighbour shares, from 0, anew after a removal. */
+/** Number of facets: the surface consists of the faces of cells without a neighbour there, numbered
+ *  from 0, again after a removal. 0 for NULL. */
 MPS_API int64_t mps_elastic_facet_count(const mps_elastic *e);
 /** Facets with outward normal `side` * `axis` (side 0: every facet) whose centre lies in the box
  *  [lo, hi] (dim values, infinities allowed; NULL: everywhere), ascending. Writes at most
- *  `capacity` of them to `facets` (may be NULL when capacity is 0); `count` receives how many. */
+ *  `capacity` of them to `facets` (may be NULL when capacity is 0); `count` receives their number.
+ *  MPS_ERROR_ARGUMENT: `axis`, `side`, `capacity` or the box is not allowed. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t axis,
                                                            int32_t side, const double *lo,
                                                            const double *hi, int64_t capacity,
                                                            int64_t *count, int64_t *facets);
-/** Where to write what of each facet; NULL: not wanted. */
+/** Arrays that receive the properties of facets; each may be NULL. */
 typedef struct mps_elastic_facet_arrays {
   int64_t *particle;    /* id */
   double *centre;       /* m, 3 a facet: in the unstrained body */
@@ -191,7 +217,9 @@ typedef struct mps_elastic_facet_arrays {
   double *displacement; /* m, 3: at the centre */
   double *velocity;     /* m/s, 3: at the centre; 0 without a motion */
 } mps_elastic_facet_arrays;
-/** Of `count` facets, or of all (facets NULL, count mps_elastic_facet_count). */
+/** Properties of `count` facets, or of all (facets NULL, count mps_elastic_facet_count).
+ *  MPS_ERROR_ARGUMENT: a facet or `count` out of range; MPS_ERROR_STATE: a step is running;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status
 mps_elastic_get_facets_sized(const mps_elastic *e, int64_t count, const int64_t *facets,
                              const mps_elastic_facet_arrays *arrays, size_t size);
@@ -225,7 +253,7 @@ typedef struct mps_elastic_load_def {
   const double *values; /* read by the call: 3 a particle or facet, PRESSURE 1; NULL: `force`,
                            PRESSURE force[0], for each */
   double force[3];      /* as the kind says; finite, default 0 */
-  mps_elastic_traction_fn function; /* FUNCTION: asked by this call only */
+  mps_elastic_traction_fn function; /* FUNCTION: called within this call only */
   void *user;
   mps_signal *signal[3]; /* by component, PRESSURE signal[0]: its displacement, as a number, at the
                             time of the solution or at the end of the step; NULL (default): 1. Kept
@@ -233,6 +261,8 @@ typedef struct mps_elastic_load_def {
   double factor[3];      /* finite, default 1 */
 } mps_elastic_load_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_elastic_load_def_init(mps_elastic_load_def *def, size_t size);
 static inline mps_elastic_load_def mps_elastic_load_defaults(void) {
   mps_elastic_load_def def;
@@ -242,22 +272,31 @@ static inline mps_elastic_load_def mps_elastic_load_defaults(void) {
 }
 
 /** Adds a load to the others; `number` (may be NULL) receives the lowest free number, from 0. Where
- *  all loads together are beyond 1e150 N on a particle, what asks for them is MPS_ERROR_NUMERIC. */
+ *  all loads together exceed 1e150 N on a particle, functions that sum them return
+ *  MPS_ERROR_NUMERIC. MPS_ERROR_ARGUMENT: a member of `def` out of range, or an unknown id or
+ *  facet; MPS_ERROR_FIELD: GRAVITY without a field `density`; MPS_ERROR_STATE: as
+ *  mps_elastic_update_material; MPS_ERROR_MEMORY; or the status of `function`. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_add_load(mps_elastic *e,
                                                       const mps_elastic_load_def *def,
                                                       int32_t *number);
-/** Another definition. As often as every step; allocates nothing when the list is not longer. */
+/** Gives load `number` another definition, if need be in every step; allocates nothing when the
+ *  list is not longer. MPS_ERROR_ARGUMENT: no load `number`; otherwise errors as
+ *  mps_elastic_add_load. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_set_load(mps_elastic *e, int32_t number,
                                                       const mps_elastic_load_def *def);
+/** Removes load `number`. MPS_ERROR_ARGUMENT: no load of that number; MPS_ERROR_STATE: as
+ *  mps_elastic_update_material. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number);
 /** Resultant of the present loads and of `external_force`: force (3 values, N) and moment (3, N m,
- *  about `about`, 3 values, NULL: the origin). Either may be NULL. */
+ *  about `about`, 3 values, NULL: the origin). Either may be NULL. MPS_ERROR_ARGUMENT: `about` or
+ *  an `external_force` is not finite; MPS_ERROR_NUMERIC: the sums are too large; MPS_ERROR_STATE:
+ *  as mps_elastic_update_material; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_load_resultant(const mps_elastic *e,
                                                                 const double *about, double *force,
                                                                 double *moment);
 
 /* ---- statics --------------------------------------------------------------------------------- */
-/** What the solution takes, known before it is made. */
+/** Size and cost of the solution, from the symbolic analysis. */
 typedef struct mps_elastic_estimate {
   int64_t unknowns, matrix_nonzeros; /* of the lower triangle; on ranks, of this one's rows */
   int64_t factor_nonzeros;           /* of L */
@@ -265,32 +304,36 @@ typedef struct mps_elastic_estimate {
   int32_t ordering, solver; /* mps_elastic_ordering and mps_elastic_solver that will be used */
 } mps_elastic_estimate;
 
-/** Orders and analyses the matrix (kept for the solution). MPS_ERROR_STATE with the rigid motions
- *  that are left free where the boundaries do not hold the body. */
+/** Orders and analyses the matrix (kept for the solution). MPS_ERROR_STATE: the boundaries leave
+ *  rigid motions free, which the message names; MPS_ERROR_UNSUPPORTED: a factor beyond CHOLMOD's
+ *  integers; MPS_ERROR_CANCELLED; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_analyse_sized(mps_elastic *e,
                                                            mps_elastic_estimate *out, size_t size);
 static inline mps_status mps_elastic_analyse(mps_elastic *e, mps_elastic_estimate *out) {
   return mps_elastic_analyse_sized(e, out, sizeof *out);
 }
 
-/** Solves for the loads and boundaries as they are at the present time; writes `displacement` and
- *  `reaction` (N, force of the boundaries on the particle). The factor is kept: it is made again
- *  only when boundaries, cuts or material have changed. Ends a motion under way. On an error
- * nothing has changed. */
+/** Solves for the loads and boundaries at the present time; writes `displacement` and `reaction`
+ *  (N, force of the boundaries on the particle). The factor is kept: it is made again only when
+ *  boundaries, cuts or material have changed. Ends a motion under way. On an error nothing has
+ *  changed: MPS_ERROR_STATE, the boundaries leave rigid motions free, or as
+ *  mps_elastic_update_material; MPS_ERROR_NUMERIC, a singular matrix, CG without convergence, or
+ *  values too large; MPS_ERROR_CANCELLED; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_solve(mps_elastic *e);
 /** Solves for `count` load cases at once with the present boundaries. loads[(k * n + i) * 3 + c] is
  *  the force (N) of case k on particle i of the set's present order, displacements likewise (m). No
- *  field is written. */
+ *  field is written. MPS_ERROR_ARGUMENT: `count` below 0, or a load that is not finite; otherwise
+ *  MPS_ERROR_STATE and the other errors of mps_elastic_solve. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count,
                                                          const double *loads,
                                                          double *displacements);
 
-/** How the last solution went. */
+/** Statistics of the last solution. */
 typedef struct mps_elastic_report {
   int64_t unknowns, matrix_nonzeros, factor_nonzeros;
   double factor_flops;
   double factor_bytes; /* of the numerical factor; CG: of matrix and vectors */
-  double peak_bytes;   /* largest memory CHOLMOD has held */
+  double peak_bytes;   /* largest memory of CHOLMOD */
   double residual;     /* |K u - F| / |F| over the free unknowns, after refinement */
   double condition;    /* crude lower estimate of the condition number; CG: 0 */
   double seconds_assemble, seconds_analyse, seconds_factor, seconds_solve;
@@ -299,6 +342,8 @@ typedef struct mps_elastic_report {
   int32_t solver, ordering;         /* mps_elastic_solver and mps_elastic_ordering used */
 } mps_elastic_report;
 
+/** Statistics of the last solution. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library.
+ *  */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_report_sized(const mps_elastic *e,
                                                               mps_elastic_report *out, size_t size);
 static inline mps_status mps_elastic_get_report(const mps_elastic *e, mps_elastic_report *out) {
@@ -307,27 +352,30 @@ static inline mps_status mps_elastic_get_report(const mps_elastic *e, mps_elasti
 
 /** Writes strain and stress of the present displacement to the fields `strain` and `stress`
  *  (components xx, yy, zz, xy and in 3D zx, yz; shear strain is tensorial), the principal stresses,
- *  largest first, to `principal`, and the von Mises stress to `von_mises`. */
+ *  largest first, to `principal`, and the von Mises stress to `von_mises`. MPS_ERROR_FIELD: one of
+ *  these fields has another shape; MPS_ERROR_STATE: a step is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_update_stress(mps_elastic *e);
 /** Force (3 values, N) and moment (3, N m, about `about`, 3 values, NULL: origin) that the part of
  *  the body with x[axis] > position exerts on the rest, from the static balance of the rest's
- *  particles: normal force N, shear Q and bending moment M of the section. */
+ *  particles: normal force N, shear Q and bending moment M of the section. MPS_ERROR_ARGUMENT:
+ *  `axis` out of range, `position` or `about` not finite; MPS_ERROR_STATE: a step is running. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_section(const mps_elastic *e, int32_t axis,
                                                          double position, const double *about,
                                                          double *force, double *moment);
-/** Strain energy (J) now; `stabilising` (may be NULL) receives its part in the stabilising pairs.
- */
+/** Present strain energy (J); `stabilising` (may be NULL) receives the part of the stabilising
+ *  pairs. MPS_ERROR_ARGUMENT: NULL; MPS_ERROR_STATE: a step is running. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(const mps_elastic *e, double *strain,
                                                         double *stabilising);
-/** Sums over the body. Since the motion began, or of the last static solution, which counts as
- *  loaded in proportion from rest, so that the work of the loads is half of load times
- * displacement. Works in a step are means of the forces before and after it times the displacement,
- * plus the kinetic energy that driven particles gain; the budget of mps/solver.h closes to rounding
- * (1e-10) with Newmark's average acceleration, or to 1e-14 C if that is more: C is the greatest
- * Young's modulus over the lesser of the least one and 4 density spacing^2 / dt^2 (above a ratio of
- * moduli of 1e8 a warning says so). `dissipated` is that of Rayleigh damping and
- * `scheme`, which for other members of the family is what the scheme takes, measured as the rest of
- * the budget. */
+/** Sums over the body: since the motion began, or of the last static solution, taken as loaded
+ *  proportionally from rest, so that the work of the loads is half of load times displacement.
+ *  Works in a step are means of the forces before and after it times the displacement, plus the
+ *  kinetic energy that driven particles gain; the budget of mps/solver.h closes to rounding (1e-10)
+ *  with Newmark's average acceleration, or to 1e-14 C if that is more: C is the greatest Young's
+ *  modulus over the lesser of the least one and 4 density spacing^2 / dt^2 (above a ratio of moduli
+ *  of 1e8 a warning says so). `dissipated` is that of Rayleigh damping and `scheme`, which for
+ *  other members of the family is the numerical dissipation, computed as the remainder of the
+ *  budget. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library; MPS_ERROR_STATE: a step
+ *  is running. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(const mps_elastic *e, mps_totals *out,
                                                               size_t size);
 static inline mps_status mps_elastic_get_totals(const mps_elastic *e, mps_totals *out) {
@@ -340,18 +388,20 @@ typedef struct mps_elastic_motion_def {
   uint32_t struct_size;
   int32_t reserved;
   double dt;      /* s, 1e-30 to 1e30; no default */
-  double rho_inf; /* generalised alpha (Chung and Hulbert): spectral radius for endless frequencies,
+  double rho_inf; /* generalised alpha (Chung and Hulbert): spectral radius at infinite frequency,
                      in [0, 1]; default 1: Newmark's average acceleration, which keeps the energy */
   double beta, gamma;  /* Newmark's, both in place of rho_inf; NaN (default): of rho_inf. gamma in
                           [1/2, 1], beta in [(gamma + 1/2)^2 / 4, 10] */
   double mass_damping; /* a0, 1/s, >= 0; default 0 */
   double stiffness_damping; /* a1, s, >= 0; default 0 */
   double ratio[2]; /* damping ratios in [0, 1) at the two frequencies, in place of a0 and a1, which
-                      they must give >= 0; NaN (default): none */
+                      must result >= 0; NaN (default): none */
   double frequency[2]; /* Hz, > 0, different */
   double time;         /* s, of the start, finite; default 0 */
 } mps_elastic_motion_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_elastic_motion_def_init(mps_elastic_motion_def *def, size_t size);
 static inline mps_elastic_motion_def mps_elastic_motion_defaults(void) {
   mps_elastic_motion_def def;
@@ -360,44 +410,66 @@ static inline mps_elastic_motion_def mps_elastic_motion_defaults(void) {
   return def;
 }
 
-/** Begins a motion from the fields `displacement`, `velocity` (0 without) and `density`. Beyond
- * 1e100 m or m/s it is MPS_ERROR_NUMERIC. */
+/** Begins a motion from the fields `displacement`, `velocity` (0 without) and `density`.
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range; MPS_ERROR_FIELD: no field `density`;
+ *  MPS_ERROR_NUMERIC: a displacement or velocity beyond 1e100 m or m/s; MPS_ERROR_STATE: as
+ *  mps_elastic_solve; MPS_ERROR_CANCELLED; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_start(mps_elastic *e,
                                                    const mps_elastic_motion_def *def);
 /** Takes `count` (>= 0) steps, and writes `displacement`, `velocity`, `acceleration` and
- * `reaction`. Loads and boundaries may be changed between calls: they act as they are at the end of
- * a step. A step that fails (MPS_ERROR_NUMERIC: a speed beyond 1e100 m/s) or is cancelled has not
- * happened: state, time and fields are those after the last whole one. */
+ *  `reaction`. Loads and boundaries may be changed between calls; their values at the end of a step
+ *  act. A step that fails (MPS_ERROR_NUMERIC: a speed beyond 1e100 m/s, or as mps_elastic_solve) or
+ *  is cancelled (MPS_ERROR_CANCELLED) is undone: state, time and fields are those after the last
+ *  complete step. MPS_ERROR_STATE: no motion under way. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_step(mps_elastic *e, int64_t count);
 /** Called at the start of a run, then every `every` steps and at the end, with fields up to date. A
  *  status other than MPS_OK ends the run, which returns it. */
 typedef mps_status (*mps_elastic_fn)(void *user, mps_elastic *e);
-/** Goes to exactly t_end (s, not before the present time) in equal steps of at most dt, which
- * stays. `callback` may be NULL, `every` >= 1. */
+/** Steps to exactly t_end (s, not before the present time) in equal steps of at most dt, which is
+ *  kept. `callback` may be NULL, `every` >= 1. MPS_ERROR_ARGUMENT: `t_end` or `every` out of range;
+ *  otherwise errors as mps_elastic_step, or the status of `callback`. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every,
                                                  mps_elastic_fn callback, void *user);
-MPS_API double mps_elastic_time(const mps_elastic *e);   /* s since the start; 0 without */
-MPS_API int64_t mps_elastic_steps(const mps_elastic *e); /* since the start */
-MPS_API double mps_elastic_dt(const mps_elastic *e);     /* s; 0 without a motion */
-MPS_API double mps_elastic_limit(const mps_elastic *e);  /* infinite: all are stable */
-/** From the next step on (s, 1e-30 to 1e30); the matrix is factored again. */
+/** Time (s) since the start of the motion; 0 without a motion. */
+MPS_API double mps_elastic_time(const mps_elastic *e);
+/** Number of steps since the start of the motion; 0 without a motion. */
+MPS_API int64_t mps_elastic_steps(const mps_elastic *e);
+/** Time step (s); 0 without a motion. */
+MPS_API double mps_elastic_dt(const mps_elastic *e);
+/** Largest stable time step (s): infinite, since all are stable. */
+MPS_API double mps_elastic_limit(const mps_elastic *e);
+/** Sets the time step (s, 1e-30 to 1e30) from the next step on; the matrix is factored again.
+ *  MPS_ERROR_ARGUMENT: out of range; MPS_ERROR_STATE: no motion under way, or as
+ *  mps_elastic_update_material. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_set_dt(mps_elastic *e, double dt);
 
-/** The motion, its set (particles removed since, numbers of facets) and what has been counted: bit
- *  for bit back to a snapshot (memory), or to what a solver built and started in the same way has
- *  saved. Loads, values and signals of boundaries, dt and moduli stay. Between steps only; on an
- * error nothing has changed. MPS_ERROR_STATE: no motion under way, or other boundaries. */
+/** Keeps the state of the motion and of the set (removed particles, numbers of facets), with
+ *  impulses and works, in memory; *snapshot NULL: created, else filled again. Between steps only;
+ *  on an error nothing has changed. MPS_ERROR_ARGUMENT: a snapshot of another solver;
+ *  MPS_ERROR_STATE: no motion under way, or a step is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_snapshot(mps_elastic *e, mps_snapshot **snapshot);
+/** Restores a snapshot, bit for bit. Loads, values and signals of boundaries, dt and moduli stay.
+ *  On an error nothing has changed. MPS_ERROR_ARGUMENT: a snapshot of another solver;
+ *  MPS_ERROR_STATE: no motion under way, or other boundaries. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot);
+/** Writes the state to a file, as mps_elastic_snapshot; of `info` (NULL: nothing) user_key and
+ *  user_data are written too. MPS_ERROR_IO: the file cannot be written; MPS_ERROR_STATE: as
+ *  mps_elastic_snapshot; MPS_ERROR_UNSUPPORTED: no HDF5. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_save(mps_elastic *e, const char *path,
                                                   const mps_checkpoint *info);
+/** Restores a file of mps_elastic_save, as mps_elastic_rollback, into a solver that was built and
+ *  started in the same way; `info` (may be NULL) as for mps_checkpoint_info. On an error nothing
+ *  has changed: statuses of mps_checkpoint_read, and MPS_ERROR_STATE as mps_elastic_rollback. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_restore(mps_elastic *e, const char *path,
                                                      mps_checkpoint *info);
 
 /** The lowest `count` circular eigenfrequencies (rad/s, ascending) of the supported body and, where
  *  `shapes` is not NULL, its modes: shapes[(k * n + i) * 3 + c], i in the set's present order, each
- *  of unit modal mass. By ARPACK on the inverse. Reads `density`. One calculation at a time in a
- *  process: others wait. */
+ *  of unit modal mass. By ARPACK on the inverse (shift-invert at 0). Reads `density`. One
+ *  calculation at a time in a process: others wait. MPS_ERROR_ARGUMENT: `count` below 1, or not
+ *  below the number of unknowns; MPS_ERROR_FIELD: no field `density`; MPS_ERROR_UNSUPPORTED: no
+ *  ARPACK, or too many unknowns for its integers; MPS_ERROR_NUMERIC: no convergence;
+ *  MPS_ERROR_STATE: as mps_elastic_solve; MPS_ERROR_CANCELLED; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega,
                                                    double *shapes);
 

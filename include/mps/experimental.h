@@ -1,6 +1,6 @@
-/* mps/experimental.h - functions that libmps promises nothing about: they may change or go in any
- * release. They serve comparisons with printed methods and studies, not the work of a program that
- * shall be built once and run for years.
+/* mps/experimental.h - functions without a promise of stability: they may change or be removed in
+ * any release. They serve comparisons with published methods and studies, not programs that are
+ * built once and used for years.
  *
  * Their names begin with mps_experimental_. The shared library exports them under the version node
  * LIBMPS_EXPERIMENTAL; mps/mps.h does not include this header.
@@ -18,11 +18,12 @@
 
 MPS_EXTERN_C_BEGIN
 
-/** As mps_elastic_create, of the method that Chikazawa prints in (10), corrected, with R and D
+/** As mps_elastic_create, for the method that Chikazawa prints in (10), corrected, with R and D
  *  eliminated; two-dimensional, 0 <= nu < 0.5. The sums (7), (8) are divided by each particle's own
  *  number density, or (constant not 0) by that of the full lattice, as printed: then a rigid
- * rotation causes stress at surfaces. radius_ratio is 3 by default; loads on facets act without
- * their first moments. */
+ *  rotation causes stress at surfaces. radius_ratio is 3 by default; loads on facets act without
+ *  their first moments. MPS_ERROR_UNSUPPORTED: a set that is not 2D, or no CHOLMOD; other errors as
+ *  mps_elastic_create. */
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status
 mps_experimental_elastic_published(mps_context *context, mps_particles *particles,
                                    const mps_elastic_def *def, int32_t constant, mps_elastic **out);
@@ -33,7 +34,7 @@ mps_experimental_elastic_published(mps_context *context, mps_particles *particle
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status
 mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics);
 
-/** What weighs the particles' velocities on their way to the nodes of WLS-MPM. */
+/** Weights of the particle-to-grid transfer of velocity in WLS-MPM. */
 typedef enum mps_experimental_transfer {
   MPS_EXPERIMENTAL_TRANSFER_SHAPE = 0, /* the shape functions: momentum is kept everywhere */
   MPS_EXPERIMENTAL_TRANSFER_WEIGHT = 1 /* the weights, Nakamura (12), (39): near bodies and edges
@@ -44,11 +45,11 @@ typedef enum mps_experimental_transfer {
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_transfer(mps_mpm *mpm,
                                                                             int32_t transfer);
 
-/** Which gradient of the velocity the laws of WLS-MPM see. */
+/** Velocity gradient that the laws of WLS-MPM receive. */
 typedef enum mps_experimental_strain {
   MPS_EXPERIMENTAL_STRAIN_DERIVATIVE = 0, /* of the field that the shape functions span */
   MPS_EXPERIMENTAL_STRAIN_FIT = 1 /* `velocity_gradient`, the slope of the fit, Nakamura (42):
-                                     bodies that bend far creep */
+                                     bodies in large bending creep */
 } mps_experimental_strain;
 
 /** Before the first step: mps_experimental_strain. MPS_ERROR_STATE after a step. */
@@ -65,10 +66,10 @@ MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_standard(mps_
                                                                             double flip);
 
 /** Before the first step: the fluid by the classical scheme (Koshizuka, Tamako and Oka 1995) in
- *  place of the library's own; the part `gamma`, in (0, 1], of the density's error is taken back in
- *  each step. Its pressure is noisy: the force on a wall of still water scatters by its own size
+ *  place of the library's own; the fraction `gamma`, in (0, 1], of the density error is corrected
+ *  in each step. Its pressure is noisy: the force on a wall of still water scatters by its own size
  *  with gamma 1, by some hundredths with .2. No viscosity, no surface is found (levels are NaN),
- * walls have no accelerations, and a step cannot be made in parts. MPS_ERROR_STATE after a step.
+ *  walls have no accelerations, and a step cannot be made in parts. MPS_ERROR_STATE after a step.
  *  Collective. */
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_fluid_classical(mps_fluid *fluid,
                                                                                double gamma);

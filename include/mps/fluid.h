@@ -1,35 +1,35 @@
 /* mps/fluid.h - incompressible free-surface flow by moving particles (MPS), in the plane: waves,
  * wave makers, impact of water on walls.
  *
- * The pressure follows from a symmetric Poisson equation for the reduced pressure
- * q = p + rho g (height - reference level): in water at rest q is 0 exactly, gravity drops out of
- * the equations, and walls are plain Neumann boundaries, made of mirror images of the particles.
- * The free surface is a line a short way outside the outer particles, at a distance that each of
- * them finds from its neighbours (docs/fluid.md has the equations).
+ * The pressure follows from a symmetric Poisson equation for the reduced pressure q = p + rho g
+ * (height - reference level): in water at rest q is 0 exactly, gravity drops out of the equations,
+ * and walls are plain Neumann boundaries, made of mirror images of the particles. The free surface
+ * is a line a short way outside the outer particles, at a distance that each of them finds from its
+ * neighbours (docs/fluid.md has the equations).
  *
  * The set's spacing l0 is the particles' distance: each stands for l0^2 times `measure` of water.
  * The solver works in the fields of the set (zero copy) and sorts it now and then: views taken
  * before are then stale (their epoch). It reads `velocity` at creation where the set has it,
- * `external_force` (N) at every step if the set has it by then, and
- * writes `position`, `velocity`, `pressure`, `reduced_pressure`, `reduced_pressure_old`,
- * `free_surface` and `surface_rise`.
+ * `external_force` (N) at every step if the set has it by then, and writes `position`, `velocity`,
+ * `pressure`, `reduced_pressure`, `reduced_pressure_old`, `free_surface` and `surface_rise`.
  *
  * Between steps particles may be edited, added (at rest, at least .3 l0 inside of all walls) and
- * removed (not the last one), and pass open sides; what they bring or take of energy is no work.
+ * removed (not the last one), and pass open sides; the energy that they add or remove is no work.
  *
  * Ranks (mps/domain.h; docs/cluster.md) each make the same whole fluid, with the same boundaries,
- * bodies, loads and edits, and keep all of it; what a step finds for each particle they share. All
- * functions are collective but those that only tell numbers: limit, dt, time, steps, particles,
- * definition, totals, report, reactions, and set_wall_motion, which steps compare. Rank 0 saves.
+ * bodies, loads and edits, and keep all of it; the work of a step on each particle is divided among
+ * them. All functions are collective except the queries limit, dt, time, steps, particles,
+ * definition, totals, report and reactions, and set_wall_motion, whose values steps compare. Rank 0
+ * writes files.
  *
  * Fluid that fills a closed space, a box under a lid, has no free surface: its pressure is known up
  * to a constant, chosen such that the least of all particles is rho g l0/2. Steps whose walls or
- * bodies change the volume of that space, or leave less of it than there is fluid, are refused
- * (MPS_ERROR_STATE).
+ * bodies change the volume of that space, or leave less of it than there is fluid, return
+ * MPS_ERROR_STATE.
  *
  * Resolution: at least 5 spacings of water and 3 of wave height. Water that strikes water or a wall
- * keeps its energy to 3 % of pressure-impulse theory with 15 spacings across what strikes and more,
- * with 10 spacings only to 6 %.
+ * keeps its energy to 3 % of pressure-impulse theory with 15 spacings or more across the striking
+ * water, with 10 spacings to 6 %.
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads and ranks.
@@ -60,8 +60,8 @@ typedef struct mps_fluid_def {
                           particle */
   double measure;      /* m, thickness of the slab, > 0; default 1 */
   double dt;           /* s, > 0: at most the limit at rest, .5 (l0/g)^1/2; NaN (default): each step
-                          the largest by mps_fluid_limit, but MPS_ERROR_DIVERGED below 1e-4 of that
-                          at rest (without gravity: 1e-7 of a run) */
+                          the largest by mps_fluid_limit, with MPS_ERROR_DIVERGED below 1e-4 of that at rest
+                          (without gravity: 1e-7 of a run) */
   double radius_ratio; /* re/l0, in [2.6, 4]; default 3.1. Not read with a kernel */
   double tolerance;    /* of the pressure solution, |residual|/|right side|, in [1e-14, 1e-2];
                           default 1e-5 */
@@ -70,6 +70,8 @@ typedef struct mps_fluid_def {
                           (default): that of radius_ratio. Kept alive */
 } mps_fluid_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size);
 static inline mps_fluid_def mps_fluid_defaults(void) {
   mps_fluid_def def;
@@ -79,14 +81,16 @@ static inline mps_fluid_def mps_fluid_defaults(void) {
 }
 
 /** Creates a solver for the 2D set `particles` (at least one; all of them are fluid), which it
- *  holds until it is destroyed. `def` NULL: the defaults. MPS_ERROR_ARGUMENT names the value that
- *  is out of range; then nothing has changed. */
+ *  holds until it is destroyed. `def` NULL: the defaults. On an error nothing has changed.
+ *  MPS_ERROR_ARGUMENT: a member of `def`, a position or a velocity out of range; MPS_ERROR_STATE:
+ *  another solver holds the set; MPS_ERROR_UNSUPPORTED: a set that is not 2D; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
                                                   const mps_fluid_def *def, mps_fluid **out);
-/** Destroys and nulls; accepts NULL. Lets go of the set, bodies and signals. */
+/** Destroys and nulls; accepts NULL. Releases the set, bodies and signals. */
 MPS_API void mps_fluid_destroy(mps_fluid **fluid);
 
-/** What the solver was made from, with the level that it found and the present dt. */
+/** The definition of the solver, with the computed level and the present dt. MPS_ERROR_ARGUMENT:
+ *  NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_def_sized(const mps_fluid *fluid, mps_fluid_def *out,
                                                          size_t size);
 static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def *out) {
@@ -97,35 +101,36 @@ static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def
 
 /* Kinds (mps_boundary_kind) of a wall and of a body's surface:
  *
- * HELD    no flow across; the fluid's viscosity, where it has one, holds it at the wall, which does
- *         not move along itself
- * DRIVEN  the same, moved along the normal by a signal
- * ROLLER  no flow across, no shear: slip; at rest or moved along the normal by a signal
- * OPEN    no wall: the end of a step removes what has passed it, and its reaction counts that; the
- *         pressure there is the air's, as where water falls over an edge. It does not move */
+ * HELD    no flow across; no slip where the fluid has a viscosity; the wall does not move along
+ * itself DRIVEN  the same, moved along the normal by a signal ROLLER  no flow across, no shear:
+ * slip; at rest or moved along the normal by a signal OPEN    no wall: particles that have passed
+ * it are removed at the end of a step and counted in its reaction; the pressure there is that of
+ * the air, as where water falls over an edge. It does not move */
 
 #define MPS_FLUID_MAX_BOUNDARIES 16
 
 /** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
- * as its caller says (mps_fluid_set_wall_motion); then it may bend a little: a displacement along
- * the normal at each of its nodes, linear between them, at which it mirrors locally. Walls meet at
- * 90 degrees or more; of a bed and a slope, add the bed first. */
+ *  as prescribed by mps_fluid_set_wall_motion; then it may bend slightly: a displacement along the
+ *  normal at each of its nodes, linear between them, with local mirror images. The fluid's angle
+ *  between two walls is 90 degrees or more; of a bed and a slope, add the bed first. */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
-  int32_t kind;        /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */
-  double point[3];     /* m, of the wall at time 0; its pressures are sampled from here on, every
-                          l0: choose the corner */
-  double normal[3];    /* into the fluid, any length > 0; [2] must be 0; no default */
-  mps_signal *signal;  /* displacement along the normal: factor times that of the signal, from its
-                          value at the time when the boundary is added; NULL (default): at rest.
-                          Not of HELD. Kept alive */
-  double factor;       /* default 1 */
-  const double *nodes; /* of a wall that bends: points along it (3 values each, m, in any order;
-                          their distance from the plane does not count), read at once; NULL
-                          (default): it stays plane, and moves as one node */
-  int64_t node_count;  /* default 0; at most 1 with a signal */
+  int32_t kind;       /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */
+  double point[3];    /* m, of the wall at time 0; its pressures are sampled from here on, every
+                         l0: choose the corner */
+  double normal[3];   /* into the fluid, any length > 0; [2] must be 0; no default */
+  mps_signal *signal; /* displacement along the normal: factor times that of the signal, from its
+                         value at the time when the boundary is added; NULL (default): at rest.
+                         Not of HELD. Kept alive */
+  double factor;      /* default 1 */
+  const double
+      *nodes; /* of a bending wall: points along it (3 values each, m, in any order; projected onto
+                 the plane), copied; NULL (default): it stays plane, and moves as one node */
+  int64_t node_count; /* default 0; at most 1 with a signal */
 } mps_fluid_boundary_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size);
 static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
   mps_fluid_boundary_def def;
@@ -135,32 +140,37 @@ static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
 }
 
 /** Adds a wall, between steps; `number` (may be NULL) receives the lowest free number.
- *  MPS_ERROR_ARGUMENT: a particle lies outside or closer than .3 l0 to it; two walls that enclose
- *  less than 90 degrees, unless that corner lies more than re behind a third one. */
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range; a particle lies outside or closer than .3 l0
+ *  to it; two walls that enclose less than 90 degrees, unless that corner lies more than re behind
+ *  a third one. MPS_ERROR_STATE: a step is open, or a callback of the solver is running.
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
                                                         const mps_fluid_boundary_def *def,
                                                         int32_t *number);
-/** Gives a wall another definition: it stands at `point` now and keeps the velocity that it has;
- *  what it has exerted so far stays counted. Errors as above: then it stays as it is. */
+/** Gives a wall another definition: its present position is `point`, its velocity is kept, and so
+ *  are its impulse and work. MPS_ERROR_ARGUMENT: no wall `number`; otherwise errors as
+ *  mps_fluid_add_boundary. On an error it is unchanged. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary(mps_fluid *fluid, int32_t number,
                                                         const mps_fluid_boundary_def *def);
-/** Takes a wall away: the fluid may flow out there. */
+/** Removes a wall: the fluid may flow out there. MPS_ERROR_ARGUMENT: no wall `number`;
+ *  MPS_ERROR_STATE: a step is open, or a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_boundary(mps_fluid *fluid, int32_t number);
 
 /** How a wall without a signal moves: `velocity` (m/s) at the end of the next step, or of the open
  *  one, and `displacement` (m) there from where the wall was added, both along the normal (into the
  *  fluid), one value a node (mps_fluid_boundary_def.nodes; else one). `displacement` NULL: the mean
- *  of the velocities before and after takes it there. It holds for one step; without it the wall
- *  goes on at its velocity. The wall's acceleration on the water is the change of velocity over dt.
- */
+ *  of the velocities before and after takes it there. It is used for one step; afterwards the wall
+ *  continues at its velocity. The acceleration of the wall is the change of velocity over dt.
+ *  MPS_ERROR_ARGUMENT: no wall `number`, one with a signal, or a value beyond 1e6 m/s or 1e12 m;
+ *  MPS_ERROR_STATE: a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_set_wall_motion(mps_fluid *fluid, int32_t number,
                                                            const double *displacement,
                                                            const double *velocity);
 
-/** What a wall exerts on the fluid. Force and moment are those of its pressures, summed over the
- *  points of mps_fluid_get_wall. Impulse, moment_impulse and work have besides what collisions with
- *  the wall and the smoothing of velocities at it give: in breakers some hundredths of the impulse.
- */
+/** Force, impulse and work of a wall on the fluid. Force and moment are those of its pressures,
+ *  summed over the points of mps_fluid_get_wall. Impulse, moment_impulse and work include
+ *  collisions with the wall and the smoothing of velocities at it: in breakers some hundredths of
+ *  the impulse. MPS_ERROR_ARGUMENT: no wall `number`, NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_reaction_sized(const mps_fluid *fluid,
                                                               int32_t number, mps_reaction *out,
                                                               size_t size);
@@ -170,21 +180,25 @@ static inline mps_status mps_fluid_get_reaction(const mps_fluid *fluid, int32_t 
 }
 
 /** Pressure along a wall after the last step (within an open step: of the last solution), at its
- * wetted points every l0. Writes at most `capacity` points: `x` (3 values a point, m) and
- * `pressure` (Pa), NULL where not wanted; `count` receives how many there are. Each point stands
- * for the area l0 times `measure`. */
+ *  wetted points every l0. Writes at most `capacity` points: `x` (3 values a point, m) and
+ *  `pressure` (Pa), each may be NULL; `count` receives their number. Each point has the area l0
+ *  times `measure`. MPS_ERROR_ARGUMENT: no wall `number`, or `capacity` below 0; MPS_ERROR_STATE:
+ *  the open step's pressure has not been solved; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_wall(const mps_fluid *fluid, int32_t number,
                                                     int64_t capacity, int64_t *count, double *x,
                                                     double *pressure);
-/** Pressure (Pa) at `count` points of a wall, likewise: x[3 * k], ... in m, to a hundredth of l0 on
- *  it as it is or as it was added; 0 where there is no water. */
+/** Pressure (Pa) at `count` points of a wall, likewise: x[3 * k], ... in m, within 0.01 l0 of the
+ *  wall's present or initial position; 0 where there is no water. MPS_ERROR_ARGUMENT: no wall
+ *  `number`, `count` below 0, or a point off the wall; MPS_ERROR_STATE: the open step's pressure
+ *  has not been solved; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(const mps_fluid *fluid, int32_t number,
                                                         int64_t count, const double *x,
                                                         double *pressure);
 /** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
  *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
- *  where there is no surface. It is that of the fields position and surface_rise; in an open step
- *  these are of its beginning. */
+ *  where there is no surface. It follows from the fields `position` and `surface_rise`; in an open
+ *  step these are of its beginning. MPS_ERROR_ARGUMENT: `count` below 0, or a station that is not
+ *  finite. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, int64_t count,
                                                       const double *station, double *level);
 
@@ -192,29 +206,32 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, in
 
 /** Puts a rigid body into the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
- * together may have 16 edges. `kind` is that of its surface, HELD (no slip) or ROLLER (slip). The
- * caller moves it (mps_body_advance, mps_body_set_motion), or another solver does: where it is and
- * how fast when a step is made, or solved for in parts, is taken as the end of that step. At the
- * end of each step it feels the water's forces (mps_body_get_reaction; a free body moves by them).
- * It is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less
- *  than 15 degrees of fluid between an edge and the boundary that it stands on (a body that rolls
- *  there later has a warning in the log, once). */
+ *  together may have 16 edges. `kind` is that of its surface, HELD (no slip) or ROLLER (slip). The
+ *  caller moves it (mps_body_advance, mps_body_set_motion), or another solver does: its position
+ *  and velocity when a step is made, or solved for in parts, are those of the end of that step. At
+ *  the end of each step it receives the water's forces (mps_body_get_reaction; a free body moves by
+ *  them). It is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3
+ *  l0; less than 15 degrees of fluid between an edge and the boundary that it stands on (a body
+ *  that rolls there later is a warning in the log, once). MPS_ERROR_STATE: a step is open, or a
+ *  callback of the solver is running. MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
                                                     int32_t *number);
-/** Takes body `number` out of the water, between steps; MPS_ERROR_ARGUMENT: there is none. */
+/** Removes body `number`, between steps. MPS_ERROR_ARGUMENT: no body `number`; MPS_ERROR_STATE: a
+ *  step is open, or a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
 /** `floats` 1: from now on the fluid moves the body in each of its steps, such that the water's
  *  pressure, the body's mass, gravity and load (mps_body_set_load), and the impulses of other
- * solvers since its last step agree, however light it is. It feels no boundary: keep it from the
- * ground. 0 (as after mps_fluid_add_body): the caller or another solver moves it, by the forces of
- * the last step, which is unstable where it is lighter than the water that it accelerates.
- *  MPS_ERROR_ARGUMENT: the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE: another solver
- *  moves it. */
+ *  solvers since its last step are in balance, however light the body is. No boundary acts on it:
+ *  keep it off the ground. 0 (as after mps_fluid_add_body): the caller or another solver moves it,
+ *  by the forces of the last step, which is unstable where it is lighter than the water that it
+ *  accelerates. MPS_ERROR_ARGUMENT: the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE:
+ *  another solver moves it. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, int32_t number,
                                                       int32_t floats);
-/** What the fluid exerts on a body; moments about its reference point, moment_impulse about where
- *  that is now. Force and moment are those of the pressures, impulses have collisions and smoothing
- *  too, as those of mps_body_get_reaction; a body that floats feels these one step later. */
+/** Force, impulse and work of the fluid on a body; moments about its reference point,
+ *  moment_impulse about the present one. Force and moment are those of the pressures, impulses
+ *  include collisions and smoothing, as in mps_body_get_reaction; they act on a floating body one
+ *  step later. MPS_ERROR_ARGUMENT: no body `number`, NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_reaction_sized(const mps_fluid *fluid,
                                                                    int32_t number,
                                                                    mps_reaction *out, size_t size);
@@ -236,10 +253,9 @@ typedef enum mps_fluid_load_kind {
  * computes go into the field `external_force` instead. */
 typedef struct mps_fluid_load_def {
   uint32_t struct_size;
-  int32_t kind;              /* mps_fluid_load_kind, default BODY */
-  const int64_t *ids;        /* copied; those that are not in the set count for nothing. NULL
-                                (default): the box */
-  int64_t id_count;          /* 0 (default): the box */
+  int32_t kind;       /* mps_fluid_load_kind, default BODY */
+  const int64_t *ids; /* copied; ids that are not in the set are ignored. NULL (default): the box */
+  int64_t id_count;   /* 0 (default): the box */
   double lower[3], upper[3]; /* m; +-infinity is allowed; NaN (default): no bound */
   double acceleration[3];    /* m/s2, |a| at most 1e6; [2] must be 0; default 0 */
   double pressure;           /* Pa, |p| at most 1e12, above the air's elsewhere; default 0. Where it
@@ -250,6 +266,8 @@ typedef struct mps_fluid_load_def {
   double factor[3];          /* finite; of PRESSURE [0]; default 1 */
 } mps_fluid_load_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_fluid_load_def_init(mps_fluid_load_def *def, size_t size);
 static inline mps_fluid_load_def mps_fluid_load_defaults(void) {
   mps_fluid_load_def def;
@@ -258,104 +276,121 @@ static inline mps_fluid_load_def mps_fluid_load_defaults(void) {
   return def;
 }
 
-/** Adds a load, between steps; `number` (may be NULL) receives the lowest free number, from 0. */
+/** Adds a load, between steps; `number` (may be NULL) receives the lowest free number, from 0.
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range, or too many loads; MPS_ERROR_STATE: a step
+ *  is open, or a callback of the solver is running; MPS_ERROR_UNSUPPORTED: a pressure with the
+ *  classical scheme; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_load(mps_fluid *fluid, const mps_fluid_load_def *def,
                                                     int32_t *number);
+/** Gives load `number` another definition. MPS_ERROR_ARGUMENT: no load `number`; otherwise errors
+ *  as mps_fluid_add_load. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_set_load(mps_fluid *fluid, int32_t number,
                                                     const mps_fluid_load_def *def);
+/** Removes load `number`. MPS_ERROR_ARGUMENT: no load of that number; MPS_ERROR_STATE: a step is
+ *  open, or a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_load(mps_fluid *fluid, int32_t number);
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/** Takes `count` (>= 0) steps. A step that fails has not happened: MPS_ERROR_NUMERIC, the pressure
- *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall or its velocity is
- *  beyond 1e100 m/s, a boundary or body goes more than 1.5 l0 in the step or a boundary bends to a
- * slope of more than 1 (the log is warned from l0/2 and a slope of .1 on, once), or the library's
- * step would be too short (see dt); MPS_ERROR_STATE, walls change the volume of fluid without a
- * free surface; MPS_ERROR_CANCELLED. */
+/** Takes `count` (>= 0) steps. A step that fails is undone: MPS_ERROR_NUMERIC, the pressure
+ *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall or its velocity
+ *  exceeds 1e100 m/s, a boundary or body moves more than 1.5 l0 in the step or a boundary bends to
+ *  a slope of more than 1 (a warning is logged above l0/2 and a slope of .1, once), or the
+ *  library's step would be too short (see dt); MPS_ERROR_STATE, walls change the volume of fluid
+ *  without a free surface; MPS_ERROR_CANCELLED. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
 
-/* A step in parts, for what the water and something else move together (two-way coupling):
+/* A step in parts, for two-way coupling of the water and another system:
  *
- *   mps_fluid_begin_step(fluid, dt);                    who is near whom; the equation's matrix and
- *                                                       its preconditioner, which stay
+ *   mps_fluid_begin_step(fluid, dt);                  neighbour lists, matrix of the pressure
+ *                                                     equation and its preconditioner, which stay
  *   do {
- *     mps_fluid_set_wall_motion(fluid, wall, s, v);     at the end of the step: a guess
- *     mps_fluid_solve_pressure(fluid);                  only the right side changes
- *     mps_fluid_get_reaction(fluid, wall, &reaction);   forces and pressures at mid step
- *   } while (v is not what these forces give);
- *   mps_fluid_end_step(fluid);                          velocities, positions: the step has
- * happened
+ *     mps_fluid_set_wall_motion(fluid, wall, s, v);   at the end of the step: a guess
+ *     mps_fluid_solve_pressure(fluid);                only the right side changes
+ *     mps_fluid_get_reaction(fluid, wall, &reaction); forces and pressures at mid step
+ *   } while (v does not agree with these forces);
+ *   mps_fluid_end_step(fluid);                        velocities and positions
  *
- * The pressure that is solved for acts through the step: it is to be used as the one at its middle.
- * With one solution a step in parts is mps_fluid_step bit for bit. In between, the set's fields and
- * the time stay as they were before the step, and only mps_fluid_set_wall_motion and functions that
- * read may be called: others are MPS_ERROR_STATE, as are the parts in another order. */
+ * The pressure acts throughout the step: it is to be used as that at its middle. With one solution
+ * a step in parts is mps_fluid_step bit for bit. In between, the set's fields and the time are
+ * those before the step, and only mps_fluid_set_wall_motion and queries may be called: other
+ * functions return MPS_ERROR_STATE, as do the parts in another order. */
 
-/** Begins a step of `dt` (s; NaN: mps_fluid_dt). After an error no step is open. */
+/** Begins a step of `dt` (s; NaN: mps_fluid_dt). After an error no step is open.
+ *  MPS_ERROR_ARGUMENT: `dt` out of range; MPS_ERROR_STATE: a step is open, a field is being edited,
+ *  or the classical scheme; MPS_ERROR_DIVERGED, MPS_ERROR_NUMERIC, MPS_ERROR_CANCELLED and
+ *  MPS_ERROR_MEMORY as mps_fluid_step. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_begin_step(mps_fluid *fluid, double dt);
 /** Solves for the pressure with the walls' present motions; MPS_ERROR_NUMERIC: it did not converge;
- *  the step stays open. */
+ *  the step stays open. MPS_ERROR_STATE: no step is open. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_solve_pressure(mps_fluid *fluid);
-/** Ends the step with the last solution. A motion set since has to be solved for first. After
- *  MPS_ERROR_DIVERGED or MPS_ERROR_MEMORY no step is open and it has not happened. */
+/** Ends the step with the last solution. A motion set since the last solution has to be solved for
+ *  first (MPS_ERROR_STATE). After MPS_ERROR_DIVERGED or MPS_ERROR_MEMORY the step is undone and no
+ *  step is open. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_end_step(mps_fluid *fluid);
-/** Gives the open step up: all is as before it. */
+/** Discards the open step: the state is that before it. MPS_ERROR_STATE: no step is open. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_abandon_step(mps_fluid *fluid);
 
 /** Called at the start of a run, then every `every` steps and at the end. Any status but MPS_OK
- * ends the run, which returns it. It may read, not step or destroy. */
+ *  ends the run, which returns it. It may query the solver, not step or destroy it. */
 typedef mps_status (*mps_fluid_fn)(void *user, mps_fluid *fluid);
 
-/** Steps to t_end (s, not before the present time); the last 32 steps, or all where there are
- * fewer, are equal and a little shorter to end there. */
+/** Steps to t_end (s, not before the present time); the last 32 steps, or all of fewer, are equal
+ *  and slightly shorter to end there. MPS_ERROR_ARGUMENT: `t_end` or `every` out of range;
+ *  otherwise errors as mps_fluid_step, or the status of `callback`. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_run(mps_fluid *fluid, double t_end, int64_t every,
                                                mps_fluid_fn callback, void *user);
 
-/* Questions; 0 or NULL for NULL. */
+/* Queries; 0 or NULL for NULL. */
 
-MPS_API double mps_fluid_time(const mps_fluid *fluid); /* s */
+/** Time (s). */
+MPS_API double mps_fluid_time(const mps_fluid *fluid);
+/** Number of steps taken. */
 MPS_API int64_t mps_fluid_steps(const mps_fluid *fluid);
-MPS_API double mps_fluid_dt(const mps_fluid *fluid); /* s, of the next step */
+/** Size (s) of the next step. */
+MPS_API double mps_fluid_dt(const mps_fluid *fluid);
 /** Recommended largest step (s): min(.1 (l0/g)^1/2, .25 l0/|u|, .2 l0/|wall velocity|). */
 MPS_API double mps_fluid_limit(const mps_fluid *fluid);
-/** Changes the step: as `dt` of the definition. */
+/** Sets `dt` of the definition (s; NaN: each step by mps_fluid_limit). MPS_ERROR_ARGUMENT: out of
+ *  range; MPS_ERROR_STATE: a step is open, or a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_set_dt(mps_fluid *fluid, double dt);
 
+/** The set of the solver; lent. */
 MPS_API mps_particles *mps_fluid_particles(const mps_fluid *fluid);
+/** The context of the solver; lent. */
 MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
 
 /** Sums over the fluid. `strain` is the potential energy in the field of gravity, above the level
  *  of the definition; `work_loads` that of loads and `external_force`, with the mean velocity of
- * each step; `dissipated` (all of it by the scheme and the viscosity) is what is missing. From
- *  creation on, but for particles that the caller edits, adds or removes,
+ *  each step; `dissipated` (by the scheme and the viscosity) is the remainder of the budget. From
+ *  creation on, except for particles that the caller edits, adds or removes,
  *
  *    change of linear = impulse_loads + impulses of the boundaries - of the bodies + impulse_scheme
  *
- *  to round-off, with mps_fluid_get_reaction and mps_fluid_get_body_reaction. impulse_scheme is
- * what has no owner: pressures along walls are fits, which are not quite the sum of the gradients
- * that move the particles, and smoothing, shifts and cut velocities are not the same from both
- * sides of a pair. In waves and impacts it is some hundredths of the terms, more where breakers
- * plunge. */
+ *  to round-off, with mps_fluid_get_reaction and mps_fluid_get_body_reaction. impulse_scheme is the
+ *  momentum error of the scheme: pressures along walls are fits, which differ slightly from the sum
+ *  of the gradients that move the particles, and smoothing, shifts and limited velocities are not
+ *  symmetric in a pair. In waves and impacts it is some hundredths of the terms, more in plunging
+ *  breakers. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(const mps_fluid *fluid, mps_totals *out,
                                                             size_t size);
 static inline mps_status mps_fluid_get_totals(const mps_fluid *fluid, mps_totals *out) {
   return mps_fluid_get_totals_sized(fluid, out, sizeof *out);
 }
 
-/** How the steps go; counts since creation. */
+/** Statistics of the steps; counts since creation. */
 typedef struct mps_fluid_report {
   int64_t ghosts, pairs;  /* of the last step: wall images; neighbours, each from both sides */
   int64_t surface, apart; /* particles at the surface; isolated ones, in free fall */
   int64_t iterations;     /* of the last pressure solution */
   int64_t all_iterations; /* of all */
-  int64_t collisions;     /* pairs that came closer than l0/2 and shared their momentum, and
-                             particles that struck a wall */
-  int64_t limited;        /* velocities cut to what the neighbours have */
-  int64_t pushed;         /* particles put back on a wall's inner side (within .1 l0) */
+  int64_t collisions;     /* collisions of pairs closer than l0/2, and of particles with a wall */
+  int64_t limited;        /* velocities limited to the range of the neighbours' */
+  int64_t pushed;         /* particles moved back to a wall's inner side (within .1 l0) */
   int64_t bytes;          /* memory besides the fields */
 } mps_fluid_report;
-/** What the last step has done and what all have taken. */
+/** Statistics of the last step and of all steps. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to
+ *  this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_report_sized(const mps_fluid *fluid,
                                                             mps_fluid_report *out, size_t size);
 static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_report *out) {
@@ -364,15 +399,21 @@ static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_
 
 /* ---- state ----------------------------------------------------------------------------------- */
 
-/** Keeps the state of the solver and its set in memory, and goes back to it bit for bit, as
- *  mps_mpm_snapshot and mps_mpm_rollback: steps, and what functions read without one. Walls must be
- *  those of the snapshot; dt, viscosity, loads and signals are as they are now. */
+/** Keeps the state of the solver and its set in memory, as mps_mpm_snapshot. MPS_ERROR_ARGUMENT: a
+ *  snapshot of another solver; MPS_ERROR_STATE: a step is open or running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_snapshot(mps_fluid *fluid, mps_snapshot **snapshot);
+/** Restores a snapshot, bit for bit, as mps_mpm_rollback. Walls must be those of the snapshot
+ *  (MPS_ERROR_STATE); dt, viscosity, loads and signals are not in it. MPS_ERROR_ARGUMENT: a
+ *  snapshot of another solver. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_rollback(mps_fluid *fluid, const mps_snapshot *snapshot);
-/** The same with a file, as mps_mpm_save and mps_mpm_restore, also for errors: into a fluid with
- * the same particles, density, level and walls. */
+/** Writes the state to a file, as mps_mpm_save. MPS_ERROR_IO: the file cannot be written;
+ *  MPS_ERROR_STATE: a step is open or running; MPS_ERROR_UNSUPPORTED: no HDF5. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_save(mps_fluid *fluid, const char *path,
                                                 const mps_checkpoint *info);
+/** Restores a file of mps_fluid_save, as mps_mpm_restore, into a fluid with the same particles,
+ *  density, level and walls. MPS_ERROR_IO: cannot be read; MPS_ERROR_FORMAT: no checkpoint of a
+ *  fluid; MPS_ERROR_ARGUMENT: of a fluid that was built in another way; MPS_ERROR_STATE: a step is
+ *  open. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_restore(mps_fluid *fluid, const char *path,
                                                    mps_checkpoint *info);
 

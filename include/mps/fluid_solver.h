@@ -19,8 +19,7 @@ MPS_EXTERN_C_BEGIN
 
 /** A, by rows: row i has the columns column[start[i]] to column[start[i + 1] - 1], ascending, with
  *  the diagonal and both halves; `rows` + 1 starts, start[0] is 0. A particle apart from the rest
- *  has a row of its diagonal alone, 1. The arrays stay as they are until the equation has been
- *  solved for the last time: until the next call. */
+ *  has a row of its diagonal alone, 1. The arrays are valid and unchanged until the next call. */
 typedef mps_status (*mps_fluid_matrix_fn)(void *user, int64_t rows, const int64_t *start,
                                           const int32_t *column, const double *value);
 
@@ -31,33 +30,35 @@ typedef mps_status (*mps_fluid_matrix_fn)(void *user, int64_t rows, const int64_
 typedef mps_status (*mps_fluid_solve_fn)(void *user, const double *b, double tolerance, double *x,
                                          int64_t *iterations);
 
-/** A on the ranks of a domain (mps_fluid_def.domain): rows first to first + rows - 1 of `all`,
- * which may be none, the ranks' one after the other's; otherwise as mps_fluid_matrix_fn.
- * mps_fluid_solve_fn then has arrays of all rows, of which `b` and the start in `x` are set in this
- * rank's; `x` receives the solution of all rows on every rank. All ranks call both at once. */
+/** A on the ranks of a domain (mps_fluid_def.domain): rows first to first + rows - 1 of `all`
+ *  (`rows` may be 0), in the order of the ranks; otherwise as mps_fluid_matrix_fn.
+ *  mps_fluid_solve_fn then has arrays of all rows, of which `b` and the start in `x` are set in
+ *  this rank's; `x` receives the solution of all rows on every rank. Both are called on all ranks.
+ *  */
 typedef mps_status (*mps_fluid_rows_fn)(void *user, int64_t all, int64_t first, int64_t rows,
                                         const int64_t *start, const int32_t *column,
                                         const double *value);
 
-/** Forgets what the solver keeps from former equations (a preconditioner), so that its answers from
- *  here on follow from the equations to come alone. Snapshot, rollback, save and restore call it
- *  first: a run that goes on after them has the bits of one that goes on from the snapshot or the
- *  file. */
+/** Discards the solver's data of former equations (a preconditioner), so that later solutions
+ *  depend on later equations alone. Snapshot, rollback, save and restore call it first: a run that
+ *  continues after them has the bits of one that continues from the snapshot or the file. */
 typedef mps_status (*mps_fluid_forget_fn)(void *user);
 
 typedef struct mps_fluid_solver_def {
   uint32_t struct_size;
   int32_t reserved;
-  void *user;                 /* handed to all; the caller's own */
+  void *user;                 /* passed to all; the caller's own */
   mps_fluid_matrix_fn matrix; /* no default */
   mps_fluid_solve_fn solve;   /* no default */
-  int64_t least;              /* particles; a smaller fluid is solved by the library, >= 0;
-                                 default 0 */
-  mps_fluid_forget_fn forget; /* default NULL: it keeps nothing */
-  mps_fluid_rows_fn rows; /* in place of `matrix` on several ranks; default NULL: there the fluid
-                             refuses the solver (MPS_ERROR_UNSUPPORTED) */
+  int64_t least; /* least number of particles; a smaller fluid is solved by the library; >= 0;
+                    default 0 */
+  mps_fluid_forget_fn forget; /* default NULL: the solver has no such data */
+  mps_fluid_rows_fn
+      rows; /* in place of `matrix` on several ranks; default NULL: MPS_ERROR_UNSUPPORTED there */
 } mps_fluid_solver_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_fluid_solver_def_init(mps_fluid_solver_def *def, size_t size);
 static inline mps_fluid_solver_def mps_fluid_solver_defaults(void) {
   mps_fluid_solver_def def;
@@ -66,10 +67,11 @@ static inline mps_fluid_solver_def mps_fluid_solver_defaults(void) {
   return def;
 }
 
-/** Puts a solver in, between steps; `def` NULL takes it out. The callbacks may read the fluid, not
- *  step or destroy it. A status they return ends the step, which has not happened; so does a
- *  residual above the tolerance (MPS_ERROR_NUMERIC). It belongs to no snapshot and no file.
- *  Collective. */
+/** Sets a solver, between steps; `def` NULL: the library's own. The callbacks may query the fluid,
+ *  not step or destroy it. A status of a callback ends the step, which is undone, as does a
+ *  residual above the tolerance (MPS_ERROR_NUMERIC). The solver is part of no snapshot and no file.
+ *  MPS_ERROR_ARGUMENT: a member of `def` missing or out of range; MPS_ERROR_STATE: a step is open,
+ *  or a callback is running; MPS_ERROR_UNSUPPORTED: no `rows` on several ranks. Collective. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_set_solver(mps_fluid *fluid,
                                                       const mps_fluid_solver_def *def);
 

@@ -1,4 +1,4 @@
-/* mps/geostatic.h - the stress of ground before anything happens: at rest under its own weight.
+/* mps/geostatic.h - geostatic stress: ground at rest under its own weight.
  *
  * Writes the field `stress` of a particle set: the initial stress of WLS-MPM with laws in rate form
  * (linear elastic, von Mises, Drucker-Prager, Mohr-Coulomb). Laws that take the stress from the
@@ -21,7 +21,7 @@ typedef struct mps_geostatic_layer {
   double k0;        /* horizontal over vertical stress, >= 0; elastic ground held at its sides:
                        nu/(1 - nu) */
   double density;   /* kg/m3, 1e-9 to 1e9; 0: that of the field `density` of the particles whose
-                       centres lie   in the layer, which must be one value */
+                       centres lie in the layer, which must be one value */
 } mps_geostatic_layer;
 
 /** Writes the level (m) of the surface above or below the position x (m, as many values as the set
@@ -47,6 +47,8 @@ typedef struct mps_geostatic_def {
   void *user; /* passed to `surface_level` */
 } mps_geostatic_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_geostatic_def_init(mps_geostatic_def *def, size_t size);
 static inline mps_geostatic_def mps_geostatic_defaults(void) {
   mps_geostatic_def def;
@@ -60,8 +62,9 @@ static inline mps_geostatic_def mps_geostatic_defaults(void) {
  *  integration, horizontally K0 times that, no shear. In 2D the direction out of the plane, or the
  *  hoop, is horizontal. Under a level surface this is in balance; under a slope it is a start.
  *  MPS_ERROR_ARGUMENT: a value out of range, a particle above the surface or below the lowest
- * layer, different densities in a layer that takes its density from them. MPS_ERROR_FIELD: no
- * `density` to take it from. Nothing is changed on an error. */
+ *  layer, different densities in a layer that takes its density from them. MPS_ERROR_FIELD: no
+ *  `density` to take it from. MPS_ERROR_UNSUPPORTED: a `surface_line` that is not 2D with y
+ *  upwards. MPS_ERROR_STATE: a solver's callback is running. Nothing is changed on an error. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set_geostatic(mps_particles *particles,
                                                              const mps_geostatic_def *def);
 

@@ -2,10 +2,10 @@
  * set that a recorder writes, and the fields of the particles at any points (probes, gauges,
  * sections).
  *
- * The handle is lent: it lives as long as its solver. All is of the present state, so that it may
- * be asked before the first step, after a rollback and in the callback of mps_mpm_run. Results of
- * the steps do not depend on what is asked. Thread rule: as of its solver. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * The handle is lent: it lives as long as its solver. All values are of the present state, so that
+ * they may be queried before the first step, after a rollback and in the callback of mps_mpm_run.
+ * Results of the steps do not depend on queries. Thread rule: as of its solver.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_GRID_H
 #define LIBMPS_GRID_H
 
@@ -24,33 +24,37 @@ typedef struct mps_grid_info {
   int32_t dim;      /* 2 or 3 */
   int32_t spline;   /* degree of the weights, 2 or 3 */
 } mps_grid_info;
-/** Where the nodes lie. */
+/** Spacing and origin of the nodes, and the degree of the weights. MPS_ERROR_ARGUMENT: NULL, or a
+ *  `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_grid_get_info_sized(const mps_grid *grid, mps_grid_info *out,
                                                          size_t size);
 static inline mps_status mps_grid_get_info(const mps_grid *grid, mps_grid_info *out) {
   return mps_grid_get_info_sized(grid, out, sizeof *out);
 }
 
-/** The active nodes, those that particles reach: `count` receives their number; at most `capacity`
- *  (>= 0) of them are written. Each array may be NULL: `position` (m, 3 values a node), `mass` (kg;
- *  their sum is that of the particles), `velocity` (m/s, 3 values a node, before the forces of the
- *  next step) and `force` (N, 3 values a node: of stresses, gravity, loads and springs of contacts,
- *  not what boundaries, friction and contacts by impulses add in a step). Where bodies or edges cut
- *  supports a node's mass can be a little below 0. Nodes near a mirrored side (mps_mpm_walls) have
- *  what the images beyond it give too: their masses add up as before, momenta and forces across it
- *  do not. It costs about half a step. The particles are sorted if the next step would sort them:
- *  views are then stale. On several ranks (collective) each gets nodes of its own blocks, every
- *  node on one rank; all together they are those of one rank. MPS_ERROR_STATE: a step has failed, a
- *  field is being edited, or new particles have no density. */
+/** The active nodes, those in the support of a particle: `count` receives their number; at most
+ *  `capacity` (>= 0) of them are written. Each array may be NULL: `position` (m, 3 values a node),
+ *  `mass` (kg; their sum is that of the particles), `velocity` (m/s, 3 values a node, before the
+ *  forces of the next step) and `force` (N, 3 values a node: of stresses, gravity, loads and
+ *  springs of contacts, not what boundaries, friction and contacts by impulses add in a step).
+ *  Where bodies or edges cut supports a node's mass can be a little below 0. Nodes near a mirrored
+ *  side (mps_mpm_walls) include the contributions of the images beyond it: their masses add up as
+ *  before, momenta and forces across it do not. It costs about half a step. The particles are
+ *  sorted if the next step would sort them: views are then stale. On several ranks (collective)
+ *  each gets nodes of its own blocks, every node on one rank; all together they are those of one
+ *  rank. MPS_ERROR_ARGUMENT: `capacity` below 0; MPS_ERROR_STATE: a step has failed, a field is
+ *  being edited, or new particles have no density; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity,
                                                     int64_t *count, double *position, double *mass,
                                                     double *velocity, double *force);
 
-/** Makes `set` a set of the active nodes, for a recorder of its own that writes them beside the
- *  particles: positions and the fields `mass`, `velocity` and `force` (as above, `force` with as
- *  many components as dimensions), which are added. `set` has the solver's dimension and no solver;
- *  a recorder may hold it. Particles are added or removed as there are more or fewer nodes: ids do
- *  not follow nodes. Statuses as above. */
+/** Fills `set` with the active nodes, for a recorder that writes them beside the particles:
+ *  positions and the fields `mass`, `velocity` and `force` (as above, `force` with as many
+ *  components as dimensions), which are added. `set` has the solver's dimension and no solver; a
+ *  recorder may hold it. Particles are added or removed as there are more or fewer nodes: ids do
+ *  not follow nodes. MPS_ERROR_ARGUMENT: a set of another context or dimension; MPS_ERROR_FIELD: a
+ *  field of these names has another shape; MPS_ERROR_STATE: a solver holds the set, or as
+ *  mps_grid_get_nodes; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_grid_fill(mps_grid *grid, mps_particles *set);
 
 typedef enum mps_grid_point {

@@ -1,13 +1,13 @@
 /* mps/io.h - results and restart: a series of frames that ParaView opens (VTKHDF), and checkpoints
- * from which a run goes on bit for bit. Both are HDF5 files; docs/output.md shows their layout.
+ * from which a run continues bit for bit. Both are HDF5 files; docs/output.md shows their layout.
  *
  * A libmps built without HDF5 has these functions too: those that return a status then return
  * MPS_ERROR_UNSUPPORTED.
  *
  * Thread rule: one thread at a time per context. Distinct contexts may write and read at once:
- * libmps lets one of them at a time into HDF5, which is not thread safe as most systems build it.
- * A program that calls HDF5 itself must not do so in another thread while a function of this header
- * runs, unless its HDF5 is a thread-safe build. Its own settings of HDF5's error printing stay.
+ * libmps serialises their calls of HDF5, which is not thread safe in most builds. A program that
+ * calls HDF5 itself must not do so in another thread while a function of this header runs, unless
+ * its HDF5 is a thread-safe build. Its own settings of HDF5's error printing stay.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_IO_H
 #define LIBMPS_IO_H
@@ -29,6 +29,8 @@ typedef struct mps_recorder_def {
   int64_t field_count;       /* number of names */
 } mps_recorder_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_recorder_def_init(mps_recorder_def *def, size_t size);
 static inline mps_recorder_def mps_recorder_defaults(void) {
   mps_recorder_def def;
@@ -38,9 +40,9 @@ static inline mps_recorder_def mps_recorder_defaults(void) {
 }
 
 /** Begins a series of the set `particles`, which the recorder keeps alive. The fields are those the
- * set has now, so create the solver first. MPS_ERROR_FIELD: the set lacks a name of the list;
- * MPS_ERROR_IO: the file cannot be written; MPS_ERROR_UNSUPPORTED: no HDF5, or one without zlib
- * where compression is asked for. The file is touched only once all else is found right. */
+ *  set has now, so create the solver first. MPS_ERROR_FIELD: the set lacks a name of the list;
+ *  MPS_ERROR_IO: the file cannot be written; MPS_ERROR_UNSUPPORTED: no HDF5, or one without zlib
+ *  where compression is asked for. The file is opened only after all other checks. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
                                                      const mps_recorder_def *def,
                                                      mps_recorder **out);
@@ -48,12 +50,13 @@ MPS_API MPS_NODISCARD mps_status mps_recorder_create(mps_context *context, mps_p
 /** Appends a frame at `time` (s, finite): the present positions, ids and fields. Order and number
  *  of particles may differ from frame to frame. Time must not go back; the time of the last frame
  *  again replaces that frame (so that runs may follow each other, each calling back at its start
- *  and end). Everything is handed to the operating system before it returns.
- *  MPS_ERROR_IO (a full disk): this frame is lost, those before stay readable, and the recorder
- *  takes no more: MPS_ERROR_STATE. */
+ *  and end). All data are passed to the operating system before it returns. MPS_ERROR_IO (a full
+ *  disk): this frame is lost, those before stay readable, and further frames return
+ *  MPS_ERROR_STATE. MPS_ERROR_ARGUMENT: `time` not finite, or before the last frame.
+ *  MPS_ERROR_UNSUPPORTED: no HDF5. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_write(mps_recorder *recorder, double time);
 
-/** Number of frames in the file. */
+/** Number of frames in the file; 0 for NULL. */
 MPS_API int64_t mps_recorder_frames(const mps_recorder *recorder);
 
 /** Closes the file, has the disk confirm it, destroys and nulls, even on error; accepts NULL.
@@ -63,8 +66,8 @@ MPS_API MPS_NODISCARD mps_status mps_recorder_close(mps_recorder **recorder);
 MPS_API void mps_recorder_destroy(mps_recorder **recorder);
 
 /* ---- checkpoints -----------------------------------------------------------------------------
- * Of a set alone. A solver has more to keep than the fields: it saves and restores itself and its
- * set with mps_S_save and mps_S_restore of its own header, which take a mps_checkpoint too. */
+ * Of a set alone. The state of a solver is more than the fields: mps_S_save and mps_S_restore of
+ * its own header, which take a mps_checkpoint too, save and restore it with its set. */
 
 /** What a checkpoint keeps besides the fields. */
 typedef struct mps_checkpoint {
@@ -73,15 +76,16 @@ typedef struct mps_checkpoint {
   double time;        /* s, finite */
   int64_t step;       /* >= 0 */
   double dt;          /* s, >= 0 */
-  char user_key[64];  /* terminated text: what the caller wants compared at restart, such as the
-                         options of the run; "" (default): nothing */
+  char user_key[64];  /* terminated text: compared at restart, such as the options of the run; ""
+                         (default): nothing */
   void *user_data;    /* of the caller, such as results so far. Writing: user_bytes to keep, not
                          changed. Reading: NULL (default), or room for user_bytes, at least what the
                          file has */
   int64_t user_bytes; /* >= 0; reading writes how many the file has */
 } mps_checkpoint;
 
-/** Fills `info` (of `size` bytes) with the defaults. */
+/** Fills `info` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_checkpoint_init(mps_checkpoint *info, size_t size);
 static inline mps_checkpoint mps_checkpoint_defaults(void) {
   mps_checkpoint info;
@@ -94,12 +98,14 @@ static inline mps_checkpoint mps_checkpoint_defaults(void) {
  *  all: it is written as "<path>.part", confirmed by the disk and then renamed, so that a crash or
  *  a full disk (MPS_ERROR_IO) never costs the former checkpoint. `path` is a new name, or that of
  *  an empty file or of an earlier checkpoint: a directory, a device or any other file is refused
- *  (MPS_ERROR_IO) and stays. So is it with the mps_S_save of the solvers. */
+ *  (MPS_ERROR_IO) and stays. mps_S_save of the solvers does the same. MPS_ERROR_UNSUPPORTED: no
+ *  HDF5. */
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
                                                       const mps_checkpoint *info);
 
-/** Reads `info` only (start from mps_checkpoint_defaults()), such as the dt to make the solver
- * with. A user_key given there that is not "" must equal that of the file. Statuses as below. */
+/** Reads `info` only (start from mps_checkpoint_defaults()), such as the dt of the solver to
+ *  create. A user_key given there that is not "" must equal that of the file (MPS_ERROR_ARGUMENT).
+ *  MPS_ERROR_IO, MPS_ERROR_FORMAT and MPS_ERROR_UNSUPPORTED as mps_checkpoint_read. */
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const char *path,
                                                      mps_checkpoint *info);
 

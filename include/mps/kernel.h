@@ -20,14 +20,14 @@ typedef enum mps_kernel_kind {
   MPS_KERNEL_SMOOTH = 3   /* (1 - r/re)^4 (1 + 4 r/re): twice differentiable, of the fluid */
 } mps_kernel_kind;
 
-/** Creates a kernel with radius of influence `radius` (re, m, 1e-12 to 1e12).
- *  `kind` is an mps_kernel_kind. */
+/** Creates a kernel with radius of influence `radius` (re, m, 1e-12 to 1e12). `kind` is an
+ *  mps_kernel_kind. MPS_ERROR_ARGUMENT: `kind` or `radius` out of range; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_kernel_create(mps_context *context, int32_t kind,
                                                    double radius, mps_kernel **out);
 /** Releases and nulls; accepts NULL. Objects that use the kernel keep their own reference. */
 MPS_API void mps_kernel_destroy(mps_kernel **kernel);
 
-/* Questions: thread safe. */
+/* Queries: thread safe. */
 
 /** mps_kernel_kind, -1 for NULL. */
 MPS_API int32_t mps_kernel_get_kind(const mps_kernel *kernel);
@@ -44,9 +44,10 @@ MPS_API double mps_kernel_derivative(const mps_kernel *kernel, double r);
 MPS_API MPS_NODISCARD mps_status mps_kernel_moment(mps_context *context, const mps_kernel *kernel,
                                                    int32_t dim, int32_t order, double *out);
 /** Interior particle number density n0 = sum over j != i of w(r0_ij) of the infinite square (dim 2)
- * or cubic (dim 3) lattice of spacing `spacing` (m, > 0): Yoshida (A9) with the sum over j. `dim` 3
- * asks the context's cancel hook (MPS_ERROR_CANCELLED): of its 4 (re/spacing)^3 terms at most 4e9,
- * which take half a minute. */
+ *  or cubic (dim 3) lattice of spacing `spacing` (m, > 0): Yoshida (A9) with the sum over j. With
+ *  `dim` 3 the context's cancel hook is called (MPS_ERROR_CANCELLED): of the 4 (re/spacing)^3 terms
+ *  at most 4e9, which take half a minute. MPS_ERROR_ARGUMENT: `dim` or `spacing` out of range, or
+ *  too many terms. */
 MPS_API MPS_NODISCARD mps_status mps_kernel_density(mps_context *context, const mps_kernel *kernel,
                                                     int32_t dim, double spacing, double *out);
 

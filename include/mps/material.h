@@ -18,11 +18,12 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_material mps_material;
 
-/** What a law did to a particle in this step: bits of the column `flags`. */
+/** State of a particle after this step's update: bits of the column `flags`. */
 #define MPS_MATERIAL_FLAG_PLASTIC 1 /* the trial stress was outside the yield surface */
 #define MPS_MATERIAL_FLAG_APEX 2    /* at the limit of tension, or a gap between grains is open */
 
-/** A block of particles as a law sees it: columns of `count` doubles, each contiguous. */
+/** A block of particles, the input and output of a law: columns of `count` doubles, each
+ *  contiguous. */
 typedef struct mps_material_block {
   uint32_t struct_size;
   int32_t dim;   /* 2 or 3 */
@@ -32,13 +33,13 @@ typedef struct mps_material_block {
   /** In: velocity gradient of the step, dv_i/dx_j, 1/s. In 2D zz may be NULL: plane strain. */
   const double *gradient[9];
   /** In, out: deformation gradient, updated by Nakamura (44) before a user's law is called. All the
-   *  components of `dim` (in 2D also zz), or all NULL where the law does not need it
+   *  components of `dim` (in 2D also zz), or all NULL for a law that does not need it
    *  (mps_material_needs_deformation). */
   double *deformation[9];
-  /** In, out: V/V0. A user's law finds it at the end of the step already: the library has
-   * multiplied it by 1 + dt tr(d), or set it to det F. Such a law leaves it as it is, unless part
-   * of the volume strain is none of the material's own: of the frictional laws here it is that of
-   * the grains, without the gaps between them. */
+  /** In, out: V/V0. A user's law receives its value at the end of the step: the library has
+   *  multiplied it by 1 + dt tr(d), or set it to det F. Such a law does not change it, unless part
+   *  of the volume strain is not that of the material: in the frictional laws here it is that of
+   *  the grains, without the gaps between them. */
   double *volume_ratio;
   double *stress[6]; /* In, out: Cauchy stress, Pa. */
   /** In, out: history_count columns, at least mps_material_history_count; NULL for none. */
@@ -46,16 +47,17 @@ typedef struct mps_material_block {
   int32_t history_count;
   int32_t message_size; /* bytes of `message` */
   int64_t *flags;       /* Out: MPS_MATERIAL_... bits. */
-  /* In, each NULL where nobody knows it: */
+  /* In, each NULL where unknown: */
   const int64_t *ids;        /* of the particles */
   const double *position[3]; /* m, at the end of the step */
   const double *temperature; /* K: the set's field `temperature` */
-  /* Out, where a law of the caller's own refuses the block; each may be NULL. */
-  char *message;    /* why, terminated; "" on entry */
-  int64_t *refused; /* index within the block of the particle that is why; -1 on entry */
+  /* Out, where a user's law fails; each may be NULL. */
+  char *message;    /* the reason, terminated; "" on entry */
+  int64_t *refused; /* index within the block of the particle at which it fails; -1 on entry */
 } mps_material_block;
 
-/** Fills `block` (of `size` bytes) with NULL, 0 and dim 2. */
+/** Fills `block` (of `size` bytes) with NULL, 0 and dim 2. MPS_ERROR_ARGUMENT: NULL, or a size
+ *  unknown to this library. */
 MPS_API mps_status mps_material_block_init(mps_material_block *block, size_t size);
 static inline mps_material_block mps_material_block_defaults(void) {
   mps_material_block block;
@@ -66,18 +68,20 @@ static inline mps_material_block mps_material_block_defaults(void) {
 
 /* ---- laws ----------------------------------------------------------------------------------
  * E is Young's modulus (1e-6 to 1e18 Pa), nu Poisson's ratio (-0.999 to 0.49999); other moduli and
- * strengths up to 1e18 Pa, viscosities up to 1e18 Pa s. Every law but the
- * neo-Hookean solid and the fluid turns the stress of the step before by the step's spin, Nakamura
- * (45)-(47) in a form that keeps its principal values to the last bits, adds C:d, and then maps the
- * trial stress back to the yield surface. Errors: MPS_ERROR_ARGUMENT with the value and its range,
- * MPS_ERROR_MEMORY. */
+ * strengths up to 1e18 Pa, viscosities up to 1e18 Pa s. Every law but the neo-Hookean solid and the
+ * fluid rotates the stress of the previous step by the spin increment, Nakamura (45)-(47) in a form
+ * that keeps its principal values to the last bits, adds C:d dt, and then returns the trial stress
+ * to the yield surface. Errors: MPS_ERROR_ARGUMENT with the value and its range, MPS_ERROR_MEMORY.
+ * */
 
-/** Linear elastic, Jaumann rate. */
+/** Linear elastic, Jaumann rate. MPS_ERROR_ARGUMENT: `young` or `poisson` out of range;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_linear_elastic(mps_context *context,
                                                                     double young, double poisson,
                                                                     mps_material **out);
-/** Compressible neo-Hookean solid, for large elastic strain; needs the deformation gradient.
- *  sigma = G/J (F F^T - 1) + lambda/2 (J - 1/J) 1. */
+/** Compressible neo-Hookean solid, for large elastic strain; needs the deformation gradient. sigma
+ *  = G/J (F F^T - 1) + lambda/2 (J - 1/J) 1. MPS_ERROR_ARGUMENT: `young` or `poisson` out of range;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_neo_hookean(mps_context *context, double young,
                                                                  double poisson,
                                                                  mps_material **out);
@@ -93,11 +97,11 @@ typedef struct mps_material_von_mises_def {
   double hardening;    /* Pa per plastic strain, >= 0; default 0 */
 } mps_material_von_mises_def;
 
-/** How the cone of Drucker and Prager meets the hexagonal pyramid of Mohr and Coulomb. All have its
- *  apex; the flow potential is the same kind of cone for the angle of dilation. */
+/** Fit of the Drucker-Prager cone to the Mohr-Coulomb pyramid. All cones have its apex; the flow
+ *  potential is the same kind of cone for the angle of dilation. */
 typedef enum mps_material_cone {
   MPS_MATERIAL_CONE_PLANE_STRAIN = 0,  /* the same strength in plane strain, whatever the dilation;
-                                 where  that equals the friction: Nakamura (56) */
+                                 where that equals the friction: Nakamura (56) */
   MPS_MATERIAL_CONE_CIRCUMSCRIBED = 1, /* outer cone, through the edges of triaxial compression */
   MPS_MATERIAL_CONE_INSCRIBED =
       2, /* inner cone, the largest that stays inside: always Nakamura (56) */
@@ -145,14 +149,13 @@ typedef struct mps_material_newtonian_def {
   int32_t reserved;
 } mps_material_newtonian_def;
 
-/** A law of the caller's own. Called once a block, by several threads at once; reads `gradient` and
- *  writes `stress`, `history` and `flags` (zero on entry). `deformation` and `volume_ratio` are
- *  those of the end of the step already; a law may set the volume ratio back. Returns MPS_OK. Any
- *  other status ends the call that asked for the step, which returns it; the error record names the
- *  law, the particle block->refused and what the law has written to block->message. Of several
- *  blocks refused in a step the first tells. A step of a solver that a law has refused has not
- * happened: all is as before it, and a solver with such a law keeps its particles' former values
- * for that (8 bytes for each component of the fields that a step writes). */
+/** A user's law. Called once a block, by several threads at once; reads `gradient` and writes
+ *  `stress`, `history` and `flags` (zero on entry). `deformation` and `volume_ratio` are those of
+ *  the end of the step already; a law may set the volume ratio back. Returns MPS_OK. Any other
+ *  status ends the solver's call, which returns it; the error record has the name of the law, the
+ *  particle block->refused and the text of block->message. Where several blocks fail in a step the
+ *  first is reported. The step is undone: a solver with such a law keeps its particles' former
+ *  values for that (8 bytes for each component of the fields that a step writes). */
 typedef mps_status (*mps_material_fn)(void *user, const mps_material_block *block);
 
 typedef struct mps_material_user_def {
@@ -164,13 +167,13 @@ typedef struct mps_material_user_def {
   const char *const *history; /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied; in a
                                  set the column is the field "<name>.<history>" */
   const double *history_initial; /* values before the first step; NULL: zero */
-  double wave_modulus;           /* Pa, K + 4G/3 of the stiffest state, > 0; no default, but 0 is
-                                    K + 4G/3 of the moduli below where they are stated */
-  double viscosity;              /* Pa s, for the largest stable step, >= 0; default 0 */
-  int32_t needs_deformation;     /* 1: `deformation` is there; default 0 */
-  int32_t turns_stress;          /* 1 (default): `stress` comes turned by the step's spin */
-  /** K > 0 and G >= 0 at zero strain, Pa. The size of a particle in contact follows its stress by
-   *  them. Default 0, 0: not stated; K + 4G/3 is the wave modulus then, and nu 1/4. */
+  double wave_modulus; /* Pa, K + 4G/3 of the stiffest state, > 0; no default; 0: K + 4G/3 of the
+                          moduli below, where stated */
+  double viscosity;    /* Pa s, for the largest stable step, >= 0; default 0 */
+  int32_t needs_deformation; /* 1: `deformation` is there; default 0 */
+  int32_t turns_stress;      /* 1 (default): `stress` is already rotated by the spin increment */
+  /** K > 0 and G >= 0 at zero strain, Pa. They give the elastic strain of a particle in contact
+   *  from its stress. Default 0, 0: not stated; then K + 4G/3 is the wave modulus, and nu 1/4. */
   double bulk_modulus, shear_modulus;
 } mps_material_user_def;
 
@@ -192,8 +195,8 @@ typedef void (*mps_material_umat_fn)(
     const int32_t *kstep, const int32_t *kinc, size_t cmname_length);
 
 /** Head of a UMAT in C, its arguments by Abaqus' names in lower case; in its body
- * MPS_MATERIAL_UMAT_UNUSED keeps a compiler from warning of those that it does not use: static
- * MPS_MATERIAL_UMAT(spring) { MPS_MATERIAL_UMAT_UNUSED; stress[0] += props[0] * dstran[0]; } */
+ *  MPS_MATERIAL_UMAT_UNUSED avoids warnings about unused arguments: static
+ *  MPS_MATERIAL_UMAT(spring) { MPS_MATERIAL_UMAT_UNUSED; stress[0] += props[0] * dstran[0]; } */
 #define MPS_MATERIAL_UMAT(name)                                                                    \
   void name(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd, \
             double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,      \
@@ -225,19 +228,31 @@ typedef struct mps_material_umat_def {
   double wave_modulus;             /* Pa, as of a user's law */
   double length;                   /* m, CELENT, > 0; default 1 */
   double temperature;              /* TEMP where the set has no field `temperature`; default 0 */
-  int32_t keeps_strain;            /* 1 (default): STRAN is the strain so far, in six more columns
-                                      of history; 0: zero */
+  int32_t keeps_strain; /* 1 (default): STRAN is the total strain, in six more columns of history;
+                           0: zero */
   int32_t reserved;
   double bulk_modulus, shear_modulus; /* Pa, at zero strain, as of a user's law; default 0, 0 */
 } mps_material_umat_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_material_von_mises_def_init(mps_material_von_mises_def *def, size_t size);
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_material_drucker_prager_def_init(mps_material_drucker_prager_def *def,
                                                         size_t size);
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_material_mohr_coulomb_def_init(mps_material_mohr_coulomb_def *def,
                                                       size_t size);
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_material_newtonian_def_init(mps_material_newtonian_def *def, size_t size);
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_material_user_def_init(mps_material_user_def *def, size_t size);
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size);
 
 #define MPS_MATERIAL_DEFAULTS(law)                                                                 \
@@ -254,25 +269,33 @@ MPS_MATERIAL_DEFAULTS(newtonian)
 MPS_MATERIAL_DEFAULTS(user)
 MPS_MATERIAL_DEFAULTS(umat)
 
-/** The laws of the definitions above. Constants are copied. MPS_ERROR_ARGUMENT names the constant
- * that is out of range. */
+/** von Mises plasticity. Constants are copied. MPS_ERROR_ARGUMENT: a constant out of range, which
+ *  the message names; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_von_mises(
     mps_context *context, const mps_material_von_mises_def *def, mps_material **out);
+/** Drucker-Prager plasticity. Constants are copied. MPS_ERROR_ARGUMENT: a constant out of range,
+ *  which the message names; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_drucker_prager(
     mps_context *context, const mps_material_drucker_prager_def *def, mps_material **out);
+/** Mohr-Coulomb plasticity. Constants are copied. MPS_ERROR_ARGUMENT: a constant out of range,
+ *  which the message names; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_mohr_coulomb(
     mps_context *context, const mps_material_mohr_coulomb_def *def, mps_material **out);
+/** Weakly compressible Newtonian fluid. Constants are copied. MPS_ERROR_ARGUMENT: a constant out of
+ *  range, which the message names; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_newtonian(
     mps_context *context, const mps_material_newtonian_def *def, mps_material **out);
+/** A law by the caller's function. Names and constants are copied. MPS_ERROR_ARGUMENT: `update`
+ *  NULL, a name that is not allowed, or a constant out of range; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_user(mps_context *context,
                                                           const mps_material_user_def *def,
                                                           mps_material **out);
 
-/** A law by a UMAT. It is a user's law: threads call the UMAT at once, for different particles, so
- * it must not write to anything but its arguments (in Fortran no SAVE, COMMON or DATA that changes,
- * and gfortran -frecursive); for one that does, make the context with MPS_CONTEXT_EXECUTOR_SERIAL.
- * It refuses a particle, MPS_ERROR_NUMERIC, when the UMAT sets PNEWDT below 1 or when a stress or a
- * state variable is not finite. Errors as of mps_material_create_user. */
+/** A law by a UMAT. Threads call the UMAT concurrently, for different particles, so it must write
+ *  to its arguments alone (in Fortran no SAVE, COMMON or DATA that changes, and gfortran
+ *  -frecursive); otherwise create the context with MPS_CONTEXT_EXECUTOR_SERIAL. A step returns
+ *  MPS_ERROR_NUMERIC where the UMAT sets PNEWDT below 1 or leaves a stress or state variable that
+ *  is not finite. Creation: MPS_ERROR_ARGUMENT and MPS_ERROR_MEMORY as mps_material_create_user. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_umat(mps_context *context,
                                                           const mps_material_umat_def *def,
                                                           mps_material **out);
@@ -280,8 +303,8 @@ MPS_API MPS_NODISCARD mps_status mps_material_create_umat(mps_context *context,
 /** Releases and nulls; accepts NULL. Solvers that use the material keep their own reference. */
 MPS_API void mps_material_destroy(mps_material **material);
 
-/* ---- questions: thread safe; a NULL material gives "", 0 or NULL ------------------------------
- */
+/* ---- queries: thread safe; a NULL material gives "", 0 or NULL ------------------------------
+ * /
 
 /** "linear_elastic", "drucker_prager", ... or the user's name. Lives as long as the material. */
 MPS_API const char *mps_material_name(const mps_material *material);
@@ -289,21 +312,21 @@ MPS_API const char *mps_material_name(const mps_material *material);
 MPS_API double mps_material_wave_modulus(const mps_material *material);
 /** Non-zero: the law works on the deformation gradient, not on the rate. */
 MPS_API int32_t mps_material_needs_deformation(const mps_material *material);
-/** How many history columns the law has; 0 for NULL. */
+/** Number of history columns of the law; 0 for NULL. */
 MPS_API int32_t mps_material_history_count(const mps_material *material);
 /** Name of a history column, NULL outside 0..count-1: `plastic_strain` is the sum of
  *  sqrt(2/3 de:de) over the plastic, deviatoric strain increments, `opening` (frictional laws) the
  *  volume strain of the gap that compression closes before the mean stress falls below 0. */
 MPS_API const char *mps_material_history_name(const mps_material *material, int32_t index);
-/** Name of the field of a particle set that holds the column: the column's own of the library's
- *  laws, "<material>.<column>" of a user's law or UMAT, which no other field can be called. Laws of
- * the same name share fields: a particle obeys one law. */
+/** Name of the field of a particle set that holds the column: the column's own name for the
+ *  library's laws, "<material>.<column>" for a user's law or UMAT, a form that no other field can
+ *  have. Laws of the same name share fields, since a particle obeys one law. */
 MPS_API const char *mps_material_history_field(const mps_material *material, int32_t index);
 /** Value of a history column before the first step. */
 MPS_API double mps_material_history_initial(const mps_material *material, int32_t index);
 
-/* ---- elastic ground in all its words ----------------------------------------------------------
- */
+/* ---- constants of isotropic elasticity ----------------------------------------------------------
+ * /
 
 /** Constants of isotropic elasticity. */
 typedef struct mps_moduli {
@@ -325,7 +348,7 @@ static inline mps_status mps_moduli_from_elastic(mps_context *owner, double youn
   return mps_moduli_from_elastic_sized(owner, young, poisson, density, out, sizeof *out);
 }
 /** From Vs and Vp (1e-6 to 1e9 m/s; Vp 1.155 to 223 times Vs, so that nu is in its range) and the
- *  density. E must come out in its range. */
+ *  density. MPS_ERROR_ARGUMENT: a value, or the resulting E, out of range. */
 MPS_API MPS_NODISCARD mps_status mps_moduli_from_velocities_sized(mps_context *context,
                                                                   double shear_velocity,
                                                                   double pressure_velocity,
@@ -337,8 +360,9 @@ static inline mps_status mps_moduli_from_velocities(mps_context *owner, double s
   return mps_moduli_from_velocities_sized(owner, shear_velocity, pressure_velocity, density, out,
                                           sizeof *out);
 }
-/** Of a material in its elastic range, at zero strain. MPS_ERROR_UNSUPPORTED: a fluid, or a law of
- *  the caller's own that does not state a shear modulus. */
+/** Constants of a material in its elastic range, at zero strain, with `density` (kg/m3).
+ *  MPS_ERROR_ARGUMENT: density out of range; MPS_ERROR_UNSUPPORTED: a fluid, or a user's law that
+ *  does not state a shear modulus. */
 MPS_API MPS_NODISCARD mps_status mps_material_get_moduli_sized(const mps_material *material,
                                                                double density, mps_moduli *out,
                                                                size_t size);
@@ -346,12 +370,12 @@ static inline mps_status mps_material_get_moduli(const mps_material *material, d
                                                  mps_moduli *out) {
   return mps_material_get_moduli_sized(material, density, out, sizeof *out);
 }
-/** Says what the particles `ids` (count 0 and NULL: all) are made of in the fields that the solvers
- *  of elasticity read: `density`, `young`, `poisson`, `shear_velocity`, `pressure_velocity`, added
- *  where the set lacks them. So one linear elastic material serves explicit dynamics, implicit
- *  elasticity and, given to its create, WLS-MPM. MPS_ERROR_UNSUPPORTED: another law;
- *  MPS_ERROR_ARGUMENT: a material of another context, a density out of range, an id that the set
- *  lacks. Nothing has changed on an error. */
+/** Assigns a material and a density (kg/m3) to the particles `ids` (count 0 and NULL: all) in the
+ *  fields that the solvers of elasticity read: `density`, `young`, `poisson`, `shear_velocity`,
+ *  `pressure_velocity`, added where the set lacks them. So one linear elastic material serves
+ *  explicit dynamics, implicit elasticity and, given to its create, WLS-MPM. MPS_ERROR_UNSUPPORTED:
+ *  another law; MPS_ERROR_ARGUMENT: a material of another context, a density out of range, an id
+ *  that the set lacks. Nothing has changed on an error. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set_material(mps_particles *particles,
                                                             const mps_material *material,
                                                             double density, int64_t count,
@@ -360,18 +384,18 @@ MPS_API MPS_NODISCARD mps_status mps_particles_set_material(mps_particles *parti
 /* ---- use without a solver -------------------------------------------------------------------- */
 
 /** Applies one step to a block. MPS_ERROR_ARGUMENT for a malformed block (nothing is changed), or
- *  the status of a user's law that refuses, MPS_ERROR_NUMERIC where it leaves a value that is not
- *  finite; other laws' values are not looked at: a NaN stays in its particle. Errors go to
- * `context`, which need not be the material's: threads that update at once use a context each. No
- * allocation. */
+ *  the status of a user's law that fails, MPS_ERROR_NUMERIC where it leaves a value that is not
+ *  finite; values of other laws are not checked: a NaN stays in its particle. Errors go to
+ *  `context`, which need not be the material's: threads that update concurrently use a context
+ *  each. No allocation. */
 MPS_API MPS_NODISCARD mps_status mps_material_update(mps_context *context,
                                                      const mps_material *material,
                                                      const mps_material_block *block);
 
 #define MPS_MATERIAL_POINT_HISTORY 32
 
-/** One particle with all its state, to try a law of at most MPS_MATERIAL_POINT_HISTORY columns
- * along a path of strain (laws with more: mps_material_update). Frozen layout. */
+/** One particle with its state, to drive a law of at most MPS_MATERIAL_POINT_HISTORY history
+ *  columns along a strain path (laws with more: mps_material_update). Frozen layout. */
 typedef struct mps_material_point {
   double stress[6];      /* Pa; may be set before the first step */
   double deformation[9]; /* starts as the unit tensor */
@@ -381,12 +405,15 @@ typedef struct mps_material_point {
   double time;   /* s */
 } mps_material_point;
 
-/** The state before the first step. */
+/** Sets the state before the first step. MPS_ERROR_ARGUMENT: a law of more than
+ *  MPS_MATERIAL_POINT_HISTORY columns. */
 MPS_API MPS_NODISCARD mps_status mps_material_point_init(mps_context *context,
                                                          const mps_material *material,
                                                          mps_material_point *point);
 /** `steps` (>= 1) steps of dt = duration/steps (s, > 0) with the constant velocity gradient[3 i +
- * j] (1/s, finite), always in three dimensions. */
+ *  j] (1/s, finite), always in three dimensions. MPS_ERROR_ARGUMENT: `steps`, `duration` or
+ *  `gradient` out of range, or too many history columns; MPS_ERROR_NUMERIC: a user's law leaves a
+ *  value that is not finite; or the status of that law. */
 MPS_API MPS_NODISCARD mps_status mps_material_point_drive(mps_context *context,
                                                           const mps_material *material,
                                                           mps_material_point *point,

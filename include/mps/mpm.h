@@ -1,9 +1,9 @@
-/* mps/mpm.h - the WLS-MPM grid solver (Nakamura): large deformation of particles that move through
- * a grid of nodes, with frictional contact against rigid bodies. Plane strain, axisymmetry (x is
- * the radius, y the axis) or space.
+/* mps/mpm.h - the WLS-MPM grid solver (Nakamura): large deformation of material points that move
+ * through a grid of nodes, with frictional contact against rigid bodies. Plane strain, axisymmetry
+ * (x is the radius, y the axis) or space.
  *
  * Shape functions come from a weighted least-squares fit of a linear function over the nodes that a
- * particle may use: those of the domain, and not those inside a body or behind it. Nodes exist only
+ * particle may use: nodes of the domain, except those inside a body or behind it. Nodes exist only
  * in blocks of 8 x 8 (x 8) around particles, so memory grows with the particles: 32 bytes a node,
  * 64 near bodies and walls.
  *
@@ -22,9 +22,9 @@
  * bodies with contact by impulses the spin of `velocity_gradient` is that by which the particle
  * carries the moment of its nodes' momenta (not in axisymmetry).
  *
- * Ranks (mps/domain.h; docs/cluster.md) each make the same whole set, of which they keep a share
- * that changes as particles move; all functions but those that only tell are collective. Thread
- * rule: one thread at a time per context; a step runs on its executor, with the same bits for every
+ * Ranks (mps/domain.h; docs/cluster.md) each make the same whole set, of which they keep a part
+ * that changes as particles move; all functions except queries are collective. Thread rule: one
+ * thread at a time per context; a step runs on its executor, with the same bits for every
  * number of threads and ranks. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_MPM_H
 #define LIBMPS_MPM_H
@@ -46,15 +46,15 @@ typedef enum mps_mpm_geometry {
   MPS_MPM_GEOMETRY_SPACE = 2         /* three dimensions */
 } mps_mpm_geometry;
 
-/** Which speed bounds the step besides that of viscous laws, rho h^2/(4 dim viscosity). */
+/** Speed in the Courant limit. Viscous laws have the limit rho h^2/(4 dim viscosity) besides. */
 typedef enum mps_mpm_step_from {
   MPS_MPM_STEP_FROM_SPEED = 0, /* wave velocity and velocity of each particle, c + |v| */
   MPS_MPM_STEP_FROM_WAVE = 1   /* the wave velocity c alone: steps stay equal in a stiff body that
                                   moves; particles may then go further than `courant` cells a step */
 } mps_mpm_step_from;
 
-/** What the laws take for the change of volume: a cure for volumetric locking and for pressures
- * that oscillate in nearly incompressible material. */
+/** Volumetric strain rate that the laws receive: against volumetric locking and oscillating
+ *  pressures in nearly incompressible material. */
 typedef enum mps_mpm_volumetric {
   MPS_MPM_VOLUMETRIC_POINT = 0, /* each particle's own tr(d), in axisymmetry with the hoop */
   MPS_MPM_VOLUMETRIC_CELL = 1,  /* F-bar: the mean of tr(d), weighted by volumes, over the particles
@@ -63,16 +63,16 @@ typedef enum mps_mpm_volumetric {
                                `volume_ratio` and `deformation_gradient` follow the mean.
                                Mohr-Coulomb and Drucker-Prager with an angle of dilation above 0
                                keep their own tr(d), and are not in the mean */
-  MPS_MPM_VOLUMETRIC_NODES = 2 /* the mean of tr(d) and of pressures over the nodes near: fluids act
-                              with it, other laws tend to it by 0.03 c dt/h a step. Frictional laws
-                              keep their own tr(d); pressures are smoothed every eighth step */
+  MPS_MPM_VOLUMETRIC_NODES = 2 /* the mean of tr(d) and of pressures over the nodes near: fluids use
+                              it, other laws approach it by 0.03 c dt/h a step. Frictional laws keep
+                              their own tr(d); pressures are smoothed every eighth step */
 } mps_mpm_volumetric;
 
-/** What particles near a roller, a fixed side or the axis use beyond it. */
+/** Shape functions of particles near a roller, a fixed side or the axis. */
 typedef enum mps_mpm_walls {
-  MPS_MPM_WALLS_MIRROR = 0, /* images of the nodes inside: a roller is a mirror */
-  MPS_MPM_WALLS_FIT = 1 /* nothing: the fit takes the nodes that there are, as at other sides and
-                           at bodies (Nakamura). Affine velocities are kept that no mirror has */
+  MPS_MPM_WALLS_MIRROR = 0, /* with images of the nodes inside: a roller is a mirror */
+  MPS_MPM_WALLS_FIT = 1 /* without: the fit uses the existing nodes, as at other sides and at bodies
+                           (Nakamura). Keeps affine velocities, which mirrors do not */
 } mps_mpm_walls;
 
 typedef struct mps_mpm_def {
@@ -82,35 +82,37 @@ typedef struct mps_mpm_def {
   int32_t spline;     /* degree of the B-spline weights: 3 (Nakamura (36)) or 2; 0 (default): 3 */
   int32_t volumetric; /* mps_mpm_volumetric, default POINT */
   int32_t step_from;  /* mps_mpm_step_from, default SPEED */
-  int32_t budget;     /* 1: each step counts what becomes of the energy, see mps_mpm_get_totals; it
-                         then sums all forces apart from the momenta, which costs time and changes
-                         last bits. 0 (default): it does not */
+  int32_t budget; /* 1: each step sums the energy budget, see mps_mpm_get_totals; forces are then
+                     summed apart from the momenta, which costs time and changes last bits. 0
+                     (default): no budget */
   double local_damping;   /* in [0, 1): each component of a node's force shrinks by this fraction of
                              the unbalanced force against its motion; default 0 */
   double viscous_damping; /* 1/s, >= 0: force on a node for each of its momentum; default 0. Both
-                             come after all other forces and spare what boundaries prescribe, so
-                             that reactions are right; they also slow free flight */
+                             act after all other forces, except on prescribed components, so that
+                             reactions are right; they also slow free flight */
   double cell;            /* h, m, > 0; no default. Usually 2 spacings; 0.5 to 1000 are allowed */
   double origin[3];       /* m: a node lies here; default 0 */
   double lower[3], upper[3]; /* m: sides of the domain, on nodes; default: none (infinite). In
                                 axisymmetry lower[0] is at least 0, and 0 by default. Each side is
-                                born a roller: see mps_mpm_set_boundary */
-  double measure;     /* what all masses, volumes and forces are of: thickness in m (default 1) in
-                         plane strain, the angle in rad (default 2 pi, the whole ring) in
-                         axisymmetry; 1 in space. NaN: the default */
-  double gravity[3];  /* m/s2, default 0 */
-  double dt;          /* s, > 0: every step; NaN (default): each step `courant` times the limit. At
-                         most that limit at creation; a warning tells when it gets above it */
+                                initially a roller: see mps_mpm_set_boundary */
+  double measure; /* thickness in m (default 1) in plane strain, sector angle in rad (default 2 pi,
+                     the whole ring) in axisymmetry, to which all masses, volumes and forces refer;
+                     1 in space. NaN: the default */
+  double gravity[3]; /* m/s2, default 0 */
+  double dt; /* s, > 0: every step; NaN (default): each step `courant` times the limit. At most that
+                limit at creation; a warning is logged when it exceeds it later */
   double courant;     /* fraction of the limit h/(c + v), Nakamura (49), (50), that a step takes, in
                          (0, 1]; default 0.5 */
   mps_kernel *kernel; /* NULL (default): weights by `spline` and `cell`; else a B-spline of degree 2
-                         or 3 of radius 1.5 or 2 cells, which says the degree in place of `spline`;
+                         or 3 of radius 1.5 or 2 cells, which gives the degree in place of `spline`;
                          kept alive */
   int32_t walls;      /* mps_mpm_walls, default MIRROR */
   int32_t reserved;
   mps_domain *domain; /* ranks that share the body; NULL (default): none. Kept alive */
 } mps_mpm_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);
 static inline mps_mpm_def mps_mpm_defaults(void) {
   mps_mpm_def def;
@@ -123,61 +125,69 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
  *  has at most one solver that moves it. Between steps particles may be added to the set, inside
  *  the domain and outside the bodies, and removed from it; a callback is not between steps. New
  *  ones have the lattice's volume, no stress, and the material of creation; the next step is
- *  MPS_ERROR_STATE until their density is committed. Lists of ids pass over particles that are no
- *  more. On an error the set is as before. All particles are of the one `material`, which is kept
- *  alive, until mps_mpm_set_material; its history columns become fields of the set. */
+ *  MPS_ERROR_STATE until their density is committed. Lists of ids skip removed particles. On an
+ *  error the set is as before. All particles are of the one `material`, which is kept alive, until
+ *  mps_mpm_set_material; its history columns become fields of the set. MPS_ERROR_ARGUMENT: a member
+ *  of `def`, a position or a field value out of range; MPS_ERROR_FIELD: no field `density`;
+ *  MPS_ERROR_STATE: another solver holds the set; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_particles *particles,
                                                 mps_material *material, const mps_mpm_def *def,
                                                 mps_mpm **out);
+/** Destroys and nulls; accepts NULL. In a callback of the solver it only records MPS_ERROR_STATE.
+ *  */
 MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 
 #define MPS_MPM_MAX_MATERIALS 16
 
 /** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the
- *  first step or between steps; at most 16 different materials in a solver, that of creation with
- *  them. The material is kept alive. Its history begins anew in these particles, by the law's
+ *  first step or between steps; at most 16 different materials in a solver, including that of
+ *  creation. The material is kept alive. Its history begins anew in these particles, by the law's
  *  initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0:
- *  1, and all 0: no deformation). Fields that only this law needs are added, so the set's number
- *  of fields grows; `material` tells each particle's law. The Courant limit follows at once, and
- *  so does the stiffness of contacts by penalty that have no `penalty` of their own. */
+ *  1, and all 0: no deformation). Fields that only this law needs are added to the set; the field
+ *  `material` has each particle's law. The Courant limit, and the stiffness of penalty contacts
+ *  without a `penalty` of their own, follow at once. MPS_ERROR_ARGUMENT: an unknown id, a volume
+ *  ratio below 0, or too many materials; MPS_ERROR_STATE: a step has failed, or a callback of the
+ *  solver is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
                                                       int64_t count, const int64_t *ids);
 
 #define MPS_MPM_MAX_CONTACTS 32
 
-/** Lets the particles touch `body` (`def` NULL: the defaults) until mps_contact_destroy or the end
- *  of the solver. `contact`, which may be NULL, receives the caller's handle. The body's own clock
- *  goes on from where it is. At most 32 contacts, each with another body, and bodies may not
- *  overlap by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two
- *  cells or particles lie inside it, unless `def` allows. A moving body shortens the steps: its
- *  surface goes at most `courant` cells in one. With MPS_CONTACT_METHOD_PENALTY the log hook is
- *  warned of a contact stiffness k dt^2/m > 6, which chatters. */
+/** Adds contact of the particles with `body` (`def` NULL: the defaults) until mps_contact_destroy
+ *  or the destruction of the solver. `contact`, which may be NULL, receives the caller's handle.
+ *  The body keeps its own time. At most 32 contacts, each with another body, and bodies may not
+ *  overlap by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two cells
+ *  or particles lie inside it, unless `def` allows it. A moving body limits the step: its surface
+ *  moves at most `courant` cells in one. With MPS_CONTACT_METHOD_PENALTY a warning is logged for a
+ *  contact stiffness k dt^2/m > 6, with which contacts chatter. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body,
                                                      const mps_contact_def *def,
                                                      mps_contact **contact);
 
-/** What the solver was made from: the definition as completed by it. */
+/** The definition of the solver, with its defaults completed. MPS_ERROR_ARGUMENT: NULL, or a `size`
+ *  unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_def_sized(const mps_mpm *mpm, mps_mpm_def *out,
                                                        size_t size);
 static inline mps_status mps_mpm_get_def(const mps_mpm *mpm, mps_mpm_def *out) {
   return mps_mpm_get_def_sized(mpm, out, sizeof *out);
 }
-/** The set, the context; NULL for NULL. Lent: they live at least as long as the solver. */
+/** The set; NULL for NULL. Lent: it lives at least as long as the solver. */
 MPS_API mps_particles *mps_mpm_particles(const mps_mpm *mpm);
+/** The context; NULL for NULL. Lent: it lives at least as long as the solver. */
 MPS_API mps_context *mps_mpm_context(const mps_mpm *mpm);
-/** The weights along each axis, to ask for values, derivatives and moments; lent, NULL for NULL. */
+/** The B-spline along each axis, for its values, derivatives and moments; lent, NULL for NULL. */
 MPS_API mps_kernel *mps_mpm_kernel(const mps_mpm *mpm);
 
 /* ---- boundaries ------------------------------------------------------------------------------
- * A boundary holds, drives or slows by friction nodes of a side of the domain or of a box, or
- * particles. A solver is born with a boundary on each finite side of its domain, whose number is
- * that side's below: a roller. They are set, or removed, as all others; those that are added have
- * numbers from 6 on. Nodes keep their place; what moves is their velocity: `factor` times that of
- * the signal at the middle of the step, NULL being rest.
+ * A boundary constrains nodes of a side of the domain or of a box, or particles. Each finite side
+ * of the domain is initially a roller, with the number of that side below (0 to 5); sides are set
+ * and removed as other boundaries. Added boundaries have numbers from 6. Nodes do not move; a
+ * boundary prescribes their velocity: `factor` times that of the signal at the middle of the step,
+ * NULL being rest.
  *
  * A side acts on its nodes, and so on particles nearer than the spline reaches (1.5 or 2 cells).
- * Where several boundaries hold one node, fixed sides come after the others, then boxes in the
- * order of their numbers: the last decides; held particles come last. */
+ * Where several boundaries constrain one node, fixed sides act after other sides, then boxes in the
+ * order of their numbers, then particles: the last prevails. */
 
 typedef enum mps_mpm_side {
   MPS_MPM_SIDE_X_LOWER = 0, /* 2 axis + upper */
@@ -190,18 +200,20 @@ typedef enum mps_mpm_side {
 
 /* Kinds (mps_boundary_kind). Boxes and particles are HELD or DRIVEN, the components `dofs`. Sides:
  *
- * ROLLER      no velocity across
- * HELD        no velocity at all; DRIVEN: that of the signals
- * FRICTIONAL  no velocity into the side, and Coulomb's friction along it; it pushes but never
- * pulls, so that material may leave ABSORBING   Lysmer dashpots: traction R - rho c_p v across and
- * R - rho c_s v along, with rho, c_p and c_s of the particles in the cells at the side (elastic;
- * under a user's law c_s = c_p/sqrt(3)). The constant R is the traction at rest: see `settle`.
- * Nodes that become active later carry no R. Stable for every dt. Particles move with the waves:
- * one that passes the side has left the domain. A signal's velocity v enters as a wave of v/2 FREE
- * an edge where nodes end and nothing is held OPEN        the same; particles that pass it leave
- * the set at the end of the step. The reaction's `removed` and `removed_mass` count them, its
- * `count` those of the last step; its impulses and `work` are less the momentum and kinetic energy
- * that they carry out
+ *   ROLLER      no velocity across
+ *   HELD        no velocity; DRIVEN: that of the signals
+ *   FRICTIONAL  no velocity into the side, and Coulomb friction along it; without tension, so that
+ *               material may separate
+ *   ABSORBING   Lysmer dashpots: traction R - rho c_p v across and R - rho c_s v along, with rho,
+ *               c_p and c_s of the particles in the cells at the side (elastic; under a user's law
+ *               c_s = c_p/sqrt(3)). The constant R is the traction at rest: see `settle`. Nodes
+ *               that become active later carry no R. Stable for every dt. Particles move with the
+ *               waves: one that passes the side has left the domain. A signal's velocity v enters
+ *               as a wave of v/2
+ *   FREE        an edge of the grid without constraint
+ *   OPEN        the same; particles that pass it are removed at the end of the step. The reaction's
+ *               `removed` and `removed_mass` count them, its `count` those of the last step; its
+ *               impulses and `work` are less the momentum and kinetic energy that they carry out
  *
  * The axis r = 0 may be ROLLER, HELD or DRIVEN along itself. */
 
@@ -218,13 +230,14 @@ typedef struct mps_mpm_boundary_def {
                             one across */
   double factor[3];      /* default 1 */
   double friction;       /* Coulomb's mu of FRICTIONAL, >= 0; default 0 */
-  double settle;         /* s, >= 0: so long an ABSORBING side is held as a fixed one, and R is the
-                            mean traction then. 0 (default): R balances the other forces at the nodes
-                            in the first step. On the grid, stress and gravity that balance in theory
-                            leave up to a percent unbalanced; without settling, the dashpots
-                            move under that */
+  double settle; /* s, >= 0: duration in which an ABSORBING side is held, and over which R is the
+                    mean traction. 0 (default): R balances the other forces at the nodes in the
+                    first step. On the grid, stress and gravity that balance in theory leave up to a
+                    percent unbalanced; without settling, the dashpots move under that */
 } mps_mpm_boundary_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size);
 static inline mps_mpm_boundary_def mps_mpm_boundary_defaults(void) {
   mps_mpm_boundary_def def;
@@ -235,17 +248,22 @@ static inline mps_mpm_boundary_def mps_mpm_boundary_defaults(void) {
 
 #define MPS_MPM_MAX_BOUNDARIES 64 /* the six sides counted */
 
-/** Adds a box of nodes or a list of particles; `number` receives the lowest free number from 6. */
+/** Adds a box of nodes or a list of particles; `number` (may be NULL) receives the lowest free
+ *  number from 6. MPS_ERROR_ARGUMENT: a member of `def` out of range, an unknown id, or too many
+ *  boundaries; MPS_ERROR_STATE: a callback of the solver is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *def,
                                                       int32_t *number);
-/** Gives boundary `number` another definition, from the next step on; its impulse and work go on.
- *  A side (0 to 5) that the domain does not have is MPS_ERROR_ARGUMENT; an absorbing one finds its
- *  R anew. */
+/** Gives boundary `number` another definition, from the next step on; its impulse and work are
+ *  kept. An absorbing side determines its R again. MPS_ERROR_ARGUMENT: no boundary `number`, a side
+ *  that the domain does not have, or a member of `def` out of range; MPS_ERROR_STATE: a callback of
+ *  the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number,
                                                       const mps_mpm_boundary_def *def);
-/** Lets the nodes or particles go; a side becomes FREE. */
+/** Removes a boundary: its nodes or particles are free; a side becomes FREE. MPS_ERROR_ARGUMENT: no
+ *  boundary `number`, or the axis; MPS_ERROR_STATE: a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number);
-/** What boundary `number` exerts on the particles. */
+/** Force, impulse and work of boundary `number` on the particles. MPS_ERROR_ARGUMENT: no boundary
+ *  `number`, NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_reaction_sized(const mps_mpm *mpm, int32_t number,
                                                             mps_reaction *out, size_t size);
 static inline mps_status mps_mpm_get_reaction(const mps_mpm *mpm, int32_t number,
@@ -280,6 +298,8 @@ typedef struct mps_mpm_load_def {
   double factor[3]; /* default 1 */
 } mps_mpm_load_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_mpm_load_def_init(mps_mpm_load_def *def, size_t size);
 static inline mps_mpm_load_def mps_mpm_load_defaults(void) {
   mps_mpm_load_def def;
@@ -287,66 +307,79 @@ static inline mps_mpm_load_def mps_mpm_load_defaults(void) {
   if (mps_mpm_load_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
-/** Adds a load; `number` receives the lowest free number from 0. */
+/** Adds a load; `number` (may be NULL) receives the lowest free number from 0. MPS_ERROR_ARGUMENT:
+ *  a member of `def` out of range, or an unknown id; MPS_ERROR_STATE: a callback of the solver is
+ *  running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *def,
                                                   int32_t *number);
 /** Gives load `number` another definition; with ids NULL and id_count 0 it keeps its particles and
- *  areas. */
+ *  areas. MPS_ERROR_ARGUMENT: no load `number`; otherwise errors as mps_mpm_add_load. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number,
                                                   const mps_mpm_load_def *def);
+/** Removes load `number`. MPS_ERROR_ARGUMENT: no load of that number; MPS_ERROR_STATE: a callback
+ *  of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number);
 
 /* ---- running --------------------------------------------------------------------------------- */
-/** Takes `count` (>= 0) steps, asking the cancel hook after each. A particle that passes a side of
- *  the domain by less than 0.1 cells is put back on it. A step that finds a particle too deep in a
- *  body (MPS_ERROR_DIVERGED), no memory, or that a user's law refuses has not happened: all is as
- *  before it, but perhaps the order of the particles. A step in which a particle leaves the domain
- *  (MPS_ERROR_DIVERGED) is whole and counted; no other is made until the particle is put back
- *  (mps_particles_edit of `position`) or removed, or the solver goes back. One that gives a
- *  velocity or a volume that is not finite (MPS_ERROR_DIVERGED) leaves it to be looked at: only
- *  mps_mpm_rollback or mps_mpm_restore goes on from there. The record names step and particle. */
+/** Takes `count` (>= 0) steps, and calls the cancel hook after each (MPS_ERROR_CANCELLED). A
+ *  particle that passes a side of the domain by less than 0.1 cells is moved back to it. A step
+ *  with a particle too deep in a body (MPS_ERROR_DIVERGED), without memory (MPS_ERROR_MEMORY), or
+ *  with a user's law that fails is undone, except perhaps for the order of the particles. A step in
+ *  which a particle leaves the domain (MPS_ERROR_DIVERGED) is complete and counted; no other is
+ *  made until the particle is put back (mps_particles_edit of `position`) or removed, or the solver
+ *  is rolled back. A step with a velocity or volume that is not finite (MPS_ERROR_DIVERGED) leaves
+ *  that state for inspection: only mps_mpm_rollback or mps_mpm_restore continue from there, others
+ *  return MPS_ERROR_STATE. The record names step and particle. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
-/** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on;
- *  any other status ends the run, which returns it. It may ask the solver, but not step, change or
- *  destroy it: MPS_ERROR_STATE. */
+/** Called at the start of a run, then every `every` steps and at the end. A status other than
+ *  MPS_OK ends the run, which returns it. It may query the solver; functions that step, change or
+ *  destroy it return MPS_ERROR_STATE. */
 typedef mps_status (*mps_mpm_fn)(void *user, mps_mpm *mpm);
 
 /** Steps to t_end (s, not before mps_mpm_time), the last step shortened to end exactly there;
- *  `callback` may be NULL, `every` >= 1. The context's progress hook is told about 100 times, the
- *  cancel hook asked after each step. */
+ *  `callback` may be NULL, `every` >= 1. The context's progress hook is called about 100 times, the
+ *  cancel hook after each step. MPS_ERROR_ARGUMENT: `t_end` or `every` out of range; otherwise
+ *  errors as mps_mpm_step, or the status of `callback`. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every,
                                              mps_mpm_fn callback, void *user);
 
-MPS_API double mps_mpm_time(const mps_mpm *mpm); /* s */
+/** Time (s); 0 for NULL. */
+MPS_API double mps_mpm_time(const mps_mpm *mpm);
+/** Number of steps taken; 0 for NULL. */
 MPS_API int64_t mps_mpm_steps(const mps_mpm *mpm);
-/** The step (s) that would come next. */
+/** Size (s) of the next step; 0 for NULL. */
 MPS_API double mps_mpm_dt(const mps_mpm *mpm);
 /** The Courant limit h/(c + v), Nakamura (49), that of viscosity, or h over the speed of the
- *  fastest body in contact, of the present state (s), the fraction `courant` not applied. Cheap. */
+ *  fastest body in contact, of the present state (s), without the fraction `courant`; 0 for NULL.
+ *  Cheap. */
 MPS_API double mps_mpm_limit(const mps_mpm *mpm);
-/** Sets `dt` of the definition: s, > 0, at most the limit; NaN: it follows the limit. */
+/** Sets `dt` of the definition (s, > 0, at most the limit; NaN: it follows the limit).
+ *  MPS_ERROR_ARGUMENT: out of range; MPS_ERROR_STATE: a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt);
 
 /* ---- sums ------------------------------------------------------------------------------------ */
 /** Sums over the particles (bodies not counted), of the measure. `angular` has the spin that the
  *  velocity gradients carry, m h^2/3 (cubic; quadratic: /4) curl v; it is conserved with full
  *  supports. `kinetic` is that of the particles' velocities alone. `work_boundaries` and
- *  `work_bodies` are always there; the others NaN unless the definition asks for the budget, which
- *  mps/mpm_energy.h explains. */
+ *  `work_bodies` are always summed; the other energies are NaN unless `budget` of the definition is
+ *  1 (mps/mpm_energy.h). MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals_sized(const mps_mpm *mpm, mps_totals *out,
                                                           size_t size);
 static inline mps_status mps_mpm_get_totals(const mps_mpm *mpm, mps_totals *out) {
   return mps_mpm_get_totals_sized(mpm, out, sizeof *out);
 }
 
-/** How large the grid is, and how far the impulses of contacts are from a solution. */
+/** Size of the grid, and convergence of the contact impulses. */
 typedef struct mps_mpm_usage {
   int64_t blocks, nodes; /* blocks of cells that hold particles; nodes that exist */
   int64_t bytes;         /* memory of the grid, the particles' fields not counted */
-  int64_t sweeps; /* over the contacts of the last step; 0: there was none by METHOD_IMPULSE */
+  int64_t sweeps;        /* Gauss-Seidel sweeps over the contacts of the last step; 0: no contact by
+                            METHOD_IMPULSE */
   double left; /* relative change of all impulses in the last sweep (mps_contact_def.tolerance) */
 } mps_mpm_usage;
+/** Size of the grid and convergence of the last step's contacts. MPS_ERROR_ARGUMENT: NULL, or a
+ *  `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_usage_sized(const mps_mpm *mpm, mps_mpm_usage *out,
                                                          size_t size);
 static inline mps_status mps_mpm_get_usage(const mps_mpm *mpm, mps_mpm_usage *out) {
@@ -356,41 +389,42 @@ static inline mps_status mps_mpm_get_usage(const mps_mpm *mpm, mps_mpm_usage *ou
 /* ---- state ----------------------------------------------------------------------------------- */
 
 /** Keeps the state of the solver, its set (fields, order) and its bodies in memory. *snapshot is
- *  NULL at first and receives a new one, or one of this solver to be filled again, whose memory is
- *  then reused. Needs as much memory as the fields. Between steps only, as in the callback of
+ *  NULL, and receives a new one, or a snapshot of this solver, which is filled again and whose
+ *  memory is reused. Needs as much memory as the fields. Between steps only, as in the callback of
  *  mps_mpm_run. Edits are read as by a step: dt and limit follow, particles may be sorted. On an
- *  error *snapshot is as before. MPS_ERROR_ARGUMENT: of another solver; _STATE: a step failed. */
+ *  error *snapshot is as before. MPS_ERROR_ARGUMENT: a snapshot of another solver; MPS_ERROR_STATE:
+ *  a step has failed, or one is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot);
-/** Goes back to a snapshot, bit for bit; a step that failed is forgotten, particles that came or
- *  went since then go or come back, and ids given since are given again. Not in the snapshot, and
- *  so as they are now: gravity, dt, courant, constants of materials and bodies, signals, loads. On
- *  an error nothing has changed. MPS_ERROR_ARGUMENT: of another solver; MPS_ERROR_STATE: bodies,
- *  boundaries, loads or materials are not those of the snapshot, the message says which. */
+/** Restores a snapshot, bit for bit; a failed step is discarded, particles added or removed since
+ *  are removed or added again, and ids given since are given again. Not in the snapshot, and so
+ *  unchanged: gravity, dt, courant, constants of materials and bodies, signals, loads. On an error
+ *  nothing has changed. MPS_ERROR_ARGUMENT: of another solver; MPS_ERROR_STATE: bodies, boundaries,
+ *  loads or materials are not those of the snapshot, the message says which. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot);
 
 /** Writes a checkpoint of the solver's set (see mps_checkpoint_write, also for errors) with all
- *  that the solver needs to go on: time, steps, order and blocks of the particles, forces of the
+ *  that the solver needs to continue: time, steps, order and blocks of the particles, forces of the
  *  walls; of its bodies motion, load, reactions and impulses. Of `info` (NULL: the defaults) only
- *  user_key and the user_data are read. Edits are read as by mps_mpm_snapshot; the run goes on as
- *  if it had not been saved. Between steps only, such as in the callback of mps_mpm_run.
- *  MPS_ERROR_STATE: a step has failed. */
+ *  user_key and user_data are read. Edits are read as by mps_mpm_snapshot; the run continues as
+ *  without saving. Between steps only, such as in the callback of mps_mpm_run. MPS_ERROR_STATE: a
+ *  step has failed; MPS_ERROR_IO: the file cannot be written; MPS_ERROR_UNSUPPORTED: no HDF5. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
                                               const mps_checkpoint *info);
 
 /** Puts the state of mps_mpm_save into a solver that was built in the same way; its set takes the
- *  particles of the file, whichever it has. What must agree: spacing, geometry, scheme, spline,
- * cell, origin, places and kinds of walls and boxes, number of loads, whether there are body
- * accelerations, names and order of materials, and the shapes, motions and numbers of parts of the
- * bodies in their order. Where the solver is now does not matter; a step that failed is forgotten.
- * From there it goes on bit for bit as the run that never stopped, for every number of threads. All
- * else is the caller's to set up again, and may be other than it was: constants of materials,
- * gravity, dt, courant, signals, loads on particles, friction, masses of bodies.
+ *  particles of the file. These must agree: spacing, geometry, scheme, spline, cell, origin, places
+ *  and kinds of walls and boxes, number of loads, whether there are body accelerations, names and
+ *  order of materials, and the shapes, motions and numbers of parts of the bodies in their order.
+ *  The present state of the solver does not matter; a failed step is discarded. The run continues
+ *  bit for bit as an uninterrupted one, for every number of threads. Everything else is set up by
+ *  the caller, and may differ: constants of materials, gravity, dt, courant, signals, loads on
+ *  particles, friction, masses of bodies.
  *
  *  The set takes the order of the file: views taken before are stale. On an error nothing has
- *  changed. `info` (NULL: not wanted) is as for mps_checkpoint_info. Statuses are
- *  those of mps_checkpoint_read; MPS_ERROR_FORMAT: written without a solver; MPS_ERROR_ARGUMENT: by
- *  a solver that was built in another way, the message says in what; MPS_ERROR_STATE: another
- *  solver uses the set. */
+ *  changed. `info` (NULL: not wanted) is as for mps_checkpoint_info. Statuses are those of
+ *  mps_checkpoint_read; MPS_ERROR_FORMAT: written without a solver; MPS_ERROR_ARGUMENT: by a solver
+ *  that was built in another way, the message says in what; MPS_ERROR_STATE: another solver uses
+ *  the set. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_restore(mps_mpm *mpm, const char *path,
                                                  mps_checkpoint *info);
 

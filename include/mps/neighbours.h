@@ -19,6 +19,8 @@ typedef struct mps_neighbours_def {
   int32_t reserved; /* 0 */
 } mps_neighbours_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_neighbours_def_init(mps_neighbours_def *def, size_t size);
 static inline mps_neighbours_def mps_neighbours_defaults(void) {
   mps_neighbours_def def;
@@ -32,20 +34,22 @@ static inline mps_neighbours_def mps_neighbours_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_neighbours_create(mps_context *context,
                                                        const mps_neighbours_def *def,
                                                        mps_neighbours **out);
-/** Destroys and nulls; accepts NULL. The lists are gone with it. */
+/** Destroys and nulls; accepts NULL. Frees the lists. */
 MPS_API void mps_neighbours_destroy(mps_neighbours **neighbours);
 
-/** Builds the lists of all pairs closer than the radius. `position` is a float64 view of shape
- *  (n, dim), 0 <= n < 2^32, finite, any extent and order: memory is O(n + pairs), not that of the
- *  bounding box. Uses the context's threads; the result does not depend on their number. On error
- *  the former list stays. Building again with about as many particles and pairs allocates
- *  nothing. */
+/** Builds the lists of all pairs closer than the radius. `position` is a float64 view of shape (n,
+ *  dim), 0 <= n < 2^32, finite, any extent and order: memory is O(n + pairs), not that of the
+ *  bounding box. Uses the context's threads; the result does not depend on their number. On an
+ *  error the former lists stay: MPS_ERROR_FIELD: `position` has another type or shape;
+ *  MPS_ERROR_ARGUMENT: a position is not finite; MPS_ERROR_MEMORY. Building again with about as
+ *  many particles and pairs allocates nothing. */
 MPS_API MPS_NODISCARD mps_status mps_neighbours_build(mps_neighbours *neighbours,
                                                       const mps_view *position);
 
 /** The lists in compressed rows: neighbours of i are indices[offsets[i]] .. indices[offsets[i + 1]
  *  - 1], ascending. `offsets` has n + 1 entries. Borrowed until the next build or the destruction.
- *  NULL where the caller does not want one. Before the first build `count` is 0. */
+ *  Each output may be NULL. Before the first build `count` is 0. MPS_ERROR_ARGUMENT: `neighbours`
+ *  NULL. */
 MPS_API MPS_NODISCARD mps_status mps_neighbours_lists(const mps_neighbours *neighbours,
                                                       int64_t *count, const int64_t **offsets,
                                                       const int64_t **indices);

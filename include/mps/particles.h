@@ -22,6 +22,8 @@ typedef struct mps_particles_def {
   double origin[3]; /* m; the fills put particles at origin + (i + 1/2) D (cell centred) */
 } mps_particles_def;
 
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_particles_def_init(mps_particles_def *def, size_t size);
 static inline mps_particles_def mps_particles_defaults(void) {
   mps_particles_def def;
@@ -36,13 +38,13 @@ static inline mps_particles_def mps_particles_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_particles_create(mps_context *context,
                                                       const mps_particles_def *def,
                                                       mps_particles **out);
-/** Gives up the caller's share and nulls; accepts NULL. While a solver uses the set it lives on,
- *  and goes with the last such solver. */
+/** Releases the caller's reference and nulls; accepts NULL. A solver that uses the set keeps it
+ *  alive. */
 MPS_API void mps_particles_destroy(mps_particles **particles);
 
-/* Questions; 0 for NULL. */
+/* Queries; 0 for NULL. */
 
-/** How many particles there are now. */
+/** Present number of particles. */
 MPS_API int64_t mps_particles_count(const mps_particles *particles);
 /** 2 or 3. */
 MPS_API int32_t mps_particles_dim(const mps_particles *particles);
@@ -54,45 +56,56 @@ MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
 /* ---- filling -------------------------------------------------------------------------------
  * Every fill appends and may be repeated; `added` (may be NULL) receives the number of particles
  * appended, other fields of the new particles are zero. On any error nothing is appended. A solver
- * that holds the set is asked first: it may refuse places outside its domain, or (MPS_ERROR_STATE)
- * all. Lattice fills never put a second particle on a lattice site that an earlier lattice fill
- * occupied. They go through a shape x fastest, then y, then z, and may look at up to 2^31 sites. A
- * site's centre within 1e-9 spacings of a bound counts as on it: in at `lo` and at the left and
- * lower edges of a polygon, out at `hi`, at the right and upper edges and on the surface of a ball.
- * So shapes that share an edge share no site. */
+ * that holds the set may refuse positions outside its domain, or (MPS_ERROR_STATE) all. Lattice
+ * fills never put a second particle on a lattice site that an earlier lattice fill occupied. Sites
+ * are numbered x fastest, then y, then z; a shape may hold up to 2^31 sites. A site's centre within
+ * 1e-9 spacings of a bound counts as on it: in at `lo` and at the left and lower edges of a
+ * polygon, out at `hi`, at the right and upper edges and on the surface of a ball. So shapes that
+ * share an edge share no site. */
 
 /** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. This
- * and the fills, of a set that lies on several ranks (mps/domain.h): collective; all ranks give the
- *  same, and each keeps the particles of its share. */
+ *  and the fills, of a set that lies on several ranks (mps/domain.h): collective; all ranks pass
+ *  the same arguments, and each keeps the particles of its part. MPS_ERROR_ARGUMENT: `count` or a
+ *  position out of range; MPS_ERROR_STATE: the solver that holds the set takes no particles;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_append(mps_particles *particles, int64_t count,
                                                       const double *positions);
-/** Lattice sites whose centre lies in the box [lo, hi) (dim values each, m). */
+/** Lattice sites whose centre lies in the box [lo, hi) (dim values each, m). MPS_ERROR_ARGUMENT: an
+ *  empty box, or one of more than 2^31 sites; MPS_ERROR_STATE and MPS_ERROR_MEMORY as
+ *  mps_particles_append. */
 MPS_API MPS_NODISCARD mps_status mps_particles_fill_box(mps_particles *particles, const double *lo,
                                                         const double *hi, int64_t *added);
-/** 2D: lattice sites inside the simple polygon of `vertices` corners xy[2 * k], xy[2 * k + 1]
- *  (m, either sense, not closed, convex or not). At least 3 corners; no two edges may cross or
- *  touch, but for neighbours at their corner. */
+/** 2D: lattice sites inside the simple polygon of `vertices` corners xy[2 * k], xy[2 * k + 1] (m,
+ *  either sense, not closed, convex or not). At least 3 corners; no two edges may intersect, except
+ *  neighbours at their common corner. MPS_ERROR_ARGUMENT: `vertices`, a corner or the set's
+ *  dimension is not allowed, or edges intersect; MPS_ERROR_STATE and MPS_ERROR_MEMORY as
+ *  mps_particles_append. */
 MPS_API MPS_NODISCARD mps_status mps_particles_fill_polygon(mps_particles *particles,
                                                             int64_t vertices, const double *xy,
                                                             int64_t *added);
-/** Lattice sites inside the disc (2D) or ball (3D) of `radius` (m, > 0) about `centre`. */
+/** Lattice sites inside the disc (2D) or ball (3D) of `radius` (m, > 0) about `centre`.
+ *  MPS_ERROR_ARGUMENT: `centre` or `radius` out of range, or more than 2^31 sites; MPS_ERROR_STATE
+ *  and MPS_ERROR_MEMORY as mps_particles_append. */
 MPS_API MPS_NODISCARD mps_status mps_particles_fill_ball(mps_particles *particles,
                                                          const double *centre, double radius,
                                                          int64_t *added);
-/** Writes to *inside, 0 on entry, 1 where a particle is wanted at position x (m, dim values). Any
- *  status but MPS_OK ends the call, which returns it with a record and adds nothing. Must not use
- *  the set. */
+/** Writes to *inside, 0 on entry, 1 where the position x (m, dim values) receives a particle. Any
+ *  status but MPS_OK ends the call, which returns it with a record and adds nothing. It must not
+ *  use the set. */
 typedef mps_status (*mps_particles_predicate_fn)(void *user, const double *x, int32_t *inside);
-/** Lattice sites in the box [lo, hi) that inside(user, x, ...) wants. */
+/** Lattice sites in the box [lo, hi) at which inside(user, x, ...) gives 1. MPS_ERROR_ARGUMENT:
+ *  `inside` NULL, an empty box, or one of more than 2^31 sites; MPS_ERROR_STATE and
+ *  MPS_ERROR_MEMORY as mps_particles_append; or the status of `inside`. */
 MPS_API MPS_NODISCARD mps_status mps_particles_fill_where(mps_particles *particles,
                                                           const double *lo, const double *hi,
                                                           mps_particles_predicate_fn inside,
                                                           void *user, int64_t *added);
 
-/** Removes `count` particles, by their ids (all different). The others keep their ids and the order
- *  among them; the lattice sites of those removed stay taken. On an error nothing has changed.
- *  MPS_ERROR_STATE: the solver that holds the set lets no particle go, or a field is being edited.
- *  On several ranks collective: all give the same list, or each ids of particles that it has. */
+/** Removes `count` particles, by their ids (all different). The other particles keep their ids and
+ *  their order; the lattice sites of removed particles stay occupied. On an error nothing has
+ *  changed. MPS_ERROR_ARGUMENT: an id that the set lacks, or one twice; MPS_ERROR_STATE: the solver
+ *  that holds the set does not allow it, or a field is being edited. On several ranks collective:
+ *  all pass the same list, or each the ids of its own particles. */
 MPS_API MPS_NODISCARD mps_status mps_particles_remove(mps_particles *particles, int64_t count,
                                                       const int64_t *ids);
 
@@ -112,37 +125,41 @@ typedef struct mps_particles_field_info {
  *  documented type; there `components` must be 0 or the table's. Any other name
  *  ([A-Za-z_][A-Za-z0-9_]*, at most 47 characters) makes a user field of `components` float64
  *  (1..16). A name with a dot, "<material>.<column>", is the history of a material. Adding a field
- * that exists with the same shape does nothing. Keeps the epoch. */
+ *  that exists with the same shape does nothing. Keeps the epoch. MPS_ERROR_ARGUMENT: `name` is no
+ *  field name; MPS_ERROR_FIELD: the field has another number of components; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particles, const char *name,
                                                          int32_t components);
 /** Borrows a field for reading (MPS_VIEW_READONLY), until the epoch changes. MPS_ERROR_FIELD when
  * the set has none of that name (the message lists the names it has). */
 MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, const char *name,
                                                     mps_view *out);
-/** Borrows a field for writing, until mps_particles_commit or _abandon: meanwhile solvers refuse
- *  their steps (MPS_ERROR_STATE), and particles neither come nor go. Several fields may be open at
- *  once, each once. The set keeps memory for the former values. MPS_ERROR_FIELD: no such field, or
- * one that only the library writes. MPS_ERROR_STATE: it is open already, or a solver that holds the
- * set is running this callback (mps/solver.h). */
+/** Borrows a field for writing, until mps_particles_commit or _abandon: meanwhile steps of solvers,
+ *  and adding or removing particles, return MPS_ERROR_STATE. Several fields may be open at once,
+ *  each once. The set keeps memory for the former values. MPS_ERROR_FIELD: no such field, or one
+ *  that only the library writes. MPS_ERROR_STATE: it is open already, or a solver that holds the
+ *  set is running this callback (mps/solver.h). */
 MPS_API MPS_NODISCARD mps_status mps_particles_edit(mps_particles *particles, const char *name,
                                                     mps_edit *out);
 /** Ends the editing of a field. Its values must be finite and in the field's range
- * (docs/fields.md), and the solver that holds the set may ask for more: positions inside its
- * domain. It reads them before its next step, and finds neighbours and blocks of particles anew
- * only where that is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the field stays
- * open with what was written: mend it and commit again. Then `edit->data` is NULL, and the view
- *  is for reading as any other. */
+ *  (docs/fields.md), and satisfy the solver that holds the set: positions inside its domain. It
+ *  reads them before its next step, and finds neighbours and blocks of particles anew only where
+ *  that is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the field stays open with
+ *  the values written: correct them and commit again. Then `edit->data` is NULL, and the view is
+ *  for reading as any other. MPS_ERROR_STATE: `edit` is of no open field. */
 MPS_API MPS_NODISCARD mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit);
-/** Ends it with the values from before mps_particles_edit: no solver takes notice. */
+/** Ends the editing with the values from before mps_particles_edit; solvers are not notified.
+ *  MPS_ERROR_ARGUMENT: NULL; MPS_ERROR_STATE: `edit` is of no open field. */
 MPS_API MPS_NODISCARD mps_status mps_particles_abandon(mps_particles *particles, mps_edit *edit);
 /** Sets component `component` of a float64 field to `value` (in the field's range) for every
- * particle there is, adding the field if the table knows it and the set lacks it; edit and commit
- * in one. */
+ *  particle, adding a field of the table that the set lacks; edit and commit in one.
+ *  MPS_ERROR_ARGUMENT: `component` or `value` out of range; MPS_ERROR_FIELD: no such field, or one
+ *  of int64; MPS_ERROR_STATE: the field is being edited, or a solver's callback is running. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set(mps_particles *particles, const char *name,
                                                    int32_t component, double value);
-/** How many fields the set has, `id` and `position` counted. */
+/** Number of fields, with `id` and `position`. */
 MPS_API int32_t mps_particles_field_count(const mps_particles *particles);
-/** Describes field `index` (0 to the count - 1, in order of addition). */
+/** Describes field `index` (0 to the count - 1, in order of addition). MPS_ERROR_ARGUMENT: `index`
+ *  out of range, NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_particles_get_field_info_sized(const mps_particles *particles,
                                                                     int32_t index,
                                                                     mps_particles_field_info *out,
@@ -157,7 +174,8 @@ MPS_NODISCARD static inline mps_status mps_particles_get_field_info(const mps_pa
 
 /** Ids of the particles with position in the box [lo, hi] (dim values, infinities allowed), in
  *  ascending order. Writes at most `capacity` of them to `ids` (may be NULL when capacity is 0);
- *  `count` receives how many there are. */
+ *  `count` receives their number. MPS_ERROR_ARGUMENT: a NULL array, `capacity` below 0, lo above
+ *  hi; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_select_box(mps_particles *particles,
                                                           const double *lo, const double *hi,
                                                           int64_t capacity, int64_t *count,
@@ -165,7 +183,7 @@ MPS_API MPS_NODISCARD mps_status mps_particles_select_box(mps_particles *particl
 /** Present index of the particle `id` in every view, or -1. */
 MPS_API int64_t mps_particles_index(const mps_particles *particles, int64_t id);
 /** Id of the particle nearest to x (dim values, m), the lowest of equally near ones; -1 for an
- *  empty set. Looks at every particle. */
+ *  empty set. Takes time in proportion to the number of particles. */
 MPS_API int64_t mps_particles_nearest(const mps_particles *particles, const double *x);
 
 MPS_EXTERN_C_END

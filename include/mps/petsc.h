@@ -1,13 +1,12 @@
-/* mps/petsc.h - what libmps has of PETSc: domains (mps/domain.h) on MPI, and solvers of large
- * equations. In a library of its own, libmps-petsc, which is built where PETSc is found (CMake: the
- * component `petsc` of the package mps; pkg-config: libmps-petsc).
+/* mps/petsc.h - domains (mps/domain.h) on MPI, and solvers of large equations by PETSc. In a
+ * library of its own, libmps-petsc, which is built where PETSc is found (CMake: the component
+ * `petsc` of the package mps; pkg-config: libmps-petsc).
  *
- * The library is a guest of the program. Where MPI or PETSc is not running yet it is started,
- * without handlers of signals, and ended with the last domain or solver; MPI cannot be started a
- * second time (MPS_ERROR_STATE). What the program has started is left as it is. An error of MPI or
- * PETSc comes back as a status with a record in the context: nothing is printed or aborted. No
- * handle of MPI is part of the binary interface: communicators are passed as integers, by
- * MPI_Comm_c2f.
+ * MPI and PETSc, where not running yet, are started without signal handlers, and ended with the
+ * last domain or solver; MPI cannot be started a second time (MPS_ERROR_STATE). MPI or PETSc
+ * started by the program are not ended. An error of MPI or PETSc is returned as a status with a
+ * record in the context: nothing is printed or aborted. No handle of MPI is part of the binary
+ * interface: communicators are passed as integers, by MPI_Comm_c2f.
  *
  * Include <mpi.h> before this header for mps_petsc_domain_create.
  *
@@ -30,7 +29,8 @@ MPS_EXTERN_C_BEGIN
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_domain_create_c2f(mps_context *context,
                                                                    int32_t communicator,
                                                                    mps_domain **out);
-/** Makes a domain of all processes that mpirun has started, of this one alone without it. */
+/** Makes a domain of all processes that mpirun has started, of this one alone without it.
+ *  MPS_ERROR_STATE: MPI has been ended; MPS_ERROR_MEMORY. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_domain_create_world(mps_context *context,
                                                                      mps_domain **out);
 
@@ -47,46 +47,50 @@ typedef struct mps_petsc_solver mps_petsc_solver;
 
 typedef enum mps_petsc_method {
   MPS_PETSC_METHOD_MULTIGRID = 0, /* conjugate gradients with an algebraic multigrid (GAMG):
-                              iterations hardly grow with the size. A multigrid serves for several
-                              equations, as long as it is good enough */
+                              iterations hardly grow with the size. A multigrid is reused for
+                              several equations, as long as its convergence is good enough */
   MPS_PETSC_METHOD_DIRECT = 1     /* a Cholesky factor by MUMPS for every equation */
 } mps_petsc_method;
 
 /** Makes a solver (mps_petsc_method) of this process alone, for one fluid or one body at a time.
- *  Records of its failures go to `context`, that of the fluid or body, which lives as long.
+ *  Records of its failures go to `context`, that of the fluid or body, which must outlive it.
  *  PETSc's options that begin with mps_ change it: PETSC_OPTIONS="-mps_pc_type hypre".
- *  MPS_ERROR_UNSUPPORTED: PETSc was built without the part, or does not know an option.
+ *  MPS_ERROR_UNSUPPORTED: PETSc was built without this solver, or an option is unknown to it.
  *
- *  Where PETSc fails on one of several processes, the others may wait for it within PETSc, where
- *  nothing reaches them. After -mps_patience seconds (default 60) the one that has failed gets the
- *  error; from then on every function of a domain of MPI returns MPS_ERROR_IO here at once, nothing
- * is made any more (MPS_ERROR_STATE), and MPI is not ended: the process should say what has
- * happened and exit, upon which mpirun ends the others. */
+ *  Where PETSc fails on one of several processes, the others may wait for it within PETSc, without
+ *  a way to notify them. After -mps_patience seconds (default 60) the failed one returns the error;
+ *  from then on every function of a domain of MPI returns MPS_ERROR_IO at once on this process, no
+ *  object can be created (MPS_ERROR_STATE), and MPI is not ended: the process should report the
+ *  error and exit, upon which mpirun ends the others. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create(mps_context *context, int32_t method,
                                                                mps_petsc_solver **out);
-/** The same of all processes that mpirun has started, or of a communicator by MPI_Comm_c2f, which
- *  is duplicated: they solve the equations of one body together. Collective. */
+/** As mps_petsc_solver_create, of all processes that mpirun has started, which solve the equations
+ *  of one body together. Collective. MPS_ERROR_UNSUPPORTED as there; MPS_ERROR_STATE: MPI has been
+ *  ended. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_world(mps_context *context,
                                                                      int32_t method,
                                                                      mps_petsc_solver **out);
+/** As mps_petsc_solver_create_world, of the processes of a communicator by MPI_Comm_c2f, which is
+ *  duplicated. MPS_ERROR_ARGUMENT: the communicator is MPI_COMM_NULL or joins two groups; other
+ *  errors as there. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_c2f(mps_context *context,
                                                                    int32_t method,
                                                                    int32_t communicator,
                                                                    mps_petsc_solver **out);
-/** Releases and nulls; accepts NULL. What it solves for must have gone, or have another solver. */
+/** Releases and nulls; accepts NULL. Its fluid or body must have been destroyed before, or have
+ *  another solver. */
 MPS_PETSC_API void mps_petsc_solver_destroy(mps_petsc_solver **solver);
 
-/** Has the pressure of a fluid of at least `least` (>= 0) particles solved by `solver`, as
- *  mps_fluid_set_solver: until that function puts in another one, or none. The multigrid may pay
- *  from some hundred thousand particles on, where the water starts from rest (docs/fluid.md). The
- *  ranks of a fluid's domain want a solver of the same processes in the same order, a fluid of one
- *  process one of it alone (MPS_ERROR_ARGUMENT); results then depend on the number of ranks within
- *  the tolerance. */
+/** Sets `solver` for the pressure of a fluid of at least `least` (>= 0) particles, as
+ *  mps_fluid_set_solver. The multigrid may be faster from some hundred thousand particles on, for
+ *  water that starts from rest (docs/fluid.md). The processes of the solver must be those of the
+ *  fluid's domain in the same order, or the fluid's one process (MPS_ERROR_ARGUMENT); results then
+ *  depend on the number of ranks within the tolerance. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver,
                                                              mps_fluid *fluid, int64_t least);
 
-/** Has the equations of implicit elasticity solved by `solver`, as mps_elastic_set_solver. With a
- *  solver of several processes these must be the ranks of the body's domain, in the same order
+/** Sets `solver` for the equations of implicit elasticity, as mps_elastic_set_solver. With a solver
+ *  of several processes these must be the ranks of the body's domain, in the same order
  *  (MPS_ERROR_ARGUMENT): each has the whole body and assembles its part of the matrix, and all
  *  receive the same displacements, which depend on their number within the tolerance. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_elastic(mps_petsc_solver *solver,

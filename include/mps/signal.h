@@ -43,20 +43,23 @@ typedef enum mps_signal_baseline {
  *  with c = (pi fc)^2, its exact velocity -amplitude (t-tp) exp(-c (t-tp)^2), and its exact
  *  displacement amplitude (exp(-c (t-tp)^2) - exp(-c tp^2)) / (2 c), which starts from zero. The
  *  first instant is t = 0: there the wavelet already moves a little, by exp(-c tp^2) relative to
- *  its peak (fc = 4 Hz, tp = 0.25 s: 5.2e-5), so choose tp of one period 1/fc or more.
- *  `frequency` fc (Hz, 1e-9 to 1e9), `peak_time` tp (s, >= 0), `amplitude` (m/s2, finite). */
+ *  its peak (fc = 4 Hz, tp = 0.25 s: 5.2e-5), so choose tp of one period 1/fc or more. `frequency`
+ *  fc (Hz, 1e-9 to 1e9), `peak_time` tp (s, >= 0), `amplitude` (m/s2, finite). MPS_ERROR_ARGUMENT:
+ *  a value out of range, or a motion that overflows; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_signal_create_ricker(mps_context *context, double frequency,
                                                           double peak_time, double amplitude,
                                                           mps_signal **out);
-/** u(t) = amplitude sin(2 pi f t + phase) for t >= 0 (and its derivatives), all 0 before: u, v or
- *  a jumps at t = 0, by what the phase says. f (Hz, 1e-9 to 1e9), amplitude (m, finite), phase
- *  (rad, finite). */
+/** u(t) = amplitude sin(2 pi f t + phase) for t >= 0 (and its derivatives), all 0 before: u, v or a
+ *  jumps at t = 0, depending on the phase. f (Hz, 1e-9 to 1e9), amplitude (m, finite), phase (rad,
+ *  finite). MPS_ERROR_ARGUMENT: a value out of range, or a motion that overflows; MPS_ERROR_MEMORY.
+ *  */
 MPS_API MPS_NODISCARD mps_status mps_signal_create_sine(mps_context *context, double frequency,
                                                         double amplitude, double phase,
                                                         mps_signal **out);
 /** u(t) rises from 0 at t = start (s, finite) to `amplitude` (m, finite) at t = start + duration
- *  (s, > 0) along the quintic with zero end velocity and acceleration, amplitude
- *  (10 x^3 - 15 x^4 + 6 x^5) with x = (t - start)/duration, and stays there. */
+ *  (s, > 0) along the quintic with zero end velocity and acceleration, amplitude (10 x^3 - 15 x^4 +
+ *  6 x^5) with x = (t - start)/duration, and stays there. MPS_ERROR_ARGUMENT: a value out of range,
+ *  or a motion that overflows; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_signal_create_ramp(mps_context *context, double start,
                                                         double duration, double amplitude,
                                                         mps_signal **out);
@@ -66,21 +69,22 @@ MPS_API MPS_NODISCARD mps_status mps_signal_create_ramp(mps_context *context, do
  *  linear between samples (their acceleration is a step function, continuous from the right), and
  *  both are integrated exactly to u, which is 0 at the first sample or at t = 0, whichever is
  *  later; displacements are a natural cubic spline. Before the table: at rest at the first
- *  displacement. After it: acceleration 0, and velocity 0 for a table of displacements, the
- *  last velocity otherwise. MPS_ERROR_NUMERIC when the motion overflows. */
+ *  displacement. After it: acceleration 0, and velocity 0 for a table of displacements, the last
+ *  velocity otherwise. MPS_ERROR_ARGUMENT: `count` out of range, times that do not increase, a
+ *  value that is not finite; MPS_ERROR_NUMERIC: the motion overflows. */
 MPS_API MPS_NODISCARD mps_status mps_signal_create_table(mps_context *context, int32_t quantity,
                                                          int64_t count, const double *times,
                                                          const double *values, mps_signal **out);
 
 /** The motion at time t (s, finite), by the caller: motion[0] displacement (m), motion[1] velocity
- *  (m/s), motion[2] acceleration (m/s2), all finite. Whatever uses the signal calls it on the
- *  thread that steps, never on a worker, a few times a step, at times that may go back by a step. A
- *  status other than MPS_OK ends the call of the library that asked, which returns it; that step
- *  has then not happened. It must not call into a solver that is stepping. */
+ *  (m/s), motion[2] acceleration (m/s2), all finite. It is called by the thread that steps, never
+ *  by a worker, a few times a step, at times that may go back by a step. A status other than MPS_OK
+ *  ends the library's call, which returns it without making the step. It must not call into a
+ *  solver that is stepping. */
 typedef mps_status (*mps_signal_fn)(void *user, double t, double motion[3]);
-/** A motion computed by the caller's function: a servo, another code, a formula. `user` is handed
- *  to `fn` and must live as long as the signal and all that use it. It spans all times, and its
- *  peak acceleration is not known (NaN). */
+/** A motion computed by the caller's function: a servo, another code, a formula. `user` is passed
+ *  to `fn` and must outlive the signal and all objects that use it. The signal spans all times; its
+ *  peak acceleration is unknown (NaN). MPS_ERROR_ARGUMENT: `fn` or `out` NULL; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_signal_create_user(mps_context *context, mps_signal_fn fn,
                                                         void *user, mps_signal **out);
 
@@ -108,8 +112,8 @@ typedef struct mps_signal_record_def {
                        half the record; accelerations only; default 0 */
 } mps_signal_record_def;
 
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT for NULL or a size that
- *  this library does not know. */
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
 MPS_API mps_status mps_signal_record_def_init(mps_signal_record_def *def, size_t size);
 
 static inline mps_signal_record_def mps_signal_record_defaults(void) {
@@ -130,18 +134,19 @@ MPS_API MPS_NODISCARD mps_status mps_signal_create_record(mps_context *context, 
 /** Releases and nulls; accepts NULL. Objects that use the signal keep their own reference. */
 MPS_API void mps_signal_destroy(mps_signal **signal);
 
-/** Displacement (m), velocity (m/s) and acceleration (m/s2) at time t (s). NaN when t is not
- *  finite or the caller's function refuses, 0 when signal is NULL. Thread safe, but for
- *  mps_signal_create_user. */
+/** Displacement (m) at time t (s). NaN when t is not finite or the caller's function fails, 0 when
+ *  signal is NULL. Thread safe, except for mps_signal_create_user. */
 MPS_API double mps_signal_displacement(const mps_signal *signal, double t);
+/** Velocity (m/s) at time t (s), otherwise as mps_signal_displacement. */
 MPS_API double mps_signal_velocity(const mps_signal *signal, double t);
+/** Acceleration (m/s2) at time t (s), otherwise as mps_signal_displacement. */
 MPS_API double mps_signal_acceleration(const mps_signal *signal, double t);
 
 /** First and last instant (s) of the motion; start or end may be NULL. A sine ends at infinity, a
  *  Ricker wavelet where its exponential has fallen to exp(-40), 4e-18 of the peak. A table ends
  *  with its last sample, even when it leaves a constant velocity behind. */
 MPS_API void mps_signal_span(const mps_signal *signal, double *start, double *end);
-/** Largest |acceleration| (m/s2) over the span: exact; NaN of a caller's function. */
+/** Largest |acceleration| (m/s2) over the span: exact; NaN for a caller's function. */
 MPS_API double mps_signal_peak_acceleration(const mps_signal *signal);
 
 MPS_EXTERN_C_END

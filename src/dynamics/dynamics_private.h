@@ -1,6 +1,6 @@
-/* dynamics_private.h - the members of the explicit MPS solver, and who does what in a step:
+/* dynamics_private.h - the members of the explicit MPS solver, and its files:
  *
- *   structure.c   order, pairs, mesh and arrays: what follows from which particles there are
+ *   structure.c   order, pairs, mesh and arrays of the set's particles
  *   batch.c       pairs of a batch of blocks at a time; mesh.c arranges them
  *   present.c     the present state as every part reads it: time, velocity, mass
  *   coefficients.c  what forces need of the ground, particle by particle
@@ -39,12 +39,12 @@
 #define MPSI_DYN_MOST_DT 1e9
 #define MPSI_DYN_MOST_SPACINGS 1e9 /* extent of a set: positions keep a millionth of a spacing */
 
-/* What one of the caller's definitions selects: particles, signals of x and y. */
+/* Selection of a boundary or load: particles, signals of x and y. */
 typedef struct mpsi_dynamics_part {
-  int64_t *id; /* as defined, also of particles that are gone */
+  int64_t *id; /* as defined, also of removed particles */
   int64_t listed;
   int64_t count;
-  int32_t *particle; /* present index of those that are there, ascending */
+  int32_t *particle; /* present indices of the remaining particles, ascending */
   int64_t total;     /* when it was defined, on all ranks */
   mps_signal *signal[2];
   double factor[2];
@@ -59,8 +59,8 @@ typedef struct mpsi_dynamics_boundary {
   /* At the end of the step under way, driven: factor times displacement and velocity of the signal;
    * at its start: factor times acceleration; viscous: factor times velocity. 0 without signal. */
   double reach[3], speed[3], gain[3], incoming[3];
-  /* Sums: of the last step (N s, N m s), and since it was made, the latter with the work (J).
-   * Terms are added up within a block of particles, and blocks exactly: on whichever rank. */
+  /* Sums: of the last step (N s, N m s), and since it was made, the latter with the work (J). Terms
+   * are summed within a block of particles, and blocks exactly, on any number of ranks. */
   mpsi_exact pushed[3], impulse[3]; /* x, y, moment about the origin */
   mpsi_exact work;
   double kick;                     /* s that the last step's forces acted for, 0: no step yet */
@@ -75,7 +75,7 @@ typedef struct mpsi_dynamics_load {
   double now[2];    /* factor times signal at the start of the step under way */
 } mpsi_dynamics_load;
 
-/* A degree of freedom that is held or driven. */
+/* A prescribed (held or driven) degree of freedom. */
 typedef struct mpsi_dynamics_bound {
   int32_t particle, component; /* 0 x, 1 y, 2 rotation */
   int32_t boundary;
@@ -91,13 +91,13 @@ typedef struct mpsi_dynamics_dashpot {
   int32_t particle, component;
   int32_t boundary;              /* or -1: between the body and a free-field column */
   int32_t partner;               /* free-field particle whose velocity is the target, or -1 */
-  bool idle;                     /* the degree of freedom is held or driven */
+  bool idle;                     /* the degree of freedom is prescribed */
   double c;                      /* 1/s */
   double before, partner_before; /* velocities before the step, m/s */
   double force;                  /* on the particle in the last step, N */
 } mpsi_dynamics_dashpot;
 
-/* What is held or driven, and the dashpots, of all boundaries. */
+/* Prescribed degrees of freedom and dashpots of all boundaries. */
 typedef struct mpsi_dynamics_lists {
   mpsi_dynamics_bound *bound;
   mpsi_dynamics_dashpot *dashpot;
@@ -105,7 +105,7 @@ typedef struct mpsi_dynamics_lists {
   int32_t *owner; /* 1 + the boundary that has each degree of freedom, component by component */
 } mpsi_dynamics_lists;
 
-/* What follows from which particles there are: the solver's present one lies in its own members. */
+/* Structure of the set's particles: the solver's present one lies in its own members. */
 #define MPSI_DYN_SLAB_COLUMNS 15
 typedef struct mpsi_dynamics_structure {
   int64_t count, body, pairs;
@@ -117,7 +117,7 @@ typedef struct mpsi_dynamics_structure {
   mpsi_dynamics_dashpot *column_dashpot;
   int64_t column_dashpots;
   int64_t ghosts;  /* particles of other ranks, behind the own ones */
-  mpsi_halo *halo; /* brings their values; NULL: one rank */
+  mpsi_halo *halo; /* exchange of their values; NULL: one rank */
 } mpsi_dynamics_structure;
 
 /* Extremes over all particles, of all ranks. */
@@ -172,7 +172,7 @@ struct mps_dynamics {
   double *force[2]; /* of all loads, N: present when there is a load */
   bool forces_stale;
   double *before; /* 3 columns of velocities before a step, NULL until works are counted */
-  double *drag;   /* 3 columns of accelerations by Rayleigh damping, NULL: not watched */
+  double *drag;   /* 3 columns of accelerations by Rayleigh damping, NULL: not summed */
   double *part;   /* 2 partial sums a block */
 
   /* time */
@@ -186,13 +186,13 @@ struct mps_dynamics {
   bool checked; /* dt has been compared with the linear limit */
   bool diverged;
   bool begun;   /* works.start is known */
-  bool no_rate; /* restoring_old is not of the present ground: damping has no rate yet */
+  bool no_rate; /* restoring_old is of former moduli: damping has no rate yet */
   mpsi_guard guard;
-  bool unread;           /* fields of the ground have been edited, and do not go together so far */
-  bool cautious;         /* a rank has a signal that may refuse: ranks agree before each step */
-  bool begins;           /* a rank's motion has been written, which the next step begins from */
-  const char *rewritten; /* field of the motion that the caller has written, or NULL */
-  const char *broken;    /* field that nobody may write and somebody has, or NULL */
+  bool unread;           /* material fields have been edited, and are not consistent so far */
+  bool cautious;         /* a rank has a signal that may fail: ranks agree before each step */
+  bool begins;           /* the motion was edited on a rank; the next step starts from it */
+  const char *rewritten; /* field of the motion that the caller has edited, or NULL */
+  const char *broken;    /* read-only field that was edited, or NULL */
   bool have_limit;
   mps_dynamics_linear_limit limit; /* valid when have_limit */
   mpsi_dynamics_works works;
@@ -212,16 +212,16 @@ double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int
 double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, int64_t k);
 /* Mass (kg) or moment of inertia (kg m2) of a degree of freedom. */
 double mpsi_dynamics_mass(const mps_dynamics *dynamics, int32_t component, int64_t k);
-/* The body or what it is made of is another: so are the limit and the dt that followed from it. */
+/* Body or material have changed: the limit and the dt derived from it are invalid. */
 void mpsi_dynamics_forget_limit(mps_dynamics *dynamics);
-/* Room for what is accounted for in each step, made once. False: out of memory. */
+/* Allocates the arrays of the energy budget, once. False: out of memory. */
 bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics);
-/* What Rayleigh damping that is watched needs. */
+/* Arrays for the dissipation of Rayleigh damping. */
 mps_status mpsi_dynamics_reserve_watch(mps_dynamics *dynamics, const char *function);
 
 /* ---- coefficients.c ---- */
 
-/* Coefficients of each particle, from its fields; whether one is another than before. */
+/* Coefficients of each particle, from its fields; returns whether one has changed. */
 bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
 void mpsi_dynamics_choose_damping(mps_dynamics *dynamics); /* from the extremes */
 
@@ -231,8 +231,8 @@ void mpsi_dynamics_choose_damping(mps_dynamics *dynamics); /* from the extremes 
 mps_status mpsi_dynamics_add_fields(mps_dynamics *dynamics, const char *function);
 /* Sorts the set. */
 mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function);
-/* Makes the structure of sorted particles: those of the set, or of `geometry`. Nothing else has
- * changed on an error. */
+/* Makes the structure of sorted particles, of the set or of `geometry`. On an error nothing else
+ * has changed. */
 mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *function,
                                         const mpsi_dynamics_geometry *geometry,
                                         mpsi_dynamics_structure *out);
@@ -240,7 +240,7 @@ mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *func
 mpsi_dynamics_geometry mpsi_dynamics_geometry_of(const mps_dynamics *dynamics, int64_t count,
                                                  const double *x, const double *y,
                                                  const int64_t *side);
-/* Tells apart bodies whose pairs are not the same: a hash of the reference positions, 32 bits. */
+/* Identifies the pairs of a body: a hash of the reference positions, 32 bits. */
 int64_t mpsi_dynamics_hash_positions(int64_t count, const double *x, const double *y);
 void mpsi_dynamics_free_structure(mps_dynamics *dynamics, mpsi_dynamics_structure *structure);
 /* Puts it in place of the solver's own, which is released; finds columns and coefficients. */
@@ -250,9 +250,9 @@ void mpsi_dynamics_bind(mps_dynamics *dynamics);
 
 /* ---- change.c ---- */
 
-/* All that is made anew for other particles: beside the present, which it then replaces. */
+/* New structure for other particles, made beside the present one, which it then replaces. */
 typedef struct mpsi_dynamics_change {
-  int32_t *now; /* of a removal: index after it of each particle, -1: it goes; else NULL */
+  int32_t *now; /* of a removal: new index of each particle, -1: removed; else NULL */
   mpsi_dynamics_structure structure;
   mpsi_dynamics_lists lists;     /* room */
   double *force, *before, *drag; /* each NULL where the solver has none */
@@ -261,10 +261,10 @@ typedef struct mpsi_dynamics_change {
 /* Makes dynamics->change for sorted particles. */
 mps_status mpsi_dynamics_prepare_change(mps_dynamics *dynamics, const char *function,
                                         const mpsi_dynamics_geometry *geometry);
-/* Puts it in place, once the set has those particles: cannot fail. */
+/* Replaces the present structure, once the set has those particles: cannot fail. */
 void mpsi_dynamics_use_change(mps_dynamics *dynamics);
 void mpsi_dynamics_drop_change(mps_dynamics *dynamics);
-/* Of a state to go back to (core/state.h). */
+/* Structure of a former state (core/state.h). */
 mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const mps_snapshot *from,
                                        const char *source, mps_status disagreement);
 
@@ -275,20 +275,20 @@ mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
 
 /* ---- partition.c: of a domain of several ranks; collective ---- */
 
-/* Keeps this rank's part of the set, which is sorted; the rest is in *former. `status` is that of
- * this rank so far. */
+/* Keeps this rank's part of the sorted set; the rest is in *former. `status` is that of this rank
+ * so far. */
 mps_status mpsi_dynamics_take_partition(mps_dynamics *dynamics, const char *function,
                                         mps_status status, mpsi_dynamics_structure *out,
                                         mpsi_storage **former, mpsi_backup *backup);
 /* deal.c: the first particle of a body of so many that rank `rank` has. */
 int64_t mpsi_dynamics_first_of_rank(int64_t body, int64_t rank, int64_t ranks);
-/* deal.c: of a set in parts, which it sorts, what a rank needs of the whole body. Arrays by the
- * numbers that particles have here: blocks ascend as in the whole body. */
+/* deal.c: for a set in parts, which it sorts, the halo of a rank. Arrays are indexed by local
+ * numbers: blocks ascend as in the whole body. */
 typedef struct mpsi_dynamics_window {
-  int64_t count, whole; /* numbers here, those of missing particles counted; particles of all */
+  int64_t count, whole; /* local numbers, those of missing particles counted; particles of all */
   int64_t first, last;  /* own ones */
   int64_t *block;       /* its number in the whole body, by block here */
-  int64_t *near, nears; /* particles that pairs are looked for among, ascending */
+  int64_t *near, nears; /* particles of the search for pairs, ascending */
   double *x, *y;        /* m */
   int64_t *side;        /* all 0: there are no free-field columns */
   double edge[2];       /* x of the whole body's outermost particles, m */
@@ -322,20 +322,20 @@ mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *func
 mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *function,
                                         const mps_material *material, int64_t count,
                                         const int64_t *ids);
-/* Kinetic and strain energy that the budget knows of: 0 where it has not begun. What changes the
- * body between steps moves the budget's start by the difference. Fails with a domain only. */
+/* Kinetic and strain energy of the budget: 0 before it starts. A change of the body between steps
+ * shifts the budget's initial value by the difference. Fails with a domain only. */
 mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *function,
                                         double *energy);
-/* Takes up the fields of the ground as they are now. */
+/* Reads the material fields. */
 mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function);
 /* The holder's commit: a field has been edited. */
 mps_status mpsi_dynamics_commit(void *self, const char *function, const char *field,
                                 const double *former);
-/* Before a step: takes up the ground that has been edited, and finds whether the motion has been
- * (begins), or says why neither can be. `status` is this rank's so far. */
+/* Before a step: reads edited material fields, and finds whether the motion was edited (begins), or
+ * returns the error of either. `status` is this rank's so far. */
 mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *function,
                                      mps_status status);
-/* Before a look at the state: both. */
+/* Before a query of the state: both. */
 mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
                                     mps_status status);
 
@@ -348,12 +348,12 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
            is the kinetic energy a number */
 /* Brings position, velocity, spin and reaction up to date. */
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
-/* Chooses dt where the definition left it open, and warns of one above the limit. */
+/* Chooses dt where the definition does not give it, and warns of one above the limit. */
 mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
-/* run.c: before steps: takes up the ground and makes room for what the steps count. */
+/* run.c: before steps: reads edited material fields and allocates the budget's arrays. */
 mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function);
-/* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; takes up the ground and
- * finds dt if need be. */
+/* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; reads edited material
+ * fields and chooses dt if need be. */
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);
 
 /* ---- step.c ---- */
@@ -362,7 +362,7 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);
  * of all ranks. */
 mps_status mpsi_dynamics_look_ahead(mps_dynamics *dynamics, const char *function, double length);
 /* Takes `count` steps of `length`; the last writes accelerations when `output`. On an error of a
- * signal the step has not happened. */
+ * signal the step is not made. */
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
                                  double length, bool output);
 
@@ -377,30 +377,29 @@ typedef struct mpsi_dynamics_selection {
   const double *factor;
   bool all;
 } mpsi_dynamics_selection;
-/* Those of the members that the definitions of boundaries and loads share. */
+/* Selection by the members that the definitions of boundaries and loads share. */
 #define MPSI_DYNAMICS_SELECTION(def, everything)                                                   \
   {                                                                                                \
     .ids = (def).ids, .id_count = (def).id_count, .lower = (def).lower, .upper = (def).upper,      \
     .signal = (def).signal, .factor = (def).factor, .all = (everything)                            \
   }
-/* Status of all ranks, and whether all define the same: the selection, which is added to
- * the list, and what the list has. */
+/* Status of all ranks, and whether all definitions are the same: the selection, which is added to
+ * the list, and the list. */
 mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *function,
                                            mps_status status, const mpsi_dynamics_selection *s,
                                            mpsi_given *list);
-/* Collective, as everything that defines boundaries and loads; `status` is what has become of this
- * rank so far. */
+/* Collective, as all definitions of boundaries and loads; `status` is that of this rank so far. */
 mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mps_status status,
                                 const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out);
-/* Finds its particles in the set as it is now. */
+/* Finds its particles in the present set. */
 void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part);
 void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part);
 
 /* ---- boundary.c ---- */
 
-/* Lists what is held or driven and the dashpots, without changes of the state. */
+/* Lists prescribed degrees of freedom and dashpots, without changes of the state. */
 mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *function);
-/* Takes the present state as that from which what is held or driven goes on: at the start. */
+/* Sets the present state as the initial one of prescribed degrees of freedom. */
 mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *function);
 void mpsi_dynamics_free_boundaries(mps_dynamics *dynamics);
 /* Room for the lists of the present boundaries on a body of `particles` and so many dashpots of
@@ -415,7 +414,7 @@ void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);
 
 /* ---- constrain.c ---- */
 
-/* Asks the signals for a step from `now` to `then`: the one thing of a step that can fail. */
+/* Evaluates the signals for a step from `now` to `then`: the only part of a step that can fail. */
 mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *function, double now,
                                      double then);
 /* Status of all ranks, and MPS_ERROR_ARGUMENT where signals of boundaries or loads have given them
@@ -424,7 +423,7 @@ mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *functio
 mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *function,
                                         mps_status status, int32_t count, double *values);
 void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics);
-/* Around what follows: sums of what boundaries exert in a step. */
+/* Begin and end of the sums of the boundaries' forces in a step. */
 void mpsi_dynamics_begin_counting(mps_dynamics *dynamics);
 void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick);
 void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool output);
@@ -439,18 +438,18 @@ typedef struct mpsi_dynamics_forces {
   bool any;
 } mpsi_dynamics_forces;
 mpsi_dynamics_forces mpsi_dynamics_find_forces(mps_dynamics *dynamics);
-/* Adds what forces contribute to the step that block b has just taken. */
+/* Adds the contribution of loads to the step that block b has just taken. */
 void mpsi_dynamics_apply_forces(mps_dynamics *dynamics, const mpsi_dynamics_forces *forces,
                                 int64_t b, const mpsi_dynamics_step *step);
 void mpsi_dynamics_free_loads(mps_dynamics *dynamics);
 
 /* ---- budget.c ---- */
 
-/* The parts of a step that works are counted from. */
+/* Terms of a step for the works. */
 typedef struct mpsi_dynamics_account {
   mps_dynamics *dynamics;
   const mpsi_dynamics_forces *forces;
-  const double *drag; /* NULL: damping is not watched */
+  const double *drag; /* NULL: dissipation of damping is not summed */
   double kick;
 } mpsi_dynamics_account;
 /* Keeps the velocities of a block's particles before a step; after it, adds up the works. */
@@ -470,7 +469,7 @@ mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, 
 mps_status mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const char *function,
                                        const double *weight, const double *x, double *y,
                                        double *work);
-/* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice; `torque` as above;
+/* Square of the highest eigenfrequency (rad/s)^2 of the infinite square lattice; `torque` as above;
  * `kernel` NULL: re/r - 1. */
 double mpsi_dynamics_lattice_omega2(const mps_kernel *kernel, double spacing, double radius_ratio,
                                     double vs, double vp, double torque);

@@ -1,22 +1,22 @@
-/* elastic_private.h - the members of mps_elastic and what its source files offer one another.
+/* elastic_private.h - the members of mps_elastic and the interfaces between its source files.
  *
- * access.c    guard, ids, fields as vectors   body.c      material, cuts, what follows from them
+ * access.c    guard, ids, fields as vectors   body.c      material, cuts, derived data
  * lattice.c   sites, neighbours, n_i, plain    operator.c  gradient and K u, matrix free
  *             gradients
  * joints.c    faces between two materials      bending.c   bending within a cell
- * supports.c  fixed directions, free unknowns  rigid.c     which rigid motions are left free
- * boundaries.c  what is prescribed, reactions  facets.c    the surface
+ * supports.c  fixed directions, free unknowns  rigid.c     rigid motions without support
+ * boundaries.c  prescribed displacements, reactions  facets.c    the surface
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
  * outside.c   a solver of the caller           partition.c  a rank's part of the operator
  * stress.c    stresses, sections, energy       motion.c, motion_state.c, budget.c,
  *                                              renewal.c, modes.c     dynamics
- * change.c    particles that leave, or come back with a former state;  restart.c  that state
+ * change.c    particles removed, or restored by a former state;  restart.c  that state
  *
  * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
  * sorting the set does not matter. Vectors of free unknowns hold the local directions that no
- * support fixes. What the operator needs of a particle is there for those of the window
- * (partition.c) and indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
+ * support fixes. Arrays of the operator have the particles of the window (partition.c), indexed by
+ * mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_ELASTIC_PRIVATE_H
 #define MPSI_ELASTIC_PRIVATE_H
 
@@ -60,9 +60,9 @@ typedef struct mpsi_elastic_boundary {
   uint32_t dofs;
   double normal[3]; /* unit */
   int64_t count;
-  int64_t *id;     /* count, also of particles that are gone */
+  int64_t *id;     /* count, also of removed particles */
   double *values;  /* count * 3, a roller's count; or NULL */
-  int64_t present; /* of them, in the body as it is */
+  int64_t present; /* of these, in the present body */
   mps_signal *signal[3];
   double factor[3];
   double motion[3][3]; /* factor * signal at the time driven to: [derivative][component] */
@@ -82,7 +82,7 @@ typedef struct mpsi_support {
   double fixed[3][3]; /* [derivative][direction] */
 } mpsi_support;
 
-/* Force and first moment int t_c (x - x_i)_b of a load on one cell, which may be gone. */
+/* Force and first moment int t_c (x - x_i)_b of a load on one cell, which may have been removed. */
 typedef struct mpsi_patch {
   int64_t id;
   double force[3], moment[3][3];
@@ -136,7 +136,7 @@ typedef struct mpsi_facet {
 /* A solver of the caller. */
 typedef struct mpsi_elastic_outside {
   mps_elastic_solver_def def;
-  bool valid;      /* it has the present matrix, K + shift M */
+  bool valid;      /* its matrix is the present one, K + shift M */
   double shift;    /* 1/s2 */
   double stiffest; /* the greatest of its values, N/m */
   int64_t nonzeros;
@@ -158,9 +158,9 @@ struct mps_elastic {
   int32_t dim, modes; /* modes: rigid motions, 3 or 6 */
   bool conservative;  /* method; else the published one */
   bool constant;      /* published: divided by n0, else by n_i */
-  mpsi_guard guard;   /* of the public function that is at work */
-  bool within;        /* it is not between steps */
-  bool agreed;        /* of several ranks: the error of this function is that of all */
+  mpsi_guard guard;   /* of the running public function */
+  bool within;        /* a step is running */
+  bool agreed;        /* of several ranks: they have agreed on the error of this function */
   int64_t *id;        /* of each particle, ascending */
   int64_t n;
   double spacing;
@@ -260,24 +260,23 @@ static inline const int64_t *mpsi_elastic_neighbours(const mps_elastic *e, int64
 }
 /* Order, spans and window of e->shared, from positions. */
 mps_status mpsi_elastic_open_window(mps_elastic *e, const char *function);
-/* Collective where the body is shared: each value becomes that of the ranks which is not -INFINITY,
- * and none is NaN. `status` is this rank's so far. */
+/* Collective where the body is shared: each value, given by one rank and -INFINITY on others (none
+ * NaN), is sent to all. `status` is this rank's so far. */
 MPS_NODISCARD mps_status mpsi_elastic_join(mps_elastic *e, const char *function, mps_status status,
                                            int64_t count, double *values);
-/* So a vector over all particles takes the rows of others from those who own them. */
+/* The same for a vector over all particles, with the rows of each owner. */
 MPS_NODISCARD mps_status mpsi_elastic_complete(mps_elastic *e, const char *function,
                                                double *values);
 
 /* ---- lattice.c --------------------------------------------------------------------------------
  */
-/* Opens the window and fills links, density and density0 from x, with room for what the operator
- * needs besides; every fault is reported for `function`. */
+/* Opens the window and fills links, density and density0 from x, with the other arrays of the
+ * operator; errors are reported for `function`. */
 mps_status mpsi_elastic_connect(mps_elastic *e, const char *function);
 void mpsi_elastic_disconnect(mps_elastic *e);
-/* The pointers of both windows and of joints forgotten: somebody else has them. */
+/* Clears the pointers of both windows and of joints, which have been moved to another object. */
 void mpsi_elastic_lose_window(mps_elastic *e);
-/* Neighbours across faces of all particles, wherever they are: a table of sites, made for a while.
- */
+/* Neighbours across faces of all particles, on any rank, by a temporary table of sites. */
 typedef struct mpsi_sites mpsi_sites;
 mps_status mpsi_elastic_open_sites(mps_elastic *e, const char *function, mpsi_sites **out);
 void mpsi_elastic_close_sites(mps_elastic *e, mpsi_sites *sites);
@@ -297,12 +296,13 @@ void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)
 /* Displacement gradients G[(slot * dim + c) * dim + b] = d u_c / d x_b, of own particles and the
  * layers that their pairs reach. */
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient);
-/* f = K u. Collective where the body is shared, and fails with the domain alone. */
+/* f = K u. Collective where the body is shared, and fails only with the domain. */
 MPS_NODISCARD mps_status mpsi_elastic_apply(mps_elastic *e, const char *function, const double *u,
                                             double *f);
 /* ---- joints.c ---------------------------------------------------------------------------------
  */
-/* Finds the joints of the present material; the pattern of the matrix ends where they changed. */
+/* Finds the joints of the present material; discards the pattern of the matrix where they have
+ * changed. */
 mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function);
 void mpsi_elastic_drop_joints(mps_elastic *e);
 mpsi_joint_law mpsi_elastic_joint_law(const mps_elastic *e, const mpsi_joint *q);
@@ -336,7 +336,7 @@ static inline double mpsi_elastic_bond(const mps_elastic *e, int64_t i, int64_t 
   }
   return kappa * e->links.weight[k] / e->links.r2[k];
 }
-/* Relative displacement of pair (i, k) that its stiffness works on, from u and the gradients. */
+/* Relative displacement of pair (i, k), conjugate to its stiffness, from u and the gradients. */
 void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int32_t k, double *out);
 /* ---- bending.c --------------------------------------------------------------------------------
  */
@@ -345,8 +345,8 @@ typedef struct mpsi_bending_term {
   int64_t site;
   double value[3]; /* couples equal components */
 } mpsi_bending_term;
-/* Is there any, in a body with joints or without? Its array is made with them (joints.c), of this
- * size. */
+/* Is bending stiffness in use, in a body with joints or without? Its array, of this size, is made
+ * with them (joints.c). */
 bool mpsi_elastic_has_bending(const mps_elastic *e, bool joints);
 int64_t mpsi_elastic_bending_size(const mps_elastic *e);
 /* Stiffnesses of squares, from volumes and material. */
@@ -401,13 +401,14 @@ mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t);
  * the impulses. */
 void mpsi_elastic_count_reactions(mps_elastic *e, double dt);
 /* Adds the work of `force` (n * dim, of fixed directions) over the displacements `du` by boundary,
- * and what kinetic energy driven particles gain from v0 to v1 (NULL: statics); the sum. */
+ * and the change of kinetic energy of driven particles from v0 to v1 (NULL: statics); returns the
+ * sum. */
 double mpsi_elastic_count_work(mps_elastic *e, const double *force, const double *du,
                                const double *v0, const double *v1);
 void mpsi_elastic_forget_reactions(mps_elastic *e);
 void mpsi_elastic_drop_boundaries(mps_elastic *e);
 
-/* Supports from the boundaries as they are. On an error those of before stay. */
+/* Supports from the present boundaries. On an error the former ones stay. */
 mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function);
 
 /* ---- change.c ---------------------------------------------------------------------------------
@@ -415,7 +416,7 @@ mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function);
 /* The holder's functions. */
 mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count, const int64_t *ids);
 void mpsi_elastic_renew(void *self);
-/* Of a state to go back to (core/state.h): prepares, then puts the body of the state in place. */
+/* For a state to restore (core/state.h): prepares, then replaces the body by that of the state. */
 mps_status mpsi_elastic_prepare_state(void *self, const char *function, const mps_snapshot *from,
                                       const char *source, mps_status disagreement);
 void mpsi_elastic_bind(void *self);
@@ -423,7 +424,7 @@ void mpsi_elastic_drop_change(mps_elastic *e);
 
 /* ---- rigid.c ----------------------------------------------------------------------------------
  */
-/* MPS_ERROR_STATE naming the rigid motions that the supports leave free. */
+/* MPS_ERROR_STATE, naming the rigid motions without support. */
 mps_status mpsi_elastic_check_supported(mps_elastic *e, const char *function);
 
 /* ---- facets.c ---------------------------------------------------------------------------------
@@ -436,7 +437,7 @@ void mpsi_elastic_facet_box(const mps_elastic *e, const mpsi_facet *f, double *l
 
 /* ---- loads.c ----------------------------------------------------------------------------------
  */
-/* Where a load of gravity acts: reads `density` anew, as mpsi_elastic_read_mass. */
+/* With a load of gravity: reads `density` again, as mpsi_elastic_read_mass. */
 mps_status mpsi_elastic_weigh(mps_elastic *e, const char *function, double **former);
 /* The nodal forces of all loads and of `external_force` at time t, to e->load. */
 mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t);
@@ -455,21 +456,20 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
                                mps_elastic **out);
 
 /* ---- access.c ---- */
-/* MPS_ERROR_STATE when called back from the solver; from then to `leave` it is busy. */
+/* MPS_ERROR_STATE within a callback of the solver; until `leave` it is busy. */
 mps_status mpsi_elastic_enter(mps_elastic *e, const char *function);
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
-/* Of several ranks: an error of one is that of all. A rank comes to the same calls as the others,
- * up to the first that returns an error; leaving is the last of them. */
+/* On several ranks: an error of one is that of all. All ranks make the same calls, up to the first
+ * that returns an error; `leave` is the last. */
 mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status);
-/* The same, and MPS_ERROR_ARGUMENT where ranks were given different ones of `name`. */
+/* The same, and MPS_ERROR_ARGUMENT where ranks have different values of `name`. */
 mps_status mpsi_elastic_settle_given(mps_elastic *e, const char *function, mps_status status,
                                      const mpsi_given *list);
 mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
                                     const char *name, double value);
-/* For what only reads, but with the other ranks, and may be within a callback: e->agreed is as
- * returned again afterwards. */
+/* For collective queries, also within a callback: e->agreed is restored afterwards. */
 bool mpsi_elastic_begin_reading(mps_elastic *e);
-/* For what only reads, but needs the scratch arrays: refused within a step. */
+/* For queries that use the scratch arrays: MPS_ERROR_STATE within a step. */
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function);
 /* The rank of an id, or -1; and ids in their order. */
 int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id);
@@ -489,8 +489,8 @@ mps_status mpsi_elastic_bad_value(mps_elastic *e, const char *function, const ch
                                   double value, const char *allowed);
 
 /* ---- body.c ---- */
-/* The arrays of e->n particles; what follows from ids, positions, cuts and material in them; and
- * the end of both. */
+/* The arrays of e->n particles; their values from ids, positions, cuts and material; and the
+ * release of both. */
 mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function);
 mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known);
 void mpsi_elastic_free_body(mps_elastic *e);
@@ -501,7 +501,7 @@ mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t
                                    double poisson);
 /* Volumes and pair stiffnesses from cuts and material. */
 void mpsi_elastic_measure(mps_elastic *e);
-/* A window of the rank where all ranks of the domain solve together with the present solver, else
+/* The window of the rank where all ranks of the domain solve together with the present solver, else
  * the whole body. */
 mps_status mpsi_elastic_choose_window(mps_elastic *e, const char *function);
 
@@ -509,10 +509,10 @@ mps_status mpsi_elastic_choose_window(mps_elastic *e, const char *function);
  */
 mps_status mpsi_elastic_assemble(mps_elastic *e, const char *function);
 /* Whole rows of K + shift M with numbered unknowns, whose arrays become the caller's (also on an
- * error); held directions have a diagonal alone. */
+ * error); fixed directions have a diagonal alone. */
 mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, double shift,
                                       mpsi_elastic_rows *rows);
-/* Without a matrix: numbers the unknowns, and room for their vectors. */
+/* Without a matrix: numbers the unknowns and allocates their vectors. */
 mps_status mpsi_elastic_make_vectors(mps_elastic *e, const char *function);
 
 /* ---- outside.c --------------------------------------------------------------------------------
@@ -553,9 +553,9 @@ typedef struct mpsi_elastic_motion {
   double *held;                         /* inner + a0 M v - force along fixed directions */
   double *next[5];                      /* of the step being made: MPSI_NEXT_U ... */
   double *scratch;
-  int64_t fabric[2]; /* of moduli and fixed directions: those that inner, held and acceleration are
-                        of (fabric.c) */
-  bool strain_known; /* with other moduli since: */
+  int64_t fabric[2]; /* of the moduli and fixed directions to which inner, held and acceleration
+                        belong (fabric.c) */
+  bool strain_known; /* after a change of moduli: */
   double strain;     /* J, with those */
 } mpsi_elastic_motion;
 enum { MPSI_NEXT_U, MPSI_NEXT_V, MPSI_NEXT_A, MPSI_NEXT_INNER, MPSI_NEXT_HELD };
@@ -564,21 +564,21 @@ enum { MPSI_NEXT_U, MPSI_NEXT_V, MPSI_NEXT_A, MPSI_NEXT_INNER, MPSI_NEXT_HELD };
 enum { MPSI_FABRIC_MODULI, MPSI_FABRIC_SUPPORTS };
 /* Hashes of moduli and fixed directions. */
 void mpsi_elastic_find_fabric(mps_elastic *e, int64_t fabric[2]);
-/* The strain energy that the last step ended with; `present`: of the present moduli, J. */
+/* Strain energy at the end of the last step; `present`: with the present moduli, J. */
 double mpsi_elastic_former_strain(mps_elastic *e, double present);
 
 /* ---- renewal.c ---- */
 /* inner = K (u + a1 v); held = inner + a0 M v - load along fixed directions. */
 mps_status mpsi_elastic_find_forces(mps_elastic *e, const char *function, const double *u,
                                     const double *v, double *inner, double *held);
-/* a = M^-1 (F - C v - K u) on what is free; the boundaries' own on the rest. */
+/* a = M^-1 (F - C v - K u) along free directions; that of the boundaries along fixed ones. */
 void mpsi_elastic_balance(mps_elastic *e);
-/* Before a step: the forces at its beginning, of the present moduli and boundaries. */
+/* Before a step: the forces at its beginning, with the present moduli and boundaries. */
 mps_status mpsi_elastic_renew_motion(mps_elastic *e, const char *function);
 
 /* ---- motion_state.c ---- */
 void mpsi_elastic_end_motion(mps_elastic *e);
-/* Ends it but for its numbers, which a rollback may need. */
+/* Ends it, except for its numbers, which a rollback may need. */
 void mpsi_elastic_suspend_motion(mps_elastic *e);
 /* Arrays of e's particles; moving them to `to`; and their end. */
 mps_status mpsi_elastic_allocate_motion(mps_elastic *e, const char *function,
@@ -589,7 +589,7 @@ void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
 /* ---- budget.c ---------------------------------------------------------------------------------
  */
 mps_status mpsi_elastic_strain_energy(mps_elastic *e, const char *function, double *out);
-/* Before moduli change: keeps the strain energy of a motion under way. */
+/* Before a change of moduli: keeps the strain energy of a motion under way. */
 mps_status mpsi_elastic_note_strain(mps_elastic *e, const char *function);
 /* At the start of a motion. */
 mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function);

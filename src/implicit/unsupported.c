@@ -1,5 +1,5 @@
 /* unsupported.c - the functions of mps/elastic.h in a build without CHOLMOD: no solver can be
- * created, so the others have nothing to work on. SPDX-License-Identifier: BSD-3-Clause */
+ * created. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
 
 #include <mps/elastic_solver.h>

@@ -1,8 +1,8 @@
-/* coefficients.c - what forces and steps need of the ground, particle by particle: moduli, 1/mass,
- * 1/inertia, Rayleigh damping. SPDX-License-Identifier: BSD-3-Clause */
+/* coefficients.c - coefficients of each particle for forces and steps: moduli, 1/mass, 1/inertia,
+ * Rayleigh damping. SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics/dynamics_private.h"
 
-/* Sets a coefficient; whether it was another. */
+/* Sets a coefficient; returns whether it has changed. */
 static bool put(double *at, double value) {
   const bool other = *at != value;
   *at = value;

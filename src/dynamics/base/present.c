@@ -1,5 +1,5 @@
-/* present.c - the present state as every part of the solver reads it: time, velocities, masses,
- * fields; room for what is counted of it. SPDX-License-Identifier: BSD-3-Clause */
+/* present.c - access to the present state: time, velocities, masses, fields; arrays of the energy
+ * budget. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 

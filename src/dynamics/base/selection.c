@@ -1,5 +1,5 @@
-/* selection.c - which particles a boundary or load of the explicit MPS solver is on: those of a
- * list, of a box, or all. SPDX-License-Identifier: BSD-3-Clause */
+/* selection.c - the particles of a boundary or load of the explicit MPS solver: of a list, of a
+ * box, or all. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
 #include "dynamics/dynamics_private.h"
@@ -33,7 +33,7 @@ static mps_status select_list(mps_dynamics *dynamics, const char *function,
                               int64_t *found) {
   for (int64_t k = 0; k < s->id_count; k++) {
     const int64_t i = mps_particles_index(dynamics->particles, s->ids[k]);
-    if (i < 0 && mpsi_domain_many(dynamics->domain)) continue; /* another rank's, perhaps */
+    if (i < 0 && mpsi_domain_many(dynamics->domain)) continue; /* may be of another rank */
     if (i < 0)
       return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                        "ids[%lld] is %lld: the set has no such particle", (long long)k,
@@ -57,7 +57,8 @@ static void select_box(const mps_dynamics *dynamics, const mpsi_dynamics_selecti
       out->particle[out->count++] = (int32_t)k;
 }
 
-/* Particles selected by all ranks; of columns, which all have, the leading rank's count. */
+/* Number of particles selected by all ranks; columns, which all ranks have, are counted on the
+ * leading one. */
 static mps_status count_selected(mps_dynamics *dynamics, const char *function,
                                  const mpsi_dynamics_selection *s, mpsi_dynamics_part *part) {
   int64_t sum[2] = {0, 0}; /* in all, and of the list as given */

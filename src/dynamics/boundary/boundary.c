@@ -1,5 +1,5 @@
-/* boundary.c - boundaries of the explicit MPS solver as the caller defines them: which particles,
- * which degrees of freedom, and the lists that a step works through (constrain.c).
+/* boundary.c - definitions of boundaries of the explicit MPS solver: particles, degrees of freedom,
+ * and the lists that a step uses (constrain.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/boundary_kind.h"
 #include "core/particles/particles_internal.h"
@@ -137,8 +137,8 @@ static void find_owners(const mps_dynamics *dynamics, int32_t *owner) {
   }
 }
 
-/* Fills the list of what is held or driven. One that its boundary has already, and that has not
- * been changed, is copied; the others go on from where they are. */
+/* Fills the list of prescribed degrees of freedom. Entries of an unchanged boundary are copied; new
+ * ones start from the present value. */
 static void list_bounds(const mps_dynamics *dynamics, const int32_t *owner, int32_t changed,
                         lists *l) {
   const mpsi_dynamics_state *s = &dynamics->state;
@@ -175,7 +175,8 @@ static int compare_dashpots(const void *left, const void *right) {
   return a->partner < b->partner ? -1 : a->partner > b->partner;
 }
 
-/* What dashpots are worth (1/s), from the fields: that of a face of length D on a mass rho D^2. */
+/* Rate (1/s) of the dashpots, from the fields: impedance of a face of length D over the mass rho
+ * D^2. */
 static void set_rates(const mps_dynamics *dynamics, int64_t count, mpsi_dynamics_dashpot *dashpot) {
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   const double *vs = mpsi_dynamics_column(dynamics, "shear_velocity", 0);
@@ -250,7 +251,8 @@ static mps_status make_lists(mps_dynamics *dynamics, const char *function, int32
   return MPS_OK;
 }
 
-/* Are other degrees of freedom held or driven than before? Then the limit is another. */
+/* Whether the set of prescribed degrees of freedom has changed: then the stability limit has, too.
+ */
 static bool other_freedoms(const mps_dynamics *dynamics, const lists *l) {
   if (l->bounds != dynamics->bounds) return true;
   for (int64_t k = 0; k < l->bounds; k++)
@@ -289,7 +291,7 @@ void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
   put_lists(dynamics, room, -1, other_freedoms(dynamics, room));
 }
 
-/* Where the signals of a driven boundary are at time t. */
+/* Values of the signals of a driven boundary at time t. */
 static mps_status evaluate(mps_dynamics *dynamics, const char *function, int32_t number,
                            mpsi_dynamics_boundary *b, double t) {
   if (!b || b->kind != MPS_BOUNDARY_DRIVEN) return MPS_OK;
@@ -336,8 +338,7 @@ mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *functio
 /* ---- what the caller does -----------------------------------------------------------------------
  */
 
-/* Puts `boundary` (NULL: none) into slot `number`, which held another or none; that one is in
- * `boundary` on success. */
+/* Swaps `boundary` (NULL: none) with that of slot `number`, which may be NULL. */
 static mps_status exchange(mps_dynamics *dynamics, const char *function, int32_t number,
                            mpsi_dynamics_boundary **boundary) {
   mpsi_dynamics_boundary *former = dynamics->boundary[number];

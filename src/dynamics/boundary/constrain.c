@@ -1,12 +1,11 @@
-/* constrain.c - what boundaries do around a step: dashpots, and degrees of freedom that are held or
- * driven.
+/* constrain.c - boundaries in a step: dashpots, and prescribed degrees of freedom.
  *
- * A dashpot acts with the mean of the velocities before and after the step, which keeps the stable
- * time step as it is: (1 + c dt/2) v+ = (1 - c dt/2) v- + dt (a + c target). It is applied as a
- * correction to what the ordinary step did. So is what holds or drives: the step moves every
- * particle freely, then the boundary puts it where it belongs; mass times the change of velocity
- * that this takes is its impulse on the particle, damping, loads and restoring force included, and
- * that times the mean of the velocities before and after the step is its work.
+ * A dashpot acts with the mean of the velocities before and after the step, which leaves the stable
+ * time step unchanged: (1 + c dt/2) v+ = (1 - c dt/2) v- + dt (a + c target). It is applied as a
+ * correction to the unconstrained step, as are prescribed motions: the step moves every particle
+ * freely, then the boundary sets displacement and velocity; mass times the change of velocity is
+ * its impulse on the particle, damping, loads and restoring force included, and that times the mean
+ * of the velocities before and after the step is its work.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics/dynamics_private.h"
 #include "signal/signal_internal.h"
@@ -48,7 +47,7 @@ mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *functio
   return MPS_OK;
 }
 
-/* What the caller's functions have said of a step: that they are the same is not known before. */
+/* Signal values of a step, compared between ranks: functions of the caller may differ. */
 mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *function,
                                         mps_status status, int32_t count, double *values) {
   mpsi_given list;
@@ -84,7 +83,7 @@ void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics) {
   }
 }
 
-/* Velocity that a dashpot pulls towards, m/s. */
+/* Velocity of the far end of a dashpot, m/s. */
 static double target(const mps_dynamics *dynamics, const mpsi_dynamics_dashpot *q,
                      const motion *m) {
   if (q->partner < 0) return 2.0 * dynamics->boundary[q->boundary]->incoming[q->component];
@@ -126,8 +125,7 @@ void mpsi_dynamics_begin_counting(mps_dynamics *dynamics) {
       memset(dynamics->boundary[k]->pushed, 0, sizeof dynamics->boundary[k]->pushed);
 }
 
-/* Where a list has been gone through: the next begins with sums of its own, also where a rank has
- * one block alone. */
+/* After a list: the next one starts with sums of its own, also where a rank has a single block. */
 static void flush_all(mps_dynamics *dynamics) {
   for (int32_t k = 0; k < dynamics->boundary_room; k++)
     if (dynamics->boundary[k]) flush_boundary(dynamics->boundary[k]);

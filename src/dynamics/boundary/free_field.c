@@ -1,8 +1,8 @@
 /* free_field.c - free-field columns: level ground beside the body, as particles of the same set.
  *
  * A column is one lattice column wide and repeats itself in x with period D, so it moves as
- * horizontally endless ground. pairs.c makes the forces that the missing ground would give the
- * edge; boundary.c adds dashpots between edge and column.
+ * horizontally infinite ground. pairs.c computes the forces of the missing ground on the edge;
+ * boundary.c adds dashpots between edge and column.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
 #include "core/particles/particles_internal.h"

@@ -1,8 +1,8 @@
 /* loads.c - loads on the particles of an explicit MPS body: tractions, body forces, and the forces
  * that the caller writes into the field `external_force`.
  *
- * The velocity after a step is linear in the forces, so that loads are added to what the kernels
- * have done: kick F/m to the velocity, and what follows to the displacement.
+ * The velocity after a step is linear in the forces, so that loads are added after the kernels:
+ * kick F/m to the velocity, and what follows to the displacement.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
@@ -52,7 +52,7 @@ static void release(mps_dynamics *dynamics, mpsi_dynamics_load **load) {
   *load = NULL;
 }
 
-/* The load that is to have `number`, on all ranks or none. */
+/* Sets the load `number`, on all ranks or none. */
 static mps_status make(mps_dynamics *dynamics, const char *function, mps_status status,
                        int32_t number, const mps_dynamics_load_def *user_def,
                        mpsi_dynamics_load **out) {

@@ -1,6 +1,6 @@
-/* change.c - other particles: what is made anew when some leave the body, and when the solver goes
- * back to a state with others. All that can fail is done beside the present body, which the new
- * one then replaces. SPDX-License-Identifier: BSD-3-Clause */
+/* change.c - change of the set of particles, by a removal or by a rollback to a state with other
+ * particles. Everything that can fail is done beside the present body, which the new one then
+ * replaces. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 
@@ -54,7 +54,7 @@ static void exchange(double **a, double **b) {
   *b = keep;
 }
 
-/* What is held or driven, of the particles that stay: with its values, and the new number. */
+/* Prescribed degrees of freedom of the remaining particles, with their values and new numbers. */
 static void renumber_bounds(mps_dynamics *dynamics, const int32_t *now) {
   int64_t kept = 0;
   for (int64_t k = 0; now && k < dynamics->bounds; k++) {
@@ -87,7 +87,7 @@ void mpsi_dynamics_use_change(mps_dynamics *dynamics) {
 /* ---- a state to go back to --------------------------------------------------------------------
  */
 
-/* Of `from`: what the pairs are made of. */
+/* Geometry of the pairs of `from`. */
 typedef struct former {
   int64_t count;
   const int64_t *id, *side;
@@ -106,7 +106,7 @@ static bool read_former(const mps_snapshot *from, former *out) {
   return true;
 }
 
-/* Counts those of a boundary's particles, and the degrees of freedom, that the state has. */
+/* Counts the particles and degrees of freedom of a boundary that the state has. */
 typedef struct tally {
   int32_t *index_of; /* by id, -1: none; NULL: as in the set now */
   uint8_t *taken;    /* degree of freedom [component * count + index] */
@@ -155,7 +155,7 @@ static mps_status check_boundaries(mps_dynamics *dynamics, const char *function,
                    (long long)t->dashpots);
 }
 
-/* A particle that both have is where it was; those that come back, where `from` says. */
+/* Reference position of a particle of both bodies is kept; that of a restored one is in `from`. */
 static mps_status check_places(mps_dynamics *dynamics, const char *function, const former *f,
                                const char *source, mps_status disagreement) {
   for (int64_t k = 0; k < f->count && !dynamics->broken; k++) {
@@ -172,7 +172,7 @@ static mps_status check_places(mps_dynamics *dynamics, const char *function, con
   return MPS_OK;
 }
 
-/* What creation and the numbering rely on, where a file tells it. */
+/* Checks of a file's values that creation and numbering rely on. */
 static mps_status check_former(const mps_dynamics *dynamics, const char *function, const former *f,
                                const char *source) {
   const double far = MPSI_DYN_MOST_SPACINGS * dynamics->spacing;

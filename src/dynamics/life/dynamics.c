@@ -77,7 +77,7 @@ static mps_status check_numbers(mps_context *context, const mps_dynamics_def *de
   return MPS_OK;
 }
 
-/* What is there of position and of the initial state must be finite. */
+/* Positions and fields of the initial state, where present, must be finite. */
 static mps_status check_state(mps_context *context, mps_particles *particles) {
   static const char *const names[] = {"position", "displacement", "rotation", "velocity", "spin"};
   const int64_t n = mps_particles_count(particles);
@@ -159,7 +159,7 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
   return MPS_OK;
 }
 
-/* Bounds of the set; of one in parts, of all ranks' parts. Collective where there is a domain. */
+/* Bounds of the set, of all ranks' parts. Collective where there is a domain. */
 static mps_status find_extent(mps_particles *particles, mps_domain *domain, mps_status status,
                               double *lo, double *hi) {
   for (int c = 0; c < 2; c++) lo[c] = INFINITY, hi[c] = -INFINITY;

@@ -1,7 +1,7 @@
-/* files.c - checkpoints of a body that lies on several ranks. Rank 0 writes what the run without a
- * domain would write: particles and lists in the order of the whole body, sums over all ranks. Each
- * rank reads the whole file and takes its share of it, so that a run goes on with any number of
- * ranks, or without a domain. SPDX-License-Identifier: BSD-3-Clause */
+/* files.c - checkpoints of a body that lies on several ranks. Rank 0 writes the file of a run
+ * without a domain: particles and lists in the order of the whole body, sums over all ranks. Each
+ * rank reads the whole file and keeps its part, so that a run continues on any number of ranks, or
+ * without a domain. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 #include "io/checkpoint.h"
@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* How the values of a rank and those of the file belong together. */
+/* Correspondence of the values of a rank and those of the file. */
 typedef enum merging {
   SAME, /* on all ranks */
   SUM,  /* exact sums: of all ranks; read, they are rank 0's */

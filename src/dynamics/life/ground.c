@@ -1,5 +1,5 @@
-/* ground.c - what the body is made of: fields, or a material in their place; the coefficients of
- * each particle; and what becomes of fields that the caller edits while the solver lives.
+/* ground.c - material of the body: fields, or a material in their place; the coefficients of each
+ * particle; and fields that the caller edits.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
@@ -74,7 +74,7 @@ mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *functio
   double before = 0.0, after = 0.0;
   mps_status status = mpsi_dynamics_check_ground(dynamics->particles, function);
   status = mpsi_domain_agree(domain, function, mpsi_fail_of(dynamics->context, status, "dynamics"));
-  if (status == MPS_OK) /* refuses before anything has changed */
+  if (status == MPS_OK) /* an error before anything has changed */
     status = mpsi_domain_agree(domain, function, mpsi_dynamics_reserve_watch(dynamics, function));
   if (status == MPS_OK) status = mpsi_dynamics_present_energy(dynamics, function, &before);
   if (status != MPS_OK) return status;
@@ -167,7 +167,8 @@ static mps_status write_own(mps_dynamics *dynamics, const char *function, mps_st
   return mpsi_domain_agree(dynamics->domain, function, status);
 }
 
-/* The wave velocities of all particles here, to go back to: NULL where there is no memory. */
+/* A copy of the wave velocities of all particles here, to be restored on an error: NULL without
+ * memory. */
 static double *keep_velocities(const mps_dynamics *dynamics, const char *function,
                                mps_status *status) {
   const int64_t n = mps_particles_count(dynamics->particles);
@@ -210,7 +211,7 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
       status = mpsi_dynamics_write_material(dynamics->particles, __func__, material, count, ids);
     status = mpsi_domain_agree(dynamics->domain, __func__, status);
   }
-  /* other particles may have values that do not do, or those of another rank */
+  /* values of other particles, or of another rank, may be out of range */
   if (status == MPS_OK) status = mpsi_dynamics_read_ground(dynamics, __func__);
   if (status != MPS_OK && agreed) put_velocities_back(dynamics, kept);
   mpsi_free(dynamics->context, kept);
@@ -264,15 +265,15 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
       mpsi_dynamics_check_ground(dynamics->particles, function) == MPS_OK)
     status = mpsi_dynamics_read_ground(dynamics, function);
   else if (of_ground)
-    dynamics->unread = true; /* another field may follow that goes with it: the step tells */
+    dynamics->unread = true; /* a field consistent with it may be edited next: the step checks */
   if (of_motion && !dynamics->broken) dynamics->rewritten = which;
-  if (of_motion && strcmp(which, "rotation") == 0) /* totals may be asked for before it begins */
+  if (of_motion && strcmp(which, "rotation") == 0) /* totals may be queried before it begins */
     dynamics->kernels->trig[dynamics->def.rotation](&dynamics->state, 0, dynamics->count);
   if (of_fabric) dynamics->broken = which;
   return status;
 }
 
-/* Whether a boundary's or load's signal may refuse. */
+/* Whether a boundary's or load's signal may fail. */
 static bool has_refusing_signal(const mps_dynamics *dynamics) {
   for (int c = 0; c < 2; c++) {
     for (int32_t k = 0; k < dynamics->boundary_room; k++)
@@ -288,7 +289,7 @@ mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *functio
                                      mps_status status) {
   double edited[3] = {dynamics->unread, dynamics->rewritten != NULL, has_refusing_signal(dynamics)};
   if (status != MPS_OK)
-    ; /* as the caller has found it */
+    ; /* as before the call */
   else if (dynamics->broken)
     status =
         mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,

@@ -1,12 +1,12 @@
-/* removal.c - particles that leave the body between two steps: erosion, excavation. All that can
- * fail is done before they go; then the solver goes on with what is left, from the displacements
- * and velocities that it has. None can come: the reference positions of a body in motion tell no
- * newcomer how far its neighbours have moved.
+/* removal.c - particles that leave the body between two steps: erosion, excavation. Everything that
+ * can fail is done before they are removed; then the solver continues with the remaining ones, from
+ * their displacements and velocities. None can be added: in a body in motion a new particle has no
+ * reference position.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 
-/* Marks what goes: now[i] = -1. */
+/* Marks removed particles: now[i] = -1. */
 static mps_status mark(mps_dynamics *dynamics, const char *function, int64_t count,
                        const int64_t *ids, int32_t *now) {
   for (int64_t k = 0; k < count; k++) {
@@ -25,7 +25,7 @@ static mps_status mark(mps_dynamics *dynamics, const char *function, int64_t cou
                    (long long)dynamics->body);
 }
 
-/* Numbers what is left, in the present order, and where it is: x, y, side. */
+/* Numbers the remaining particles, in the present order, and their positions: x, y, side. */
 static int64_t number(const mps_dynamics *dynamics, int32_t *now, double *x, double *y,
                       int64_t *side) {
   const int64_t *column = mpsi_particles_integers(dynamics->particles, "free_field");

@@ -1,5 +1,5 @@
 /* state.c - the state of the explicit MPS solver (core/state.h): snapshots, rollback, checkpoints;
- * a look at the step to come.
+ * refresh.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/state/state.h"
 
@@ -9,16 +9,14 @@
 
 #include <string.h>
 
-/* ---- what is held or driven, dashpots ----------------------------------------------------------
- */
+/* ---- prescribed degrees of freedom, dashpots ------------------------------------------------- */
 
 enum { BOUND = 4 };
 
 static int64_t count_bounds(const void *solver) { return ((const mps_dynamics *)solver)->bounds; }
 
-/* The next in order of particles, then of components, in which lists are kept outside of the
- * solver: the whole body's is then made of those of its parts. The list itself has the component
- * first. */
+/* The next in order of particles, then of components, the order of lists outside of the solver: so
+ * the whole body's list is that of its parts in turn. The list itself has the component first. */
 typedef struct walk {
   int64_t at[3], end[3];
 } walk;
@@ -149,7 +147,7 @@ static void bind(void *solver) {
   mpsi_dynamics_drop_change(dynamics);
 }
 
-/* What follows from the state. */
+/* Quantities that follow from the state. */
 static void after(void *solver) {
   mps_dynamics *dynamics = solver;
   const mpsi_dynamics_state *s = &dynamics->state;
@@ -195,7 +193,7 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
  * ------------------------------------------------------------------------ */
 
 /* A state is kept between steps only, and of a set without an open edit, on all ranks. The guard is
- * asked alone: a callback that calls may run on one rank. */
+ * checked on each rank alone, since a callback may run on one rank. */
 static mps_status check_whole(const mps_dynamics *dynamics, const char *function) {
   const mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
   if (status != MPS_OK) return status;
@@ -207,7 +205,7 @@ static mps_status take_in(void *solver, const char *function, mps_status status)
   return mpsi_dynamics_take_edits(solver, function, status);
 }
 
-/* The state with what has been edited taken in, once nothing can refuse it. */
+/* The state with the edited fields, once no error is possible. */
 static mpsi_state_of edited_state_of(mps_dynamics *dynamics) {
   mpsi_state_of of = state_of(dynamics);
   of.take_in = take_in;
@@ -223,7 +221,7 @@ mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot
                            mpsi_state_snapshot(&of, __func__, snapshot));
 }
 
-/* What follows from a state and lies on other ranks. */
+/* Quantities that follow from a state and lie on other ranks. */
 static mps_status settle_back(mps_dynamics *dynamics, const char *function, mps_status status) {
   double other = !dynamics->have_limit;
   if (status != MPS_OK || !mpsi_domain_many(dynamics->domain)) return status;
@@ -262,8 +260,7 @@ mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_ch
 /* ---- the step to come
  * ---------------------------------------------------------------------------- */
 
-/* Of a state that a run has left when it diverged: what the next step would begin with may be no
- * number. */
+/* After a run that has diverged, accelerations may not be finite. */
 static mps_status check_kept(mps_dynamics *dynamics, const char *function, const double *kept) {
   const int64_t n = dynamics->count;
   mps_status status = MPS_OK;
@@ -279,7 +276,7 @@ static mps_status check_kept(mps_dynamics *dynamics, const char *function, const
   return mpsi_domain_agree(dynamics->domain, function, status);
 }
 
-/* Takes a step and goes back, keeping its accelerations and pressures in `kept`. */
+/* Takes a step and restores the state, keeping the step's accelerations and pressures in `kept`. */
 static mps_status look_ahead(mps_dynamics *dynamics, const char *function, double *kept) {
   const size_t bytes = (size_t)dynamics->count * sizeof(double);
   const mpsi_state_of of = state_of(dynamics);
@@ -287,7 +284,7 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   mpsi_state_prepared back;
   mps_status status = mpsi_domain_agree(dynamics->domain, function,
                                         mpsi_state_snapshot(&of, function, &dynamics->present));
-  if (status == MPS_OK) /* what going back needs; agreed upon by all ranks */
+  if (status == MPS_OK) /* copy of the state to restore; agreed upon by all ranks */
     status = mpsi_state_ready_back(&of, function, dynamics->present, &back);
   if (status != MPS_OK) return status;
   dynamics->def.divergence = INFINITY; /* that is for the step itself to find */

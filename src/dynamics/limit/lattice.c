@@ -1,17 +1,17 @@
 /* lattice.c - the stable time step of uniform ground without any particles, by linear theory on the
- * endless lattice.
+ * infinite lattice.
  *
- * On the endless square lattice the tangent has plane waves exp(i k.x): a Hermitian 3 x 3 problem
- * for each wave vector. Its highest eigenvalue over all wave vectors bounds the scheme. For
- * Vp/Vs below about 3.7 it is the spin mode k = 0: w^2 = 24 Vs^2/D^2.
+ * On the infinite square lattice the tangent has plane waves exp(i k.x): a Hermitian 3 x 3 problem
+ * for each wave vector. Its highest eigenvalue over all wave vectors bounds the scheme. For Vp/Vs
+ * below about 3.7 it is the spin mode k = 0: w^2 = 24 Vs^2/D^2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics/dynamics_private.h"
 
 #define WAVES 96 /* wave vectors a direction in [0, pi/D] */
-/* A body has edges, where particles miss neighbours. The spin mode only gets slower there; modes of
- * volume change get faster, most in a strip two or three particles thick: measured over all strips
- * and Vp/Vs up to 50, by 5.3 % for re = 1.5 D and 13.3 % at most for others, nothing below
- * Vp = 3.4 Vs. */
+/* A body has edges, where neighbours are missing. The spin mode has a lower frequency there; modes
+ * of volume change have higher ones, most in a strip two or three particles thick: measured over
+ * all strips and Vp/Vs up to 50, by 5.3 % for re = 1.5 D and 13.3 % at most for others, nothing
+ * below Vp = 3.4 Vs. */
 static double edge_factor(const mps_dynamics_predict_def *def) {
   if (def->pressure_velocity <= 3.3 * def->shear_velocity) return 1.0;
   return def->radius_ratio <= 1.5 ? 1.06 : 1.14;

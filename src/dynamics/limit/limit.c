@@ -68,8 +68,8 @@ static mps_status dot(const mps_dynamics *dynamics, const double *a, const doubl
   return status;
 }
 
-/* Start near the usual highest mode, where all particles spin alike, with a part in every other.
- * A function of the id alone: the order of the particles does not matter. */
+/* Start near the usual highest mode, the uniform spin, with a component in every other. A function
+ * of the id alone: the order of the particles does not matter. */
 static void start_vector(const mps_dynamics *dynamics, double *v) {
   const int64_t n = dynamics->count;
   const int64_t *id = mpsi_particles_integers(dynamics->particles, "id");
@@ -287,14 +287,14 @@ mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics, double duration
   return mpsi_out_write(context, function, out, size, &limit, sizeof limit);
 }
 
-/* Bound of the limit from the endless lattice of the stiffest and lightest material in the set. */
+/* Bound of the limit from the infinite lattice of the stiffest and lightest material in the set. */
 static double lattice_bound(const mps_dynamics *dynamics) {
   const mpsi_dynamics_extremes *e = &dynamics->extremes;
   const double omega2 = mpsi_dynamics_lattice_omega2(
       dynamics->kernel, dynamics->spacing, dynamics->def.radius_ratio, sqrt(e->mu / e->lightest),
       sqrt((e->lambda + 2.0 * e->mu) / e->lightest), dynamics->torque);
-  /* Shear is softer where neighbours are missing, pressure can be stiffer: up to 1.13 times omega
-   * over all the shapes tried, and only where the highest mode is not the spin's. */
+  /* Where neighbours are missing shear is softer, and pressure can be stiffer: up to 1.13 times
+   * omega over all shapes examined, and only where the highest mode is not that of the spin. */
   return (e->lambda <= 7.0 * e->mu ? 0.95 : 0.8) *
          mpsi_dynamics_damped_limit(omega2, e->alpha[1], e->beta[1]);
 }

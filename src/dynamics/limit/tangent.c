@@ -4,7 +4,7 @@
  * Every pair term is the gradient of an energy in (x, y, theta) with half of a pair's moment to
  * either end, so K is symmetric; the inertia that belongs to it is rho D^2/6 a unit of area (half
  * of that for the printed torque). Free-field forces on an edge depend on the column alone: they
- * make the whole matrix block triangular and leave its eigenvalues alone, so they are left out.
+ * make the whole matrix block triangular without a change of its eigenvalues, so they are left out.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics/dynamics_private.h"
 

@@ -1,6 +1,6 @@
-/* batch.c - see batch.h. A batch's pairs are looked for among its own particles and those of other
- * blocks within reach of them, which bounds of pieces of blocks tell. A particle too many changes
- * nothing: pairs are those closer than re.
+/* batch.c - see batch.h. The pairs of a batch are searched among its own particles and particles of
+ * other blocks within reach, found by bounds of pieces of blocks. Additional particles change
+ * nothing: pairs are closer than re.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "batch.h"
 
@@ -36,7 +36,7 @@ static piece widened(piece p, double x, double y) {
   return p;
 }
 
-/* Where a block goes on in another strip its bounds would be those of both strips. */
+/* Where a block continues in another strip, its bounds would span both strips. */
 static bool too_wide(const mpsi_dynamics_source *s, const piece *p) {
   const double D = s->g.spacing, area = (p->hi[0] - p->lo[0] + D) * (p->hi[1] - p->lo[1] + D);
   return area > (4.0 * (double)(p->end - p->begin) + 2.0 * MPSI_DYN_BLOCK) * D * D;
@@ -84,7 +84,7 @@ int64_t mpsi_dynamics_batch_size(const mpsi_dynamics_source *s, int64_t blocks) 
 
 /* ---- what is near a batch -------------------------------------------------------------------- */
 
-/* Whether points of both may be closer than re, or those of a copy a period away. */
+/* Whether points of both, or of a copy a period away, may be closer than re. */
 static bool within_reach(const mpsi_dynamics_source *s, const piece *a, const piece *b) {
   const double reach = s->g.radius * (1.0 + 1e-6);
   const int copies = s->g.period_x > 0.0;

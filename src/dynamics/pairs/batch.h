@@ -1,6 +1,6 @@
-/* batch.h - the pairs of a body, a batch of its blocks at a time: what is found to arrange one
- * batch is given back before the next, so that memory holds the arranged pairs and not, beside
- * them, all neighbour lists and pairs as found.
+/* batch.h - the pairs of a body, a batch of its blocks at a time: scratch memory of one batch is
+ * released before the next, so that memory holds the arranged pairs, and not all neighbour lists
+ * besides.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DYNAMICS_BATCH_H
 #define MPSI_DYNAMICS_BATCH_H
@@ -10,10 +10,10 @@
 /* Sorted particles by number, and the bounds of those of each block. */
 typedef struct mpsi_dynamics_source {
   mps_context *context;
-  const char *function;              /* that errors name */
-  mpsi_dynamics_geometry g;          /* by number; with `edge` where particles are missing */
-  const int64_t *near;               /* numbers of those that are here, ascending; NULL: all */
-  int64_t nears, body;               /* how many; numbers from `body` on are free-field columns */
+  const char *function;     /* that errors name */
+  mpsi_dynamics_geometry g; /* by number; with `edge` where particles are missing */
+  const int64_t *near;      /* numbers of the particles that are here, ascending; NULL: all */
+  int64_t nears, body;      /* how many; numbers from `body` on are free-field columns */
   struct mpsi_dynamics_piece *piece; /* by mpsi_dynamics_source_open */
   int64_t pieces;
   uint8_t *taken; /* by block: of the batch */

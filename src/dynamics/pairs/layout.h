@@ -32,10 +32,10 @@ int64_t mpsi_dynamics_layout_key(const mpsi_dynamics_rows *rows, double x, doubl
 bool mpsi_dynamics_layout_order(mps_context *context, const mpsi_dynamics_geometry *geometry,
                                 int64_t *order);
 
-/* Finds all pairs of sorted particles: of the body, of each column with its endless copies, and
- * the forces that the column gives to the edge beside it. `pairs` receives an array for
- * mpsi_free. Errors carry `function`. `distinct` receives the number of ordinary pairs. `keep`
- * NULL: all; else by particle: those pairs of the body alone with an end that is marked. */
+/* Finds all pairs of sorted particles: of the body, of each column with its periodic copies, and
+ * the forces of the column on the edge beside it. `pairs` receives an array for mpsi_free. Errors
+ * carry `function`. `distinct` receives the number of ordinary pairs. `keep` NULL: all; else by
+ * particle: only pairs of the body with a marked end. */
 mps_status mpsi_dynamics_layout_pairs(mps_context *context, const char *function,
                                       const mpsi_dynamics_geometry *geometry, const uint8_t *keep,
                                       int64_t *count, mpsi_dynamics_pair **pairs,

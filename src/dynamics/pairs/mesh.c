@@ -9,12 +9,12 @@
 
 /* A pair as one block sees it. */
 typedef struct entry {
-  mpsi_dynamics_pair pair; /* ti and tj are -1 where another block owns that side */
+  mpsi_dynamics_pair pair; /* ti or tj is -1 where another block owns that end */
   int32_t run;             /* length of the run that starts here; 0: scattered; -1: inside a run */
 } entry;
 
-/* What has been arranged of one batch: blocks `begin` to `end` - 1. Runs and scattered pairs have
- * numbers from `run_first` and `scattered_first` on. */
+/* Arranged pairs of one batch: blocks `begin` to `end` - 1. Runs and scattered pairs have numbers
+ * from `run_first` and `scattered_first` on. */
 typedef struct batch {
   int64_t begin, end;
   int64_t run_first, runs, scattered_first;
@@ -66,8 +66,7 @@ static bool continues(const mpsi_dynamics_pair *a, const mpsi_dynamics_pair *b) 
          (b->ti < 0) == (a->ti < 0) && (b->tj < 0) == (a->tj < 0) && ordinary(b);
 }
 
-/* ---- what of a block is here: of a ghost, what acts on wanted particles -----------------------
- */
+/* ---- pairs of a block on this rank; of a ghost block, those that act on needed particles ----- */
 
 static bool is_ghost(const arrange *work, int64_t b) {
   return work->def->cut && b >= work->def->cut->blocks;
@@ -179,7 +178,7 @@ static void write_block(void *data, int64_t number, int32_t worker) {
   }
 }
 
-/* Hands each pair to the one or two blocks of the batch that own its ends. Without entries only
+/* Assigns each pair to the one or two blocks of the batch that own its ends. Without entries only
  * counts. */
 static void deal(const arrange *work) {
   const batch *part = work->batch;
@@ -241,7 +240,7 @@ static void number_blocks(const arrange *work) {
   part->runs = mesh->runs - part->run_first;
 }
 
-/* Whether a block looks at particles of other ranks, which have numbers from `own` on. */
+/* Whether a block reads particles of other ranks, whose numbers start at `own`. */
 static bool looks_out(const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block,
                       int64_t own) {
   for (int64_t r = block->run_begin; r < block->run_end; r++)
@@ -251,7 +250,7 @@ static bool looks_out(const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block 
   return false;
 }
 
-/* First the blocks that need not wait for other ranks. */
+/* Blocks without data of other ranks come first. */
 static bool take_turns(mps_context *context, const mpsi_dynamics_cut *cut,
                        mpsi_dynamics_mesh *mesh) {
   const int64_t all = mesh->blocks + mesh->ghosts;
@@ -333,7 +332,7 @@ static void free_batch(mps_context *context, batch *part) {
   *part = (batch){0};
 }
 
-/* What the batches have, one behind the other. */
+/* Concatenates the arrays of the batches. */
 static bool join(mps_context *context, mpsi_dynamics_mesh *mesh, int64_t batches, batch *part) {
   mpsi_dynamics_scattered *to = &mesh->scattered;
   mesh->run = mpsi_alloc(context, mesh->runs, sizeof *mesh->run);

@@ -46,8 +46,8 @@ typedef struct mpsi_dynamics_block {
 typedef struct mpsi_dynamics_mesh {
   int64_t slots; /* pair evaluations a step */
   int64_t blocks, runs;
-  int64_t ghosts;   /* blocks of other ranks, behind the own ones: only their first pass is done */
-  int64_t interior; /* own blocks that look at no particle of another rank: the first of `turn` */
+  int64_t ghosts;   /* ghost blocks of other ranks, behind the own ones: first pass only */
+  int64_t interior; /* own blocks that read no particle of another rank: the first of `turn` */
   int32_t *turn;    /* the order of the first pass: all blocks; NULL: as they lie */
   mpsi_dynamics_block *block;
   mpsi_dynamics_pair_run *run;
@@ -63,16 +63,17 @@ typedef struct mpsi_dynamics_pair {
 /* The part of a body that one rank has. Particles and blocks of the whole body have global numbers,
  * in which pairs are arranged; so a particle's sum has one order whatever the number of ranks. */
 typedef struct mpsi_dynamics_cut {
-  int64_t blocks, ghosts; /* of this rank; of others, of which some particles are wanted */
+  int64_t blocks, ghosts; /* of this rank; ghost blocks, of which some particles are needed */
   int32_t *block;         /* their global numbers */
   int32_t *begin, *end;   /* local particles of each that are here: of ghosts not all */
   int32_t *slot;          /* by global block: which of these it is, -1: none */
   int32_t *local;         /* by global particle: its number here, -1: it is not here */
-  uint8_t *wanted;        /* by global particle: 1: a ghost whose pressure is wanted */
-  int64_t count;          /* local particles that are this rank's own */
+  uint8_t
+      *wanted;   /* by global particle: 1: a ghost of the first layer, whose pressure is computed */
+  int64_t count; /* local particles that are this rank's own */
 } mpsi_dynamics_cut;
 
-/* What arranging needs to know of the discretisation. */
+/* Discretisation, as the arrangement of pairs needs it. */
 typedef struct mpsi_dynamics_mesh_def {
   const mps_kernel *kernel; /* w(r) */
   double density;           /* n0 */

@@ -1,5 +1,5 @@
 /* pairs.c - the pairs of the reference lattice closer than re, Yoshida (A8): those of the body,
- * with its period; those of a free-field column, which stands for horizontally endless ground; and
+ * with its period; those of a free-field column, which represents horizontally infinite ground; and
  * the forces of that ground on the edge of the body.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "layout.h"
@@ -178,7 +178,7 @@ static bool map_edge(mps_context *context, const mpsi_dynamics_geometry *g, cons
   return true;
 }
 
-/* One pair type of endless ground: offset (kx, ky) lattice spacings, kx >= 0. */
+/* One pair type of infinite ground: offset (kx, ky) lattice spacings, kx >= 0. */
 static bool column_offset(const mpsi_dynamics_geometry *g, const column *c, const int64_t *at,
                           int kx, int ky, pair_list *list) {
   const double r0x = kx * g->spacing, r0y = ky * g->spacing;
@@ -187,8 +187,8 @@ static bool column_offset(const mpsi_dynamics_geometry *g, const column *c, cons
     if (other < 0 || other >= c->rows) continue;
     const int32_t i = (int32_t)(c->first + row), j = (int32_t)(c->first + other);
     if (!push(list, (mpsi_dynamics_pair){i, j, i, j, r0x, r0y})) return false;
-    /* The body's particles up to kx - 1 columns in from the edge miss this pair's far end. On the
-     * left they are its j, on the right its i. */
+    /* For particles up to kx - 1 columns in from the edge, the far end of this pair is missing. On
+     * the left they are its j, on the right its i. */
     for (int depth = 0; depth < kx; depth++) {
       mpsi_dynamics_pair ghost = {i, j, -1, -1, r0x, r0y};
       if (c->side == 1)

@@ -1,5 +1,5 @@
-/* structure.c - what follows from which particles there are: their order, the pairs and the mesh
- * made of them, the arrays of the solver. Made at creation, and anew when particles are removed.
+/* structure.c - structure of a set of particles: order, pairs, mesh, arrays of the solver. Made at
+ * creation and after a removal of particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
@@ -10,8 +10,8 @@
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
-/* Takes the reference position from position and displacement, but keeps one that differs from it
- * by round-off alone: a second solver on a set finds the pairs of the first. */
+/* Computes the reference position from position and displacement, but keeps one that differs by
+ * round-off alone: a second solver on a set has the pairs of the first. */
 static void set_reference(mps_dynamics *dynamics) {
   const int64_t count = mps_particles_count(dynamics->particles);
   const double spacing = mps_particles_spacing(dynamics->particles);

@@ -5,14 +5,14 @@
  * interval begins is found by bisection of places, then of ids, all ranks' at once: each round is a
  * sum over the ranks of how many lie below. Then particles travel, and each rank sorts its own.
  *
- * How the pairs of a block are arranged depends on all particles near it, and a rank arranges its
- * own blocks and those that have a particle near these. So it needs the places of all that is near
- * either. Ranks tell one another the bounds of their blocks, cut where a block goes on in another
- * strip; each asks others for what lies near the blocks that it arranges. What is asked for by
- * bounds is a little more than needed, which changes nothing.
+ * The arrangement of a block's pairs depends on all particles near it, and a rank arranges its own
+ * blocks and blocks with a particle near them. So it needs the positions of all particles near
+ * either. Ranks exchange the bounds of their blocks, cut where a block continues in another strip;
+ * each requests the particles near the blocks that it arranges. Bounds request slightly more than
+ * needed, which changes nothing.
  *
- * In the end blocks have numbers of their own here, ascending as in the whole body, with one left
- * out where the whole body's are not neighbours: no run of pairs goes on across the gap.
+ * Finally blocks have local numbers, ascending as in the whole body, with a gap where they are not
+ * neighbours in the whole body: no run of pairs crosses a gap.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
@@ -55,7 +55,7 @@ typedef struct dealing {
   int64_t count;
   int64_t *key, *id; /* of each rank but the first: where its interval begins */
   mpsi_mailbox box;  /* pieces of all ranks */
-  piece *asked;      /* near which this rank needs all particles */
+  piece *asked;      /* around which this rank needs all particles */
   int64_t asks;
 } dealing;
 
@@ -71,7 +71,7 @@ static int compare(const void *left, const void *right) {
   return a->id < b->id ? -1 : a->id > b->id;
 }
 
-/* Bounds of the whole body, and how many particles it has. */
+/* Bounds and number of particles of the whole body. */
 static mps_status measure(dealing *d, mps_status status) {
   double most[4] = {-INFINITY, -INFINITY, -INFINITY, -INFINITY};
   if (status == MPS_OK) {
@@ -398,7 +398,7 @@ static mps_status bring_near(dealing *d, mpsi_mailbox *out) {
 
 /* ---- numbers --------------------------------------------------------------------------------- */
 
-/* Goes through own particles and those that have come, in the order of the whole body. */
+/* Iterates over own and received particles, in the order of the whole body. */
 typedef struct walk {
   const dealing *d;
   const mpsi_mailbox *box;
@@ -430,7 +430,7 @@ static bool next(walk *w, neighbour *out) {
   }
 }
 
-/* Blocks here, one left out where the whole body's are not neighbours; how many particles. */
+/* Local blocks, with a gap where they are not neighbours in the whole body; number of particles. */
 static void count_blocks(walk w, int64_t *blocks, int64_t *nears) {
   neighbour k;
   int64_t last = -2;

@@ -3,11 +3,11 @@
  * All ranks begin with the same set, sort it in the same way and cut the body at blocks, or with a
  * set in parts (deal.c): each has
  * an interval of them, and all of the free-field columns, which are few and whose motion the edges
- * need at once. Behind its own particles a rank keeps ghosts, which belong to others: those that
- * are near its own, whose pressure it computes itself, and those that are near these. So one
- * message a step brings all that a rank needs, the displacements and rotations of ghosts. Pairs are
- * arranged in blocks by their numbers in the whole body, and every sum has the same terms in the
- * same order, whichever rank adds them up. SPDX-License-Identifier: BSD-3-Clause */
+ * need at once. Behind its own particles a rank keeps two layers of ghosts: the neighbours of its
+ * own particles, whose pressure it computes itself, and the neighbours of these. So one message a
+ * step is enough: displacements and rotations of ghosts. Pairs are arranged in blocks by their
+ * numbers in the whole body, and every sum has the same terms in the same order on every rank.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
 #include "dynamics/dynamics_private.h"
@@ -19,7 +19,7 @@
 
 #define BACK 4 /* columns of one copy, at most */
 
-/* What is known of the whole body while the partition is made; arrays by global number. */
+/* Data of the whole body while the partition is made; arrays by global number. */
 typedef struct plan {
   mps_dynamics *dynamics;
   const char *function;
@@ -31,7 +31,7 @@ typedef struct plan {
   int64_t *side;       /* NULL: no columns */
   int64_t first, last; /* own ones of the body */
   double edge[2];      /* x of the body's outermost particles, m */
-  int64_t *near;       /* global numbers of those that pairs are looked for among, ascending */
+  int64_t *near;       /* global numbers of the particles of the search for pairs, ascending */
   int64_t nears, near_body;
   uint8_t *present; /* ghosts */
   mpsi_dynamics_cut cut;
@@ -81,8 +81,8 @@ static mps_status sort_whole(plan *p) {
 
 /* ---- what may be near ------------------------------------------------------------------------ */
 
-/* Cells as wide as re: what is near the particles of some blocks lies in their cells and those
- * around them. */
+/* Cells as wide as re: neighbours of the particles of some blocks lie in their cells and the cells
+ * around. */
 typedef struct cells {
   double lo[2], width;
   int64_t columns;
@@ -110,7 +110,7 @@ static bool begin_cells(const plan *p, cells *c) {
   return c->taken != NULL;
 }
 
-/* Those of the blocks with a mark. */
+/* Cells of the marked blocks. */
 static void take_cells(const plan *p, const uint8_t *marked, cells *c) {
   const double period = isnan(p->dynamics->def.period_x) ? 0.0 : p->dynamics->def.period_x;
   c->count = 0;
@@ -122,7 +122,7 @@ static void take_cells(const plan *p, const uint8_t *marked, cells *c) {
   qsort(c->taken, (size_t)c->count, sizeof *c->taken, compare);
 }
 
-/* Is a cell taken, or one around it? */
+/* Is a cell, or one around it, in the list? */
 static bool any_taken(const cells *c, int64_t cell) {
   for (int64_t row = -1; row <= 1; row++) {
     const int64_t first = cell + row * c->columns - 1;
@@ -139,8 +139,8 @@ static bool any_taken(const cells *c, int64_t cell) {
   return false;
 }
 
-/* Pairs are looked for among all that may be near own blocks or blocks beside them: how a block's
- * pairs are arranged depends on all of them. */
+/* Pairs are searched among all particles near own blocks or their neighbour blocks: the arrangement
+ * of a block's pairs depends on all of them. */
 static mps_status find_near(plan *p) {
   mps_context *context = p->dynamics->context;
   cells c = {.count = 0};
@@ -190,8 +190,8 @@ static mps_status find_edges(plan *p, int64_t *edge) {
 
 static bool own(const plan *p, int64_t k) { return (k >= p->first && k < p->last) || k >= p->body; }
 
-/* Marks the ghosts of pairs that act on particles of these blocks: with own particles, those whose
- * pressure is wanted; with these, those that are present. */
+/* Marks the ghosts of pairs that act on particles of these blocks: from own particles the first
+ * layer, from the first layer the second. */
 static mps_status mark(plan *p, mpsi_dynamics_source *source, int64_t blocks, const int32_t *block,
                        bool second) {
   int64_t pairs = 0, distinct = 0;
@@ -210,7 +210,7 @@ static mps_status mark(plan *p, mpsi_dynamics_source *source, int64_t blocks, co
   return status;
 }
 
-/* Blocks with an own particle, or with a wanted one. */
+/* Blocks with an own particle, or with a ghost of the first layer. */
 static int64_t list_marked(const plan *p, bool second, int32_t *block) {
   int64_t blocks = 0, last = -1;
   for (int64_t k = 0; k < p->count; k++) {
@@ -221,7 +221,7 @@ static int64_t list_marked(const plan *p, bool second, int32_t *block) {
   return blocks;
 }
 
-/* Ghosts whose pressure is wanted: near own particles; and those near them. */
+/* Ghosts of the first layer, whose pressure is computed, and of the second. */
 static mps_status find_ghosts(plan *p, mpsi_dynamics_source *source) {
   mps_context *context = p->dynamics->context;
   const int64_t all = mpsi_dynamics_block_of(p->body, p->count) + 1;
@@ -279,7 +279,7 @@ static void add_block(mpsi_dynamics_cut *cut, int64_t block, int32_t begin, int3
   cut->slot[block] = (int32_t)at;
 }
 
-/* Own blocks, then those of the columns, then ghosts: blocks of others with a wanted particle. */
+/* Own blocks, then those of the columns, then ghost blocks with a particle of the first layer. */
 static mps_status list_blocks(plan *p) {
   mps_context *context = p->dynamics->context;
   mpsi_dynamics_cut *cut = &p->cut;
@@ -370,7 +370,7 @@ static mps_status make_structure(plan *p, mpsi_dynamics_structure *out) {
 
 /* ---- all of it ------------------------------------------------------------------------------- */
 
-/* Are all ranks given the same? */
+/* Have all ranks the same arguments? */
 static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mps_status status) {
   const mps_dynamics_def *d = &dynamics->def;
   mpsi_given given;
@@ -394,7 +394,7 @@ static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mp
   return mpsi_domain_settle_particles(dynamics->domain, function, status, dynamics->particles);
 }
 
-/* Sums and extremes over the ranks; and the halo, now that ghosts have their places. */
+/* Sums and extremes over the ranks; and the halo, once ghosts have their numbers. */
 static mps_status join(plan *p, mpsi_dynamics_structure *out) {
   mps_dynamics *dynamics = p->dynamics;
   const mpsi_halo_def def = {.guests = p->ghosts,
@@ -410,7 +410,8 @@ static mps_status join(plan *p, mpsi_dynamics_structure *out) {
   return mpsi_halo_create(dynamics->domain, p->function, &def, &out->halo);
 }
 
-/* Of a set that is here whole: own particles and what is near them, and what of it stays. */
+/* For a set that is whole on each rank: own particles and their ghosts, and the particles to keep.
+ */
 static mps_status plan_whole(plan *p) {
   mps_dynamics *dynamics = p->dynamics;
   const int64_t rank = mps_domain_rank(dynamics->domain), ranks = mps_domain_size(dynamics->domain);
@@ -437,7 +438,7 @@ static mps_status keep_own(const plan *p, const mpsi_dynamics_structure *out,
   return status;
 }
 
-/* Of a set in parts: particles go to their ranks, which learn of those near theirs (deal.c). */
+/* For a set in parts: particles are sent to their ranks, with the ghosts of each (deal.c). */
 static mps_status plan_parts(plan *p, mpsi_backup *backup) {
   mpsi_dynamics_window part = {0};
   mps_status status = mpsi_dynamics_deal(p->dynamics, p->function, &part);

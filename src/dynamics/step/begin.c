@@ -1,5 +1,5 @@
-/* begin.c - the initial state, at creation and at a restart, and what the fields show of the
- * present one. SPDX-License-Identifier: BSD-3-Clause */
+/* begin.c - the initial state, at creation and at a restart, and the fields of the present one.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 

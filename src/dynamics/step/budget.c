@@ -1,12 +1,12 @@
 /* budget.c - energies and momenta of the present state, works of a step. Free-field columns are not
  * counted.
  *
- * The energy that Verlet and leapfrog keep exactly for a linear body without damping is
- * v-.M.v+ / 2 + U(x), with the velocities half a step before and after the state x. With other
- * forces P besides the restoring ones F, and v+ = v- + dt F/M the velocity that these alone lead
- * to, it changes from step to step by dt P.(v- + v)/2, v the velocity that the step really ends
- * with: docs/dynamics.md 3.3. That is the work that is summed here and in constrain.c. Sums run in
- * a fixed order within a block, and over blocks without round-off (core/exact.h).
+ * The energy that Verlet and leapfrog keep exactly for a linear body without damping is v-.M.v+ / 2
+ * + U(x), with the velocities half a step before and after the state x. With other forces P besides
+ * the restoring ones F, v+ = v- + dt F/M the velocity by these alone, and v the final velocity of
+ * the step, it changes in a step by dt P.(v- + v)/2: docs/dynamics.md 3.3. That work is summed here
+ * and in constrain.c. Sums run in a fixed order within a block, and over blocks without round-off
+ * (core/exact.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
@@ -191,7 +191,7 @@ static mps_status sum_up(mps_dynamics *dynamics, const char *function, mps_total
   return status;
 }
 
-/* Energies need the pressures of the present positions, which the field does not show: the kernels
+/* Energies need the pressures of the present positions, which the field does not have: the kernels
  * write them to `own`. */
 static mps_status read_energies(mps_dynamics *dynamics, const char *function, double *own,
                                 mps_totals *out) {

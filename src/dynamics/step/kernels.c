@@ -3,8 +3,8 @@
  * MPSI_LEVEL set; fused multiply-add is off (build flags), so every level gives the same bits.
  *
  * Two passes, since a pair's pressure force needs both pressures. The first leaves kc e of each
- * pair in its slot; the second then never looks at neighbours' positions, so a block may move its
- * particles while others still work.
+ * pair in its slot; the second does not read neighbours' positions, so a block may move its
+ * particles while others are still computed.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
@@ -29,8 +29,8 @@ typedef struct ends {
   const double *dxj, *dyj, *cj, *sj, *mj, *bj;
 } ends;
 
-/* What a pair contributes: force on i (minus on j), torque and divergence of both; with damping by
- * pairs also force and torque times the pair's beta. */
+/* Terms of a pair: force on i (minus on j), torque and divergence of both; with damping by pairs
+ * also force and torque times the pair's beta. */
 typedef struct pair_terms {
   double *fx, *fy, *torque, *div;
   double *sx, *sy, *st;
@@ -120,7 +120,8 @@ MPSI_INLINE void pass1_run(const int removal, const int want, const mpsi_dynamic
     pair_chunk(removal, want, 0, n, e, &run->r0x, &run->r0y, &run->kf, &run->kc, terms, ex + t0,
                ey + t0);
     /* j > i, so that a particle is j of an earlier pair than that of which it is i: in this order
-     * its sums do not show where chunks end, nor where a run does that another rank has whole. */
+     * its sums do not depend on the ends of chunks, nor on those of a run that is whole on another
+     * rank. */
     if (run->own_j) add_terms(want, sums, terms, j - begin, -1.0, n);
     if (run->own_i) add_terms(want, sums, terms, i - begin, 1.0, n);
   }
@@ -147,7 +148,8 @@ MPSI_INLINE void pass1_scattered(const int removal, const int want, const mpsi_d
 #undef ROOM
   pair_chunk(removal, want, 1, n, e, list->r0x + k, list->r0y + k, list->kf + k, list->kc + k,
              terms, ex, ey);
-  for (int32_t t = 0; t < n; t++) { /* pair by pair: the order does not show where chunks end */
+  for (int32_t t = 0; t < n;
+       t++) { /* pair by pair: the order does not depend on the ends of chunks */
     const int32_t target[2] = {list->ti[k + t], list->tj[k + t]};
     for (int side = 0; side < 2; side++) {
       const double sign = side == 0 ? 1.0 : -1.0;
@@ -367,7 +369,7 @@ MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_dyn
   }
 }
 
-/* Restoring accelerations of a block: what the first pass left, the pressure, inverse masses. */
+/* Restoring accelerations of a block: forces of the first pass, pressure forces, inverse masses. */
 MPSI_INLINE void restoring(const int by_pairs, const mpsi_dynamics_state *s,
                            const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block,
                            forces f, double *room) {

@@ -34,16 +34,15 @@ typedef enum mpsi_dynamics_damping {
                             particle's      pressure times its own, as element damping does */
 } mpsi_dynamics_damping;
 
-/* What one step is told. */
+/* Parameters of one step. */
 typedef struct mpsi_dynamics_step {
   double dt;      /* s: of the displacement */
-  double kick;    /* s: for which forces act: dt, or its mean with that of the step before */
-  double rate;    /* 1/s: of the step that led here, for the rate of the damping force */
+  double kick;    /* s: duration of the forces: dt, or its mean with that of the previous step */
+  double rate;    /* 1/s: of the previous step, for the rate of the damping force */
   double limit2;  /* square of the divergence criterion, (m/s2)^2 */
   int32_t first;  /* no history yet: the damping force has no rate */
   int32_t output; /* 1: write acceleration */
-  /* What Rayleigh damping contributes to the accelerations, 3 columns of `stride`; NULL: not kept.
-   */
+  /* Accelerations by Rayleigh damping, 3 columns of `stride`; NULL: not stored. */
   double *drag;
   int64_t stride;
 } mpsi_dynamics_step;
@@ -51,9 +50,9 @@ typedef struct mpsi_dynamics_step {
 /* Doubles of scratch memory a worker needs. */
 #define MPSI_DYN_SCRATCH (7 * MPSI_DYN_BLOCK + 32 * MPSI_DYN_CHUNK)
 
-/* What the first pass sums: each also what comes before it. */
+/* Terms of the first pass: each includes those before it. */
 typedef enum mpsi_dynamics_sums {
-  MPSI_DYN_PRESSURES = 0, /* all that is wanted of other ranks' blocks */
+  MPSI_DYN_PRESSURES = 0, /* all that ghost blocks need */
   MPSI_DYN_FORCES = 1,
   MPSI_DYN_DAMPED_FORCES = 2 /* of damping by pairs */
 } mpsi_dynamics_sums;
@@ -77,7 +76,7 @@ typedef struct mpsi_dynamics_kernels {
   mpsi_dynamics_trig_fn trig[2];
 } mpsi_dynamics_kernels;
 
-/* Those of an x86-64 level, as mpsi_context_level gives it. */
+/* The loops of an x86-64 level, as given by mpsi_context_level. */
 const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t level);
 
 extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v1;

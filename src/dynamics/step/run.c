@@ -1,4 +1,4 @@
-/* run.c - stepping as the caller sees it: step, run, refresh; cancel and progress hooks; callbacks.
+/* run.c - the public functions step, run and refresh; cancel and progress hooks; callbacks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
@@ -6,7 +6,7 @@
 #include <float.h>
 #include <string.h>
 
-#define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
+#define PROMPT_WORK 5000000 /* particle-steps between calls of the cancel hook: some 0.1 s */
 
 mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function) {
   mps_status status = mpsi_particles_ready(dynamics->particles, function);
@@ -16,8 +16,8 @@ mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function) {
   return mpsi_dynamics_take_ground(dynamics, function, status);
 }
 
-/* Before the first step of `length`: the motion that the caller has written, if the signals let
- * that step be made. */
+/* Before the first step of `length`: reads the edited motion, if the signals of that step succeed.
+ */
 static mps_status take_motion(mps_dynamics *dynamics, const char *function, double length) {
   if (!dynamics->begins) return MPS_OK;
   const mps_status status = mpsi_dynamics_look_ahead(dynamics, function, length);
@@ -37,7 +37,7 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
   return mpsi_dynamics_settle_dt(dynamics, function);
 }
 
-/* Steps between looks at the cancel hook. */
+/* Steps between calls of the cancel hook. */
 static int64_t prompt_steps(const mps_dynamics *dynamics) {
   const int32_t ranks = mps_domain_size(dynamics->domain);
   return PROMPT_WORK / (dynamics->whole / (ranks > 0 ? ranks : 1) + 1) + 1;
@@ -55,7 +55,7 @@ static mps_status cancelled(mps_dynamics *dynamics, const char *function) {
   return status == MPS_OK && asked != 0.0 ? stop(dynamics, function) : status;
 }
 
-/* Ranks agree upon the number of steps and whether one is asked to stop. */
+/* Ranks agree on the number of steps and on cancellation. */
 static mps_status begin_steps(mps_dynamics *dynamics, const char *function, int64_t count) {
   double all[3] = {(double)count, -(double)count, count > 0 && mpsi_cancelled(dynamics->context)};
   mps_status status = MPS_OK;
@@ -87,7 +87,7 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
   return status;
 }
 
-/* Calls the caller's callback and records its refusal. */
+/* Calls the caller's callback and records its error. */
 static mps_status ask(mps_dynamics *dynamics, const char *function, mps_dynamics_fn callback,
                       void *user) {
   mpsi_guard_enter(&dynamics->guard, dynamics->context, "the callback of mps_dynamics_run");

@@ -74,8 +74,8 @@ static void second_pass(void *data, int64_t unit, int32_t worker) {
   }
 }
 
-/* The particle of this rank that has the greatest acceleration where the limit is broken, -1: none
- * has; NaN is beyond all others. */
+/* The particle of this rank with the greatest acceleration beyond the limit, -1: none; NaN is the
+ * greatest. */
 static int64_t find_worst(const mps_dynamics *dynamics, double *most) {
   const mpsi_dynamics_state *s = &dynamics->state;
   int64_t worst = -1;
@@ -92,8 +92,8 @@ static int64_t find_worst(const mps_dynamics *dynamics, double *most) {
   return worst;
 }
 
-/* The particle that broke the limit, its acceleration and where it is: of several ranks the one
- * with the greatest acceleration tells. */
+/* The particle beyond the limit, its acceleration and position: of several ranks that with the
+ * greatest acceleration reports. */
 static mps_status report_divergence(mps_dynamics *dynamics, const char *function) {
   const mpsi_dynamics_state *s = &dynamics->state;
   const double now = mps_dynamics_time(dynamics) - dynamics->length;
@@ -120,8 +120,8 @@ static mps_status report_divergence(mps_dynamics *dynamics, const char *function
 }
 
 /* ---- speeds ------------------------------------------------------------------------------------
- * Accelerations are bounded in every step; a velocity that a caller has written, a boundary drives
- * or a torque has made may be so large that kinetic energy is no number any more. */
+ * Accelerations are bounded in every step; a velocity that is edited, driven by a boundary or due
+ * to a torque may be so large that the kinetic energy is not finite. */
 
 /* Whether a velocity (column `a`, or the change of a displacement from `b` to `a`) is beyond
  * `most`.
@@ -159,7 +159,7 @@ static bool too_fast(mps_dynamics *dynamics) {
   return any;
 }
 
-/* Of several ranks the lowest that has such a particle names its first one. */
+/* Of several ranks the lowest with such a particle names its first one. */
 static mps_status report_speed(mps_dynamics *dynamics, const char *function) {
   const mpsi_dynamics_state *s = &dynamics->state;
   int64_t found = -1;
@@ -186,7 +186,8 @@ static mps_status report_speed(mps_dynamics *dynamics, const char *function) {
   return mpsi_domain_agree(dynamics->domain, function, status);
 }
 
-/* Before a step of `length`: the displacements of a step before it, if the last was another. */
+/* Before a step of `length`: the displacements of a previous step of that length, if the last one
+ * had another. */
 static void fit_history(mps_dynamics *dynamics) {
   const double length = dynamics->length, ratio = length / dynamics->lag;
   mpsi_dynamics_state *s = &dynamics->state;
@@ -203,7 +204,7 @@ static void fit_history(mps_dynamics *dynamics) {
   }
 }
 
-/* The kinetic and strain energy that the budget starts from. */
+/* Initial kinetic and strain energy of the budget. */
 static mps_status begin_budget(mps_dynamics *dynamics, const char *function) {
   double kinetic, strain;
   if (dynamics->begun) return MPS_OK;
@@ -214,8 +215,8 @@ static mps_status begin_budget(mps_dynamics *dynamics, const char *function) {
   return MPS_OK;
 }
 
-/* What holds or drives a particle gives it its acceleration; the loops have found that of the
- * forces. */
+/* A prescribed degree of freedom has the acceleration of its boundary; the loops have computed that
+ * of the forces. */
 static void drive_accelerations(mps_dynamics *dynamics) {
   double *const a[2] = {dynamics->state.ax, dynamics->state.ay};
   for (int64_t k = 0; k < dynamics->bounds; k++) {
@@ -243,8 +244,8 @@ static bool diverges(mps_dynamics *dynamics, double limit2) {
   return any;
 }
 
-/* Status of all ranks: `status` of this one, whether its last step has diverged, and where signals
- * are functions of the caller whether they say the same of the next. */
+/* Status of all ranks: `status` of this one, whether its last step has diverged, and, for signals
+ * that are functions of the caller, whether they have the same values in the next. */
 static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_status status,
                               bool *diverged) {
   double any = *diverged;
@@ -254,7 +255,7 @@ static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_
   return report_divergence(dynamics, function);
 }
 
-/* The same at the end of a call, with the speeds; looking ahead leaves both to the step itself. */
+/* The same at the end of a call, with the speeds; refresh leaves both to the step itself. */
 static mps_status settle_last(mps_dynamics *dynamics, const char *function, bool diverged) {
   const bool looks = isinf(dynamics->def.divergence);
   double any[2] = {diverged, !diverged && !looks && too_fast(dynamics)};
@@ -264,8 +265,7 @@ static mps_status settle_last(mps_dynamics *dynamics, const char *function, bool
   return any[1] != 0.0 ? report_speed(dynamics, function) : MPS_OK;
 }
 
-/* The first pass of all blocks. What lies on other ranks arrives while those blocks are at work
- * that do not need it. */
+/* The first pass of all blocks. The halo exchange overlaps with the blocks that do not need it. */
 static mps_status pass_blocks(work *w, const char *function) {
   mps_dynamics *dynamics = w->dynamics;
   const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
@@ -284,9 +284,9 @@ static mps_status pass_blocks(work *w, const char *function) {
   return MPS_OK;
 }
 
-/* The first pass, and what has become of the ranks: whether the last step has diverged on one of
- * them is told at its beginning and heard at its end, so that none waits for one that is less than
- * a pass behind. Where a signal may refuse, they agree before. */
+/* The first pass, and the status of the ranks: the reduction of whether the last step has diverged
+ * starts before it and ends after it, so that no rank waits for one that is less than a pass
+ * behind. Where a signal may fail, ranks agree before. */
 static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
   mps_dynamics *dynamics = w->dynamics;
   if (dynamics->cautious) {
@@ -303,9 +303,8 @@ static mps_status pass_all(work *w, const char *function, mps_status status, boo
   return status == MPS_OK && any != 0.0 ? report_divergence(dynamics, function) : status;
 }
 
-/* What the fields show of a run that has diverged: the pressures of all particles at the positions
- * that they have come to, wherever in a call and on however many ranks that was found; and what has
- * been driven as such. */
+/* Fields of a run that has diverged: the pressures of all particles at their present positions, at
+ * any point of a call and on any number of ranks; and prescribed motions. */
 static mps_status show_diverged(work *w, const char *function, mps_status status) {
   drive_accelerations(w->dynamics);
   const mps_status lost = mpsi_dynamics_bring_motion(w->dynamics, function);
@@ -313,7 +312,7 @@ static mps_status show_diverged(work *w, const char *function, mps_status status
   return lost == MPS_OK ? status : lost;
 }
 
-/* What of a step comes after the first pass. */
+/* The part of a step after the first pass. */
 static void take_step(work *w, bool output, bool *diverged) {
   mps_dynamics *dynamics = w->dynamics;
   const double kick = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER || dynamics->fresh
@@ -341,7 +340,7 @@ static void take_step(work *w, bool output, bool *diverged) {
   *diverged = diverges(dynamics, w->step.limit2);
 }
 
-/* What the signals say of the next step, of `length`. */
+/* Values of the signals for the next step, of `length`. */
 static mps_status evaluate_signals(mps_dynamics *dynamics, const char *function, double length) {
   const double now = mps_dynamics_time(dynamics);
   const double then =
@@ -362,8 +361,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
                                  double length, bool output) {
   const double limit = dynamics->def.divergence;
   const bool watch = dynamics->def.watch_damping && dynamics->damping != MPSI_DYN_UNDAMPED;
-  /* Small bodies are one unit of work, run where the caller is: two barriers a step cost more
-   * than sharing gains. */
+  /* Small bodies are one unit of work on the calling thread: two barriers a step cost more than
+   * threads gain. */
   const int64_t blocks = dynamics->mesh.blocks;
   const int64_t units = blocks < SMALL_BODY ? 1 : 8 * mps_context_threads(dynamics->context);
   const int32_t removal = dynamics->def.rotation, integrator = dynamics->def.integrator;
@@ -371,7 +370,7 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
       dynamics->damping == MPSI_DYN_BY_PAIRS ? MPSI_DYN_DAMPED_FORCES : MPSI_DYN_FORCES;
   work w = {.dynamics = dynamics,
             .step = {.dt = length,
-                     .limit2 = fmin(limit * limit, DBL_MAX), /* never lets an infinite one pass */
+                     .limit2 = fmin(limit * limit, DBL_MAX), /* never accepts an infinite one */
                      .stride = dynamics->count},
             .pass1 = dynamics->kernels->pass1[removal][sums],
             .ghost_pass1 = dynamics->kernels->pass1[removal][MPSI_DYN_PRESSURES],

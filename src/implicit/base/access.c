@@ -1,12 +1,11 @@
-/* access.c - what the other files need of the solver object: who is at work on it, ranks of ids,
- * and the set's fields as vectors over all particles. SPDX-License-Identifier: BSD-3-Clause */
+/* access.c - access to the solver object: its guard, ranks of ids, and the set's fields as vectors
+ * over all particles. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- calls back from the solver ----------------------------------------------------------------
- */
+/* ---- called within a callback of the solver -------------------------------------------------- */
 
 mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
   mps_status status = mpsi_guard_check(&e->guard, e->context, function);

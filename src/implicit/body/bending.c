@@ -1,8 +1,8 @@
-/* bending.c - the stiffness that a cell has against bending by itself (conservative method).
+/* bending.c - bending stiffness of a single cell (conservative method).
  *
  * The strain of a cell is constant in V W(G), so that a beam of n cells across lacks 1/n^2 of its
- * bending stiffness: E h^3/12 a cell. What is missing is the energy of strains that vary across the
- * cell, of which those that beams, plates and shafts have are added,
+ * bending stiffness: E h^3/12 a cell. Strains that vary across the cell have no energy; the terms
+ * of beams, plates and shafts are added,
  *
  *   1/2 int (E x_b^2 u_a,ab^2 + E x_a^2 u_b,ab^2 + mu x^2 u_c,ab^2) dV = 1/2 V h^2/12 (...)
  *
@@ -12,12 +12,12 @@
  *
  * Where a joint runs between the corners, stretches along a are in series along a and parallel
  * across it: harmonic means of E along a, sums across; shear is harmonic in both. A square in the
- * corner of a joint carries nothing. In layers under constant traction, and in every linear field,
+ * corner of a joint has no stiffness. In layers under constant traction, and in every linear field,
  * the derivative is zero on each square: such states stay exact.
  *
- * One-sided gradients at free surfaces err to the stiff side, by about as much in thick bodies, so
- * that a body of one material is left as it is unless the caller wants it; the layers of a
- * composite have fewer cells and less surface. SPDX-License-Identifier: BSD-3-Clause */
+ * One-sided gradients at free surfaces are too stiff, by about as much in thick bodies, so that a
+ * body of one material is not corrected by default; the layers of a composite have fewer cells and
+ * less surface. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
 #include <string.h>
@@ -30,7 +30,7 @@ static int64_t beside(const mps_elastic *e, int64_t i, int axis, int up) {
   return i < 0 ? -1 : mpsi_elastic_neighbours(e, i)[e->links.face[axis][up]];
 }
 
-/* The square with lower corner `low`: low, along a, along b, across. False: not all are there. */
+/* The square with lower corner `low`: low, along a, along b, across. False: one does not exist. */
 static bool square(const mps_elastic *e, int64_t low, int plane, int64_t *corner) {
   const int a = plane_axes[plane][0], b = plane_axes[plane][1];
   corner[0] = low;

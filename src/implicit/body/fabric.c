@@ -1,5 +1,6 @@
-/* fabric.c - which moduli and fixed directions the forces of a motion are of, known by hashes: so a
- * rollback or a file leads to the same as going on. SPDX-License-Identifier: BSD-3-Clause */
+/* fabric.c - hashes of the moduli and fixed directions to which the forces of a motion belong, so
+ * that a run after a rollback or from a file is the same as an uninterrupted one.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
 #include "core/base/hash.h"
@@ -23,8 +24,8 @@ void mpsi_elastic_find_fabric(mps_elastic *e, int64_t fabric[2]) {
   memcpy(fabric, e->fabric, sizeof e->fabric);
 }
 
-/* Half of u . K u, of the moduli that the forces are of; without a look at the former operator the
- * inner forces tell it but for stiffness damping. */
+/* Half of u . K u, with the moduli of the forces; without the former operator it follows from the
+ * inner forces, except for stiffness damping. */
 double mpsi_elastic_former_strain(mps_elastic *e, double present) {
   mpsi_elastic_motion *m = e->motion;
   int64_t now[2];

@@ -107,7 +107,7 @@ static void find_motion(const mps_elastic *e, const mpsi_facet *f, const double 
   extrapolate(e, f->particle, u, e->gradient, low, out);
 }
 
-/* On all ranks that of all facets, of which each knows those of its own particles. */
+/* Values of all facets on all ranks, from those of each rank's own particles. */
 static mps_status share_motion(mps_elastic *e, const char *function, const double *u,
                                double **out) {
   const int64_t words = 3 * e->facet_count;

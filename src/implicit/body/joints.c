@@ -11,8 +11,8 @@
  *   delta_t = h/2 (mu_2 - mu_1) (F_ta + F_at) / (mu_1 + mu_2).
  *
  * Every face value enters its two cells with opposite signs, so that uniform tractions stay in
- * equilibrium; layers in any constant traction are exact, and rigid motions free of stress. What is
- * added to the gradients, and its transpose to the forces, keeps the operator symmetric.
+ * equilibrium; layers in any constant traction are exact, and rigid motions free of stress. The
+ * correction of the gradients, and its transpose in the forces, keep the operator symmetric.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
@@ -41,7 +41,7 @@ static int64_t count_joints(const mps_elastic *e) {
   return count;
 }
 
-/* Does the body have joints, wherever they are? */
+/* Does the body have joints, on any rank? */
 static mps_status find_any(mps_elastic *e, const char *function, int64_t count, bool *any) {
   mpsi_sites *sites = NULL;
   bool one = true;
@@ -73,8 +73,7 @@ void mpsi_elastic_drop_joints(mps_elastic *e) {
   e->joint_count = 0;
 }
 
-/* Are these the joints that the solver has already? The matrix's pattern depends on where they
- * are. */
+/* Are these the present joints? The pattern of the matrix depends on their faces. */
 static bool same_joints(const mps_elastic *e, const mpsi_joint *joints, int64_t count) {
   return count == e->joint_count &&
          (count == 0 || memcmp(joints, e->joints, (size_t)count * sizeof *joints) == 0);
@@ -134,8 +133,8 @@ mpsi_joint_law mpsi_elastic_joint_law(const mps_elastic *e, const mpsi_joint *q)
                           .shear = half * (m2 - m1) / (m1 + m2)};
 }
 
-/* What the gradient of cell i takes of the face value on side `up` of `axis`: 1/h, or 2/h where the
- * cell has no other face neighbour and its own value stands for the surface. */
+/* Coefficient of the face value on side `up` of `axis` in the gradient of cell i: 1/h, or 2/h where
+ * the cell has no other face neighbour and its own value stands for the surface. */
 double mpsi_elastic_face_weight(const mps_elastic *e, int64_t i, int axis, int up) {
   const double weight = (e->faces[i] >> 2 * axis & 3) == 3 ? 1.0 : 2.0;
   return (up ? weight : -weight) / e->spacing;
@@ -181,7 +180,7 @@ static void find_delta(void *task, int64_t k) {
   }
 }
 
-/* What the joints at cell i add to its gradient. */
+/* Correction of the gradient of cell i by its joints. */
 static void add_delta(void *task, int64_t i) {
   const joint_task *t = task;
   const mps_elastic *e = t->e;

@@ -97,8 +97,8 @@ static void list_offsets(const mps_elastic *e, mpsi_links *l) {
       }
 }
 
-/* Is site + step reached from site through faces of cells that exist, stepping towards it? Cells
- * that touch at a corner only, or face one another across a slot, are not connected. */
+/* Is site + step reached from site through faces of existing cells, in steps towards it? Cells with
+ * a common corner only, or on both sides of a slot, are not connected. */
 static bool reachable(const site_table *t, const int32_t *site, const int32_t *step) {
   if (!step[0] && !step[1] && !step[2]) return true;
   for (int axis = 0; axis < 3; axis++) {
@@ -335,7 +335,7 @@ typedef struct loop {
   mpsi_elastic_work work;
   void *task;
   int64_t count;
-  const int64_t *list; /* of what; NULL: 0, 1 ... */
+  const int64_t *list; /* indices; NULL: 0, 1 ... */
 } loop;
 
 static void loop_chunk(void *data, int64_t chunk, int32_t worker) {

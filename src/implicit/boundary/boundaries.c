@@ -1,5 +1,5 @@
-/* boundaries.c - what the caller prescribes: boundaries become rows of supports (supports.c), are
- * driven by signals, and count what they exert.
+/* boundaries.c - prescribed displacements: boundaries become rows of supports (supports.c), are
+ * driven by signals, and sum their reactions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
 #include "implicit/elastic_private.h"
@@ -180,7 +180,7 @@ static mps_status add_boundary_rows(const mps_elastic *e, const char *function, 
   return MPS_OK;
 }
 
-/* Are the same directions fixed? The pattern of the matrix and its factor then stay. */
+/* Are the same directions fixed? Then the pattern of the matrix and its factor are kept. */
 static bool same_directions(const mps_elastic *e, const new_supports *s) {
   if (s->count != e->support_count) return false;
   for (int64_t i = 0; i < e->n; i++) {
@@ -229,7 +229,7 @@ static mps_status check_number(const mps_elastic *e, const char *function, int32
                    "number is %d: there is no boundary %d", number, number);
 }
 
-/* Of a boundary that could be made: all ranks are to have the same. */
+/* Checks that all ranks have the same boundary, once created. */
 static void give(mpsi_given *list, const mpsi_elastic_boundary *b) {
   const size_t each = b->kind == MPS_BOUNDARY_ROLLER ? 1 : 3, count = (size_t)b->count;
   MPSI_GIVE(list, b, kind);
@@ -242,7 +242,7 @@ static void give(mpsi_given *list, const mpsi_elastic_boundary *b) {
   for (int c = 0; c < 3; c++) mpsi_signal_give(list, "a hash of signal", b->signal[c]);
 }
 
-/* Puts `now` in the place of boundary `number`, or goes back. */
+/* Replaces boundary `number` by `now`, or keeps the former one on an error. */
 static mps_status replace(mps_elastic *e, const char *function, int32_t number,
                           mpsi_elastic_boundary *now) {
   mpsi_elastic_boundary before = e->boundaries[number];
@@ -345,7 +345,7 @@ static mps_status ask_signals(mps_elastic *e, const char *function, double t, bo
   return MPS_OK;
 }
 
-/* Motions of all boundaries at time t. Functions of the caller may give ranks different ones. */
+/* Motions of all boundaries at time t. Functions of the caller may differ between ranks. */
 static mps_status find_motions(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
   const mps_status status = ask_signals(e, function, t, &by_caller);

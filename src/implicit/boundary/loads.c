@@ -165,7 +165,7 @@ static void release(mps_elastic *e, mpsi_elastic_load *l) {
   *l = (mpsi_elastic_load){.used = false};
 }
 
-/* Of a definition that was found good: all ranks are to have the same. */
+/* Checks that all ranks have the same definition, once it is valid. */
 static void give(mpsi_given *list, const mps_elastic_load_def *def) {
   const size_t each = def->kind == MPS_ELASTIC_LOAD_PRESSURE ? 1 : 3, count = (size_t)def->id_count;
   MPSI_GIVE(list, def, kind);
@@ -196,7 +196,7 @@ static mps_status put(mps_elastic *e, const char *function, mps_status status, i
   mpsi_elastic_settle_mass(e, mass, status == MPS_OK);
   if (status != MPS_OK) return status;
   mpsi_elastic_load *l = &e->loads[number];
-  if (def.kind > MPS_ELASTIC_LOAD_GRAVITY) { /* the former patches become the spare room */
+  if (def.kind > MPS_ELASTIC_LOAD_GRAVITY) { /* the former patches become scratch memory */
     mpsi_patch *patches = l->patches;
     const int64_t capacity = l->capacity;
     l->patches = e->spare;
@@ -350,7 +350,7 @@ static mps_status ask_signals(mps_elastic *e, const char *function, double t, bo
   return MPS_OK;
 }
 
-/* Factors of all loads at time t. Functions of the caller may give ranks different ones. */
+/* Factors of all loads at time t. Functions of the caller may differ between ranks. */
 static mps_status find_scales(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
   mps_status status = ask_signals(e, function, t, &by_caller);
@@ -363,7 +363,7 @@ static mps_status find_scales(mps_elastic *e, const char *function, double t) {
   return mpsi_elastic_settle_given(e, function, status, &list);
 }
 
-/* Of all ranks: all fail or none. */
+/* On all ranks: all fail or none. */
 static mps_status check_strength(const mps_elastic *e, const char *function) {
   for (int64_t k = 0; k < e->n * e->dim; k++)
     if (!(fabs(e->load[k]) <= MPSI_ELASTIC_STRONGEST)) {
@@ -424,7 +424,7 @@ mps_status mpsi_elastic_check_about(const mps_elastic *e, const char *function,
   return MPS_OK;
 }
 
-/* Nothing is written where a sum is no number. */
+/* Nothing is written where a sum is not finite. */
 static mps_status give_resultant(const mps_elastic *e, const char *function, const double *about,
                                  double *force, double *moment) {
   double sum[3], turn[3];

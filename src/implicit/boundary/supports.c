@@ -1,4 +1,4 @@
-/* supports.c - fixed directions of particles, and the free unknowns that they leave.
+/* supports.c - fixed directions of particles, and the remaining free unknowns.
  *
  * The supports of a particle are rows normal . u = value. Gram-Schmidt turns them into orthonormal
  * fixed directions with their displacements; the rest of an orthonormal basis is free. The matrix
@@ -20,7 +20,7 @@ static double dot(const double *a, const double *b, int d) {
   return sum;
 }
 
-/* Subtracts from v its parts along basis[0..count); returns the length that remains. */
+/* Subtracts from v its components along basis[0..count); returns the remaining length. */
 static double orthogonalise(const double (*basis)[3], int32_t count, int d, double *v) {
   for (int pass = 0; pass < 2; pass++) /* twice is enough */
     for (int32_t b = 0; b < count; b++) {
@@ -38,7 +38,7 @@ static bool orient(mpsi_support *s, int d) {
     if (length < PARALLEL) return false;
     for (int c = 0; c < d; c++) s->basis[r][c] = v[c] / length;
   }
-  /* Completed by the axes that are farthest from what is there. */
+  /* Completed by the axes with the largest remaining length. */
   for (int32_t r = s->count; r < d; r++) {
     double best[3] = {0.0, 0.0, 0.0}, longest = 0.0;
     for (int axis = 0; axis < d; axis++) {

@@ -1,4 +1,4 @@
-/* body.c - the body that a solver computes: its material, its cuts, and what follows from them.
+/* body.c - the body of a solver: its material, its cuts, and derived data.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
@@ -95,7 +95,7 @@ static mps_status read_material(mps_elastic *e, const char *function) {
 }
 
 /* The equations of a soft body with hard inclusions are solved to the rounding of the hard ones'
- * forces: what is left of the soft body's digits. */
+ * forces: the remaining digits of the soft body. */
 static void warn_of_contrast(const mps_elastic *e) {
   double least = INFINITY, most = 0.0;
   for (int64_t i = 0; i < e->n; i++) {
@@ -111,7 +111,7 @@ static void warn_of_contrast(const mps_elastic *e) {
       least, most, most / least, MOST_CONTRAST, 1e-14 * most / least);
 }
 
-/* What follows from the fields `young` and `poisson`; nothing has changed on an error. */
+/* Data derived from the fields `young` and `poisson`; on an error nothing has changed. */
 static mps_status renew_material(mps_elastic *e, const char *function) {
   const size_t bytes = (size_t)e->n * sizeof(double);
   double *const moduli[3] = {e->lambda, e->mu, e->poisson};
@@ -156,7 +156,7 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   if (status == MPS_OK) {
     status = write_material(e, __func__, material, count, ids);
     if (status == MPS_OK) status = renew_material(e, __func__);
-    for (int k = 0; k < 2 && status != MPS_OK; k++) { /* the fields are there: it cannot fail */
+    for (int k = 0; k < 2 && status != MPS_OK; k++) { /* the fields exist: it cannot fail */
       const mps_status back =
           mpsi_elastic_write(e, __func__, k ? "poisson" : "young", former + k * e->n, 1);
       (void)back;
@@ -205,7 +205,7 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
   status = check_cut(e, __func__, axis, side, count, ids);
   status = mpsi_elastic_leave(e, mpsi_elastic_settle_given(e, __func__, status, &given));
   if (status != MPS_OK) return status;
-  mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
+  mpsi_elastic_end_motion(e); /* the masses of its cells have changed */
   for (int64_t k = 0; k < count; k++) {
     const int64_t i = mpsi_elastic_find(e, ids[k]);
     const uint8_t bit = (uint8_t)(1 << (2 * axis + (side > 0)));

@@ -1,6 +1,6 @@
-/* change.c - another body: what is left when particles leave it (excavation), and that of a state
- * to go back to. All that can fail is done beside the present body, which the new one then
- * replaces. No other particles can come: the lattice is found once.
+/* change.c - change of the body, by a removal of particles (excavation) or by the restoration of a
+ * state. Everything that can fail is done beside the present body, which the new one then replaces.
+ * No particles can be added: the lattice is found once.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
@@ -9,8 +9,8 @@
 #include <string.h>
 
 typedef struct mpsi_elastic_change {
-  mps_elastic next;           /* the new body; what it shares with the solver is not its own */
-  mpsi_elastic_motion motion; /* arrays alone, where a motion goes back */
+  mps_elastic next;           /* the new body; data shared with the solver are not its own */
+  mpsi_elastic_motion motion; /* arrays alone, where a motion is restored */
 } mpsi_elastic_change;
 
 void mpsi_elastic_drop_change(mps_elastic *e) {
@@ -48,7 +48,7 @@ static mps_status begin(mps_elastic *e, const char *function, int64_t count) {
                       : mpsi_fail_memory(e->context, function, (size_t)count * sizeof *e->mass);
 }
 
-/* What particle i of e takes along as number k of the new body. */
+/* Copies the data of particle i of e to number k of the new body. */
 static void carry(const mps_elastic *e, int64_t i, mps_elastic *next, int64_t k) {
   const size_t bytes = (size_t)e->dim * sizeof(double);
   const int64_t from = i * e->dim, to = k * e->dim;
@@ -72,7 +72,7 @@ static int64_t count_present(const mps_elastic *e, const mpsi_elastic_boundary *
   return present;
 }
 
-/* Puts the new body in place of the present one; what the caller defined goes on with it. */
+/* Replaces the present body by the new one, with the caller's definitions. */
 static void use(mps_elastic *e) {
   mpsi_elastic_change *c = e->change;
   mps_elastic former = *e;
@@ -139,7 +139,7 @@ static const mpsi_value *find_value(const mpsi_values *values, const char *name,
   return value && value->rows == rows ? value : NULL;
 }
 
-/* Where each particle of the state was, its cut and mass, by rank. */
+/* Position, cut and mass of each particle of the state, by rank. */
 typedef struct former {
   int64_t count;
   const int64_t *id;  /* in the set's order then */
@@ -169,7 +169,7 @@ static bool read_former(const mps_elastic *e, const mps_snapshot *from, former *
   return good;
 }
 
-/* What follows the ids of the new body: from the present one where it has the particle. */
+/* Data by ids of the new body: from the present one where it has the particle. */
 static mps_status carry_all(mps_elastic *e, const char *function, const former *f,
                             const char *source, mps_status disagreement) {
   mps_elastic *next = &e->change->next;
@@ -188,7 +188,7 @@ static mps_status carry_all(mps_elastic *e, const char *function, const former *
                        source, (long long)e->id[i]);
     carry(e, i, next, k);
   }
-  /* moduli as they are now, but of those that come back as they were */
+  /* present moduli, and former ones of restored particles */
   for (int64_t p = 0; p < f->count; p++) {
     if (mpsi_elastic_find(e, f->id[p]) >= 0) continue;
     const mps_status status = mpsi_elastic_set_moduli(
@@ -221,7 +221,7 @@ static bool same_body(const mps_elastic *e, const former *f) {
   return memcmp(e->x, f->x, (size_t)(e->n * e->dim) * sizeof *e->x) == 0;
 }
 
-/* Are boundaries on as many particles as then? */
+/* Do boundaries have as many particles as in the state? */
 static mps_status check_boundaries(const mps_elastic *e, const mps_elastic *body,
                                    const char *function, const mps_snapshot *from,
                                    const char *source, mps_status disagreement) {

@@ -21,7 +21,7 @@ static mps_status check_choice(mps_context *context, const char *function, const
                    value, low, high);
 }
 
-/* Written so that NaN is refused. */
+/* NaN is an error, too. */
 static mps_status check_range(mps_context *context, const char *function, const char *name,
                               double value, double low, double high) {
   if (value >= low && value <= high) return MPS_OK;
@@ -96,7 +96,7 @@ void mps_elastic_destroy(mps_elastic **elastic) {
   if (!elastic || !*elastic) return;
   mps_elastic *e = *elastic;
   mps_context *context = e->context;
-  /* from a callback: whoever works on it needs it still */
+  /* within a callback: the running function still needs it */
   if (mpsi_guard_check(&e->guard, context, __func__) != MPS_OK) return;
   *elastic = NULL;
   mpsi_elastic_end_motion(e);
@@ -135,7 +135,7 @@ static mps_status build(mps_elastic *e, const char *function) {
   return status;
 }
 
-/* The lattice is found once: other positions than those are not for this solver. */
+/* The lattice is found once: the solver accepts no other positions. */
 static mps_status refuse_positions(void *self, const char *function, const char *field,
                                    const double *former) {
   mps_elastic *e = self;
@@ -218,7 +218,7 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   e->def.domain = mpsi_domain_retain(def.domain);
   e->conservative = !published;
   e->constant = constant;
-  e->shared = e->conservative && mpsi_domain_many(def.domain); /* until it solves otherwise */
+  e->shared = e->conservative && mpsi_domain_many(def.domain); /* until it has another solver */
   e->dim = mps_particles_dim(particles);
   e->modes = e->dim == 2 ? 3 : 6;
   e->n = mps_particles_count(particles);

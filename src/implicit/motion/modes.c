@@ -47,7 +47,7 @@ static mps_status iterate(mps_elastic *e, const char *function, lanczos *s) {
   parameters[0] = 1;    /* exact shifts */
   parameters[2] = 1000; /* restarts */
   parameters[6] = 1;    /* an ordinary eigenproblem */
-  /* The start vector is ours, so that the result is the same every time. */
+  /* A fixed start vector, so that the result is reproducible. */
   for (int32_t c = 0; c < s->n; c++) s->residual[c] = 1.0 + 0.5 * sin(1.0 + 2.3 * c);
   for (;;) {
     dsaupd_c(&ido, "I", s->n, "LM", s->count, 0.0, s->residual, s->basis, s->vectors, s->n,
@@ -142,7 +142,7 @@ mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega, doubl
   status = mpsi_elastic_settle_same(e, __func__, status, "count", count);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   e->within = true;
-  double *mass = e->mass; /* a motion under way and a load of gravity go on with theirs */
+  double *mass = e->mass; /* a motion under way and a load of gravity keep theirs */
   status = find_modes(e, __func__, count, omega, shapes, &mass);
   mpsi_elastic_settle_mass(e, mass, status == MPS_OK && !mass);
   return mpsi_elastic_leave(e, status);

@@ -7,8 +7,8 @@
  *   (1 - am) M a' + am M a + (1 - af) (C v' + K u') + af (C v + K u) = (1 - af) F' + af F
  *
  * Unknown is the correction w, so that a structure at rest stays exactly at rest and the static
- * solution is a fixed point. Its matrix is a multiple of K + shift M. What is prescribed follows
- * its boundary. A step is made beside the present state, which it replaces when it is complete.
+ * solution is a fixed point. Its matrix is a multiple of K + shift M. Prescribed components follow
+ * their boundary. A step is computed beside the present state, which it replaces when complete.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
 #include "implicit/elastic_private.h"
@@ -160,7 +160,7 @@ static mps_status settle_motion(mps_elastic *e, const char *function, mps_status
   return mpsi_elastic_settle_given(e, function, status, &given);
 }
 
-/* `mass`: the former masses, to go back to where this fails. */
+/* `mass`: the former masses, restored on an error. */
 static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_motion_def *user,
                         double **mass) {
   mps_elastic_motion_def def = mpsi_elastic_motion_defaults;
@@ -202,7 +202,7 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   mpsi_elastic_motion *const ended = status == MPS_OK ? NULL : e->ended;
   if (status == MPS_OK) e->motion = former;
   if (status != MPS_OK) e->ended = NULL;
-  mpsi_elastic_end_motion(e); /* the former one, or the new one that could not be made */
+  mpsi_elastic_end_motion(e); /* the former one, or the new one after an error */
   e->motion = kept, e->ended = ended;
   return status;
 }
@@ -314,7 +314,7 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
   return MPS_OK;
 }
 
-/* Cannot fail but where the caller has removed a field. */
+/* Fails only where the caller has removed a field. */
 static mps_status publish(mps_elastic *e, const char *function) {
   mpsi_elastic_motion *m = e->motion;
   mps_status status = mpsi_elastic_write(e, function, "displacement", e->displacement, e->dim);
@@ -352,11 +352,11 @@ static mps_status check_motion(const mps_elastic *e, const char *function) {
                    "no motion under way: call mps_elastic_start first");
 }
 
-/* The fields of the last whole step, whatever came after it; the first error stays on record. */
+/* The fields of the last complete step, also after an error; the first error stays on record. */
 static mps_status finish(mps_elastic *e, const char *function, mps_status status) {
   if (status == MPS_OK) return publish(e, function);
   const mps_status published = publish(e, function);
-  (void)published; /* the fields are there since the start */
+  (void)published; /* the fields exist since the start */
   return status;
 }
 

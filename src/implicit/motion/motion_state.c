@@ -1,4 +1,4 @@
-/* motion_state.c - the state of a motion: its arrays, its end, and where it is in time.
+/* motion_state.c - the state of a motion: its arrays, its end, and its time.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 

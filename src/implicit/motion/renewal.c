@@ -1,11 +1,11 @@
 /* renewal.c - boundaries or moduli that change while a motion is under way.
  *
- * A step begins with M a + C v + K u = F + R at the present time, from which the last step has left
- * its acceleration, its inner forces K (u + a1 v) and what boundaries hold. Where K or what is held
- * is another now, these are found again before the next step, for the present displacements and
- * velocities: what is free gets the acceleration that balances it, what is held that of its
- * boundary. The strain energy that other moduli give the present displacements is no work: the
- * budget goes on from it (mpsi_elastic_former_strain, fabric.c). SPDX-License-Identifier:
+ * A step begins with M a + C v + K u = F + R at the present time, of which the last step keeps the
+ * acceleration, the inner forces K (u + a1 v) and the reactions. Where K or the fixed directions
+ * have changed, these are computed again before the next step, for the present displacements and
+ * velocities: free directions get the acceleration of the balance of forces, fixed ones that of
+ * their boundary. The change of strain energy by a change of moduli is no work: the budget
+ * continues from the new value (mpsi_elastic_former_strain, fabric.c). SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "implicit/elastic_private.h"
 

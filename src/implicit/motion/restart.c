@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* The motion under way, or the numbers of that which a removal has ended. */
+/* The motion under way, or the numbers of one that a removal has ended. */
 static mpsi_elastic_motion *motion_of(const mps_elastic *e) {
   return e->motion ? e->motion : e->ended;
 }
@@ -58,7 +58,7 @@ static void get_cuts(const void *solver, void *values) {
   const mps_elastic *e = solver;
   for (int64_t i = 0; i < e->n; i++) ((int64_t *)values)[i] = e->cut[i];
 }
-/* Cuts stay as they are; those of particles that come back are there already (change.c). */
+/* Cuts stay; those of restored particles are set already (change.c). */
 static void keep_cuts(void *solver, int64_t rows, const void *values) {
   (void)solver, (void)rows, (void)values;
 }

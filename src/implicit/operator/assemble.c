@@ -1,12 +1,11 @@
 /* assemble.c - the sparse symmetric matrix of the free unknowns: lower triangle, compressed
  * columns, rows ascending.
  *
- * Row block p of K is gathered from all parts of the energy (see operator.c) that p takes part in:
+ * Row block p of K is gathered from all terms of the energy (see operator.c) that depend on p:
  * gradients of p and of its stencil neighbours, and pairs of which a site is p. Rows are
  * independent, so they are shared among threads and come out the same for every number of them.
- * What is structurally zero (the offset stencils of a square lattice cancel in many places) is not
- * stored: the pattern depends on shape, supports and where joints of materials are, not on the
- * moduli.
+ * Structural zeros (the offset stencils of a square lattice cancel in many places) are not stored:
+ * the pattern depends on shape, supports and joints of materials, not on the moduli.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
@@ -22,8 +21,8 @@ typedef struct block {
   double value[3][3];
 } block;
 
-/* e_ij = sum_a c[a] u[site a] of a conservative pair. It depends on the pair's offset and on which
- * face neighbours its ends have, so that few forms occur; site a is end[a] (0: i, 1: j) or its
+/* e_ij = sum_a c[a] u[site a] of a conservative pair. It depends on the pair's offset and on the
+ * face neighbours of its ends, so that few forms occur; site a is end[a] (0: i, 1: j) or its
  * neighbour across face[a] = 2 * axis + up. */
 typedef struct pair_form {
   uint32_t key; /* 0: none */
@@ -355,7 +354,7 @@ static void gather_row(const mps_elastic *e, int64_t p, bool whole, gather *g) {
   }
 }
 
-/* Into the local directions of both particles, where supports have turned them. */
+/* To the local directions of both particles, where supports have rotated them. */
 static void turn(const mps_elastic *e, int64_t p, block *b) {
   if (e->support_of[p] < 0 && e->support_of[b->site] < 0) return;
   double rows[3][3], cols[3][3], half[3][3];
@@ -509,7 +508,7 @@ static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t
   return MPS_OK;
 }
 
-/* Accumulators of all workers; *slots goes with them. */
+/* Accumulators of all workers, with *slots. */
 static mps_status make_gathers(mps_elastic *e, const char *function, gather **gathers,
                                int32_t **slots) {
   const int32_t workers = mps_context_threads(e->context);

@@ -2,8 +2,8 @@
  *
  * In a step from u, v to u', v' the forces do work with the mean of their values before and after
  * it, over du = u' - u. With Newmark's average acceleration, M (a + a')/2 . du is the change of
- * kinetic energy of what is free, so that the equations of motion at both ends, taken times du, are
- * the budget. What is prescribed gains its kinetic energy from its boundary.
+ * kinetic energy of free components, so that the equations of motion at both ends, times du, are
+ * the budget. Prescribed components receive their kinetic energy from their boundary.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 

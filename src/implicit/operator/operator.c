@@ -1,5 +1,5 @@
-/* operator.c - the displacement gradient at particles and the stiffness operator f = K u, without
- * a matrix. Both discretisations are one energy,
+/* operator.c - the displacement gradient at particles and the stiffness operator f = K u, without a
+ * matrix. Both discretisations are one energy,
  *
  *   Pi = sum_i V_i W(G_i) + 1/2 sum_{i<j} (kappa_i + kappa_j) w/r^2 |e_ij|^2
  *
@@ -12,9 +12,9 @@
  *   W = n*_i/n0 (lambda/2 D^2 - mu/2 R^2), e_ij = u_j - u_i, kappa = 2 mu d V / n0: Chikazawa (10)
  *   with R and D eliminated, corrected as docs/verification/implicit-elastic.md says.
  *
- * A rank that shares the body needs, for the forces on its own particles, stresses with those of
- * joints of one layer around them, stresses without of two, and the gradients that pairs of these
- * use; joints there use one layer more.
+ * For the forces on its own particles a rank of a shared body needs stresses with joints of one
+ * layer around them, stresses without joints of two layers, and the gradients of the pairs of
+ * these; joints there need one layer more.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
@@ -137,7 +137,7 @@ static void stress_at(void *task, int64_t i) {
   }
 }
 
-/* f_p += sum over gradients that p is a site of: gathered, so that the order is fixed. */
+/* f_p += sum over the gradients of which p is a site: gathered, so that the order is fixed. */
 static void force_at(void *task, int64_t p) {
   const operator_task *t = task;
   const mps_elastic *e = t->e;

@@ -19,7 +19,7 @@ static void symmetric_part(int d, const double *G, double (*out)[3]) {
     for (int b = 0; b < d; b++) out[c][b] = 0.5 * (G[c * d + b] + G[b * d + c]);
 }
 
-/* The components that plane stress or strain leave out. */
+/* The out-of-plane components of plane stress or strain. */
 static void complete_plane(const mps_elastic *e, int64_t i, double (*strain)[3],
                            double (*stress)[3]) {
   if (e->dim == 3) return;
@@ -91,7 +91,7 @@ static double von_mises(const double *p) {
   return sqrt(0.5 * (a * a + b * b + c * c));
 }
 
-/* Where the values of a particle go: strain, stress, principal stresses, von Mises stress. */
+/* Output of a particle: strain, stress, principal stresses, von Mises stress. */
 typedef struct table {
   const mps_elastic *e;
   int32_t columns;
@@ -142,7 +142,7 @@ static void find_row(const mps_elastic *e, int64_t i, double *row) {
   row[2 * m + 3] = von_mises(row + 2 * m);
 }
 
-/* Each rank finds those of its own particles and tells the others, some columns at a time. */
+/* Each rank computes its own particles and sends them to all ranks, some columns at a time. */
 static mps_status share_table(mps_elastic *e, const char *function, mps_status status,
                               const table *t) {
   const int64_t from = e->span[0].from, words = (e->span[0].to - from) * ROW;
@@ -200,7 +200,7 @@ mps_status mps_elastic_get_section(const mps_elastic *handle, int32_t axis, doub
   if (status == MPS_OK) status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;
   const bool agreed = mpsi_elastic_begin_reading(e);
-  /* K u is what loads and reactions put on each particle. Those on the near side are balanced
+  /* K u is the force of loads and reactions on each particle. Forces on the near side are balanced
    * across the section by minus their sum. */
   status = mpsi_elastic_apply(e, __func__, e->displacement, e->work);
   e->agreed = agreed;

@@ -1,10 +1,11 @@
-/* partition.c - what a rank has of the operator where ranks solve together (mps/elastic_solver.h).
+/* partition.c - a rank's part of the operator where ranks solve together (mps/elastic_solver.h).
  *
  * The particles are ordered by layers of the lattice across the body's longest axis, by id within
- * one; each rank owns an interval of that order. Neighbours, gradients, stresses, joints and the
- * rows of the matrix it has for its own particles and the layers around them that these depend on,
- * an interval too: the window. Vectors, moduli and volumes of all particles are on all ranks; what
- * a rank has computed for its own, `mpsi_elastic_complete` gives to the others. A solver that is
+ * one; each rank owns an interval of that order. It has neighbours, gradients, stresses, joints and
+ * rows of the matrix for its own particles and for the layers around them on which these depend, an
+ * interval too: the window. Vectors, moduli and volumes of all particles are on all ranks;
+ * `mpsi_elastic_complete` sends the results of a rank's own particles to the others. A solver that
+ * is
  * not shared has the whole body as its window, in ascending order of ids. SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "implicit/elastic_private.h"
@@ -66,8 +67,8 @@ static void find_spans(mps_elastic *e, const layers *l, const int64_t *end) {
   }
 }
 
-/* What stands farthest from a row is the end of a gradient of a pair's other end: that of a joint
- * of a joint's neighbour (assemble.c). */
+/* The farthest entry of a row is the end of a gradient of a pair's other end: that of a joint of a
+ * joint's neighbour (assemble.c). */
 static int farthest(const mps_elastic *e) { return (int)e->def.radius_ratio + 4; }
 
 mps_status mpsi_elastic_open_window(mps_elastic *e, const char *function) {

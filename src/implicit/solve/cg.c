@@ -1,6 +1,6 @@
-/* cg.c - preconditioned conjugate gradients on the assembled matrix, for factors that would not
- * fit the stated memory. Preconditioner: symmetric Gauss-Seidel, (D + L) D^-1 (D + L^T), which
- * exists for every positive definite matrix and needs no memory but the diagonal.
+/* cg.c - preconditioned conjugate gradients on the assembled matrix, for factors beyond the memory
+ * limit. Preconditioner: symmetric Gauss-Seidel, (D + L) D^-1 (D + L^T), which exists for every
+ * positive definite matrix and needs no memory but the diagonal.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 

@@ -1,8 +1,8 @@
-/* cholesky.c - sparse Cholesky factorisation by CHOLMOD. The only file that sees cholmod.h.
+/* cholesky.c - sparse Cholesky factorisation by CHOLMOD. The only file that includes cholmod.h.
  *
- * Each object has a cholmod_common of its own, which prints nothing and reports through its
- * status. CHOLMOD takes its memory from SuiteSparse's process-wide hooks, which belong to the host
- * program and are left as they are; whatever fails inside, all that CHOLMOD holds is released.
+ * Each object has a cholmod_common of its own, which prints nothing and reports through its status.
+ * CHOLMOD takes its memory from SuiteSparse's process-wide hooks, which belong to the host program
+ * and are not changed; after any failure all memory of CHOLMOD is released.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cholesky.h"
 #include "foreign.h"
@@ -67,8 +67,8 @@ mps_status mpsi_cholesky_create(mps_context *context, const char *function, mpsi
   c->common.error_handler = quiet;
   c->common.supernodal = ldlt ? CHOLMOD_SIMPLICIAL : CHOLMOD_SUPERNODAL;
   c->common.final_ll = !ldlt;
-  /* METIS prints where it finds no memory. CHOLMOD tries first whether twice what METIS is known to
-   * take is there, and else orders by AMD. */
+  /* METIS prints when memory is short. CHOLMOD first checks that twice the memory of METIS is
+   * available, and otherwise orders by AMD. */
   c->common.metis_memory = 2.0;
   c->common.quick_return_if_not_posdef = 1;
   *out = c;
@@ -146,7 +146,7 @@ static mps_status order_groups(mpsi_cholesky *c, const char *function, const mps
   cholmod_sparse s = wrap(&graph);
   s.sorted = 0;
   choose_orderings(c);
-  /* Only the ordering is wanted: not the supernodes of this small factor. */
+  /* Only the ordering is needed: not the supernodes of this small factor. */
   c->common.supernodal = CHOLMOD_SIMPLICIAL;
   cholmod_factor *small = cholmod_l_analyze(&s, &c->common);
   c->common.supernodal = c->ldlt ? CHOLMOD_SIMPLICIAL : CHOLMOD_SUPERNODAL;
@@ -172,7 +172,7 @@ static mps_status order_groups(mpsi_cholesky *c, const char *function, const mps
   return MPS_OK;
 }
 
-/* CHOLMOD has no way to end a stage before it is complete: the hook is asked between them. */
+/* CHOLMOD cannot end a stage before it is complete: the hook is called between them. */
 static mps_status ask_cancel(mpsi_cholesky *c, const char *function, const char *what) {
   if (!mpsi_cancelled(c->context)) return MPS_OK;
   return mpsi_fail(c->context, function, MPS_ERROR_CANCELLED, "cancelled before %s", what);
@@ -241,8 +241,8 @@ mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mp
   return MPS_OK;
 }
 
-/* The work of a supernodal solution. CHOLMOD would make it itself, but 3.0.14 goes on when the
- * first of the two fails and the second does not. */
+/* The work of a supernodal solution. CHOLMOD would allocate it itself, but 3.0.14 continues when
+ * the first of the two allocations fails and the second succeeds. */
 static bool ensure_work(mpsi_cholesky *c, int64_t count) {
   if (!c->factor->is_super) return true;
   const size_t n = c->factor->n, k = (size_t)count;

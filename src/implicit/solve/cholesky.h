@@ -1,5 +1,5 @@
-/* cholesky.h - what the solvers need of a sparse Cholesky library. cholesky.c alone knows that it
- * is CHOLMOD. Matrices are symmetric: lower triangle in compressed columns, rows ascending.
+/* cholesky.h - interface to a sparse Cholesky library. Only cholesky.c depends on CHOLMOD. Matrices
+ * are symmetric: lower triangle in compressed columns, rows ascending.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_CHOLESKY_H
 #define MPSI_CHOLESKY_H

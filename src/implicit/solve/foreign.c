@@ -1,5 +1,5 @@
-/* foreign.c - see foreign.h. OpenBLAS and OpenMP are asked through weak references: where the
- * process has other libraries nothing is set.
+/* foreign.c - see foreign.h. OpenBLAS and OpenMP are called through weak references: in a process
+ * with other libraries nothing is set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "foreign.h"
 

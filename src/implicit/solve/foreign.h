@@ -1,5 +1,5 @@
-/* foreign.h - state that other libraries keep for the whole process: the numbers of threads of BLAS
- * and OpenMP, and ARPACK's saved variables. What is guarded here is theirs; libmps has none.
+/* foreign.h - process-wide state of other libraries: the numbers of threads of BLAS and OpenMP, and
+ * ARPACK's saved variables. libmps has no such state itself.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_FOREIGN_H
 #define MPSI_FOREIGN_H
@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 /* From enter to leave BLAS (OpenBLAS) works with at most `threads` threads and, where that is 1,
- * OpenMP regions of other libraries with one. Calls of several contexts at once share the smallest
- * number; the last to leave restores what the process had. */
+ * OpenMP regions of other libraries with one. Concurrent calls of several contexts use the smallest
+ * number; the last to leave restores that of the process. */
 void mpsi_foreign_enter(int32_t threads);
 void mpsi_foreign_leave(void);
 

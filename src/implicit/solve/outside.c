@@ -1,15 +1,15 @@
-/* outside.c - the equations handed to a solver of the caller (mps/elastic_solver.h): rows of the
- * matrix with all directions of every particle, rigid motions as near null space, and what the
- * solver answers, checked by the operator. SPDX-License-Identifier: BSD-3-Clause */
+/* outside.c - the equations for a solver of the caller (mps/elastic_solver.h): rows of the matrix
+ * with all directions of every particle, rigid motions as near null space, and the residual of its
+ * solution by the operator. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
 #include "implicit/elastic_private.h"
 
 #include <float.h>
 #include <string.h>
 
-#define ROUNDING 1e-12 /* of |b|: what no solver need be better than */
-/* Nor better than displacements can be in double precision: this often a unit in the last place of
- * each, times the greatest stiffness. A bar 20 times as long as wide has 8e-10 of |b| so. */
+#define ROUNDING 1e-12 /* of |b|: the smallest tolerance that is required of a solver */
+/* Nor below the rounding of displacements in double precision: this many units in the last place of
+ * each, times the greatest stiffness. For a bar 20 times as long as wide that is 8e-10 of |b|. */
 #define PLACES 64.0
 
 void mpsi_elastic_drop_outside(mps_elastic *e) {
@@ -130,8 +130,8 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
 
 /* ---- solution -------------------------------------------------------------------------------- */
 
-/* |rhs - (K + shift M) solution| over |rhs|, by the operator, and what of it rounding may be; to
- * `work` as many values as two vectors have. */
+/* |rhs - (K + shift M) solution| over |rhs|, by the operator, and the part that may be rounding;
+ * `work` has room for two vectors. */
 static mps_status residual(mps_elastic *e, const char *function, double shift, const double *rhs,
                            const double *solution, double *work, double *out, double *rounding) {
   const int64_t all = e->n * e->dim;
@@ -151,7 +151,7 @@ static mps_status residual(mps_elastic *e, const char *function, double shift, c
   return status;
 }
 
-/* Between a vector of free unknowns and one of all rows, 0 in those that are held. */
+/* Between a vector of free unknowns and one of all rows, 0 in fixed ones. */
 static void copy_rows(const mps_elastic *e, double *unknowns, double *rows, bool to_rows) {
   for (int64_t i = 0; i < e->n; i++)
     for (int c = 0; c < e->dim; c++) {
@@ -177,7 +177,7 @@ static mps_status solve(mps_elastic *e, const char *function, const double *rhs,
       mpsi_callback_status(e->context, function, "the callback solve of mps_elastic_set_solver",
                            failures, def->solve(def->user, b, e->def.tolerance, x, &iterations));
   if (status != MPS_OK) return status;
-  for (int64_t k = 0; k < all; k++) /* also of rows that are held, which nothing reads */
+  for (int64_t k = 0; k < all; k++) /* also of fixed rows, which are not read */
     if (!isfinite(x[k]))
       return mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
                        "the callback solve of mps_elastic_set_solver has given x[%lld] = %g",

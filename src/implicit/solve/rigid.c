@@ -1,6 +1,6 @@
-/* rigid.c - which rigid motions do the supports leave free? For each connected part of the body
- * the rows normal . u of its supports are written in its rigid motions (translations, and
- * rotations about its centre scaled by its size); the null space of these rows is named.
+/* rigid.c - rigid motions without support. For each connected part of the body the rows normal . u
+ * of its supports are written in its rigid motions (translations, and rotations about its centre
+ * scaled by its size); the null space of these rows is named.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define FREE 1e-10 /* smallest eigenvalue, relative to the largest, of a motion that is held */
+#define FREE 1e-10 /* smallest eigenvalue, relative to the largest, of a supported motion */
 
 typedef struct part {
   double centre[3], size;

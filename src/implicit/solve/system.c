@@ -1,8 +1,8 @@
 /* system.c - from the assembled matrix to displacements: analysis, factorisation, solution with
  * iterative refinement, reactions.
  *
- * Refinement takes its residual from the matrix-free operator (operator.c), which works with
- * displacement differences and is the more exact of the two; the first pass, from the prescribed
+ * Refinement takes its residual from the matrix-free operator (operator.c), which uses displacement
+ * differences and is the more accurate of the two; the first pass, from the prescribed
  * displacements alone, is the solution itself.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
@@ -73,7 +73,7 @@ static mps_status analyse(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
-/* A solver of the caller takes the matrix when it is to solve. */
+/* A solver of the caller receives the matrix before a solution. */
 static mps_status prepare_outside(mps_elastic *e, const char *function) {
   if (e->pattern_valid && e->values_valid) return MPS_OK;
   e->outside->valid = false;
@@ -128,7 +128,8 @@ static mps_status diagnose(mps_elastic *e, const char *function, int64_t bad) {
   return status;
 }
 
-/* Adds shift * mass to the diagonal, the first entry of each column; `kept` has what was there. */
+/* Adds shift * mass to the diagonal, the first entry of each column; `kept` receives the former
+ * values. */
 static void shift_diagonal(mps_elastic *e, double shift, double *kept) {
   for (int64_t i = 0; i < e->n; i++)
     for (int32_t c = 0; c < e->dim; c++) {
@@ -258,7 +259,7 @@ mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, 
                             mpsi_out_write(e->context, function, out, size, &found, sizeof found));
 }
 
-/* Scale of the residual: the load together with what prescribed displacements pull. */
+/* Scale of the residual: the load together with the forces of prescribed displacements. */
 static mps_status residual_scale(mps_elastic *e, const char *function, double *u, double *scale) {
   memset(u, 0, (size_t)(e->n * e->dim) * sizeof *u);
   mpsi_elastic_expand(e, NULL, true, u);
@@ -310,7 +311,7 @@ mps_status mps_elastic_solve(mps_elastic *e) {
   return mpsi_elastic_leave(e, status);
 }
 
-/* Between the caller's order, three components a particle, and ours. */
+/* Between the caller's order, three components a particle, and the solver's. */
 static void sort_cases(const mps_elastic *e, int64_t count, double *ours, double *callers,
                        bool to_caller) {
   for (int64_t k = 0; k < count; k++)
