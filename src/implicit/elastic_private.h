@@ -1,8 +1,8 @@
 /* elastic_private.h - the members of mps_elastic and what its source files offer one another.
  *
  * access.c    guard, ids, fields as vectors   body.c      material, cuts, what follows from them
- * lattice.c   sites, neighbours, n_i, plain    operator.c  gradient and K u, matrix free
- *             gradients
+ * lattice.c   sites, neighbours, n_i           gradient.c  the displacement gradient
+ * window.c    the part that a rank has         operator.c  K u, matrix free
  * joints.c    faces between two materials      bending.c   bending within a cell
  * supports.c  fixed directions, free unknowns  rigid.c     which rigid motions are left free
  * boundaries.c  what is prescribed, reactions  facets.c    the surface
@@ -290,13 +290,14 @@ void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double
  * values are means: joints come on top. */
 int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, double (*g)[3]);
 
-/* ---- operator.c -------------------------------------------------------------------------------
- */
+/* ---- gradient.c ---- */
 /* f += G_i^T moment, moment[c][b] (N m): a load's first moment about particle i. */
 void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)[3], double *f);
 /* Displacement gradients G[(slot * dim + c) * dim + b] = d u_c / d x_b, of own particles and the
  * layers that their pairs reach. */
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient);
+
+/* ---- operator.c ---- */
 /* f = K u. Collective where the body is shared, and fails with the domain alone. */
 MPS_NODISCARD mps_status mpsi_elastic_apply(mps_elastic *e, const char *function, const double *u,
                                             double *f);
@@ -499,6 +500,8 @@ mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function);
 /* Moduli of particle i; MPS_ERROR_ARGUMENT naming one that is out of range. */
 mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
                                    double poisson);
+
+/* ---- window.c ---- */
 /* Volumes and pair stiffnesses from cuts and material. */
 void mpsi_elastic_measure(mps_elastic *e);
 /* A window of the rank where all ranks of the domain solve together with the present solver, else
