@@ -51,8 +51,7 @@ INLINE v4 halves(v8 a) {
   return load4(both) + load4(both + 4);
 }
 
-/* ---- weights: polynomials in t = (x_p - x_1)/h, node 1 the second of the support --------------
- */
+/* ---- weights: polynomials in t = (x_p - x_1)/h, node 1 the second of the support ------------- */
 
 /* Coefficient of t^power in the weight of node i; the fourth quadratic weight is zero. */
 #define CUBIC_0(i) ((i) == 0 ? 1.0 / 6 : (i) == 1 ? 2.0 / 3 : (i) == 2 ? 1.0 / 6 : 0.0)
@@ -316,8 +315,7 @@ INLINE void to_particles(anchor *a, int dim, int degree) {
   }
 }
 
-/* ---- the step, once for each dimension and degree ---------------------------------------------
- */
+/* ---- the step, once for each dimension and degree -------------------------------------------- */
 
 #define VARIANT(dim, degree)                                                                       \
   static void step_##dim##_##degree(anchor *a) {                                                   \

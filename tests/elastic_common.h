@@ -9,8 +9,7 @@
 #include <mps/elastic.h>
 #include <mps/experimental.h>
 
-/* ---- boundaries and loads in one line ----------------------------------------------------------
- */
+/* ---- boundaries and loads in one line -------------------------------------------------------- */
 
 static inline int test_dim(const mps_elastic *e) {
   return mps_particles_dim(mps_elastic_particles(e));
@@ -231,8 +230,7 @@ static inline void test_inclined(test_body *b, bool (*stiff)(double x, double y)
   mps_assert_ok(b->context, test_body_force(b->elastic, force));
 }
 
-/* ---- the paper's cantilever --------------------------------------------------------------------
- */
+/* ---- the paper's cantilever ------------------------------------------------------------------ */
 
 /* E = 1, P = 1, h = 2; load end x = 0, wall x = length, axis y = 0. */
 typedef struct cantilever {

@@ -6,8 +6,7 @@
 #include "mpm_held.h"
 #include "pthread_executor.h"
 
-/* ---- scenes: contact with a driven and a free body, plastic soil, many blocks, sorting --------
- */
+/* ---- scenes: contact with a driven and a free body, plastic soil, many blocks, sorting ------- */
 
 enum { FREE = 0, DRIVEN = 1, BODIES = 2 };
 

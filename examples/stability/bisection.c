@@ -18,8 +18,7 @@ typedef struct search {
   char *why;
 } search;
 
-/* ---- the initial state -------------------------------------------------------------------------
- */
+/* ---- the initial state ----------------------------------------------------------------------- */
 
 /* What a rank does by itself fails on all where it fails on one. */
 static mps_status agree(const search *s, mps_status status) {
@@ -51,8 +50,7 @@ static mps_status go_back(const search *s) {
   return status == MPS_OK ? mps_dynamics_restart(s->dynamics, s->start) : status;
 }
 
-/* ---- the search --------------------------------------------------------------------------------
- */
+/* ---- the search ------------------------------------------------------------------------------ */
 
 /* Runs from the initial state with `dt`; `stable` tells whether no acceleration passed the
  * criterion. */

@@ -57,8 +57,7 @@ static void series(output *f, const study *s, const char *file, int column, cons
 
 static const char *separator(bool last) { return last ? "\n" : ", \\\n  "; }
 
-/* ---- Figures 3 to 5: against damping and radius -----------------------------------------------
- */
+/* ---- Figures 3 to 5: against damping and radius ---------------------------------------------- */
 
 static bool figure3(app *a, const study *s, const char *directory) {
   static const char *const names[] = {"euler", "leapfrog", "verlet"};
@@ -124,8 +123,7 @@ static bool figure5(app *a, const study *s, const char *directory) {
   return close_pair(&f, directory, "fig05");
 }
 
-/* ---- Figures 6 and 7: against R/V --------------------------------------------------------------
- */
+/* ---- Figures 6 and 7: against R/V ------------------------------------------------------------ */
 
 /* As `series` over R/V, whose values are not in order in the table: the line sorts them. */
 static void scaled_series(output *f, const study *s, char wave, double h, int style,
@@ -183,8 +181,7 @@ static bool figure7(app *a, const study *s, const char *directory) {
   return close_pair(&f, directory, "fig07");
 }
 
-/* ---- Figures 8 to 10: the regression -----------------------------------------------------------
- */
+/* ---- Figures 8 to 10: the regression --------------------------------------------------------- */
 
 /* The regression shown: of the stepping limits, as in the paper, where there are any. */
 static const regression *shown(const study *s, int wave) {

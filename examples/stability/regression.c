@@ -29,8 +29,7 @@ double limit_fit_dt(const limit_fit *fit, double R, double V, double h) {
   return power_of_ten(fit->b1, log_h) * pow(R / V, power_of_ten(fit->b2, log_h)); /* (14) */
 }
 
-/* ---- least squares -----------------------------------------------------------------------------
- */
+/* ---- least squares --------------------------------------------------------------------------- */
 
 /* Coefficients of the rows x^(columns-1) ... x 1 against y, by modified Gram-Schmidt. False: the
  * points do not determine them. `room` holds rows * (columns + 1). */
@@ -68,8 +67,7 @@ static bool fit_polynomial(int64_t rows, int columns, const double *x, const dou
   return true;
 }
 
-/* ---- the regression ----------------------------------------------------------------------------
- */
+/* ---- the regression -------------------------------------------------------------------------- */
 
 typedef struct limits {
   int64_t count;

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- a share as a message: head, runs of rows, then for each field its head and columns -------
- */
+/* ---- a share as a message: head, runs of rows, then for each field its head and columns ------ */
 
 typedef struct head {
   int64_t particles, fields, dim, runs, made; /* made: ids lie below it */

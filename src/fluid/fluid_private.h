@@ -210,8 +210,18 @@ typedef enum mpsi_fluid_change {
   MPSI_FLUID_CHANGED_BY_STEP
 } mpsi_fluid_change;
 
+/* A load of the caller, loads.c. */
+typedef struct mpsi_fluid_given {
+  int32_t kind;
+  int64_t count; /* of ids, 0: none is given */
+  int64_t *ids;  /* ascending */
+  double lower[2], upper[2];
+  double amount[2]; /* m/s2, or Pa */
+  double factor[2], now[2];
+  mps_signal *signal[2];
+} mpsi_fluid_given;
+
 typedef struct mpsi_fluid_loops mpsi_fluid_loops;         /* loops.h */
-typedef struct mpsi_fluid_given mpsi_fluid_given;         /* a load of the caller, loads.c */
 typedef struct mpsi_fluid_partition mpsi_fluid_partition; /* partition.h */
 typedef struct mpsi_fluid_coarse mpsi_fluid_coarse;       /* coarse.h */
 
@@ -424,9 +434,7 @@ void mpsi_fluid_set_level(mps_fluid *fluid);
 /* pressure.c */
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);
-/* pcg.c: particles in a block of the preconditioner. */
-int64_t mpsi_fluid_block(const mps_fluid *fluid);
-/* Solves for system.x, starting from what it holds; the number of iterations, or -1. */
+/* pcg.c: solves for system.x, starting from what it holds; the number of iterations, or -1. */
 mps_status mpsi_fluid_factor(mps_fluid *fluid, const char *function);
 int64_t mpsi_fluid_pcg(mps_fluid *fluid);
 /* solver.c */

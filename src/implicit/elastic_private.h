@@ -1,8 +1,8 @@
 /* elastic_private.h - the members of mps_elastic and the interfaces between its source files.
  *
  * access.c    guard, ids, fields as vectors   body.c      material, cuts, derived data
- * lattice.c   sites, neighbours, n_i, plain    operator.c  gradient and K u, matrix free
- *             gradients
+ * lattice.c   sites, neighbours, n_i           gradient.c  the displacement gradient
+ * window.c    the part that a rank has         operator.c  K u, matrix free
  * joints.c    faces between two materials      bending.c   bending within a cell
  * supports.c  fixed directions, free unknowns  rigid.c     rigid motions without support
  * boundaries.c  prescribed displacements, reactions  facets.c    the surface
@@ -268,8 +268,7 @@ MPS_NODISCARD mps_status mpsi_elastic_join(mps_elastic *e, const char *function,
 MPS_NODISCARD mps_status mpsi_elastic_complete(mps_elastic *e, const char *function,
                                                double *values);
 
-/* ---- lattice.c --------------------------------------------------------------------------------
- */
+/* ---- lattice.c ------------------------------------------------------------------------------- */
 /* Opens the window and fills links, density and density0 from x, with the other arrays of the
  * operator; errors are reported for `function`. */
 mps_status mpsi_elastic_connect(mps_elastic *e, const char *function);
@@ -289,18 +288,18 @@ void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double
  * values are means: joints come on top. */
 int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, double (*g)[3]);
 
-/* ---- operator.c -------------------------------------------------------------------------------
- */
+/* ---- gradient.c ---- */
 /* f += G_i^T moment, moment[c][b] (N m): a load's first moment about particle i. */
 void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)[3], double *f);
 /* Displacement gradients G[(slot * dim + c) * dim + b] = d u_c / d x_b, of own particles and the
  * layers that their pairs reach. */
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient);
+
+/* ---- operator.c ---- */
 /* f = K u. Collective where the body is shared, and fails only with the domain. */
 MPS_NODISCARD mps_status mpsi_elastic_apply(mps_elastic *e, const char *function, const double *u,
                                             double *f);
-/* ---- joints.c ---------------------------------------------------------------------------------
- */
+/* ---- joints.c -------------------------------------------------------------------------------- */
 /* Finds the joints of the present material; discards the pattern of the matrix where they have
  * changed. */
 mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function);
@@ -338,8 +337,7 @@ static inline double mpsi_elastic_bond(const mps_elastic *e, int64_t i, int64_t 
 }
 /* Relative displacement of pair (i, k), conjugate to its stiffness, from u and the gradients. */
 void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int32_t k, double *out);
-/* ---- bending.c --------------------------------------------------------------------------------
- */
+/* ---- bending.c ------------------------------------------------------------------------------- */
 #define MPSI_BENDING_MAX 48 /* terms of a row: 12 squares of 4 corners */
 typedef struct mpsi_bending_term {
   int64_t site;
@@ -370,8 +368,7 @@ typedef void (*mpsi_elastic_work)(void *task, int64_t k);
 void mpsi_elastic_for_each(mps_elastic *e, int64_t count, mpsi_elastic_work work, void *task);
 void mpsi_elastic_for_span(mps_elastic *e, mpsi_span span, mpsi_elastic_work work, void *task);
 
-/* ---- supports.c -------------------------------------------------------------------------------
- */
+/* ---- supports.c ------------------------------------------------------------------------------ */
 /* Adds the row normal . u to the support of a particle, or replaces a parallel one. False: the
  * direction is fixed already by the others. */
 bool mpsi_elastic_add_row(mpsi_support *s, int dim, const double *normal, double offset,
@@ -393,8 +390,7 @@ void mpsi_elastic_reduce(const mps_elastic *e, const double *f, double *free_val
 /* Keeps only the components of f along fixed directions. */
 void mpsi_elastic_keep_fixed(const mps_elastic *e, double *f);
 
-/* ---- boundaries.c -----------------------------------------------------------------------------
- */
+/* ---- boundaries.c ---------------------------------------------------------------------------- */
 /* Prescribed displacements, velocities and accelerations become those of time t. */
 mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t);
 /* Resultants of e->reaction by boundary; dt > 0: adds the mean of former and new ones times dt to
@@ -411,8 +407,7 @@ void mpsi_elastic_drop_boundaries(mps_elastic *e);
 /* Supports from the present boundaries. On an error the former ones stay. */
 mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function);
 
-/* ---- change.c ---------------------------------------------------------------------------------
- */
+/* ---- change.c -------------------------------------------------------------------------------- */
 /* The holder's functions. */
 mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count, const int64_t *ids);
 void mpsi_elastic_renew(void *self);
@@ -422,21 +417,18 @@ mps_status mpsi_elastic_prepare_state(void *self, const char *function, const mp
 void mpsi_elastic_bind(void *self);
 void mpsi_elastic_drop_change(mps_elastic *e);
 
-/* ---- rigid.c ----------------------------------------------------------------------------------
- */
+/* ---- rigid.c --------------------------------------------------------------------------------- */
 /* MPS_ERROR_STATE, naming the rigid motions without support. */
 mps_status mpsi_elastic_check_supported(mps_elastic *e, const char *function);
 
-/* ---- facets.c ---------------------------------------------------------------------------------
- */
+/* ---- facets.c -------------------------------------------------------------------------------- */
 mps_status mpsi_elastic_find_facets(mps_elastic *e, const char *function);
 /* The cell of particle i reaches from low to high (relative to the particle) along `axis`. */
 void mpsi_elastic_reach(const mps_elastic *e, int64_t i, int axis, double *low, double *high);
 /* The facet as a box relative to its particle. */
 void mpsi_elastic_facet_box(const mps_elastic *e, const mpsi_facet *f, double *low, double *high);
 
-/* ---- loads.c ----------------------------------------------------------------------------------
- */
+/* ---- loads.c --------------------------------------------------------------------------------- */
 /* With a load of gravity: reads `density` again, as mpsi_elastic_read_mass. */
 mps_status mpsi_elastic_weigh(mps_elastic *e, const char *function, double **former);
 /* The nodal forces of all loads and of `external_force` at time t, to e->load. */
@@ -449,8 +441,7 @@ void mpsi_elastic_drop_loads(mps_elastic *e);
 void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double *about,
                             double *force, double *moment);
 
-/* ---- elastic.c --------------------------------------------------------------------------------
- */
+/* ---- elastic.c ------------------------------------------------------------------------------- */
 mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
                                const mps_elastic_def *def, bool published, bool constant,
                                mps_elastic **out);
@@ -499,14 +490,15 @@ mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function);
 /* Moduli of particle i; MPS_ERROR_ARGUMENT naming one that is out of range. */
 mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
                                    double poisson);
+
+/* ---- window.c ---- */
 /* Volumes and pair stiffnesses from cuts and material. */
 void mpsi_elastic_measure(mps_elastic *e);
 /* The window of the rank where all ranks of the domain solve together with the present solver, else
  * the whole body. */
 mps_status mpsi_elastic_choose_window(mps_elastic *e, const char *function);
 
-/* ---- assemble.c -------------------------------------------------------------------------------
- */
+/* ---- assemble.c ------------------------------------------------------------------------------ */
 mps_status mpsi_elastic_assemble(mps_elastic *e, const char *function);
 /* Whole rows of K + shift M with numbered unknowns, whose arrays become the caller's (also on an
  * error); fixed directions have a diagonal alone. */
@@ -515,15 +507,13 @@ mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, doub
 /* Without a matrix: numbers the unknowns and allocates their vectors. */
 mps_status mpsi_elastic_make_vectors(mps_elastic *e, const char *function);
 
-/* ---- outside.c --------------------------------------------------------------------------------
- */
+/* ---- outside.c ------------------------------------------------------------------------------- */
 void mpsi_elastic_drop_outside(mps_elastic *e);
 /* solution = (K + shift M)^-1 rhs. */
 mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, double shift,
                                       const double *rhs, double *solution);
 
-/* ---- system.c ---------------------------------------------------------------------------------
- */
+/* ---- system.c -------------------------------------------------------------------------------- */
 mps_status mpsi_elastic_prepare(mps_elastic *e, const char *function);
 /* Makes sure that the factor is that of K + shift * M. */
 mps_status mpsi_elastic_factor(mps_elastic *e, const char *function, double shift);
@@ -534,13 +524,11 @@ mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t 
 /* Vectors of `count` cases in the set's present order, three components a particle. */
 void mpsi_elastic_to_caller(const mps_elastic *e, int64_t count, double *ours, double *out);
 
-/* ---- cg.c -------------------------------------------------------------------------------------
- */
+/* ---- cg.c ------------------------------------------------------------------------------------ */
 mps_status mpsi_elastic_cg(mps_elastic *e, const char *function, double shift, const double *rhs,
                            double *solution);
 
-/* ---- motion.c ---------------------------------------------------------------------------------
- */
+/* ---- motion.c -------------------------------------------------------------------------------- */
 typedef struct mpsi_elastic_motion {
   double dt, time;
   int64_t steps;
@@ -586,8 +574,7 @@ mps_status mpsi_elastic_allocate_motion(mps_elastic *e, const char *function,
 void mpsi_elastic_move_arrays(mpsi_elastic_motion *from, mpsi_elastic_motion *to);
 void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
 
-/* ---- budget.c ---------------------------------------------------------------------------------
- */
+/* ---- budget.c -------------------------------------------------------------------------------- */
 mps_status mpsi_elastic_strain_energy(mps_elastic *e, const char *function, double *out);
 /* Before a change of moduli: keeps the strain energy of a motion under way. */
 mps_status mpsi_elastic_note_strain(mps_elastic *e, const char *function);

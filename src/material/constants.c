@@ -6,8 +6,7 @@
 #define RIGHT_ANGLE 1.57079632679489662
 #define ROOT3 1.7320508075688772
 
-/* ---- checks -----------------------------------------------------------------------------------
- */
+/* ---- checks ---------------------------------------------------------------------------------- */
 
 static mps_status out_of_range(mps_context *context, const char *function, const char *name,
                                const char *unit, double value, double low, double high,
@@ -54,8 +53,7 @@ mps_status mpsi_check_friction(mps_context *context, const char *function, doubl
   return MPS_OK;
 }
 
-/* ---- constants --------------------------------------------------------------------------------
- */
+/* ---- constants ------------------------------------------------------------------------------- */
 
 mpsi_law mpsi_law_elastic(double young, double poisson) {
   const double shear = young / (2.0 * (1.0 + poisson));

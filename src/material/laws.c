@@ -71,8 +71,7 @@ MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double
                                                 : yields};
 }
 
-/* ---- laws of the Jaumann rate -----------------------------------------------------------------
- */
+/* ---- laws of the Jaumann rate ---------------------------------------------------------------- */
 
 /* A volume after the volume strain `growth`. Single grains beside a wall may tremble by a hundredth
  * for as long as a pile is driven. The stress keeps the sum of such strains; (1 + x)(1 - x) loses x
@@ -191,8 +190,7 @@ MPSI_INLINE mps_status mohr_coulomb_loop(const int geometry, const mpsi_law *law
   return MPS_OK;
 }
 
-/* ---- laws of the deformation gradient ---------------------------------------------------------
- */
+/* ---- laws of the deformation gradient -------------------------------------------------------- */
 
 /* F = (1 + dt L) F, Nakamura (44), and V/V0 = det F. In 2D xz, yz, zx, zy are zero. */
 MPSI_INLINE void deform_loop(const int geometry, const mps_material_block *block) {
@@ -253,8 +251,7 @@ MPSI_INLINE mps_status neo_hookean_loop(const int geometry, const mpsi_law *law,
   return MPS_OK;
 }
 
-/* ---- fluid ------------------------------------------------------------------------------------
- */
+/* ---- fluid ----------------------------------------------------------------------------------- */
 
 /* sigma = -p 1 + 2 eta dev(d); p = K (r - 1), or K/7 (r^7 - 1), r = V0/V. */
 MPSI_INLINE void fluid_loop(const int geometry, const bool tait, const mpsi_law *law,
@@ -293,8 +290,7 @@ MPSI_INLINE mps_status newtonian_loop(const int geometry, const mpsi_law *law,
   return MPS_OK;
 }
 
-/* ---- a user's law -----------------------------------------------------------------------------
- */
+/* ---- a user's law ---------------------------------------------------------------------------- */
 
 MPSI_INLINE void turn_loop(const int geometry, const mps_material_block *block) {
   const mpsi_law_columns columns = mpsi_columns_of(block);
@@ -319,8 +315,7 @@ MPSI_INLINE mps_status user_loop(const int geometry, const mpsi_law *law,
   return status == MPS_OK ? mpsi_check_results(block, law->history_count) : status;
 }
 
-/* ---- one function for each law and geometry ----------------------------------------------------
- */
+/* ---- one function for each law and geometry -------------------------------------------------- */
 
 #define DEFINE(KIND, LOOP, GEOMETRY)                                                               \
   static mps_status KIND##_##GEOMETRY(const mpsi_law *law, const mps_material_block *block) {      \

@@ -4,8 +4,7 @@
 
 #include <stdio.h>
 
-/* ---- life -------------------------------------------------------------------------------------
- */
+/* ---- life ------------------------------------------------------------------------------------ */
 
 static void release(mps_material *m) {
   mps_context *context = m->context;
@@ -57,8 +56,7 @@ void mps_material_destroy(mps_material **material) {
   if (atomic_fetch_sub(&m->references, 1) == 1) release(m);
 }
 
-/* ---- questions --------------------------------------------------------------------------------
- */
+/* ---- questions ------------------------------------------------------------------------------- */
 
 const char *mps_material_name(const mps_material *material) {
   return material ? material->name : "";
@@ -133,8 +131,7 @@ void mpsi_material_begin(const mps_material *material, double *const *history, i
     for (int64_t k = begin; k < end; k++) history[c][k] = material->history_initial[c];
 }
 
-/* ---- one step of a block ----------------------------------------------------------------------
- */
+/* ---- one step of a block --------------------------------------------------------------------- */
 
 static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
   if (block->dim == 3) return MPSI_SPACE;

@@ -15,8 +15,7 @@ typedef struct principal {
   double axis[3][3]; /* 3D: axis[i][a] is component i of the direction of value[a] */
 } principal;
 
-/* ---- principal stresses ------------------------------------------------------------------------
- */
+/* ---- principal stresses ---------------------------------------------------------------------- */
 
 /* In 2D zz is principal: value[0] and value[1] lie in the plane, on either side of the mean. */
 static principal split_plane(const double *s) {
@@ -52,8 +51,7 @@ static void join_space(const principal *trial, const double *value, double *s) {
   }
 }
 
-/* ---- return map in ordered principal stresses s[0] >= s[1] >= s[2] ------------------------------
- */
+/* ---- return map in ordered principal stresses s[0] >= s[1] >= s[2] --------------------------- */
 
 /* Stress lost per unit of flow on the plane f(largest, smallest): by the stress of that role. */
 typedef struct drop {
@@ -180,8 +178,7 @@ static void order(const double *value, int *rank) {
   }
 }
 
-/* ---- gaps -------------------------------------------------------------------------------------
- */
+/* ---- gaps ------------------------------------------------------------------------------------ */
 
 /* Largest share of the deviator of s that the pyramid and the cut-off allow at the mean stress p.
  */

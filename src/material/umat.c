@@ -125,8 +125,7 @@ static void scatter(const umat_law *law, const mps_material_block *block, int64_
   kept[STEPS][k] += 1.0;
 }
 
-/* ---- the call ---------------------------------------------------------------------------------
- */
+/* ---- the call -------------------------------------------------------------------------------- */
 
 /* One particle. The arguments that a mechanical step does not have are zero. Returns what is wrong,
  * or NULL. */
@@ -169,8 +168,7 @@ static mps_status update(void *user, const mps_material_block *block) {
   return MPS_OK;
 }
 
-/* ---- creation ---------------------------------------------------------------------------------
- */
+/* ---- creation -------------------------------------------------------------------------------- */
 
 static mps_status check_umat(mps_context *context, const char *function,
                              const mps_material_umat_def *def) {

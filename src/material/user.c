@@ -99,8 +99,7 @@ mps_status mpsi_define_user(mps_context *context, const char *function, const vo
   return MPS_OK;
 }
 
-/* ---- what it writes --------------------------------------------------------------------------
- */
+/* ---- what it writes -------------------------------------------------------------------------- */
 
 static bool all_finite(const double *column, int64_t count) {
   bool good = true;

@@ -20,8 +20,7 @@ typedef struct transport {
 /* Transports whose last reduction the other ranks have not joined yet. One process has one MPI. */
 static transport *leaving;
 
-/* ---- callbacks --------------------------------------------------------------------------------
- */
+/* ---- callbacks ------------------------------------------------------------------------------- */
 
 static mps_status reduce_max(void *user, int32_t count, double *values) {
   const transport *t = user;
@@ -141,8 +140,7 @@ static mps_status rendezvous(void *user, int32_t count, const mps_domain_message
   return status;
 }
 
-/* ---- stars ------------------------------------------------------------------------------------
- */
+/* ---- stars ----------------------------------------------------------------------------------- */
 
 typedef struct star {
   PetscSF forest;
@@ -209,8 +207,7 @@ static mps_status star_end(void *user, void *handle) {
   return MPSI_PETSC_STATUS(PetscSFBcastEnd(s->forest, s->item, s->own, s->guests, MPI_REPLACE));
 }
 
-/* ---- life -------------------------------------------------------------------------------------
- */
+/* ---- life ------------------------------------------------------------------------------------ */
 
 static void drop(transport *t) {
   (void)MPI_Comm_free(&t->comm);

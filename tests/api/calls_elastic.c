@@ -367,8 +367,7 @@ static void elastic_start(api *a) {
   (void)api_end(a, mps_elastic_start(o->handle, api_null(a, "def") ? NULL : &def));
 }
 
-/* ---- a foreign solver: Jacobi's iteration, seldom enough ---------------------------------------
- */
+/* ---- a foreign solver: Jacobi's iteration, seldom enough ------------------------------------- */
 
 static mps_status take_matrix(void *user, const mps_elastic_matrix *matrix, size_t size) {
   (void)matrix, (void)size;

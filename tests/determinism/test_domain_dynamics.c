@@ -35,8 +35,7 @@ static void test_unstable(void **state) {
   mps_context_destroy(&own);
 }
 
-/* ---- cut in two -------------------------------------------------------------------------------
- */
+/* ---- cut in two ------------------------------------------------------------------------------ */
 
 #define CHECKPOINT "test_domain_dynamics.h5"
 
@@ -103,8 +102,7 @@ static void compare_cut(int what) {
 static void test_cut_layers(void **state) { (void)state, compare_cut(LAYERS); }
 static void test_cut_scattered(void **state) { (void)state, compare_cut(SCATTERED); }
 
-/* ---- what goes wrong on one rank --------------------------------------------------------------
- */
+/* ---- what goes wrong on one rank ------------------------------------------------------------- */
 
 static void test_refused_memory(void **state) {
   (void)state, refuse_memory(compute, STRIP, SHORT_RUN, 1);

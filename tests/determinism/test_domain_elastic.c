@@ -6,8 +6,7 @@
 
 #include <mps/elastic_solver.h>
 
-/* ---- conjugate gradients on ranks: each multiplies its rows, the vectors are everybody's --------
- */
+/* ---- conjugate gradients on ranks: each multiplies its rows, the vectors are everybody's ----- */
 
 typedef struct shared {
   mps_domain *domain; /* NULL: alone */
@@ -263,8 +262,7 @@ static void test_troubles(void **state) {
   }
 }
 
-/* ---- memory -----------------------------------------------------------------------------------
- */
+/* ---- memory ---------------------------------------------------------------------------------- */
 
 /* Bytes that a context holds and has held at most, each block behind its size. */
 typedef struct scales {

@@ -22,8 +22,7 @@ static void test_classical(void **state) {
 }
 static void test_puddle(void **state) { (void)state, compare_teams(compute, PUDDLE, 20, true); }
 
-/* ---- cut in two --------------------------------------------------------------------------------
- */
+/* ---- cut in two ------------------------------------------------------------------------------ */
 
 #define CHECKPOINT "test_domain_fluid.h5"
 
@@ -70,8 +69,7 @@ static void test_checkpoint(void **state) {
   remove(CHECKPOINT);
 }
 
-/* ---- what goes wrong on one rank --------------------------------------------------------------
- */
+/* ---- what goes wrong on one rank ------------------------------------------------------------- */
 
 static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, POND, 2, 9); }
 

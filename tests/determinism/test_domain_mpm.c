@@ -58,8 +58,7 @@ static void test_leaving(void **state) {
   (void)state, compare_teams(compute_leaving, SPREAD, 12, true);
 }
 
-/* ---- cut in two --------------------------------------------------------------------------------
- */
+/* ---- cut in two ------------------------------------------------------------------------------ */
 
 #define CHECKPOINT "test_domain_mpm.h5"
 
@@ -110,8 +109,7 @@ static void compare_cut(int what, int64_t steps) {
 static void test_cut_press(void **state) { (void)state, compare_cut(PRESS, 45); }
 static void test_cut_spread(void **state) { (void)state, compare_cut(SPREAD, 50); }
 
-/* ---- what goes wrong on one rank --------------------------------------------------------------
- */
+/* ---- what goes wrong on one rank ------------------------------------------------------------- */
 
 static void test_refused_memory(void **state) {
   (void)state, refuse_memory(compute, SPREAD, 30, 7);
@@ -137,8 +135,7 @@ static void test_refused_changes(void **state) {
   (void)state, refuse_memory(compute_changes, SPREAD, 12, 13);
 }
 
-/* ---- steps that leave no state to go on from --------------------------------------------------
- */
+/* ---- steps that leave no state to go on from ------------------------------------------------- */
 
 /* The body flies towards a free side until a particle is lost, on one of the ranks. */
 static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) {
@@ -348,8 +345,7 @@ static void test_troubles(void **state) {
   (void)state, meet_troubles(run_trouble, trouble, TROUBLES);
 }
 
-/* ---- what goes wrong while the caller puts particles in or takes them out ----------------------
- */
+/* ---- what goes wrong while the caller puts particles in or takes them out -------------------- */
 
 enum {
   OTHER_ADDED,

@@ -166,8 +166,7 @@ static mps_dynamics *lone(mps_particles *set) {
   return dynamics;
 }
 
-/* ---- Yoshida's column -------------------------------------------------------------------------
- */
+/* ---- Yoshida's column ------------------------------------------------------------------------ */
 
 /* The paper's column with the limits of the reference values; stepping with accuracy 1.02. */
 static void the_papers_column(void **state) {

@@ -7,8 +7,7 @@
 
 #include <lapacke.h>
 
-/* ---- bodies -------------------------------------------------------------------------------------
- */
+/* ---- bodies ---------------------------------------------------------------------------------- */
 
 static test_body l_shape_by(mps_context *context, const mps_elastic_def *def, double nu,
                             test_method method) {

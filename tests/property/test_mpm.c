@@ -527,8 +527,7 @@ static void thin_wall_lets_nothing_pass(void **state) {
   }
 }
 
-/* ---- a node of hardly any mass ----------------------------------------------------------------
- */
+/* ---- a node of hardly any mass --------------------------------------------------------------- */
 
 /* A particle at (x, y) between two discs and, of `count` 2, one elsewhere, without contact, moving
  * at v: an empty step. */

@@ -8,8 +8,7 @@
 
 #include <mps/mps.h>
 
-/* ---- four solvers, asked alike ----------------------------------------------------------------
- */
+/* ---- four solvers, asked alike --------------------------------------------------------------- */
 
 typedef struct verbs {
   const char *name;
@@ -113,8 +112,7 @@ static int32_t from_hook(void *user) {
   return 0;
 }
 
-/* ---- the scenes -------------------------------------------------------------------------------
- */
+/* ---- the scenes ------------------------------------------------------------------------------ */
 
 static void make_set(scene *s, double spacing) {
   mps_particles_def def = mps_particles_defaults();

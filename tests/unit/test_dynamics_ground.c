@@ -320,8 +320,7 @@ static void weights_that_reach_too_far_are_refused(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* ---- edits ------------------------------------------------------------------------------------
- */
+/* ---- edits ----------------------------------------------------------------------------------- */
 
 /* Ground edited before the first step is that of a solver made with it. */
 static void edited_ground_is_taken_up(void **state) {
@@ -429,8 +428,7 @@ static void what_the_solver_relies_on_stays(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* ---- creation that fails late ------------------------------------------------------------------
- */
+/* ---- creation that fails late ---------------------------------------------------------------- */
 
 /* All of a set: what a failed creation must leave as it was. */
 typedef struct picture {
@@ -535,8 +533,7 @@ static void creation_without_memory_changes_nothing(void **state) {
   assert_true(refused > 20);
 }
 
-/* ---- particles that go ------------------------------------------------------------------------
- */
+/* ---- particles that go ----------------------------------------------------------------------- */
 
 /* Gravity, a traction on the top row, the base held, one side on dashpots. */
 static void load_block(mps_dynamics *d, bool top) {

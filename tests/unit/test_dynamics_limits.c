@@ -255,8 +255,7 @@ static void eulers_limit_for_a_duration(void **state) {
   }
 }
 
-/* ---- Yoshida's column -------------------------------------------------------------------------
- */
+/* ---- Yoshida's column ------------------------------------------------------------------------ */
 
 /* The paper's column with the limits of the reference values. */
 static void the_papers_column(void **state) {

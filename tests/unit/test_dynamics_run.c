@@ -276,8 +276,7 @@ static void a_refresh_brings_accelerations_to_the_positions(void **state) {
   }
 }
 
-/* ---- restart, rollback, dt ---------------------------------------------------------------------
- */
+/* ---- restart, rollback, dt ------------------------------------------------------------------- */
 
 static void a_restart_repeats_the_run_at_another_time(void **state) {
   (void)state;

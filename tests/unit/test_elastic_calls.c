@@ -4,8 +4,7 @@
 
 #include <pthread.h>
 
-/* ---- threads of BLAS: these stand in for OpenBLAS's own ---------------------------------------
- */
+/* ---- threads of BLAS: these stand in for OpenBLAS's own -------------------------------------- */
 
 static int blas_threads = 7, blas_least = 7;
 
@@ -17,8 +16,7 @@ void openblas_set_num_threads(int threads) {
   blas_least = threads < blas_least ? threads : blas_least;
 }
 
-/* ---- a body -----------------------------------------------------------------------------------
- */
+/* ---- a body ---------------------------------------------------------------------------------- */
 
 static test_body square(mps_context *context, int cells) {
   test_body b = test_body_begin(context, 2, 0.5);
@@ -62,8 +60,7 @@ static mps_context *hooked(hook *h) {
   return context;
 }
 
-/* ---- tests ------------------------------------------------------------------------------------
- */
+/* ---- tests ----------------------------------------------------------------------------------- */
 
 static void a_set_of_another_context_is_refused(void **state) {
   (void)state;

@@ -63,8 +63,7 @@ static void assert_same(test_body *b, double *before) {
   free(now);
 }
 
-/* ---- whole or not at all ----------------------------------------------------------------------
- */
+/* ---- whole or not at all --------------------------------------------------------------------- */
 
 /* Each retry of a step whose CG does not converge added energy. */
 static void a_step_that_fails_has_not_happened(void **state) {
@@ -129,8 +128,7 @@ static void a_cancelled_step_leaves_whole_ones(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- implicit coupling ------------------------------------------------------------------------
- */
+/* ---- implicit coupling ----------------------------------------------------------------------- */
 
 /* A step is tried with three loads, as a coupling iterates; the last try counts. */
 static void a_step_can_be_repeated_with_other_loads(void **state) {
@@ -198,8 +196,7 @@ static void a_saved_motion_goes_on(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- runs -------------------------------------------------------------------------------------
- */
+/* ---- runs ------------------------------------------------------------------------------------ */
 
 typedef struct caller {
   test_body *body;
@@ -250,8 +247,7 @@ static void a_run_ends_where_it_was_told(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- numbers and lists ------------------------------------------------------------------------
- */
+/* ---- numbers and lists ----------------------------------------------------------------------- */
 
 static void numbers_are_the_lowest_free_ones(void **state) {
   (void)state;

@@ -181,8 +181,7 @@ static void bad_layers_are_refused_and_nothing_is_changed(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* ---- a caller's function ----------------------------------------------------------------------
- */
+/* ---- a caller's function --------------------------------------------------------------------- */
 
 static mps_status radial(void *user, const double *x, double *stress) {
   const double limit = *(const double *)user;
@@ -220,8 +219,7 @@ static void a_function_sets_the_stress(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* ---- memory -----------------------------------------------------------------------------------
- */
+/* ---- memory ---------------------------------------------------------------------------------- */
 
 /* The stress that somebody is editing is not written. */
 static void an_open_edit_is_respected(void **state) {

@@ -26,8 +26,7 @@
 
 #define MORE 24 /* bytes of the members that a newer libmps would have */
 
-/* ---- one way to use each struct ---------------------------------------------------------------
- */
+/* ---- one way to use each struct -------------------------------------------------------------- */
 
 /* A square of 4 x 4 particles with every property that a solver may read. */
 static mps_particles *square(void) {
@@ -554,8 +553,7 @@ static const user users[] = {
     {"mps_material_von_mises_def", need_von_mises, use_von_mises},
 };
 
-/* ---- every struct -----------------------------------------------------------------------------
- */
+/* ---- every struct ---------------------------------------------------------------------------- */
 
 typedef mps_status (*init_fn)(void *def, size_t size);
 
@@ -681,8 +679,7 @@ static void sizes_beyond_any_struct_are_refused(void **state) {
   assert_non_null(strstr(text, "struct_size is 4294967295 bytes, allowed are 104 to 4096"));
 }
 
-/* ---- results ----------------------------------------------------------------------------------
- */
+/* ---- results --------------------------------------------------------------------------------- */
 
 static void results_stay_within_the_callers_struct(void **state) {
   (void)state;

@@ -59,8 +59,7 @@ _Static_assert(_Generic(mps_view_f64(NULL, 0, 0), const double * : 1, default : 
                    _Generic(((mps_view *)0)->data, const void * : 1, default : 0),
                "views are for reading");
 
-/* ---- editing ----------------------------------------------------------------------------------
- */
+/* ---- editing --------------------------------------------------------------------------------- */
 
 static void views_are_for_reading_and_edits_for_writing(void **state) {
   (void)state;
@@ -122,8 +121,7 @@ static void commit_checks_values_and_names_the_particle(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* ---- solvers ----------------------------------------------------------------------------------
- */
+/* ---- solvers --------------------------------------------------------------------------------- */
 
 static void a_step_waits_for_the_commit(void **state) {
   (void)state;
@@ -365,8 +363,7 @@ static void one_solver_moves_a_set(void **state) {
   mps_mpm_destroy(&mpm);
 }
 
-/* ---- coming and going -------------------------------------------------------------------------
- */
+/* ---- coming and going ------------------------------------------------------------------------ */
 
 static void particles_are_removed_and_keep_their_ids(void **state) {
   (void)state;
@@ -525,8 +522,7 @@ static void holders_decide_who_comes_and_goes(void **state) {
   mpsi_particles_release(kept, &recorder);
 }
 
-/* ---- going back, and memory -------------------------------------------------------------------
- */
+/* ---- going back, and memory ------------------------------------------------------------------ */
 
 static void a_set_goes_back_to_what_it_was(void **state) {
   (void)state;

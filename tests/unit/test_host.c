@@ -12,8 +12,7 @@
 #define STEP 2e-3 /* s, of the host: each solver takes its own steps in it */
 #define STEPS 12
 
-/* ---- one vocabulary ---------------------------------------------------------------------------
- */
+/* ---- one vocabulary -------------------------------------------------------------------------- */
 
 typedef struct verbs {
   const char *name;
@@ -62,8 +61,7 @@ typedef struct host {
   double time;
 } host;
 
-/* ---- the scene --------------------------------------------------------------------------------
- */
+/* ---- the scene ------------------------------------------------------------------------------- */
 
 static mps_particles *box(double spacing, double width, double height) {
   mps_particles_def def = mps_particles_defaults();
@@ -171,8 +169,7 @@ static void make_water(host *h) {
   mps_particles_destroy(&set);
 }
 
-/* ---- exchange ---------------------------------------------------------------------------------
- */
+/* ---- exchange -------------------------------------------------------------------------------- */
 
 /* Forces (N) on the particles above `level`, shared evenly, times a factor by place. */
 static void push(mps_particles *set, double level, double fx, double fy) {
@@ -260,8 +257,7 @@ static void trade(host *h, int step) {
   start_wall(h);
 }
 
-/* ---- a step -----------------------------------------------------------------------------------
- */
+/* ---- a step ---------------------------------------------------------------------------------- */
 
 static void mix(uint64_t *hash, const void *data, size_t bytes) {
   for (size_t k = 0; k < bytes; k++)

@@ -7,8 +7,7 @@
 
 #include "material/material_internal.h"
 
-/* ---- definitions ------------------------------------------------------------------------------
- */
+/* ---- definitions ----------------------------------------------------------------------------- */
 
 static void elastic_constants_are_checked(void **state) {
   (void)state;
@@ -147,8 +146,7 @@ static void materials_answer_questions(void **state) {
   assert_true(mps_material_history_initial(NULL, 0) == 0.0);
 }
 
-/* ---- a user's law -----------------------------------------------------------------------------
- */
+/* ---- a user's law ---------------------------------------------------------------------------- */
 
 typedef struct calls {
   int64_t blocks, particles;
@@ -306,8 +304,7 @@ static void bad_users_laws_are_refused(void **state) {
                    "out is NULL");
 }
 
-/* ---- blocks and points ------------------------------------------------------------------------
- */
+/* ---- blocks and points ----------------------------------------------------------------------- */
 
 static void malformed_blocks_are_refused(void **state) {
   (void)state;
@@ -383,8 +380,7 @@ static void malformed_paths_are_refused(void **state) {
   mps_material_destroy(&m);
 }
 
-/* ---- memory -----------------------------------------------------------------------------------
- */
+/* ---- memory ---------------------------------------------------------------------------------- */
 
 static mps_status make_and_destroy(mps_context *on, int what) {
   calls seen = {0};

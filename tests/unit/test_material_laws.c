@@ -10,8 +10,7 @@
 #define E 1e6
 #define NU 0.3
 
-/* ---- descriptors ------------------------------------------------------------------------------
- */
+/* ---- descriptors ----------------------------------------------------------------------------- */
 
 static void each_kind_has_its_descriptor(void **state) {
   (void)state;
@@ -32,8 +31,7 @@ static void each_kind_has_its_descriptor(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- a user's law in place of a built-in one ---------------------------------------------------
- */
+/* ---- a user's law in place of a built-in one ------------------------------------------------- */
 
 typedef struct hooke {
   double shear, bulk, lambda;
@@ -245,8 +243,7 @@ static void constants_tell_materials_apart(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- values that are not finite ----------------------------------------------------------------
- */
+/* ---- values that are not finite -------------------------------------------------------------- */
 
 typedef struct spoil {
   int64_t id;   /* of the particle */
@@ -352,8 +349,7 @@ static void a_point_keeps_its_state(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- statuses that are none --------------------------------------------------------------------
- */
+/* ---- statuses that are none ------------------------------------------------------------------ */
 
 static mps_status odd_stress(void *user, const double *x, double *stress) {
   (void)x, (void)stress;

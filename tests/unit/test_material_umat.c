@@ -108,8 +108,7 @@ static mps_material *make_own(bool mises) {
   return material;
 }
 
-/* ---- against the library's laws ---------------------------------------------------------------
- */
+/* ---- against the library's laws -------------------------------------------------------------- */
 
 #define COUNT 40
 
@@ -222,8 +221,7 @@ static void a_umat_works_in_the_solver(void **unused) {
   mpm_scene_end(&s[1]);
 }
 
-/* ---- arguments --------------------------------------------------------------------------------
- */
+/* ---- arguments ------------------------------------------------------------------------------- */
 
 /* What the UMAT was told last. C has no other way out of a UMAT: it has no pointer of its user. */
 static struct spied {
@@ -320,8 +318,7 @@ static void arguments_are_those_of_abaqus(void **unused) {
   mps_material_destroy(&material);
 }
 
-/* ---- refusals ---------------------------------------------------------------------------------
- */
+/* ---- refusals -------------------------------------------------------------------------------- */
 
 static void a_umat_may_refuse(void **unused) {
   (void)unused;

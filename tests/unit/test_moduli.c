@@ -106,8 +106,7 @@ static void the_ends_of_the_ranges_are_sane(void **state) {
   }
 }
 
-/* ---- materials ---------------------------------------------------------------------------------
- */
+/* ---- materials ------------------------------------------------------------------------------- */
 
 static mps_status nothing(void *user, const mps_material_block *block) {
   (void)user, (void)block;
@@ -140,8 +139,7 @@ static void materials_tell_their_moduli(void **state) {
   mps_material_destroy(&own);
 }
 
-/* ---- fields ------------------------------------------------------------------------------------
- */
+/* ---- fields ---------------------------------------------------------------------------------- */
 
 static double value_of(mps_particles *set, const char *name, int64_t id) {
   mps_view view;

@@ -7,8 +7,7 @@
 
 #include <mps/grid.h>
 
-/* ---- a law that refuses ----------------------------------------------------------------------
- */
+/* ---- a law that refuses ---------------------------------------------------------------------- */
 
 /* A law that stiffens with the work it has seen; it refuses particle `id` when it has written. */
 typedef struct touchy {
@@ -145,8 +144,7 @@ static void a_refused_step_has_not_happened(void **state) {
   refuses(&def, 2, false);
 }
 
-/* ---- a particle that leaves ------------------------------------------------------------------
- */
+/* ---- a particle that leaves ------------------------------------------------------------------ */
 
 /* Soil that flies towards the free end of the domain. */
 static mpm_scene flying(int32_t volumetric) {

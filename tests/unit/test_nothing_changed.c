@@ -45,8 +45,7 @@ static void make_set(scene *s, double spacing, double height) {
   OK(mps_material_create_linear_elastic(s->own, 2e6, 0.25, &s->second));
 }
 
-/* ---- WLS-MPM ----------------------------------------------------------------------------------
- */
+/* ---- WLS-MPM --------------------------------------------------------------------------------- */
 
 static void make_mpm(scene *s) {
   mps_mpm_def def = mps_mpm_defaults();
@@ -159,8 +158,7 @@ static mps_status contact_particles(scene *s) {
   return mps_contact_get_particles(s->contact, 0, &count, NULL, NULL, NULL, NULL, NULL);
 }
 
-/* ---- the set ----------------------------------------------------------------------------------
- */
+/* ---- the set --------------------------------------------------------------------------------- */
 
 static void make_bare(scene *s) { make_set(s, 0.1, 0.4); }
 
@@ -246,8 +244,7 @@ static mps_status add_free_field(scene *s) {
   return mps_dynamics_add_free_field(s->set, MPS_DYNAMICS_SIDE_RIGHT, 3);
 }
 
-/* ---- explicit dynamics ------------------------------------------------------------------------
- */
+/* ---- explicit dynamics ----------------------------------------------------------------------- */
 
 static void make_dynamics(scene *s) {
   mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
@@ -312,8 +309,7 @@ static mps_status dynamics_find_limit(scene *s) {
 }
 static mps_status dynamics_set_dt(scene *s) { return mps_dynamics_set_dt(s->dynamics, 1.0); }
 
-/* ---- implicit elasticity ----------------------------------------------------------------------
- */
+/* ---- implicit elasticity --------------------------------------------------------------------- */
 
 static void make_held_elastic(scene *s) {
   mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
@@ -425,8 +421,7 @@ static mps_status elastic_rollback(scene *s) {
 static mps_status elastic_save(scene *s) { return mps_elastic_save(s->elastic, file, NULL); }
 static mps_status elastic_restore(scene *s) { return mps_elastic_restore(s->elastic, file, NULL); }
 
-/* ---- the fluid --------------------------------------------------------------------------------
- */
+/* ---- the fluid ------------------------------------------------------------------------------- */
 
 static void make_fluid(scene *s) {
   const double wall[3][4] = {{0, 0, 0, 1}, {0, 0, 1, 0}, {0.8, 0, -1, 0}};
@@ -509,8 +504,7 @@ static mps_status fluid_rollback(scene *s) { return mps_fluid_rollback(s->fluid,
 static mps_status fluid_save(scene *s) { return mps_fluid_save(s->fluid, file, NULL); }
 static mps_status fluid_restore(scene *s) { return mps_fluid_restore(s->fluid, file, NULL); }
 
-/* ---- the sweep --------------------------------------------------------------------------------
- */
+/* ---- the sweep ------------------------------------------------------------------------------- */
 
 typedef struct row {
   void (*make)(scene *s);

@@ -27,8 +27,7 @@ static void write_file(const char *content, size_t size) {
   assert_int_equal(fclose(file), 0);
 }
 
-/* ---- the known motion: u = U sin^4(pi t/T) sin(2 pi f t), at rest at 0 and T ------------------
- */
+/* ---- the known motion: u = U sin^4(pi t/T) sin(2 pi f t), at rest at 0 and T ----------------- */
 
 #define T 4.0
 #define U 0.005
@@ -261,8 +260,7 @@ static void a_correction_needs_enough_samples(void **state) {
   mps_signal_destroy(&signal);
 }
 
-/* ---- the host's locale ------------------------------------------------------------------------
- */
+/* ---- the host's locale ----------------------------------------------------------------------- */
 
 /* Sets a locale with a decimal comma, made on the spot if the machine has none. */
 static bool set_comma(void) {

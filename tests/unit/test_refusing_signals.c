@@ -34,8 +34,7 @@ static mps_signal *shaking(void) {
   return signal;
 }
 
-/* ---- a solver whose boundary, load or body follows the signal ---------------------------------
- */
+/* ---- a solver whose boundary, load or body follows the signal -------------------------------- */
 
 typedef struct scene {
   mps_particles *set;
@@ -186,8 +185,7 @@ static void fluid_load(scene *s) {
   s->object = "load 0", s->signal_name = "signal[0] of load 0";
 }
 
-/* ---- steps ------------------------------------------------------------------------------------
- */
+/* ---- steps ----------------------------------------------------------------------------------- */
 
 #define VERBS(S)                                                                                   \
   static mps_status S##_step(void *s) { return mps_##S##_step(s, 1); }                             \
@@ -287,8 +285,7 @@ static void odd_answers_have_names(void **state) {
   }
 }
 
-/* ---- calls besides steps ----------------------------------------------------------------------
- */
+/* ---- calls besides steps --------------------------------------------------------------------- */
 
 #define REFUSED(s, call, function, hash)                                                           \
   do {                                                                                             \

@@ -79,8 +79,7 @@ static mpm_scene begin(mps_context *context, mps_material *law, bool warm) {
   return s;
 }
 
-/* ---- what a block tells -----------------------------------------------------------------------
- */
+/* ---- what a block tells ---------------------------------------------------------------------- */
 
 static void a_block_tells_ids_places_time_and_temperature(void **state) {
   (void)state;
@@ -103,8 +102,7 @@ static void a_block_tells_ids_places_time_and_temperature(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- history ----------------------------------------------------------------------------------
- */
+/* ---- history --------------------------------------------------------------------------------- */
 
 static void same_column(mpm_scene *a, mpm_scene *b, const char *name) {
   mps_view va = mpm_scene_view(a, name), vb = mpm_scene_view(b, name);
@@ -185,8 +183,7 @@ static void histories_may_be_long(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- refusals ---------------------------------------------------------------------------------
- */
+/* ---- refusals -------------------------------------------------------------------------------- */
 
 /* The status, the words and the particle reach the caller, whichever thread met them first. */
 static void a_refusal_names_the_particle(void **state) {

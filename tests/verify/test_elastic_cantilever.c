@@ -54,8 +54,7 @@ static void a_nearly_incompressible_cantilever_does_not_lock(void **state) {
   assert_true(fabs(tip_error(&def, 0.4999, 0, TEST_CONSERVATIVE)) < 2.0);
 }
 
-/* ---- Chikazawa (5): four unknowns a particle, without elimination, by LU ------------------------
- */
+/* ---- Chikazawa (5): four unknowns a particle, without elimination, by LU --------------------- */
 
 /* Rows of particle i in the dense system a (order u, v, R, D), by brute force over all pairs. */
 static void four_unknown_rows(const test_body *b, const cantilever *c, double ratio, int local,

@@ -123,8 +123,7 @@ static void impulses_are_the_momentum(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- damping ----------------------------------------------------------------------------------
- */
+/* ---- damping --------------------------------------------------------------------------------- */
 
 /* Amplitudes of the two lowest modes fall as exp(-h w t), with h as asked for. */
 static void modes_decay_with_the_damping_ratios_asked_for(void **state) {
@@ -237,8 +236,7 @@ static void every_member_is_of_second_order(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- driven boundaries ------------------------------------------------------------------------
- */
+/* ---- driven boundaries ----------------------------------------------------------------------- */
 
 static void a_driven_wall_follows_its_signal(void **state) {
   (void)state;

@@ -108,8 +108,7 @@ static void rigid_rotation_keeps_the_stress(void **state) {
   mps_material_destroy(&material);
 }
 
-/* ---- neo-Hookean ------------------------------------------------------------------------------
- */
+/* ---- neo-Hookean ----------------------------------------------------------------------------- */
 
 /* W = G/2 (tr B - 3) - G ln J + lambda/4 (J^2 - 1) - lambda/2 ln J, per unit of initial volume. */
 static double energy(const double *f) {
@@ -224,8 +223,7 @@ static void neo_hookean_wave_modulus_bounds_every_direction(void **state) {
   mps_material_destroy(&material);
 }
 
-/* ---- fluid ------------------------------------------------------------------------------------
- */
+/* ---- fluid ----------------------------------------------------------------------------------- */
 
 static mps_material *fluid(int32_t state_equation, double viscosity, int32_t no_tension) {
   mps_material_newtonian_def def = mps_material_newtonian_defaults();

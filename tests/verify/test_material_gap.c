@@ -155,8 +155,7 @@ static void no_path_gives_energy(void **state) {
     }
 }
 
-/* ---- a column that is thrown ------------------------------------------------------------------
- */
+/* ---- a column that is thrown ----------------------------------------------------------------- */
 
 /* Height of the highest particle. */
 static double height_of(mpm_scene *s) {

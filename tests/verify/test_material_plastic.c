@@ -8,8 +8,7 @@
 #define C 1e4 /* cohesion, Pa */
 static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0 * NU));
 
-/* ---- von Mises --------------------------------------------------------------------------------
- */
+/* ---- von Mises ------------------------------------------------------------------------------- */
 
 static mps_material *von_mises(double yield, double hardening) {
   mps_material_von_mises_def def = mps_material_von_mises_defaults();
@@ -66,8 +65,7 @@ static void von_mises_has_the_cohesion_in_plane_strain(void **state) {
   mps_material_destroy(&material);
 }
 
-/* ---- Drucker-Prager ---------------------------------------------------------------------------
- */
+/* ---- Drucker-Prager -------------------------------------------------------------------------- */
 
 static mps_material *drucker_prager(int32_t cone, double phi, double psi, double cohesion,
                                     double tension) {

@@ -9,8 +9,7 @@
 #define TINY (1e-11 * 1e5) /* Pa, of the stresses that occur */
 static const double shear = E / (2.0 * (1.0 + NU)), bulk = E / (3.0 * (1.0 - 2.0 * NU));
 
-/* ---- planes in principal stress space ---------------------------------------------------------
- */
+/* ---- planes in principal stress space -------------------------------------------------------- */
 
 #define PLANES 9
 
@@ -104,8 +103,7 @@ static bool search(const plane *planes, const double *trial, double *s) {
   return false;
 }
 
-/* ---- Mohr-Coulomb -----------------------------------------------------------------------------
- */
+/* ---- Mohr-Coulomb ---------------------------------------------------------------------------- */
 
 static mps_material *mohr_coulomb(double phi, double psi, double tension) {
   mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
@@ -198,8 +196,7 @@ static void a_crack_keeps_what_is_along_it(void **state) {
   mps_material_destroy(&material);
 }
 
-/* ---- Drucker-Prager ---------------------------------------------------------------------------
- */
+/* ---- Drucker-Prager -------------------------------------------------------------------------- */
 
 /* Closest point of the cut cone in the plane of p and q, with the energy p^2/(2K) + q^2/(2G): on
  * the cone's line, on the limit, or their corner. */

@@ -94,8 +94,7 @@ static void the_beam_is_in_balance(void **state) {
                   1e-7 * w / bending());
 }
 
-/* ---- the solver -------------------------------------------------------------------------------
- */
+/* ---- the solver ------------------------------------------------------------------------------ */
 
 /* Takes a share of all velocities away, to come to rest. */
 static void damp(mpm_scene *s, double share) {

@@ -260,8 +260,7 @@ static void slope_settles(void **state) {
   mpm_scene_end(&fast);
 }
 
-/* ---- between bodies ----------------------------------------------------------------------------
- */
+/* ---- between bodies -------------------------------------------------------------------------- */
 
 static mps_body *half_plane(double along, double from, double normal) {
   const double angle = 17.0 * atan(1.0) / 45.0;

@@ -22,8 +22,7 @@
 
 static const double shear = YOUNG / (2.0 * (1.0 + POISSON));
 
-/* ---- the solution -----------------------------------------------------------------------------
- */
+/* ---- the solution ---------------------------------------------------------------------------- */
 
 typedef struct vortex {
   double amplitude; /* rad, A */
@@ -79,8 +78,7 @@ static void body_force_at(const vortex *v, const double *X, double t, double *b)
        R * g[2] * h[0] - shear / DENSITY * (slope + 2.0 * gamma / R), b);
 }
 
-/* ---- the body force by finite differences of the library's law --------------------------------
- */
+/* ---- the body force by finite differences of the library's law ------------------------------- */
 
 /* First Piola-Kirchhoff stress P = J sigma F^-T of the motion at X, F by differences. */
 static void piola(const vortex *v, const mps_material *law, const double *X, double t, double *P) {
@@ -133,8 +131,7 @@ static void the_body_force_balances_the_librarys_law(void **state) {
   mps_material_destroy(&law);
 }
 
-/* ---- the solver -------------------------------------------------------------------------------
- */
+/* ---- the solver ------------------------------------------------------------------------------ */
 
 /* Circles of particles, two to a cell, and their volumes: the ring's area is exact. */
 static double *fill_ring(mpm_scene *s, double spacing, int64_t *count) {

@@ -129,8 +129,7 @@ void mpsi_text_close(mpsi_text *text) {
   text->owned = NULL;
 }
 
-/* ---- lines and words --------------------------------------------------------------------------
- */
+/* ---- lines and words ------------------------------------------------------------------------- */
 
 static bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -198,8 +197,7 @@ mpsi_quote mpsi_slice_quote(mpsi_slice slice) {
   return quote;
 }
 
-/* ---- numbers ----------------------------------------------------------------------------------
- */
+/* ---- numbers --------------------------------------------------------------------------------- */
 
 /* End of the digits at `c`. */
 static const char *skip_digits(const char *c, const char *end) {

@@ -137,8 +137,7 @@ static mps_status make_cells(build *b, const char *function, uint32_t *most) {
   return MPS_OK;
 }
 
-/* ---- sorting: a stable radix sort, from the lowest digit of x to the highest of z --------------
- */
+/* ---- sorting: a stable radix sort, from the lowest digit of x to the highest of z ------------ */
 
 static uint32_t digit_of(const build *b, const cell_item *item) {
   return item->cell[b->axis] >> b->shift & (DIGITS - 1);

@@ -41,8 +41,7 @@ void mpsi_particles_get_state(const mps_particles *p, mps_snapshot *out) {
   }
 }
 
-/* ---- what a set has besides its fields --------------------------------------------------------
- */
+/* ---- what a set has besides its fields ------------------------------------------------------- */
 
 enum { SITES = 4 };
 _Static_assert(sizeof(mpsi_site_run) == SITES * sizeof(int64_t), "kept as numbers");

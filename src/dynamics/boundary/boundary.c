@@ -25,8 +25,7 @@ mps_status mps_dynamics_boundary_def_init(mps_dynamics_boundary_def *def, size_t
   return MPSI_DEF_INIT(mps_dynamics_boundary_def, def, size, &boundary_defaults);
 }
 
-/* ---- a boundary --------------------------------------------------------------------------------
- */
+/* ---- a boundary ------------------------------------------------------------------------------ */
 
 static mps_status check_def(mps_dynamics *dynamics, const char *function,
                             const mps_dynamics_boundary_def *def) {
@@ -113,8 +112,7 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
   return status;
 }
 
-/* ---- the lists ----------------------------------------------------------------------------------
- */
+/* ---- the lists ------------------------------------------------------------------------------- */
 
 typedef mpsi_dynamics_lists lists;
 
@@ -335,8 +333,7 @@ mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *functio
   return MPS_OK;
 }
 
-/* ---- what the caller does -----------------------------------------------------------------------
- */
+/* ---- what the caller does -------------------------------------------------------------------- */
 
 /* Swaps `boundary` (NULL: none) with that of slot `number`, which may be NULL. */
 static mps_status exchange(mps_dynamics *dynamics, const char *function, int32_t number,

@@ -66,8 +66,7 @@ mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *func
   return mpsi_domain_agree_given_max(dynamics->domain, function, status, &list, count, values);
 }
 
-/* ---- dashpots -----------------------------------------------------------------------------------
- */
+/* ---- dashpots -------------------------------------------------------------------------------- */
 
 static double velocity_after(const mps_dynamics *dynamics, const motion *m, int32_t i) {
   if (dynamics->def.integrator != MPS_DYNAMICS_INTEGRATOR_VERLET) return m->v[i];
@@ -103,8 +102,7 @@ static double coordinate(const mps_dynamics *dynamics, int32_t c, int32_t i) {
   return reference + d - dynamics->length * (c == 0 ? s->vx : s->vy)[i];
 }
 
-/* ---- sums of impulses and works ----------------------------------------------------------------
- */
+/* ---- sums of impulses and works -------------------------------------------------------------- */
 
 static void flush(mpsi_exact *sum, double *part) {
   if (*part != 0.0) mpsi_exact_add(sum, *part);

@@ -26,8 +26,7 @@ static merging merging_of(const mpsi_value *value) {
   return mpsi_state_name_ends(value->name, "/particles") ? COUNT : SAME;
 }
 
-/* ---- numbers of list rows that belong to the body ----------------------------------------------
- */
+/* ---- numbers of list rows that belong to the body -------------------------------------------- */
 
 static int64_t body_rows(const mps_dynamics *dynamics, const mpsi_value *value) {
   int64_t rows = 0;

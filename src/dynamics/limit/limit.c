@@ -21,8 +21,7 @@
 
 #define FUNCTION "mps_dynamics_find_limit"
 
-/* ---- Lanczos -----------------------------------------------------------------------------------
- */
+/* ---- Lanczos --------------------------------------------------------------------------------- */
 
 /* The operator 2 dt A + dt^2 S + 2 dt S_beta in symmetric form; dt = 0 stands for S itself. */
 typedef struct operator_data {
@@ -152,8 +151,7 @@ static mps_status lanczos(operator_data *op, double bound, double *basis, ritz *
   return MPS_OK;
 }
 
-/* ---- limits ------------------------------------------------------------------------------------
- */
+/* ---- limits ---------------------------------------------------------------------------------- */
 
 typedef mpsi_dynamics_extremes range; /* of damping */
 

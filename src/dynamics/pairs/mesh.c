@@ -113,8 +113,7 @@ static void count_block(const arrange *work, int64_t b) {
   block->slot += block->scattered_end;
 }
 
-/* ---- arranging --------------------------------------------------------------------------------
- */
+/* ---- arranging ------------------------------------------------------------------------------- */
 
 /* Sorts the entries of one block and marks its runs. */
 static void arrange_block(void *data, int64_t number, int32_t worker) {

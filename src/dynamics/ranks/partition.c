@@ -309,8 +309,7 @@ static mps_status list_blocks(plan *p) {
   return MPS_OK;
 }
 
-/* ---- the structure ----------------------------------------------------------------------------
- */
+/* ---- the structure --------------------------------------------------------------------------- */
 
 /* Dashpots between columns and those edge particles that are this rank's. */
 static mps_status couple_columns(const plan *p, const int64_t *edge, mpsi_dynamics_structure *out) {

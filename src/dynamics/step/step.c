@@ -29,8 +29,7 @@ static void set_length(mps_dynamics *dynamics, double length) {
   dynamics->length = length;
 }
 
-/* ---- a step ------------------------------------------------------------------------------------
- */
+/* ---- a step ---------------------------------------------------------------------------------- */
 
 #define SMALL_BODY 40 /* blocks, about 20 000 particles */
 

@@ -14,16 +14,6 @@
 
 #define MOST_LOADS 1024
 
-struct mpsi_fluid_given {
-  int32_t kind;
-  int64_t count; /* of ids, 0: none is given */
-  int64_t *ids;  /* ascending */
-  double lower[2], upper[2];
-  double amount[2]; /* m/s2, or Pa */
-  double factor[2], now[2];
-  mps_signal *signal[2];
-};
-
 static const mps_fluid_load_def load_defaults = {
     .struct_size = sizeof(mps_fluid_load_def),
     .lower = {NAN, NAN, NAN},
@@ -127,11 +117,6 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
     for (int c = 0; c < 2; c++) mpsi_signal_give(&given, "a hash of signal", g->signal[c]);
   }
   return mpsi_domain_agree_given(f->def.domain, function, status, &given);
-}
-
-void mpsi_fluid_give_loads(const mps_fluid *f, mpsi_given *list) {
-  for (int32_t k = 0; k < f->given_room; k++)
-    if (f->given[k]) mpsi_give_vector(list, "the present factor on a load", 2, f->given[k]->now);
 }
 
 mps_status mps_fluid_add_load(mps_fluid *f, const mps_fluid_load_def *def, int32_t *number) {

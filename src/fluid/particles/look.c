@@ -22,7 +22,7 @@ static void load_part(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 void mpsi_fluid_load_cloud(mps_fluid *f) {
   mpsi_fluid_for_all(f, f->count, MPSI_FLUID_COPIED, load_part);
   f->driven = false;
-  mpsi_fluid_deal(f, mpsi_fluid_block(f));
+  mpsi_fluid_deal(f);
 }
 
 mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function, mps_status status) {

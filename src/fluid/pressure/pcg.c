@@ -28,9 +28,6 @@
 
 #include <string.h>
 
-#define BLOCK 2560       /* particles in a block of the preconditioner, about */
-#define MOST_BLOCKS 32   /* larger blocks instead */
-#define MOST_CHUNKS 256  /* in a block: its columns have 16 bits */
 #define MODIFIED 0.95    /* share of the fill that goes to the pivots */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
 #define LOOK_FROM 4.0    /* of the rz where the residual would be small enough if both fell alike */
@@ -39,23 +36,6 @@
 #define DEFLATED 1e-4    /* of the residual, in one go with the coarse space: see mpsi_fluid_pcg */
 
 /* ---- preconditioner -------------------------------------------------------------------------- */
-
-typedef struct blocks {
-  int64_t count, size;
-} blocks;
-
-static blocks cut(const mps_fluid *f) {
-  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
-  int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
-  wanted += wanted > 1 && wanted % 2; /* two threads, equal shares */
-  if (wanted > MOST_BLOCKS) wanted = MOST_BLOCKS;
-  if (wanted < (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS)
-    wanted = (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS;
-  const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks: ranks have whole blocks */
-  return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
-}
-
-int64_t mpsi_fluid_block(const mps_fluid *f) { return f->count > 0 ? cut(f).size : 1; }
 
 /* Row i of U^T but its 1; the pivot of row i, and what is right of it; diag A - 2 D, in the place
  * of u_new[1], which has no other use before the pressure is known. A neighbour and its image are
@@ -97,7 +77,7 @@ static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, ui
 
 typedef struct factor_pass {
   mps_fluid *fluid;
-  blocks blocks;
+  mpsi_fluid_blocks blocks;
   int64_t room, all; /* entries for each block but the last, and for all */
   atomic_bool full;
 } factor_pass;
@@ -126,7 +106,7 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
 
 mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
   mpsi_fluid_system *s = &f->system;
-  factor_pass p = {.fluid = f, .blocks = cut(f)};
+  factor_pass p = {.fluid = f, .blocks = mpsi_fluid_cut(f)};
   for (;;) {
     p.room = f->most_lower * p.blocks.size;
     p.all = f->most_lower * f->count + p.blocks.size;
@@ -151,7 +131,7 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
 
 typedef struct iteration {
   mps_fluid *fluid;
-  blocks blocks;
+  mpsi_fluid_blocks blocks;
   int64_t room;
   double alpha, beta;
 } iteration;
@@ -256,7 +236,7 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
   mpsi_fluid_system *s = &f->system;
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   const double tolerance = f->def.tolerance;
-  iteration it = {.fluid = f, .blocks = cut(f)};
+  iteration it = {.fluid = f, .blocks = mpsi_fluid_cut(f)};
   it.room = f->most_lower * it.blocks.size;
   int64_t done = 0;
   for (double left = INFINITY;;) {

@@ -95,7 +95,8 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
   }
   for (int b = 0; b < MPSI_FLUID_BODIES; b++)
     if (f->body[b].body) mpsi_body_give_state(list, f->body[b].body);
-  mpsi_fluid_give_loads(f, list);
+  for (int32_t k = 0; k < f->given_room; k++)
+    if (f->given[k]) mpsi_give_vector(list, "the present factor on a load", 2, f->given[k]->now);
 }
 
 mps_status mpsi_fluid_settle_alike(mps_fluid *f, const char *function, mps_status status) {
@@ -121,7 +122,23 @@ mps_status mpsi_fluid_lost(mps_fluid *f, const char *function) {
 
 /* ---- the deal -------------------------------------------------------------------------------- */
 
-void mpsi_fluid_deal(mps_fluid *f, int64_t block) {
+#define BLOCK 2560      /* particles in a block, about */
+#define MOST_BLOCKS 32  /* larger blocks instead */
+#define MOST_CHUNKS 256 /* in a block: its columns have 16 bits */
+
+mpsi_fluid_blocks mpsi_fluid_cut(const mps_fluid *f) {
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
+  wanted += wanted > 1 && wanted % 2; /* two threads, equal shares */
+  if (wanted > MOST_BLOCKS) wanted = MOST_BLOCKS;
+  if (wanted < (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS)
+    wanted = (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS;
+  const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks: ranks have whole blocks */
+  return (mpsi_fluid_blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
+}
+
+void mpsi_fluid_deal(mps_fluid *f) {
+  const int64_t block = f->count > 0 ? mpsi_fluid_cut(f).size : 1;
   mpsi_fluid_partition *s = f->partition;
   f->own[0] = 0, f->own[1] = f->count;
   if (!s) return;
@@ -341,7 +358,8 @@ void mpsi_fluid_tell_most(mps_fluid *f, int64_t count, double *values) {
 }
 
 void mpsi_fluid_tell_exact(mps_fluid *f, int32_t count, mpsi_exact *sums) {
-  if (f->partition) note(f->partition, mpsi_domain_sum_exact(f->partition->domain, "mps_fluid", count, sums));
+  if (f->partition)
+    note(f->partition, mpsi_domain_sum_exact(f->partition->domain, "mps_fluid", count, sums));
 }
 
 /* A sum is on its rank, and less than any number on others; what is none must not be sent. */

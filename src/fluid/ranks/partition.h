@@ -27,15 +27,19 @@ void mpsi_fluid_partition_destroy(mps_fluid *fluid);
 mps_status mpsi_fluid_settle(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_settle_max(mps_fluid *fluid, const char *function, mps_status status,
                                  int32_t count, double *values);
-/* loads.c: adds the present factors of loads. Not collective. */
-void mpsi_fluid_give_loads(const mps_fluid *fluid, mpsi_given *list);
 /* Do walls, bodies and loads of all ranks move alike, and have all the same particles where the
  * caller has edited them? `status` is this one's so far. */
 mps_status mpsi_fluid_settle_alike(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_lost(mps_fluid *fluid, const char *function);
 
-/* Deals the particles to the ranks, in blocks of `block`: fluid->own. Not collective. */
-void mpsi_fluid_deal(mps_fluid *fluid, int64_t block);
+/* Blocks of the preconditioner (pcg.c), whole chunks of particles (mpsi_fluid_units), by the number
+ * of particles alone. Not collective. */
+typedef struct mpsi_fluid_blocks {
+  int64_t count, size;
+} mpsi_fluid_blocks;
+mpsi_fluid_blocks mpsi_fluid_cut(const mps_fluid *fluid);
+/* Deals the particles to the ranks, in these blocks: fluid->own. Not collective. */
+void mpsi_fluid_deal(mps_fluid *fluid);
 /* After the neighbour search: lists the particles of other ranks that are neighbours of own ones.
  */
 mps_status mpsi_fluid_find_halo(mps_fluid *fluid, const char *function);

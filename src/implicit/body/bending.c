@@ -115,8 +115,7 @@ void mpsi_elastic_measure_bending(mps_elastic *e) {
     }
 }
 
-/* ---- forces and the matrix --------------------------------------------------------------------
- */
+/* ---- forces and the matrix ------------------------------------------------------------------- */
 
 static double sign(int k) { return k == 0 || k == 3 ? 1.0 : -1.0; }
 

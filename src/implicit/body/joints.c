@@ -19,8 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- which faces ------------------------------------------------------------------------------
- */
+/* ---- which faces ----------------------------------------------------------------------------- */
 
 static bool differ(const mps_elastic *e, int64_t i, int64_t j) {
   return e->lambda[i] != e->lambda[j] || e->mu[i] != e->mu[j];
@@ -121,8 +120,7 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
-/* ---- one joint --------------------------------------------------------------------------------
- */
+/* ---- one joint ------------------------------------------------------------------------------- */
 
 mpsi_joint_law mpsi_elastic_joint_law(const mps_elastic *e, const mpsi_joint *q) {
   const double l1 = e->lambda[q->low], l2 = e->lambda[q->high];
@@ -150,8 +148,7 @@ bool mpsi_elastic_pair_crosses(const mps_elastic *e, int64_t i, int64_t j, int32
   return false;
 }
 
-/* ---- gradients and forces ---------------------------------------------------------------------
- */
+/* ---- gradients and forces -------------------------------------------------------------------- */
 
 typedef struct joint_task {
   mps_elastic *e;
@@ -245,8 +242,7 @@ void mpsi_elastic_joint_forces(mps_elastic *e, double *stress, double *f) {
   mpsi_elastic_for_span(e, e->span[1], add_pull, &task);
 }
 
-/* ---- coefficients, for the matrix and for loads ------------------------------------------------
- */
+/* ---- coefficients, for the matrix and for loads ---------------------------------------------- */
 
 static double (*site_of(mpsi_wide *w, int64_t site))[3] {
   int32_t s = 0;

@@ -68,8 +68,7 @@ static mps_status read_sites(const mps_elastic *e, const char *function, int32_t
   return MPS_OK;
 }
 
-/* ---- offsets ------------------------------------------------------------------------------------
- */
+/* ---- offsets --------------------------------------------------------------------------------- */
 
 /* All offsets shorter than re in lexicographic order, so that k and count - 1 - k are opposite.
  * With l->step NULL it only counts. */

@@ -10,8 +10,7 @@
 
 #include <string.h>
 
-/* ---- definitions ------------------------------------------------------------------------------
- */
+/* ---- definitions ----------------------------------------------------------------------------- */
 
 static mps_status check_ids(const mps_elastic *e, const char *function, int64_t count,
                             const int64_t *ids) {
@@ -147,8 +146,7 @@ static mps_status make(mps_elastic *e, const char *function, const mps_elastic_b
   return MPS_OK;
 }
 
-/* ---- supports from boundaries -----------------------------------------------------------------
- */
+/* ---- supports from boundaries ---------------------------------------------------------------- */
 
 typedef struct new_supports {
   mpsi_support *supports;
@@ -220,8 +218,7 @@ mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
-/* ---- public calls -----------------------------------------------------------------------------
- */
+/* ---- public calls ---------------------------------------------------------------------------- */
 
 static mps_status check_number(const mps_elastic *e, const char *function, int32_t number) {
   if (number >= 0 && number < e->boundary_count && e->boundaries[number].used) return MPS_OK;
@@ -325,8 +322,7 @@ void mpsi_elastic_drop_boundaries(mps_elastic *e) {
   mpsi_free(e->context, e->boundaries);
 }
 
-/* ---- driving ----------------------------------------------------------------------------------
- */
+/* ---- driving --------------------------------------------------------------------------------- */
 
 static mps_status ask_signals(mps_elastic *e, const char *function, double t, bool *by_caller) {
   for (int32_t k = 0; k < e->boundary_count; k++) {
@@ -375,8 +371,7 @@ mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t) {
   return MPS_OK;
 }
 
-/* ---- what boundaries exert --------------------------------------------------------------------
- */
+/* ---- what boundaries exert ------------------------------------------------------------------- */
 
 /* The force f on a particle as forces along the normals of its rows: f = sum_r part[r] normal_r. */
 static void split(const mpsi_support *s, int d, const double *f, double *part) {

@@ -15,8 +15,7 @@
 
 #include <string.h>
 
-/* ---- one definition ---------------------------------------------------------------------------
- */
+/* ---- one definition -------------------------------------------------------------------------- */
 
 static bool on_facets(int32_t kind) { return kind >= MPS_ELASTIC_LOAD_TRACTION; }
 
@@ -217,8 +216,7 @@ static mps_status put(mps_elastic *e, const char *function, mps_status status, i
   return MPS_OK;
 }
 
-/* ---- public calls -----------------------------------------------------------------------------
- */
+/* ---- public calls ---------------------------------------------------------------------------- */
 
 static mps_status check_number(const mps_elastic *e, const char *function, int32_t number) {
   if (number >= 0 && number < e->load_count && e->loads[number].used) return MPS_OK;
@@ -267,8 +265,7 @@ void mpsi_elastic_drop_loads(mps_elastic *e) {
   mpsi_free(e->context, e->spare);
 }
 
-/* ---- nodal forces -----------------------------------------------------------------------------
- */
+/* ---- nodal forces ---------------------------------------------------------------------------- */
 
 /* Adds the force and the first moment m[c][b] = int t_c (x - x_i)_b of a load on cell i. */
 static void add_patch(mps_elastic *e, int64_t i, const mpsi_patch *patch, const double *scale) {

@@ -11,8 +11,7 @@
 
 #define PARALLEL 1e-9 /* sine below which two directions are the same */
 
-/* ---- one particle -----------------------------------------------------------------------------
- */
+/* ---- one particle ---------------------------------------------------------------------------- */
 
 static double dot(const double *a, const double *b, int d) {
   double sum = 0.0;

@@ -22,8 +22,7 @@ void mpsi_elastic_drop_change(mps_elastic *e) {
   e->change = NULL;
 }
 
-/* ---- making ready -----------------------------------------------------------------------------
- */
+/* ---- making ready ---------------------------------------------------------------------------- */
 
 static mps_status begin(mps_elastic *e, const char *function, int64_t count) {
   mpsi_elastic_drop_change(e);
@@ -91,8 +90,7 @@ static void use(mps_elastic *e) {
     e->boundaries[k].present = count_present(e, &e->boundaries[k]);
 }
 
-/* ---- particles that leave ---------------------------------------------------------------------
- */
+/* ---- particles that leave -------------------------------------------------------------------- */
 
 static mps_status prepare_removal(mps_elastic *e, const char *function, int64_t count,
                                   const int64_t *ids) {
@@ -131,8 +129,7 @@ void mpsi_elastic_renew(void *self) {
   mpsi_elastic_drop_change(e);
 }
 
-/* ---- a state to go back to --------------------------------------------------------------------
- */
+/* ---- a state to go back to ------------------------------------------------------------------- */
 
 static const mpsi_value *find_value(const mpsi_values *values, const char *name, int64_t rows) {
   const mpsi_value *value = mpsi_values_find(values, name);

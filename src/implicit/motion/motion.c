@@ -15,8 +15,7 @@
 
 #include <string.h>
 
-/* ---- definition -------------------------------------------------------------------------------
- */
+/* ---- definition ------------------------------------------------------------------------------ */
 
 static mps_status check_dt(mps_context *context, const char *function, double dt) {
   if (dt >= MPSI_ELASTIC_LEAST && dt <= MPSI_ELASTIC_MOST) return MPS_OK;
@@ -108,8 +107,7 @@ static void exchange(double **a, double **b) {
   *b = keep;
 }
 
-/* ---- start ------------------------------------------------------------------------------------
- */
+/* ---- start ----------------------------------------------------------------------------------- */
 
 /* The field if the set has it, else zero. */
 static mps_status read_or_zero(mps_elastic *e, const char *function, const char *name,
@@ -232,8 +230,7 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
   return mpsi_elastic_leave(e, status);
 }
 
-/* ---- one step ---------------------------------------------------------------------------------
- */
+/* ---- one step -------------------------------------------------------------------------------- */
 
 /* The equations of the step without w, to e->rhs. */
 static mps_status find_right_side(mps_elastic *e, const char *function, double factor) {
@@ -343,8 +340,7 @@ static mps_status ask_cancel(mps_elastic *e, const char *function) {
   return status;
 }
 
-/* ---- public calls -----------------------------------------------------------------------------
- */
+/* ---- public calls ---------------------------------------------------------------------------- */
 
 static mps_status check_motion(const mps_elastic *e, const char *function) {
   if (e->motion) return MPS_OK;

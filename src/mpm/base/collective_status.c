@@ -96,8 +96,7 @@ mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status sta
                    (long long)found[0]);
 }
 
-/* ---- particles that the caller adds and removes ----------------------------------------------
- */
+/* ---- particles that the caller adds and removes ---------------------------------------------- */
 
 mps_status mpsi_mpm_agree_on_insertion(void *self, const char *function, mps_status status,
                                        int64_t first) {

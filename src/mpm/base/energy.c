@@ -184,8 +184,7 @@ void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held,
   mpm->energy.nodes[g] = sum;
 }
 
-/* ---- penalty contact --------------------------------------------------------------------------
- */
+/* ---- penalty contact ------------------------------------------------------------------------- */
 
 /* Half the normal force times the depth that it comes from, of all particles in penalty contact:
  * `sign` times that is the elastic energy of the contact now, and the bodies' work on it less. */

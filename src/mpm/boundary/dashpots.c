@@ -44,8 +44,7 @@ static mps_status swap_sums(mps_mpm *mpm, const char *function, mpsi_dashpot_par
   return status == MPS_OK ? mpsi_halo_end_bytes(partition->halo, function) : status;
 }
 
-/* ---- forces at rest ---------------------------------------------------------------------------
- */
+/* ---- forces at rest -------------------------------------------------------------------------- */
 
 /* Of the dashpots of a block of nodes: a record is this and the forces of its plane. */
 typedef struct place {
@@ -178,8 +177,7 @@ mps_status mpsi_mpm_exchange_dashpots(mps_mpm *mpm, const char *function, const 
   return status == MPS_OK ? send_rests(mpm, function, old, old_count, old_dashpot) : status;
 }
 
-/* ---- files ------------------------------------------------------------------------------------
- */
+/* ---- files ----------------------------------------------------------------------------------- */
 
 /* A row on its way: its place, and the dashpots of its plane as numbers. */
 static int by_place(const void *left, const void *right) {

@@ -201,7 +201,7 @@ static int by_turn(const void *left, const void *right) {
 static bool make_room(exchange *m, int64_t slots) {
   mps_context *context = m->mpm->context;
   mpsi_impulses *all = &m->mpm->contact.impulses;
-  mpsi_contact_exchange *r = &m->mpm->partition->exchange;
+  mpsi_contact_exchange *r = &m->mpm->contact.exchange;
   return mpsi_room_ensure(context, &r->constraint, m->constraints, sizeof *all->constraint) &&
          mpsi_room_ensure(context, &r->block, m->entries, sizeof *all->block) &&
          mpsi_room_ensure(context, &r->weight, m->constraints * all->stride, sizeof *all->weight) &&
@@ -264,7 +264,7 @@ static void take_entry(exchange *m, const entry *e, int64_t first) {
 static void append_constraints(exchange *m, int64_t slots) {
   mps_mpm *mpm = m->mpm;
   mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_contact_exchange *r = &mpm->partition->exchange;
+  mpsi_contact_exchange *r = &mpm->contact.exchange;
   memset(r->lookup.item, -1, (size_t)slots * sizeof(int32_t));
   r->slots = slots;
   r->nodes = 0;
@@ -291,7 +291,7 @@ static void append_constraints(exchange *m, int64_t slots) {
 
 static mps_status join(exchange *m) {
   mps_context *context = m->mpm->context;
-  mpsi_contact_exchange *r = &m->mpm->partition->exchange;
+  mpsi_contact_exchange *r = &m->mpm->contact.exchange;
   int64_t slots = 16;
   m->entry = NULL;
   read_entries(m);
@@ -350,7 +350,7 @@ static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
 static mps_status make_room_for_message(exchange *m, mps_domain_message **list) {
   mps_mpm *mpm = m->mpm;
   mps_domain *domain = mpm->partition->domain;
-  mpsi_room *mail = &mpm->partition->exchange.mail;
+  mpsi_room *mail = &mpm->contact.exchange.mail;
   const int64_t bytes = message_bytes(mpm);
   if (bytes == 0) return MPS_OK;
   *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
@@ -365,7 +365,7 @@ static int32_t address(exchange *m, mps_domain_message *list) {
   const mps_domain *domain = mpm->partition->domain;
   int32_t count = 0;
   if (!list) return 0;
-  char *own = mpm->partition->exchange.mail.item;
+  char *own = mpm->contact.exchange.mail.item;
   const int64_t bytes = write_blocks(mpm, true, own) - own;
   m->own = own;
   m->own_bytes = write_blocks(mpm, false, own + bytes) - own;
@@ -382,12 +382,11 @@ mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_st
   int64_t constraints = 0;
   if (status == MPS_OK) status = make_room_for_message(&m, &list);
   status = mpsi_mpm_find_partners(mpm, function, status, &constraints);
-  mpm->partition->exchange.nodes = 0;
-  mpm->partition->exchange.constraints = constraints;
+  mpm->contact.exchange.nodes = 0;
+  mpm->contact.exchange.constraints = constraints;
   if (status == MPS_OK && constraints > 0) {
     const int32_t count = address(&m, list);
-    if (mpm->partition->partners.any)
-      status = mpsi_domain_post(domain, function, count, list, &m.box);
+    if (mpm->contact.partners.any) status = mpsi_domain_post(domain, function, count, list, &m.box);
     if (status == MPS_OK) status = join(&m);
     status = mpsi_domain_agree(domain, function, status);
   }
@@ -398,7 +397,7 @@ mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_st
 
 void mpsi_mpm_end_contact_exchange(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_contact_exchange *r = &mpm->partition->exchange;
+  mpsi_contact_exchange *r = &mpm->contact.exchange;
   mpsi_shared_node *shared = r->shared.item;
   for (int64_t k = 0; k < r->nodes; k++)
     if (shared[k].home)
@@ -411,7 +410,7 @@ void mpsi_mpm_end_contact_exchange(mps_mpm *mpm) {
 }
 
 void mpsi_mpm_free_contact_exchange(mps_mpm *mpm) {
-  mpsi_contact_exchange *r = &mpm->partition->exchange;
+  mpsi_contact_exchange *r = &mpm->contact.exchange;
   mpsi_room *const rooms[] = {&r->constraint, &r->block,  &r->weight, &r->node,
                               &r->shared,     &r->lookup, &r->mail,   &r->list};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]->item);

@@ -51,8 +51,7 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
   }
 }
 
-/* ---- when sweeps end --------------------------------------------------------------------------
- */
+/* ---- when sweeps end ------------------------------------------------------------------------- */
 
 /* The most sweeps and the least tolerance that a contact asks for. */
 static int32_t most_sweeps(const mps_mpm *mpm, double *tolerance) {
@@ -139,7 +138,7 @@ static void take_over(mps_mpm *mpm) {
 void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   const bool any =
-      mpm->partition ? mpm->partition->exchange.constraints > 0 : all->constraint_count > 0;
+      mpm->partition ? mpm->contact.exchange.constraints > 0 : all->constraint_count > 0;
   double tolerance;
   const int32_t most = most_sweeps(mpm, &tolerance);
   if (any) sweep_all(mpm, true, false);

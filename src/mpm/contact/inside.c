@@ -170,11 +170,11 @@ static void list_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const in
   ((uint64_t *)data)[t / 64] |= UINT64_C(1) << t % 64;
 }
 
-void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits) {
+static void list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits) {
   for_corners(mpm, &mpm->grid.cells[b], list_node, bits);
 }
 
-void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
+static void take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
   for (int t = 0; t < mpm->grid.tile_nodes; t++) {
     int at[3];
     if (!(bits[t / 64] >> t % 64 & 1)) continue;
@@ -183,8 +183,31 @@ void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
   }
 }
 
-/* ---- states under a tile ----------------------------------------------------------------------
- */
+/* On several ranks: corners of the cells that hold particles, of ghosts too, as bits of their
+ * tiles, and whether thin bodies part them. */
+mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known) {
+  mpsi_partition *partition = mpm->partition;
+  const int64_t nodes = (mpm->grid.tile_nodes + 63) / 64;
+  const int64_t words = nodes + 1; /* whether thin bodies part it; less than a parcel has */
+  uint64_t *out = (uint64_t *)partition->out, *in = (uint64_t *)partition->in;
+  if (partition->borders > 0) memset(out, 0, (size_t)(partition->borders * words) * sizeof *out);
+  for (int64_t k = 0; known && k < partition->borders; k++) {
+    list_reached(mpm, partition->border[k], out + k * words);
+    out[k * words + nodes] = mpm->grid.cells[partition->border[k]].thin;
+  }
+  const int32_t item = (int32_t)(words * (int64_t)sizeof *out);
+  mps_status status = mpsi_halo_begin_bytes(partition->halo, function, item, out, in);
+  if (status == MPS_OK) status = mpsi_halo_end_bytes(partition->halo, function);
+  for (int64_t b = 0; known && status == MPS_OK && b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    if (!cells->ghost) continue;
+    take_reached(mpm, b, in + cells->parcel * words);
+    cells->thin = in[cells->parcel * words + nodes] != 0;
+  }
+  return status;
+}
+
+/* ---- states under a tile --------------------------------------------------------------------- */
 
 /* Nodes low to high - 1 of the tile along axis c are in the domain, or beyond a mirror. */
 static void domain_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int *low,

@@ -6,7 +6,9 @@
 
 #include "thin_bodies.h"
 #include "contact/contact.h"
+#include "exchange.h"
 #include "impulses.h"
+#include "partners.h"
 #include "core/base/room.h"
 
 #include <mps/mpm.h>
@@ -53,6 +55,8 @@ typedef struct mpsi_contacts {
   _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_impulses impulses;
+  mpsi_contact_partners partners; /* of several ranks; none are before the first contact */
+  mpsi_contact_exchange exchange; /* constraints of partners */
   mpsi_room cell_pair_room, node_pair_room, node_room, normal_room, inside_room, reached_room,
       sight_room, beside_room, across_room, penalty_room, load_room; /* load_room: sums of parts */
 } mpsi_contacts;
@@ -80,9 +84,8 @@ void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t worker);
 /* inside.c: nodes of a block inside bodies; corners of the cells of a block that hold particles. */
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
-/* The same on their way between ranks: to bits of the tile, from which they are marked. */
-void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits);
-void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits);
+/* The same of ghosts from other ranks, where `known` here. Collective. */
+mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);
 /* area.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
 bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
 /* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies
@@ -95,6 +98,13 @@ void mpsi_mpm_update_bodies(mps_mpm *mpm);
  * the contact pushes them out. */
 mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact,
                                  int64_t from);
+/* removal.c: whether some body takes away what it finds; before a step, what they take, `cleared`
+ * where they do, on whatever rank (`status`: of the step so far on this rank); and, when its
+ * contact is made, what one takes. The latter two are collective. */
+bool mpsi_mpm_some_take_away(const mpsi_contacts *contacts);
+mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
+                                 bool *cleared);
+mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact);
 /* contacts.c: MPS_ERROR_DIVERGED where a particle is deeper in a body than its contact allows; ends
  * all contacts. */
 mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function);

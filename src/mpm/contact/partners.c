@@ -32,8 +32,9 @@ static bool has_bit(const uint64_t *row, int32_t bit) { return row[bit / 64] >> 
 
 static void set_bit(uint64_t *row, int32_t bit) { row[bit / 64] |= UINT64_C(1) << (bit % 64); }
 
-bool mpsi_mpm_begin_partners(mps_mpm *mpm) {
-  mpsi_contact_partners *m = &mpm->partition->partners;
+mps_status mpsi_mpm_begin_partners(mps_mpm *mpm, const char *function) {
+  if (!mpm->partition) return MPS_OK;
+  mpsi_contact_partners *m = &mpm->contact.partners;
   const int64_t words = words_of(mpm), ranks = ranks_of(mpm);
   const int64_t rows = ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
   const bool good =
@@ -41,16 +42,18 @@ bool mpsi_mpm_begin_partners(mps_mpm *mpm) {
       mpsi_room_ensure(mpm->context, &m->own_room, 2 * words, sizeof *m->own);
   m->words = m->words_room.item;
   m->own = m->own_room.item;
-  return good;
+  return good ? MPS_OK
+              : mpsi_fail_memory(mpm->context, function,
+                                 (size_t)(HEAD + (rows + 2) * words) * sizeof *m->words);
 }
 
 void mpsi_mpm_free_partners(mps_mpm *mpm) {
-  mpsi_free(mpm->context, mpm->partition->partners.words_room.item);
-  mpsi_free(mpm->context, mpm->partition->partners.own_room.item);
+  mpsi_free(mpm->context, mpm->contact.partners.words_room.item);
+  mpsi_free(mpm->context, mpm->contact.partners.own_room.item);
 }
 
 bool mpsi_mpm_is_partner(const mps_mpm *mpm, int32_t rank) {
-  return has_bit(mpm->partition->partners.own, rank);
+  return has_bit(mpm->contact.partners.own, rank);
 }
 
 /* ---- this rank's blocks ---------------------------------------------------------------------- */
@@ -128,7 +131,7 @@ static void tell_all(mps_mpm *mpm, uint64_t *row) {
 /* From this rank on along the rows of linked ranks; then the readers of any of them. */
 static void follow(mps_mpm *mpm, const uint64_t *linked, const uint64_t *readers) {
   const int32_t words = words_of(mpm);
-  uint64_t *own = mpm->partition->partners.own, *all = own + words;
+  uint64_t *own = mpm->contact.partners.own, *all = own + words;
   bool changed = true;
   while (changed) {
     changed = false;
@@ -147,7 +150,7 @@ static void follow(mps_mpm *mpm, const uint64_t *linked, const uint64_t *readers
 }
 
 static void take_rows(mps_mpm *mpm, const uint64_t *rows, int32_t count) {
-  mpsi_contact_partners *m = &mpm->partition->partners;
+  mpsi_contact_partners *m = &mpm->contact.partners;
   const int32_t words = words_of(mpm);
   int64_t bits = 0;
   for (int64_t w = 0; w < (int64_t)count * words; w++) bits += __builtin_popcountll(rows[w]);
@@ -162,7 +165,7 @@ static void take_rows(mps_mpm *mpm, const uint64_t *rows, int32_t count) {
 
 mps_status mpsi_mpm_find_partners(mps_mpm *mpm, const char *function, mps_status status,
                                   int64_t *constraints) {
-  mpsi_contact_partners *m = &mpm->partition->partners;
+  mpsi_contact_partners *m = &mpm->contact.partners;
   const int32_t words = words_of(mpm), rows = rows_of(mpm);
   uint64_t *row = (uint64_t *)m->words + HEAD;
   memset(m->words, 0, (size_t)(HEAD + rows * words) * sizeof *m->words);

@@ -21,8 +21,9 @@ typedef struct mpsi_contact_partners {
   mpsi_room words_room, own_room;
 } mpsi_contact_partners;
 
-/* For the ranks of the solver's domain; false: memory refused. Not collective, nor is the next. */
-bool mpsi_mpm_begin_partners(mps_mpm *mpm);
+/* For the ranks of the solver's domain, if it has several, before there are contacts. Not
+ * collective, nor is the next. */
+mps_status mpsi_mpm_begin_partners(mps_mpm *mpm, const char *function);
 /* Marks this rank's blocks of cells that have constraints or areas, before their tiles are sent. */
 void mpsi_mpm_mark_contact_blocks(mps_mpm *mpm);
 /* Finds the partners, and which of the blocks are sent to them (mpsi_cell_block.sent).

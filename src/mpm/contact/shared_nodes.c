@@ -46,7 +46,7 @@ static int64_t slot_of(const mpsi_contact_exchange *r, const int32_t *at, int32_
 
 mpsi_shared_node *mpsi_mpm_shared_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
                                        const double *value) {
-  mpsi_contact_exchange *r = &mpm->partition->exchange;
+  mpsi_contact_exchange *r = &mpm->contact.exchange;
   mpsi_shared_node *shared = r->shared.item;
   int32_t *lookup = r->lookup.item;
   const int64_t slot = slot_of(r, at, kind);
@@ -62,7 +62,7 @@ mpsi_shared_node *mpsi_mpm_shared_node(mps_mpm *mpm, const int32_t *at, int32_t 
 
 mpsi_area *mpsi_mpm_shared_area(const mps_mpm *mpm, const int32_t *block, const int *at,
                                 int32_t body) {
-  const mpsi_contact_exchange *r = &mpm->partition->exchange;
+  const mpsi_contact_exchange *r = &mpm->contact.exchange;
   int32_t place[3];
   for (int c = 0; c < 3; c++) place[c] = block[c] * MPSI_SIDE + at[c];
   const int32_t found =

@@ -550,6 +550,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mpsi_mpm_end_contacts(mpm);
   free_rooms(mpm);
   mpsi_mpm_free_impulses(mpm);
+  mpsi_mpm_free_contact_exchange(mpm);
+  mpsi_mpm_free_partners(mpm);
   mpsi_mpm_drop_loads(mpm);
   mpsi_mpm_drop_boundaries(mpm);
   for (int32_t k = 0; k < mpm->laws.count; k++) {

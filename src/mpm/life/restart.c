@@ -151,8 +151,7 @@ static void set_dashpots(void *solver, int64_t rows, const void *values) {
     mpm->run.broken = mpsi_mpm_put_dashpots(mpm, "restore", rows, values) != MPS_OK;
 }
 
-/* ---- impulses of the last step, for contact ---------------------------------------------------
- */
+/* ---- impulses of the last step, for contact -------------------------------------------------- */
 
 static int64_t count_kept(const void *solver) {
   return ((const mps_mpm *)solver)->contact.impulses.warm_count;

@@ -33,15 +33,10 @@ void mpsi_mpm_begin_particles(mps_mpm *mpm);
 /* The volume of a particle that the caller gave none. */
 double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t particle);
 
-/* outflow.c: room for the marks of a step that may take particles out; what bodies take before it,
- * `cleared` where they do, on whatever rank (`status`: of the step so far on this rank); those
- * that have passed open sides in it; and those inside a body that takes away what it finds, when
- * its contact is made. */
+/* outflow.c: room for the marks of a step that may take particles out; those that have passed open
+ * sides in it. */
 mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function);
-mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
-                                 bool *cleared);
 void mpsi_mpm_remove_leaving(mps_mpm *mpm);
-mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact);
 
 /* As the holder of the set: see mpsi_holder; insertion.c from the third on. */
 bool mpsi_mpm_compares(const void *mpm, const char *field);

@@ -5,6 +5,7 @@
  * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
+#include "parcels.h"
 
 #include <string.h>
 
@@ -239,7 +240,7 @@ static mps_status find_border(mps_mpm *mpm, const char *function) {
     partition->border[k] = partition->border[item[k]];
     mpm->grid.cells[partition->border[k]].parcel = k;
   }
-  return mpsi_mpm_reserve_tiles(mpm, function);
+  return mpsi_mpm_reserve_parcels(mpm, function);
 }
 
 static double widest(const search *s) {
@@ -293,7 +294,6 @@ mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function) {
   bool moved = false;
   mpm->partition->outdated = true;
   mps_status status = mpsi_mpm_sort_cells(mpm, function);
-  status = mpsi_mpm_share_warm_start(mpm, function, status);
   status = mpsi_mpm_partition_migrate(mpm, function, status, &moved);
   if (status != MPS_OK) {
     mpm->run.stale = true;
@@ -377,9 +377,7 @@ mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status s
     return status;
   }
   *mpm->partition = (mpsi_partition){.domain = mpsi_domain_retain(domain), .outdated = true};
-  if (!mpsi_mpm_begin_partners(mpm))
-    status = mpsi_fail_memory(mpm->context, function, (size_t)mps_domain_size(domain));
-  return mpsi_domain_agree(domain, function, status);
+  return MPS_OK;
 }
 
 mps_status mpsi_mpm_partition_create(mps_mpm *mpm, const char *function, mps_status status,
@@ -401,8 +399,6 @@ mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_stat
 void mpsi_mpm_partition_free(mps_mpm *mpm) {
   mpsi_partition *partition = mpm->partition;
   if (!partition) return;
-  mpsi_mpm_free_contact_exchange(mpm);
-  mpsi_mpm_free_partners(mpm);
   mpm->partition = NULL;
   mpsi_halo_destroy(mpm->context, &partition->halo);
   mpsi_free(mpm->context, partition->first);

@@ -17,8 +17,6 @@
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
 #include "core/base/room.h"
-#include "mpm/contact/partners.h"
-#include "mpm/contact/exchange.h"
 #include "curve_orientation.h"
 
 #include <mps/mpm.h>
@@ -41,8 +39,6 @@ typedef struct mpsi_partition {
   double heaviest;                    /* particles of the rank that had most, after the last cut */
   bool cancel;                        /* a hook has asked to stop, on whatever rank */
   mps_status lost;                    /* of a message in the step being made */
-  mpsi_contact_partners partners;     /* contact partners: partners.h */
-  mpsi_contact_exchange exchange;     /* constraints of partners: exchange.h */
   mpsi_room border_room, rank_room, out_room, in_room;
 } mpsi_partition;
 
@@ -108,25 +104,5 @@ mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_sta
 mps_status mpsi_mpm_any_rank(mps_mpm *mpm, const char *function, bool *any);
 /* collective_status.c: what the callers of all ranks have edited. */
 mps_status mpsi_mpm_compare_edits(mps_mpm *mpm, const char *function, mps_status status);
-/* tiles.c: room for parcels, whatever the step. Not collective. */
-mps_status mpsi_mpm_reserve_tiles(mps_mpm *mpm, const char *function);
-/* tiles.c: corners of cells with particles (pairs.h), of ghosts too: while bodies are looked for.
- */
-mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);
-/* tiles.c: whether the step to be made needs what the last one needed, so that nothing of it can
- * fail: then the ranks need not ask one another. Not collective: all know the same. */
-bool mpsi_mpm_partition_unchanged(const mps_mpm *mpm);
-/* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */
-mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status);
-/* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */
-mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function);
-void mpsi_mpm_receive_tiles(mps_mpm *mpm);
-/* tiles.c: the same for other sums, which `sum` puts into a worker's tile, without forces; then
- * such a tile of block b (not collective), false where messages are lost. */
-void mpsi_mpm_send_sums(mps_mpm *mpm, void (*sum)(mps_mpm *, int64_t, int32_t));
-bool mpsi_mpm_receive_sums(mps_mpm *mpm, int64_t b, int32_t worker,
-                           void (*sum)(mps_mpm *, int64_t, int32_t));
-/* tiles.c: a block of cells to its nodes, whichever rank has summed it. Not collective. */
-void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

@@ -3,6 +3,8 @@
  * way is scratch, or what the next step would do first. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
+#include "mpm/ranks/parcels.h"
+#include "mpm/step/tiles.h"
 
 #include <mps/grid.h>
 
@@ -21,7 +23,7 @@ static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_penalty};
   if (mpm->partition) {
     pass.scatter = mpsi_mpm_scatter_tile;
-    pass.arrive = mpsi_mpm_receive_tiles;
+    pass.arrive = mpsi_mpm_receive_parcels;
     const mps_status status = mpsi_mpm_send_tiles(mpm, function);
     if (status != MPS_OK) return status;
   }

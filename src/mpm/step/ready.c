@@ -5,8 +5,11 @@
 #include "mpm/particles/particles.h"
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  return mpm->partition ? mpsi_mpm_partition_sort(mpm, function)
-                        : mpsi_mpm_sort_alone(mpm, function);
+  if (!mpm->partition) return mpsi_mpm_sort_alone(mpm, function);
+  const mps_status status = mpsi_mpm_share_warm_start(mpm, function, MPS_OK);
+  if (status == MPS_OK) return mpsi_mpm_partition_sort(mpm, function);
+  mpm->run.stale = true;
+  return status;
 }
 
 mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {

@@ -3,7 +3,7 @@
  * where nothing can fail that did not in the last step, one reduction at the end serves all.
  *
  *   prepare    statuses of signals and particles; ghosts of the present blocks
- *   scatter    border blocks are summed and sent, the interior meanwhile (ranks/tiles.c)
+ *   scatter    border blocks are summed and sent, the interior meanwhile (tiles.c)
  *   contact    constraints of partner ranks, on which each sweeps alike (contact/exchange.c)
  *   gather     each rank its own blocks
  *   complete   largest speed, lost and bad particles in one reduction (block_results.c)
@@ -11,6 +11,8 @@
 #include "stages.h"
 
 #include "mpm/particles/particles.h"
+#include "mpm/ranks/parcels.h"
+#include "tiles.h"
 
 /* As in step.c. An error loses nothing but the tractions at rest of absorbing sides. `status`: of
  * the call so far on this rank; collective. */
@@ -57,7 +59,7 @@ static mps_status transfer(mps_mpm *mpm, const char *function, double dt, mps_st
   const mps_status sent = mpsi_mpm_send_tiles(mpm, function);
   if (sent != MPS_OK) return sent;
   pass.scatter = mpsi_mpm_scatter_tile;
-  pass.arrive = mpsi_mpm_receive_tiles;
+  pass.arrive = mpsi_mpm_receive_parcels;
   if (mpm->contact.cell_pair_count > 0 || mpm->contact.bodies > 0) {
     mpsi_mpm_run_pass(mpm, &pass);
     status = solve_contacts(mpm, function, dt, status);

@@ -31,6 +31,7 @@
  * return, without strain. V follows the elastic volume strain of p' - p. SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "mpm/base/kernels.h"
+#include "mpm/ranks/parcels.h"
 
 #include <string.h>
 
@@ -403,7 +404,7 @@ static void run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mp
   const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
                           .scatter = add,
                           .gather = gather,
-                          .arrive = mpm->partition ? mpsi_mpm_receive_tiles : NULL};
+                          .arrive = mpm->partition ? mpsi_mpm_receive_parcels : NULL};
   if (mpm->partition) mpsi_mpm_send_sums(mpm, sum);
   mpsi_mpm_run_pass(mpm, &pass);
 }

@@ -12,8 +12,7 @@
 #include "spin.h"
 #include "support.h"
 
-/* ---- active nodes -----------------------------------------------------------------------------
- */
+/* ---- active nodes ---------------------------------------------------------------------------- */
 
 /* A particle's stencil and its nodes. */
 typedef struct support {
@@ -112,8 +111,7 @@ MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *c
   return bodies;
 }
 
-/* ---- the fit ----------------------------------------------------------------------------------
- */
+/* ---- the fit --------------------------------------------------------------------------------- */
 
 MPSI_INLINE double sum_of(mpsi_quad a) { return (a[0] + a[2]) + (a[1] + a[3]); }
 
@@ -193,8 +191,7 @@ MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
   return bodies;
 }
 
-/* ---- transfers --------------------------------------------------------------------------------
- */
+/* ---- transfers ------------------------------------------------------------------------------- */
 
 /* What a particle gives besides mass: momentum m (v + L dx), force by phi and by its gradient. */
 typedef struct source {
@@ -261,8 +258,7 @@ MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
   }
 }
 
-/* ---- contact ----------------------------------------------------------------------------------
- */
+/* ---- contact --------------------------------------------------------------------------------- */
 
 /* The node `local` of the block g, in contact with body b. */
 static mpsi_contact_node *contact_node_of(const mps_mpm *mpm, int32_t g, int local, int32_t b) {
@@ -341,8 +337,7 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
   }
 }
 
-/* ---- one particle -----------------------------------------------------------------------------
- */
+/* ---- one particle ---------------------------------------------------------------------------- */
 
 MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, int64_t particle) {
@@ -470,8 +465,7 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   }
 }
 
-/* ---- variants ---------------------------------------------------------------------------------
- */
+/* ---- variants -------------------------------------------------------------------------------- */
 
 /* The body with dimension and spline as literal arguments. */
 #define CHOOSE(dim, spline, body, ...)                                                             \
@@ -508,8 +502,7 @@ void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cell
   *at = s.at;
 }
 
-/* ---- weights at a foot ------------------------------------------------------------------------
- */
+/* ---- weights at a foot ----------------------------------------------------------------------- */
 
 /* By the fit that least_squares_batch.c has kept for the particle in this step. */
 MPSI_INLINE void foot_body(const mps_mpm *mpm, const mpsi_cell_block *cells,

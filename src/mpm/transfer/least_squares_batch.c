@@ -15,8 +15,7 @@ typedef struct batch {
   mpsi_quad q[4][4];              /* inverse of M; rows from 1 on over h */
 } batch;
 
-/* ---- active nodes -----------------------------------------------------------------------------
- */
+/* ---- active nodes ---------------------------------------------------------------------------- */
 
 /* Particles [k, k + n) of the chunk, n at most 4. */
 MPSI_INLINE void place_batch(int dim, int spline, const mpsi_places *places, int k, int n,
@@ -136,8 +135,7 @@ MPSI_INLINE bool is_full(const mps_mpm *mpm, const mpsi_cell_block *cells,
   return true;
 }
 
-/* ---- the fit ----------------------------------------------------------------------------------
- */
+/* ---- the fit --------------------------------------------------------------------------------- */
 
 /* The upper half of sum w P P^T, P = [1, s]. */
 MPSI_INLINE void moments(int dim, int spline, const batch *b, const mpsi_quad *w,
@@ -198,8 +196,7 @@ MPSI_INLINE void finish_fit(const mps_mpm *mpm, int dim, mpsi_quad upper[4][4], 
     }
 }
 
-/* ---- kept from the scatter to the gather ------------------------------------------------------
- */
+/* ---- kept from the scatter to the gather ----------------------------------------------------- */
 
 /* Of particles p, p + 1, ... of the block. */
 MPSI_INLINE void keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
@@ -285,8 +282,7 @@ MPSI_INLINE uint32_t bodies_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
   return bodies;
 }
 
-/* ---- particles to nodes -----------------------------------------------------------------------
- */
+/* ---- particles to nodes ---------------------------------------------------------------------- */
 
 /* What the particles give to node i: its share w P_0 = phi of mass and momentum, and force by w:
  * all of these are linear functions of s, 1, s_x, s_y, s_z side by side. */
@@ -474,8 +470,7 @@ MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
     give_rows(worker, dim, spline, b, &s, false, lanes);
 }
 
-/* ---- nodes to particles -----------------------------------------------------------------------
- */
+/* ---- nodes to particles ---------------------------------------------------------------------- */
 
 /* The spin of the slopes L[component][axis]: see mpsi_take_spin. */
 MPSI_INLINE void take_spin(int dim, int spline, double inverse, mpsi_quad (*moment)[3],
@@ -547,8 +542,7 @@ MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_cell_block *cells, const 
   }
 }
 
-/* ---- full supports ----------------------------------------------------------------------------
- */
+/* ---- full supports --------------------------------------------------------------------------- */
 
 /* Keeps the fit of particles p, p + 1, ... with a full support: see shape.h. */
 MPSI_INLINE void keep_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
@@ -588,8 +582,7 @@ MPSI_INLINE bool are_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
   return full;
 }
 
-/* ---- segments ---------------------------------------------------------------------------------
- */
+/* ---- segments -------------------------------------------------------------------------------- */
 
 MPSI_INLINE mpsi_batched scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells,
                                       const mpsi_worker *worker, int dim, int spline,

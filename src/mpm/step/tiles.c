@@ -1,0 +1,116 @@
+/* tiles.c - tiles between ranks (ranks/partition.h): border blocks are summed and sent, the
+ * interior is summed meanwhile, and then the tiles received are added to the nodes.
+ *
+ * A parcel has four numbers (whether its forces are apart, whether they are split, whether thin
+ * bodies separate its nodes, whether it has contact constraints) and then the part of the tile that
+ * is in use, that of the forces where some tile of the step has them, both across thin bodies
+ * (thin_bodies.h) where some tile has these, and those of penalty contact, body by body
+ * (penalty.c). SPDX-License-Identifier: BSD-3-Clause */
+#include "tiles.h"
+
+#include "mpm/base/kernels.h"
+#include "mpm/ranks/parcels.h"
+
+/* What a tile has follows from bodies, boundaries and blocks, and so does the room of a step. */
+bool mpsi_mpm_partition_unchanged(const mps_mpm *mpm) {
+  return mpm->partition->ready && !mpm->run.stale && !mpm->run.edited &&
+         !mpm->partition->outdated && !mpm->boundaries.outdated && mpm->contact.bodies == 0 &&
+         !mpm->settling.on && !mpsi_mpm_absorbs(mpm);
+}
+
+mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status) {
+  mpsi_partition *partition = mpm->partition;
+  enum { APART, THIN, SPRINGS, FOUND };
+  double found[FOUND] = {0.0};
+  if (status == MPS_OK) status = mpsi_mpm_reserve_parcels(mpm, function);
+  for (int64_t k = 0; status == MPS_OK && k < partition->borders; k++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[partition->border[k]];
+    if (cells->apart) found[APART] = 1.0;
+    if (cells->thin) found[THIN] = 1.0;
+    double penalty_bodies = 0.0;
+    for (int32_t q = 0; q < cells->pairs; q++)
+      penalty_bodies += mpsi_mpm_has_penalty(mpm, cells, q);
+    found[SPRINGS] = fmax(found[SPRINGS], penalty_bodies);
+  }
+  status = mpsi_mpm_agree_in_step(mpm, function, status, FOUND, found);
+  partition->ready = status == MPS_OK;
+  partition->apart = found[APART] > 0.0;
+  partition->thin = found[THIN] > 0.0;
+  partition->penalty_bodies = (int32_t)found[SPRINGS];
+  return status;
+}
+
+/* ---- packing --------------------------------------------------------------------------------- */
+
+static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *parcel, bool pack) {
+  return mpsi_mpm_copy_nodes(cells, tile, sizeof *tile, parcel, pack);
+}
+
+/* Tiles and those across; those of forces where they are apart. */
+static double *copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
+                          bool pack) {
+  parcel = copy_tile(cells, worker->tile, parcel, pack);
+  if (cells->apart) parcel = copy_tile(cells, worker->force, parcel, pack);
+  if (!cells->thin) return parcel;
+  parcel = copy_tile(cells, worker->across_tile, parcel, pack);
+  if (cells->apart) parcel = copy_tile(cells, worker->across_force, parcel, pack);
+  return parcel;
+}
+
+static void copy_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker, double *parcel, bool pack) {
+  for (int32_t q = 0; q < cells->pairs; q++)
+    if (mpsi_mpm_has_penalty(mpm, cells, q))
+      parcel = mpsi_mpm_copy_nodes(
+          cells,
+          mpsi_mpm_penalty_tile(mpm, worker, mpm->contact.cell_pair[cells->first_pair + q].body),
+          sizeof(mpsi_penalty_node), parcel, pack);
+}
+
+static void pack(void *data, int64_t k, int32_t number) {
+  mps_mpm *mpm = data;
+  mpsi_partition *partition = mpm->partition;
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  const mpsi_cell_block *cells = &mpm->grid.cells[partition->border[k]];
+  double *parcel = mpsi_mpm_parcel(partition, false, k);
+  mpsi_mpm_clear_penalty(mpm, cells, worker);
+  mpm->kernels->tile[mpm->def.geometry][mpm->def.spline - 2](mpm, partition->border[k], number);
+  parcel[0] = cells->apart;
+  parcel[1] = cells->split;
+  parcel[2] = cells->thin;
+  parcel[3] = cells->in_contact;
+  parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, true);
+  copy_springs(mpm, cells, worker, parcel, true);
+}
+
+mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function) {
+  mpsi_partition *partition = mpm->partition;
+  partition->item = mpsi_mpm_parcel_bytes(partition, partition->apart, partition->thin,
+                                          partition->penalty_bodies);
+  mpsi_parallel_for(mpm->context, partition->borders, pack, mpm);
+  partition->lost = mpsi_halo_begin_bytes(partition->halo, function, partition->item,
+                                          partition->out, partition->in);
+  return partition->lost;
+}
+
+/* ---- to the nodes ---------------------------------------------------------------------------- */
+
+void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t number) {
+  mpsi_partition *partition = mpm->partition;
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  if (cells->parcel < 0) {
+    mpsi_mpm_scatter_penalty(mpm, b, number);
+    return;
+  }
+  if (cells->ghost && partition->lost != MPS_OK) return; /* the step has failed */
+  double *parcel = mpsi_mpm_parcel(partition, cells->ghost, cells->parcel);
+  cells->apart = parcel[0] != 0.0;
+  cells->split = parcel[1] != 0.0;
+  cells->thin = parcel[2] != 0.0;
+  cells->in_contact = parcel[3] != 0.0;
+  parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, false);
+  copy_springs(mpm, cells, worker, parcel, false);
+  mpm->kernels->flush(mpm, b, number);
+  mpsi_mpm_add_penalty(mpm, cells, worker);
+}

@@ -1,0 +1,21 @@
+/* tiles.h - the tiles of a step between ranks (tiles.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_TILES_H
+#define MPSI_MPM_TILES_H
+
+#include <mps/mpm.h>
+
+#include <stdbool.h>
+
+/* Whether the step to be made needs what the last one needed, so that nothing of it can fail: then
+ * the ranks need not ask one another. Not collective: all know the same. */
+bool mpsi_mpm_partition_unchanged(const mps_mpm *mpm);
+/* Before a step, all that can fail has been done: the worst of all ranks. Collective. */
+mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status);
+/* Sums the border into tiles and sends them; mpsi_mpm_receive_parcels has what comes. Collective.
+ */
+mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function);
+/* In a pass: a block of cells to its nodes, whichever rank has summed it. Not collective. */
+void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t worker);
+
+#endif
