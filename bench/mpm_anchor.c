@@ -23,21 +23,36 @@
 #define MARGIN 2   /* cells of the grid around the block */
 
 typedef double v4 __attribute__((vector_size(32)));
-typedef double v8 __attribute__((vector_size(64)));
 typedef double v4u __attribute__((vector_size(32), aligned(8), may_alias));
-typedef double v8u __attribute__((vector_size(64), aligned(8), may_alias));
+
+/* A row is ROW vectors of NODES nodes. Vectors that are wider than those of the processor would go
+ * through memory: a yardstick ten times too long. */
+#ifdef __AVX512F__
+#define NODES 2
+typedef double vec __attribute__((vector_size(64)));
+typedef double vecu __attribute__((vector_size(64), aligned(8), may_alias));
+#else
+#define NODES 1
+typedef v4 vec;
+typedef v4u vecu;
+#endif
+#define ROW (4 / NODES)
 
 /* ---- vectors --------------------------------------------------------------------------------- */
 
+/* Vectors of a row with some weight. */
+INLINE int row_vectors(int degree) { return (degree + NODES) / NODES; }
 INLINE v4 load4(const double *p) { return *(const v4u *)p; }
-INLINE v8 load8(const double *p) { return *(const v8u *)p; }
+INLINE vec load(const double *p) { return *(const vecu *)p; }
 INLINE void store4(double *p, v4 a) { *(v4u *)p = a; }
-INLINE void store8(double *p, v8 a) { *(v8u *)p = a; }
+INLINE void store(double *p, vec a) { *(vecu *)p = a; }
 
-/* The four at `p` twice; eight are read. */
-INLINE v8 twice(const double *p) {
-  const v8 a = load8(p);
-#ifdef __clang__
+/* The four at `p` for every node of a vector; eight may be read. */
+INLINE vec each_node(const double *p) {
+  const vec a = load(p);
+#if NODES == 1
+  return a;
+#elif defined(__clang__)
   return __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3);
 #else
   typedef int64_t i8 __attribute__((vector_size(64)));
@@ -45,10 +60,11 @@ INLINE v8 twice(const double *p) {
 #endif
 }
 
-INLINE v4 halves(v8 a) {
-  double both[8];
-  store8(both, a);
-  return load4(both) + load4(both + 4);
+/* The sum over the nodes of a vector. */
+INLINE v4 over_nodes(vec a) {
+  double all[4 * NODES];
+  store(all, a);
+  return NODES == 2 ? load4(all) + load4(all + 4 * (NODES - 1)) : load4(all);
 }
 
 /* ---- weights: polynomials in t = (x_p - x_1)/h, node 1 the second of the support ------------- */
@@ -63,9 +79,14 @@ INLINE v4 halves(v8 a) {
 #define QUADRATIC_2(i) ((i) == 1 ? -1.0 : (i) == 3 ? 0.0 : 0.5)
 #define FOUR(c)                                                                                    \
   (v4) { c(0), c(1), c(2), c(3) }
-#define PAIR(c, i)                                                                                 \
-  (v8) { c(i), c(i), c(i), c(i), c(i + 1), c(i + 1), c(i + 1), c(i + 1) }
-#define NODE(i) ((double)(i)-1.0)
+#if NODES == 2
+#define BY_NODE(c, i)                                                                              \
+  (vec) { c(i), c(i), c(i), c(i), c(i + 1), c(i + 1), c(i + 1), c(i + 1) }
+#else
+#define BY_NODE(c, i)                                                                              \
+  (vec) { c(i), c(i), c(i), c(i) }
+#endif
+#define PLACE(i) ((double)(i)-1.0)
 
 /* Along a slow axis: w[0..3] weights, w[4..7] weights times distance. */
 INLINE void weights(int degree, double t, double w[8]) {
@@ -73,22 +94,20 @@ INLINE void weights(int degree, double t, double w[8]) {
   const v4 quadratic = FOUR(QUADRATIC_0) + t * (FOUR(QUADRATIC_1) + t * FOUR(QUADRATIC_2));
   const v4 a = degree == 3 ? cubic : quadratic;
   store4(w, a);
-  store4(w + 4, a * (FOUR(NODE) - t));
+  store4(w + 4, a * (FOUR(PLACE) - t));
 }
 
-/* Along x, each weight four times: for nodes 0 and 1 in [0], 2 and 3 in [1]. */
-INLINE void row_weights(int degree, double t, v8 w[2], v8 wd[2]) {
-  if (degree == 3) {
-    w[0] =
-        PAIR(CUBIC_0, 0) + t * (PAIR(CUBIC_1, 0) + t * (PAIR(CUBIC_2, 0) + t * PAIR(CUBIC_3, 0)));
-    w[1] =
-        PAIR(CUBIC_0, 2) + t * (PAIR(CUBIC_1, 2) + t * (PAIR(CUBIC_2, 2) + t * PAIR(CUBIC_3, 2)));
-  } else {
-    w[0] = PAIR(QUADRATIC_0, 0) + t * (PAIR(QUADRATIC_1, 0) + t * PAIR(QUADRATIC_2, 0));
-    w[1] = PAIR(QUADRATIC_0, 2) + t * (PAIR(QUADRATIC_1, 2) + t * PAIR(QUADRATIC_2, 2));
+/* Along x, each weight four times: nodes of vector k. */
+INLINE void row_weights(int degree, double t, vec w[ROW], vec wd[ROW]) {
+  for (int k = 0; k < ROW; k++) {
+    const int i = k * NODES;
+    if (degree == 3)
+      w[k] = BY_NODE(CUBIC_0, i) +
+             t * (BY_NODE(CUBIC_1, i) + t * (BY_NODE(CUBIC_2, i) + t * BY_NODE(CUBIC_3, i)));
+    else
+      w[k] = BY_NODE(QUADRATIC_0, i) + t * (BY_NODE(QUADRATIC_1, i) + t * BY_NODE(QUADRATIC_2, i));
+    wd[k] = w[k] * (BY_NODE(PLACE, i) - t);
   }
-  wd[0] = w[0] * (PAIR(NODE, 0) - t);
-  wd[1] = w[1] * (PAIR(NODE, 2) - t);
 }
 
 /* First node of the support and t of each axis for particles first, ..., first + n - 1. */
@@ -112,7 +131,7 @@ INLINE void locate(const anchor *a, int dim, int degree, int64_t first, int n, i
 
 /* What a particle brings to the rows of its support. */
 typedef struct share {
-  v8 P[2], Y[2], Z[2];
+  vec P[ROW], Y[ROW], Z[ROW];
   double wy[8], wz[8];
 } share;
 
@@ -143,12 +162,12 @@ INLINE void gather(const anchor *a, int dim, int degree, int64_t first, int n,
 
 INLINE void prepare(int dim, int degree, double give[4][4], double tx, double ty, double tz,
                     share *s) {
-  v8 w[2], wd[2];
+  vec w[ROW], wd[ROW];
   row_weights(degree, tx, w, wd);
-  for (int k = 0; k < 2; k++) {
-    s->P[k] = w[k] * twice(give[0]) + wd[k] * twice(give[1]);
-    s->Y[k] = w[k] * twice(give[2]);
-    if (dim == 3) s->Z[k] = w[k] * twice(give[3]);
+  for (int k = 0; k < row_vectors(degree); k++) {
+    s->P[k] = w[k] * each_node(give[0]) + wd[k] * each_node(give[1]);
+    s->Y[k] = w[k] * each_node(give[2]);
+    if (dim == 3) s->Z[k] = w[k] * each_node(give[3]);
   }
   weights(degree, ty, s->wy);
   if (dim == 3) weights(degree, tz, s->wz);
@@ -157,11 +176,12 @@ INLINE void prepare(int dim, int degree, double give[4][4], double tx, double ty
 /* Adds the n particles of a cell to the rows of one slab of nodes. */
 INLINE void add_slab(const anchor *a, int dim, int degree, const share *s, int n, int slab,
                      double *node) {
-  v8 sum[4][2];
-  for (int j = 0; j <= degree; j++) sum[j][0] = sum[j][1] = (v8){0.0};
+  vec sum[4][ROW];
+  for (int j = 0; j <= degree; j++)
+    for (int k = 0; k < ROW; k++) sum[j][k] = (vec){0.0};
   for (int q = 0; q < n; q++)
-    for (int k = 0; k < 2; k++) {
-      v8 P = s[q].P[k], Y = s[q].Y[k];
+    for (int k = 0; k < row_vectors(degree); k++) {
+      vec P = s[q].P[k], Y = s[q].Y[k];
       if (dim == 3) {
         P = s[q].wz[slab] * P + s[q].wz[4 + slab] * s[q].Z[k];
         Y = s[q].wz[slab] * Y;
@@ -170,13 +190,15 @@ INLINE void add_slab(const anchor *a, int dim, int degree, const share *s, int n
     }
   for (int j = 0; j <= degree; j++) {
     double *row = node + 4 * j * a->nodes[0];
-    store8(row, load8(row) + sum[j][0]);
-    if (degree == 3)
-      store8(row + 8, load8(row + 8) + sum[j][1]);
-    else { /* the fourth node has no weight */
-      double last[8];
-      store8(last, sum[j][1]);
-      store4(row + 8, load4(row + 8) + load4(last));
+    for (int k = 0; k < 4 / NODES; k++) {
+      double *at = row + 4 * NODES * k;
+      if (degree == 3 || NODES * (k + 1) <= 3)
+        store(at, load(at) + sum[j][k]);
+      else if (NODES * k < 3) { /* the fourth node has no weight */
+        double last[4 * NODES];
+        store(last, sum[j][k]);
+        store4(at, load4(at) + load4(last));
+      }
     }
   }
 }
@@ -215,17 +237,18 @@ static void move_grid(anchor *a) {
 INLINE void interpolate(const anchor *a, int dim, int degree, const double *node, double tx,
                         double ty, double tz, double take[4][4]) {
   double wy[8], wz[8];
-  v8 w[2], wd[2], S[2], Sy[2], Sz[2];
+  vec w[ROW], wd[ROW], S[ROW], Sy[ROW], Sz[ROW], sum[4] = {{0.0}};
   row_weights(degree, tx, w, wd);
   weights(degree, ty, wy);
   if (dim == 3) weights(degree, tz, wz);
-  for (int k = 0; k < 2; k++) S[k] = Sy[k] = Sz[k] = (v8){0.0};
+  for (int k = 0; k < ROW; k++) S[k] = Sy[k] = Sz[k] = (vec){0.0};
   for (int slab = 0; slab < (dim == 3 ? degree + 1 : 1); slab++) {
     const double *at = node + 4 * slab * a->nodes[0] * a->nodes[1];
-    for (int k = 0; k < 2; k++) {
-      v8 T = {0.0}, U = {0.0};
+    for (int k = 0; k < row_vectors(degree); k++) {
+      vec T = {0.0}, U = {0.0};
       for (int j = 0; j <= degree; j++) {
-        const v8 row = load8(at + 4 * j * a->nodes[0] + 8 * k); /* reads a fourth quadratic node */
+        /* two nodes a vector: reads a fourth quadratic one */
+        const vec row = load(at + 4 * j * a->nodes[0] + 4 * NODES * k);
         T += wy[j] * row;
         U += wy[4 + j] * row;
       }
@@ -234,10 +257,13 @@ INLINE void interpolate(const anchor *a, int dim, int degree, const double *node
       if (dim == 3) Sz[k] += wz[4 + slab] * T;
     }
   }
-  store4(take[0], halves(w[0] * S[0] + w[1] * S[1]));
-  store4(take[1], halves(wd[0] * S[0] + wd[1] * S[1]));
-  store4(take[2], halves(w[0] * Sy[0] + w[1] * Sy[1]));
-  if (dim == 3) store4(take[3], halves(w[0] * Sz[0] + w[1] * Sz[1]));
+  for (int k = 0; k < row_vectors(degree); k++) {
+    sum[0] += w[k] * S[k];
+    sum[1] += wd[k] * S[k];
+    sum[2] += w[k] * Sy[k];
+    if (dim == 3) sum[3] += w[k] * Sz[k];
+  }
+  for (int r = 0; r <= dim; r++) store4(take[r], over_nodes(sum[r]));
 }
 
 INLINE void spread(anchor *a, int dim, int degree, int64_t first, int n, double take[BLOCK][4][4]) {
