@@ -273,7 +273,7 @@ static bool draw(app *a, const settings *s) {
               "set xlabel 'time (s)'\nset ylabel \"path along the slope x'_c (m)\"\n"
               "set key left top opaque\n"
               "plot 'motion.csv' every ::1 using 1:3 with lines linecolor rgb '#c0392b' title "
-              "'theory (51)', \\\n"
+              "'theory, Nakamura (51)', \\\n"
               "  '' every 4::1 using 1:2 with points pointtype 6 linecolor rgb '#1f4e8c' title "
               "'WLS-MPM'\n",
               s->body == BODY_SLOPE ? "An elastic" : "A rigid",

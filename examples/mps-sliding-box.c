@@ -231,7 +231,7 @@ static bool draw(app *a, const settings *s, double fy_exact) {
       "  '' every ::1 using 1:2 with lines linecolor rgb '#c0392b' title 'friction F_x', "
       "\\\n"
       "  exact dashtype '--' linecolor rgb '#1f4e8c' title 'exact without friction', \\\n"
-      "  mu*exact dashtype '--' linecolor rgb '#c0392b' notitle\n",
+      "  mu*exact dashtype '--' linecolor rgb '#c0392b' title '{/Symbol m} times it'\n",
       s->h, contact, s->mu, fy_exact, fy_exact, fy_exact, s->mu);
   return plot_close(&f, s->out, "forces");
 }

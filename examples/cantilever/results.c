@@ -108,7 +108,7 @@ static bool draw_deflection(const model *m, const char *directory) {
               "plot 'deflection.csv' using 1:4 skip 1 %s title '%s', \\\n"
               "     '' using 1:3 skip 1 %s title 'particles'\n",
               (long long)m->nx, (long long)m->ny, 100.0 * m->tip_error, exact_style,
-              m->reference ? "fine finite elements" : "analytic, (11)", particles_style);
+              m->reference ? "fine finite elements" : "analytic, Chikazawa (11)", particles_style);
   return plot_close(&f, directory, "deflection");
 }
 
@@ -121,15 +121,17 @@ static bool draw_stress(const model *m, const char *directory, const char *name,
   if (!plot_open(&f, m->a, directory, name, 900, 600)) return false;
   output_text(&f,
               "set title \"%s\"\nset xlabel '%s'\nset ylabel 'stress (Pa)'\n"
-              "set key outside bottom center horizontal\n"
-              "set offsets 0, 0, graph 0.08, graph 0.08\n"
+              "set offsets 0, 0, graph 0.08, graph 0.08\n",
+              title, label);
+  plot_key_below(&f);
+  output_text(&f,
               "plot '%s' using %d:4 skip 1 %s dashtype 1 title '{/Symbol s}_x analytic', \\\n"
               "     '' using %d:3 skip 1 %s title '{/Symbol s}_x particles', \\\n"
               "     '' using %d:8 skip 1 with lines linewidth 1.6 linecolor rgb '#16a085' title "
               "'{/Symbol t}_{xy} analytic', \\\n"
               "     '' using %d:7 skip 1 with points pointtype 5 pointsize 1.0 linecolor rgb "
               "'#2980b9' title '{/Symbol t}_{xy} particles'\n",
-              title, label, file, column, exact_style, column, particles_style, column, column);
+              file, column, exact_style, column, particles_style, column, column);
   return plot_close(&f, directory, name);
 }
 
@@ -167,11 +169,12 @@ static bool draw_shape(const model *m, const char *directory) {
   if (!image_shape(m, directory, scale, &image)) return false;
   output f;
   if (!plot_open(&f, m->a, directory, "shape", 1100, 520)) return false;
-  output_text(&f,
-              "set title \"Displacements times %.3g\"\nset size ratio -1\nunset grid\n"
-              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'von Mises stress (Pa)' offset 1\n"
-              "set palette defined (0 '#2c3e90', 0.5 '#e8e4d8', 1 '#b03020')\n",
-              scale);
+  output_text(
+      &f,
+      "set title \"Displacements times %.3g\"\nset size ratio -1\nunset grid\n"
+      "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'von Mises stress (Pa)' offset 1\n"
+      "set palette defined (0 '#2c3e90', 0.5 '#e8e4d8', 1 '#b03020')\n",
+      scale);
   plot_colours(&f, 0.0, image.most, image.least, image.most);
   output_text(&f, "plot ");
   area_plot(&f, "shape.bin", &image, 1.0, 1.0);

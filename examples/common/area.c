@@ -1,8 +1,9 @@
 /* area.c - see area.h. Discs around the particles, of half a spacing and half the width of a slit,
  * cover the slits; what lies within half that width of uncovered pixels is taken off again (a
  * closing by a disc), which leaves free surfaces where they are. Solid pixels take nothing off: the
- * gap between a body and the nearest particles is closed too.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * gap between a body and the nearest particles is closed too. That leaves shallow notches between
+ * the particles of an outline, which are filled along rows and columns: a wall of a lattice is
+ * straight. SPDX-License-Identifier: BSD-3-Clause */
 #include "area.h"
 
 #include <errno.h>
@@ -17,7 +18,10 @@ typedef struct canvas {
   double lower[2], pixel;
   float *value;    /* NaN: nothing there */
   float *distance; /* to the nearest particle, pixels^2 */
+  char *state;     /* COVERED or not */
 } canvas;
+
+enum { BARE, COVERED, OFF, FILLED };
 
 static int64_t column_of(const canvas *c, double x, int axis) {
   const double k = floor((x - c->lower[axis]) / c->pixel);
@@ -60,9 +64,30 @@ static void take_off(canvas *c, double depth, double alone) {
         for (int64_t p = i - n < 0 ? 0 : i - n; p <= i + n && p < c->columns; p++) {
           const double d = (double)((p - i) * (p - i) + (q - j) * (q - j));
           const int64_t k = q * c->columns + p;
-          if (d <= depth * depth && (double)c->distance[k] > alone * alone) c->value[k] = NAN;
+          if (d <= depth * depth && (double)c->distance[k] > alone * alone) c->state[k] = OFF;
         }
     }
+}
+
+/* Of a row or a column of `count` pixels, `step` apart from k on: what was taken off between two
+ * that are covered is filled where it is at most `most` pixels long. */
+static void fill_line(canvas *c, int64_t k, int64_t count, int64_t step, int64_t most) {
+  int64_t last = -1; /* the covered one with nothing bare since */
+  for (int64_t i = 0; i < count; i++) {
+    const char state = c->state[k + i * step];
+    if (state == BARE) last = -1;
+    if (state != COVERED) continue;
+    for (int64_t q = last + 1; last >= 0 && i - last - 1 <= most && q < i; q++)
+      c->state[k + q * step] = FILLED;
+    last = i;
+  }
+}
+
+static void fill_notches(canvas *c, int64_t most) {
+  for (int64_t j = 0; j < c->rows; j++) fill_line(c, j * c->columns, c->columns, 1, most);
+  for (int64_t i = 0; i < c->columns; i++) fill_line(c, i, c->rows, c->columns, most);
+  for (int64_t k = 0; k < c->columns * c->rows; k++)
+    if (c->state[k] == BARE || c->state[k] == OFF) c->value[k] = NAN;
 }
 
 static bool is_solid(const area_def *def, double x, double y) {
@@ -84,6 +109,11 @@ static void mark_solid(canvas *c, const area_def *def) {
           is_solid(def, x, y + p))
         c->value[j * c->columns + i] = NAN;
     }
+}
+
+static void mark_covered(canvas *c) {
+  for (int64_t k = 0; k < c->columns * c->rows; k++)
+    c->state[k] = isinf(c->distance[k]) ? BARE : COVERED;
 }
 
 static void take_range(const canvas *c, area *out) {
@@ -112,13 +142,16 @@ void area_write(output *file, const area_def *def, int64_t count, const double *
   const size_t size = (size_t)(c.columns * c.rows);
   c.value = malloc(size * sizeof *c.value);
   c.distance = malloc(size * sizeof *c.distance);
-  if (c.value && c.distance) {
+  c.state = malloc(size * sizeof *c.state);
+  if (c.value && c.distance && c.state) {
     for (size_t k = 0; k < size; k++) c.value[k] = NAN, c.distance[k] = INFINITY;
     const double step = spacing / c.pixel; /* pixels */
     for (int64_t k = 0; k < count; k++)
       if (isfinite(row[3 * k + 2])) cover(&c, row + 3 * k, reach * step);
     mark_solid(&c, def);
+    mark_covered(&c);
     take_off(&c, (reach - 0.5) * step, own * step);
+    fill_notches(&c, (int64_t)step);
     take_range(&c, out);
     out->offset = ftell(file->stream);
     if (fwrite(c.value, sizeof *c.value, size, file->stream) != size) file->error = errno;
@@ -127,6 +160,7 @@ void area_write(output *file, const area_def *def, int64_t count, const double *
   }
   free(c.value);
   free(c.distance);
+  free(c.state);
 }
 
 void area_plot(output *script, const char *name, const area *image, double length, double factor) {

@@ -55,6 +55,11 @@ static double round_up(double value) {
   return (lead > 5.0 ? 10.0 : lead > 2.0 ? 5.0 : lead > 1.0 ? 2.0 : 1.0) * power;
 }
 
+void plot_key_below(output *script) {
+  output_text(script,
+              "set key outside bottom center horizontal reverse Left\nset xlabel offset 0,0.5\n");
+}
+
 double plot_tics(double length, double most) { return round_up(length / fmax(most, 1.0)); }
 
 void plot_colours(output *script, double least, double most, double lowest, double highest) {

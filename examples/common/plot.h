@@ -24,6 +24,9 @@ bool plot_open_animation(output *script, app *a, const char *directory, const ch
                          int height, double step);
 bool plot_close_animation(output *script, const char *directory, const char *name);
 
+/* The key below the plot, clear of the name of the x axis. */
+void plot_key_below(output *script);
+
 /* A round distance of tics that divides `length` into at most `most` parts. */
 double plot_tics(double length, double most);
 

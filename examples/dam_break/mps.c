@@ -163,16 +163,15 @@ static bool draw_gauge(app *a, const settings *s) {
       &f,
       "set title 'Impact of a column: pressure on the far wall at 0.2 H, spacing %.3g H'\nset "
       "xlabel 't (g/H)^{1/2}'\nset ylabel 'p/({/Symbol r} g "
-      "H)'\nset xrange [0:%.9g]\nset yrange [0:1.4]\nset key top left reverse Left\n"
+      "H)'\nset xrange [0:%.9g]\nset yrange [0:1.4<*]\nset samples 2000\nset key top left reverse "
+      "Left\n"
       "set object 1 rectangle from 3.3,graph 0 to 4.9,graph 1 fillcolor rgb '#eef3fa' "
-      "fillstyle solid noborder behind\n"
-      "set arrow 1 from 3.3,0.545 to 4.9,0.545 nohead dashtype '--' linecolor rgb "
-      "'#c0392b' front\nset label 1 'mean of Buchner 2002' at 4.85,1.3 right textcolor rgb "
-      "'#c0392b' front\n"
+      "fillstyle solid noborder behind clip\n"
       "plot 'pressure.csv' every ::1 using 2:4 with lines linecolor rgb '#8fb3dd' linewidth 0.7 "
       "title "
       "'MPS', '' every ::1 using 2:5 with lines linecolor rgb '#1f4e8c' linewidth 1.6 title 'mean "
-      "over 0.1'\n",
+      "over 0.1', x < 3.3 || x > 4.9 ? NaN : 0.545 with lines dashtype '--' linecolor rgb "
+      "'#c0392b' title 'mean of Buchner 2002'\n",
       s->h / column_height(s), s->duration * sqrt(G / column_height(s)));
   return plot_close(&f, s->out, "pressure");
 }

@@ -143,7 +143,7 @@ static bool draw_section(app *a, const penetrometer *p) {
   const bool axial = p->run[0].geometry != MPS_MPM_GEOMETRY_SPACE;
   const double left = both || axial ? -side : 0.0, right = axial ? 0.0 : side;
   const double pixels = 600.0, scale = pixels / (top - bottom);
-  const int panel = (int)(scale * (right - left)), width = 2 * (panel + 210), height = 800;
+  const int panel = (int)(scale * (right - left)), width = 2 * (panel + 240), height = 800;
   const bool plastic = p->s.law != PEN_ELASTIC;
   const double lower[2] = {left, bottom}, upper[2] = {right, top};
   area image[2] = {{.offset = 0}};
@@ -156,13 +156,14 @@ static bool draw_section(app *a, const penetrometer *p) {
       &f,
       "set multiplot title '%s' font ',18'\n"
       "set palette defined (0 '#e6ebf1', 0.15 '#c6dbef', 0.4 '#6baed6', 0.7 '#2171b5', 1 "
-      "'#08306b')\nset xlabel '%s'\nset ylabel 'z (m)'\nset xrange [%.9g:%.9g]\nset yrange "
+      "'#08306b')\nset xlabel '%s'\nset ylabel 'z (m)' offset 1\nset xrange [%.9g:%.9g]\nset "
+      "yrange "
       "[%.9g:%.9g]\nset xtics %.9g\nset tmargin at screen %.4g\nset bmargin at screen %.4g\n",
       title_of(p), p->runs == 2 ? "axisymmetric |  x (m)  | in space" : "x (m)", left, right,
       bottom, top, tics_of(side), 0.87, 0.87 - pixels / height);
   draw_outline(&f, p, top);
   for (int k = 0; k < (plastic ? 2 : 1); k++) {
-    const double from = 90.0 + k * (panel + 210.0);
+    const double from = 115.0 + k * (panel + 240.0);
     output_text(&f,
                 "set lmargin at screen %.4g\nset rmargin at screen %.4g\nset title '%s'\n"
                 "set colorbox user origin screen %.4g, screen 0.3 size screen %.4g, screen 0.4\n",

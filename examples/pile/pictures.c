@@ -157,8 +157,7 @@ static void begin_sections(output *f, const pile *p, const section *x, int panel
               "'#08306b')\nset size ratio -1\nset xtics %.9g\n"
               "set xlabel 'r (m)'\nset ylabel 'z (m)' offset 1.5\nset xrange [0:%.9g]\nset yrange "
               "[%.9g:%.9g]\n",
-              p->s.width / (panel < 200 ? 2.0 : 4.0), p->s.width, section_bottom(p),
-              section_top(p));
+              plot_tics(p->s.width, panel / 75.0), p->s.width, section_bottom(p), section_top(p));
   plot_colours(f, 0.0, fabs(q->factor) * most_of(p, last, q->field, q->share), x->least, x->most);
 }
 

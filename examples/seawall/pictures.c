@@ -78,7 +78,7 @@ static void begin_water(output *f, const seawall_settings *s, const view *v) {
               "set size ratio -1\nunset grid\nset ytics 0.1\nset xrange [%.6g:%.6g]\nset yrange "
               "[%.6g:%.6g]\n"
               "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
-              "set xlabel 'x (m)' offset 0,0.6\nset ylabel 'y (m)' offset 1.2\n"
+              "set xlabel 'x (m)' offset 0,0.6\nset ylabel 'y (m)' offset 1.8\n"
               "set cblabel 'pressure (kPa)'\n"
               "set object 1 rectangle from %.9g,0 to %.9g,%.9g fillcolor rgb '#8a8f98' fillstyle "
               "solid 1.0 noborder behind\n"
@@ -132,7 +132,7 @@ static bool draw_waves(app *a, const seawall *w, const view *v) {
   for (int64_t p = 0; p < shown; p++) {
     const bool peak = p > 0 && crest >= 0 && llround((double)crest / step) == p;
     plot_water(&f, w, v, peak ? crest : llround((double)p * step),
-               peak ? ", largest force on the wall" : "");
+               peak ? ", nearest to the largest force" : "");
     if (p == 0) output_text(&f, "unset colorbox\n");
   }
   output_text(&f, "unset multiplot\n");
@@ -160,9 +160,10 @@ static bool draw_force(app *a, const seawall *w, double H) {
   if (!plot_open(&f, a, s->out, "force", 1100, 560)) return false;
   output_text(&f,
               "set title 'Force of the water on the wall'\nset xlabel 't (s)'\nset ylabel 'force "
-              "(N per m of wall)'\nset key outside bottom center horizontal\n"
+              "(N per m of wall)'\n"
               "set xrange [0:%.9g]\nset yrange [0:*]\n",
               s->duration);
+  plot_key_below(&f);
   if (!isnan(H))
     output_text(&f, "crest = %.9g\ntrough = %.9g\n", waves_sainflou(k, s->depth, H, 1),
                 waves_sainflou(k, s->depth, H, -1));
@@ -217,13 +218,14 @@ static bool draw_deflection(app *a, const seawall *w) {
       "set title 'Wall at t = %.2f s, displacement times 10^6'\nset xlabel 'x (m)'\n"
       "set ylabel 'y (m)'\nset size ratio -1\nset xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n"
       "set xtics 0.1\nset key top left reverse Left\n"
-      "set label 1 'crest: %.3g m' at %.9g,%.9g center offset 0,1 textcolor rgb '#1f4e8c'\n"
+      "set label 1 'crest: %.3g {/Symbol m}m' at %.9g,%.9g center offset 0,1 textcolor rgb "
+      "'#1f4e8c'\n"
       "plot 'wall.csv' every ::1 using 1:2 with points pointtype 6 pointsize 0.7 linecolor "
       "rgb '#bbbbbb' title 'unloaded', \\\n"
       "  '' every ::1 using ($1+1e6*$3):($2+1e6*$4) with points pointtype 7 pointsize 0.7 "
       "linecolor rgb '#1f4e8c' title 'bent'\n",
       w->look.at.t, s->length - 0.05, s->length + s->wall_thickness + most + 0.05,
-      -2.0 * s->spacing, 1.3 * s->wall_height, w->look.at.deflection,
+      -2.0 * s->spacing, 1.3 * s->wall_height, 1e6 * w->look.at.deflection,
       s->length + 0.5 * s->wall_thickness + 0.5 * most, 1.06 * s->wall_height);
   return plot_close(&f, s->out, "deflection");
 }

@@ -9,6 +9,7 @@
 static const char *const colours[] = {"#1b4f8c", "#1e8449", "#c77700", "#a61c2b", "#6c3483"};
 static const int marks[] = {7, 5, 9, 13, 6}; /* disc, square, triangle, diamond, wide ring */
 static const double sizes[] = {1.3, 1.3, 1.3, 1.3, 2.4};
+static const double widths[] = {1, 1, 1, 1, 3}; /* of the ring's line: under another one */
 
 static bool has_linear(const study *s) { return s->m.kind != METHOD_STEPPING; }
 static bool has_stepping(const study *s) { return s->m.kind != METHOD_LINEAR; }
@@ -42,8 +43,10 @@ static void series(output *f, const study *s, const char *file, int column, cons
                    const char *x, int style, const char *title) {
   const char *lead = "";
   if (has_linear(s)) {
-    output_text(f, "'%s' every ::1 using %s:((%s) ? $%d : NaN) with lines linecolor rgb '%s' ",
-                file, x, where, column, colours[style]);
+    output_text(f,
+                "'%s' every ::1 using %s:((%s) ? $%d : NaN) with lines linewidth %g linecolor rgb "
+                "'%s' ",
+                file, x, where, column, widths[style], colours[style]);
     output_text(f, has_stepping(s) ? "notitle" : "title '%s'", title);
     lead = ", ";
   }

@@ -302,12 +302,13 @@ static bool draw_water(app *a, const tank_model *m) {
 }
 
 static void draw_levels(output *f, const tank_model *m) {
-  output_text(f, "set ylabel 'level (m)'\nplot ");
+  const double least = 10.0 * m->s.spacing; /* mm: noise at rest stays small */
+  output_text(f, "set ylabel 'level (mm)'\nset yrange [*<%.6g:%.6g<*]\nplot ", -least, least);
   for (int k = 0; k <= gauges_of(m); k++) {
     char where[48] = "at the right wall";
     if (k < gauges_of(m)) snprintf(where, sizeof where, "x = %g m", m->s.gauge[k]);
-    output_text(f, "%s'gauges.csv' every ::1 using 1:%d with lines title '%s'", k ? ", " : "",
-                k + 2, where);
+    output_text(f, "%s'gauges.csv' every ::1 using 1:(1e3*$%d) with lines title '%s'",
+                k ? ", " : "", k + 2, where);
   }
 }
 
@@ -323,11 +324,11 @@ static bool draw_force(app *a, const tank_model *m) {
       "set multiplot layout %d,1\nset xrange [0:%.6g]\nset xlabel 't (s)'\nset ylabel 'force on "
       "the "
       "wall (N)'\n"
-      "set lmargin 10\nset key outside top center horizontal\n"
+      "set lmargin 12\nset key outside top center horizontal\nset yrange [*<%.6g:%.6g<*]\n"
       "plot %s'force.csv' every ::1 using 1:3 with lines linewidth 1.5 linecolor rgb '#1f4e8c' "
       "title 'right wall', %.9g with lines dashtype '--' linecolor rgb '#888888' title 'water "
       "at rest'\n",
-      classical ? 1 : 2, s->duration,
+      classical ? 1 : 2, s->duration, 0.98 * still, 1.02 * still,
       m->linear ? "'linear.csv' every ::1 using 1:2 with lines linewidth 3 linecolor rgb '#f0b27a' "
                   "title 'linear potential flow', "
                 : "",
@@ -344,11 +345,13 @@ static bool draw_structure(app *a, const tank_model *m) {
   if (!plot_open(&f, a, m->s.out, "structure", 1000, 460)) return false;
   output_text(&f,
               "set title '%s'\nset xlabel 't (s)'\nset ylabel '%s'\nset xrange [0:%.9g]\n"
-              "set key outside bottom center horizontal\nset samples 1000\nplot ",
+              "set samples 1000\n",
               plate ? "Middle of the plate"
               : box ? "Heave of the box"
                     : "Wall on a spring",
               plate ? "deflection (10^{-6} m)" : "displacement (mm)", m->s.duration);
+  plot_key_below(&f);
+  output_text(&f, "plot ");
   if (m->linear)
     output_text(&f,
                 "'structure.csv' every ::1 using 1:($3*%g) with lines linewidth 3 linecolor rgb "

@@ -58,8 +58,10 @@ static bool write_table(app *a, const settings *s, const field *f, mps_particles
 bool field_write(app *a, const settings *s, const field *f, mps_particles *whole) {
   output g;
   if (f->count == 0) return true;
-  if (!write_table(a, s, f, whole) || !plot_open(&g, a, s->out, "peaks", 1200, 600)) return false;
-  const double D = 2.0 * s->radius;
+  /* that of the section at equal scales, with room for names of axes and title */
+  const int high = (int)fmin(fmax(910.0 * 1.05 * s->height / s->width, 200.0), 900.0) + 170;
+  if (!write_table(a, s, f, whole) || !plot_open(&g, a, s->out, "peaks", 1200, high)) return false;
+  const double half = 1.01 * s->radius; /* wide enough to leave no seams */
   char input[48] = ", recorded motion";
   if (s->ricker) snprintf(input, sizeof input, " of %.3g m/s^2", s->amplitude);
   output_text(&g,
@@ -73,6 +75,6 @@ bool field_write(app *a, const settings *s, const field *f, mps_particles *whole
               "plot 'peaks.csv' every ::1 using 1:2:(%.9g):(%.9g):3 with boxxyerror fillcolor "
               "palette\n",
               settings_wave(s) == 'S' ? "a shear" : "a pressure", input, s->width, 1.05 * s->height,
-              0.5 * D, 0.5 * D);
+              half, half);
   return plot_close(&g, s->out, "peaks");
 }

@@ -85,6 +85,8 @@ bool results_draw(app *a, const settings *s, const column *c, const receivers *r
   const double scale = fmax(gap, deepest / 20.0) / peak;
   const double bar = round_down(peak), right = receivers_time(r, r->rows - 1);
   const double upper = -1.3 * peak * scale, lower = deepest + 1.3 * peak * scale;
+  /* the scale's place: over the trace of the surface, before the pulse is there */
+  const double above = -0.65 * peak * scale;
   write_title(&f, s, x);
   output_text(&f, "set xlabel 'time t (s)'\n"
                   "set ylabel 'depth of the receiver' offset 1,0\n"
@@ -96,9 +98,8 @@ bool results_draw(app *a, const settings *s, const column *c, const receivers *r
   write_tics(&f, r);
   output_text(&f,
               "set arrow from graph 0.03, first %.9g to graph 0.03, first %.9g heads size screen "
-              "0.006,90 front linewidth 1.5\nset label '%g m/s^2' at graph 0.04, first %.9g\n",
-              0.9 * deepest + scale * bar * 0.5 - 0.85 * deepest,
-              0.9 * deepest - scale * bar * 0.5 - 0.85 * deepest, bar, 0.05 * deepest);
+              "0.006,90 front linewidth 1.5\nset label '%g m/s^2' at graph 0.047, first %.9g\n",
+              above + scale * bar * 0.5, above - scale * bar * 0.5, bar, above);
   if (s->ricker) write_theory(&f, s, c, r);
   output_text(&f, "plot ");
   for (int64_t k = 0; k < r->column; k++)

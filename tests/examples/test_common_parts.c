@@ -388,6 +388,11 @@ static void particles_are_drawn_as_their_area(void **state) {
     const double edge = side < 0 ? 0.0 : 9.0;
     assert_false(isnan(pixel_at(&image, value, edge - side * 1.5 * image.pixel, 1.5)));
     assert_true(isnan(pixel_at(&image, value, edge + side * 1.5 * image.pixel, 1.5)));
+    for (int k = 1; k < 4; k++) { /* no notches between the particles */
+      assert_false(isnan(pixel_at(&image, value, edge - side * 1.5 * image.pixel, k)));
+      assert_false(
+          isnan(pixel_at(&image, value, k, (side < 0 ? 0.0 : 4.0) - side * 1.5 * image.pixel)));
+    }
   }
   assert_true(isnan(pixel_at(&image, value, 5.0, 7.0)));
   free(value);
