@@ -1,11 +1,11 @@
 /* loads.c - loads of the caller: accelerations of particles (a shaken tank), forces that another
  * code writes into the field `external_force`, pressures on the free surface.
  *
- * An acceleration b changes the velocity before the pressure is found, of a particle's images at
- * walls as of itself; q of these images then differs by rho b . (x_image - x), so that a linear
- * pressure holds water under a uniform b exactly, as it does in a tank that moves with -b. A
- * pressure adds to that of the surface point. Its work is taken with the area vector of each
- * particle, -V m/S0: sum w dx adds up to the area of a plane surface exactly, and vanishes inside.
+ * An acceleration b changes the velocity before the pressure solution, of a particle and of its
+ * images at walls; q of these images then differs by rho b . (x_image - x), so that a linear
+ * pressure balances a uniform b exactly, as in a tank that moves with -b. A pressure adds to that
+ * of the surface point. Its work is taken with the area vector of each particle, -V m/S0: sum w dx
+ * adds up to the area of a plane surface exactly, and vanishes inside.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
@@ -16,7 +16,7 @@
 
 struct mpsi_fluid_given {
   int32_t kind;
-  int64_t count; /* of ids, 0: none is given */
+  int64_t count; /* of ids, 0: no list */
   int64_t *ids;  /* ascending */
   double lower[2], upper[2];
   double amount[2]; /* m/s2, or Pa */
@@ -108,8 +108,7 @@ static mps_status make_load(mps_fluid *f, const char *function, const mps_fluid_
   return MPS_OK;
 }
 
-/* Status of all ranks, and whether all give the same load (`g`, NULL: none) this number.
- */
+/* Status of all ranks, and a check that all have the same load (`g`, NULL: none) of this number. */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          const mpsi_fluid_given *g) {
   if (!f->partition) return status;
