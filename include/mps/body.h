@@ -85,8 +85,7 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_disc(mps_context *context, cons
 MPS_API MPS_NODISCARD mps_status mps_body_create_half_plane(mps_context *context,
                                                             const mps_body_def *def,
                                                             const double *normal, mps_body **out);
-/* ---- shapes in 3D -----------------------------------------------------------------------------
- */
+/* ---- shapes in 3D ---------------------------------------------------------------------------- */
 
 /** Sphere of `radius` (m, > 0) about the reference point. One face, number 0. MPS_ERROR_ARGUMENT: a
  *  value or a member of `def` out of range; MPS_ERROR_MEMORY. */

@@ -303,8 +303,7 @@ MPS_API MPS_NODISCARD mps_status mps_material_create_umat(mps_context *context,
 /** Releases and nulls; accepts NULL. Solvers that use the material keep their own reference. */
 MPS_API void mps_material_destroy(mps_material **material);
 
-/* ---- queries: thread safe; a NULL material gives "", 0 or NULL ------------------------------
- * /
+/* ---- queries: thread safe; a NULL material gives "", 0 or NULL ------------------------------- */
 
 /** "linear_elastic", "drucker_prager", ... or the user's name. Lives as long as the material. */
 MPS_API const char *mps_material_name(const mps_material *material);
@@ -325,8 +324,7 @@ MPS_API const char *mps_material_history_field(const mps_material *material, int
 /** Value of a history column before the first step. */
 MPS_API double mps_material_history_initial(const mps_material *material, int32_t index);
 
-/* ---- constants of isotropic elasticity ----------------------------------------------------------
- * /
+/* ---- constants of isotropic elasticity ------------------------------------------------------- */
 
 /** Constants of isotropic elasticity. */
 typedef struct mps_moduli {
