@@ -1,0 +1,32 @@
+# `cmake --install` undone (target uninstall), and packages by cpack: `cpack --config build/release/CPackConfig.cmake`
+# makes a .tar.gz, a .deb where there is dpkg and an .rpm where there is rpmbuild, all of one piece. The packages
+# that a distribution would make, library, -dev, -tools and -doc apart, are those of debian/.
+if(NOT TARGET uninstall)
+  add_custom_target(uninstall VERBATIM
+    COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -P ${PROJECT_SOURCE_DIR}/cmake/Uninstall.cmake)
+endif()
+
+set(CPACK_PACKAGE_NAME libmps-meshfree) # Debian's libmps3 and libmps-dev are MPSolve
+set(CPACK_PACKAGE_VENDOR "the libmps authors")
+set(CPACK_PACKAGE_CONTACT "the libmps authors <maintainers@libmps.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_GENERATOR TGZ)
+find_program(MPS_DPKG dpkg-shlibdeps)
+if(MPS_DPKG)
+  list(APPEND CPACK_GENERATOR DEB)
+endif()
+find_program(MPS_RPMBUILD rpmbuild)
+if(MPS_RPMBUILD)
+  list(APPEND CPACK_GENERATOR RPM)
+endif()
+mark_as_advanced(MPS_DPKG MPS_RPMBUILD)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION math)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONFLICTS libmps-dev) # libmps.so and libmps.a of its own
+set(CPACK_RPM_FILE_NAME RPM-DEFAULT)
+set(CPACK_RPM_PACKAGE_LICENSE BSD-3-Clause)
+include(CPack)
