@@ -341,7 +341,8 @@ void mpsi_fluid_tell_most(mps_fluid *f, int64_t count, double *values) {
 }
 
 void mpsi_fluid_tell_exact(mps_fluid *f, int32_t count, mpsi_exact *sums) {
-  if (f->partition) note(f->partition, mpsi_domain_sum_exact(f->partition->domain, "mps_fluid", count, sums));
+  if (f->partition)
+    note(f->partition, mpsi_domain_sum_exact(f->partition->domain, "mps_fluid", count, sums));
 }
 
 /* A sum is on its rank, and less than any number on others; what is none must not be sent. */
@@ -381,6 +382,20 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
   if (s->lost == MPS_OK) note(s, mpsi_halo_end(s->back.halo, "mps_fluid", &in));
   for (int64_t k = 0; s->lost == MPS_OK && k < s->back.guests; k++)
     if (in[k] > 0.0) atomic_store_explicit(&f->zone[s->back.guest[k]], 1, memory_order_relaxed);
+}
+
+/* In columns that the pressure no longer needs. */
+void mpsi_fluid_tell_flux(mps_fluid *f) {
+  mpsi_fluid_partition *s = f->partition;
+  if (!s) return;
+  mpsi_fluid_system *y = &f->system;
+  double *const column[] = {y->p, y->q, y->r, y->z, y->diagonal};
+  for (int c = 0; c < 5; c++)
+    for (int64_t i = f->own[0]; i < f->own[1]; i++) column[c][i] = f->flux[c][i];
+  mpsi_fluid_tell_near(f, 5, column);
+  for (int c = 0; c < 5; c++)
+    for (int64_t k = 0; s->lost == MPS_OK && k < s->near.guests; k++)
+      f->flux[c][s->near.guest[k]] = (float)column[c][s->near.guest[k]];
 }
 
 void mpsi_fluid_tell_local(mps_fluid *f) {
