@@ -7,8 +7,6 @@
 
 #include "fluid/fluid_private.h"
 
-#define MPSI_FLUID_WIDE 8 /* entries of a list are a multiple of this */
-
 static inline int32_t mpsi_fluid_padded(int32_t near) {
   return (near + MPSI_FLUID_WIDE - 1) & ~(MPSI_FLUID_WIDE - 1);
 }
@@ -43,6 +41,8 @@ struct mpsi_fluid_loops {
   bool (*mixed)(const mps_fluid *f, int64_t i, const int32_t *of);
   /* sum w (q_j - q_i) dx/r^2 */
   void (*slope)(const mps_fluid *f, int64_t i, double *sum);
+  /* Change of velocity by smoothing between pairs, m/s, see smooth.c. */
+  void (*smooth)(const mps_fluid *f, int64_t i, double *sum);
 };
 
 /* dispatch.c: the loops of an x86-64 level; 0: the best that processor and build have. */

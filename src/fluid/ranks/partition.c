@@ -308,7 +308,7 @@ static void find_guests(void *data, int64_t chunk, int32_t worker) {
   mps_fluid *f = s->fluid;
   const int64_t end = (chunk + 1) * MPSI_FLUID_CHUNK;
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < end && i < f->count; i++) {
-    const int32_t *index = f->index + f->start[i];
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     for (int32_t k = 0; k < f->near[i]; k++) {
       const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
       if (is_own(f, j) || is_guest(f, j)) continue;
@@ -386,7 +386,7 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
   mpsi_fluid_tell_near(f, 3, (double *const[]){y->p, y->q, y->r});
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k], word = (int64_t)y->z[i];
-    f->state[i] = (uint8_t)(word % 4), f->near[i] = (int32_t)(word / 4);
+    f->state[i] = (uint8_t)(word % 4), f->near[i] = (uint16_t)(word / 4);
   }
   for (int64_t k = 0; k < s->near.guests; k++) {
     const int64_t i = s->near.guest[k];
@@ -399,6 +399,20 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
   if (s->lost == MPS_OK) note(s, mpsi_halo_end(s->back.halo, "mps_fluid", &in));
   for (int64_t k = 0; s->lost == MPS_OK && k < s->back.guests; k++)
     if (in[k] > 0.0) atomic_store_explicit(&f->zone[s->back.guest[k]], 1, memory_order_relaxed);
+}
+
+/* In columns that the pressure no longer needs. */
+void mpsi_fluid_tell_flux(mps_fluid *f) {
+  mpsi_fluid_partition *s = f->partition;
+  if (!s) return;
+  mpsi_fluid_system *y = &f->system;
+  double *const column[] = {y->p, y->q, y->r, y->z, y->diagonal};
+  for (int c = 0; c < 5; c++)
+    for (int64_t i = f->own[0]; i < f->own[1]; i++) column[c][i] = f->flux[c][i];
+  mpsi_fluid_tell_near(f, 5, column);
+  for (int c = 0; c < 5; c++)
+    for (int64_t k = 0; s->lost == MPS_OK && k < s->near.guests; k++)
+      f->flux[c][s->near.guest[k]] = (float)column[c][s->near.guest[k]];
 }
 
 void mpsi_fluid_tell_local(mps_fluid *f) {

@@ -12,10 +12,6 @@ void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, i
 /* Component of dv, from an image, along the normals of the walls at which it is mirrored. */
 void mpsi_fluid_exchange_image(const mps_fluid *fluid, int64_t chunk, int64_t ghost, int64_t i,
                                const double *dv);
-/* Contribution of images to the fractions `smooth` and `viscous` of v in the velocity of particle
- * i. */
-void mpsi_fluid_exchange_smoothing(const mps_fluid *fluid, int64_t chunk, int64_t i, double smooth,
-                                   double viscous);
 /* Sum of the changes of velocity, m/s, of particles of a chunk in the step. */
 void mpsi_fluid_gain(const mps_fluid *fluid, int64_t chunk, const double *du);
 /* The velocity u that an image has to move with at walls of no slip: against its parent's. */
