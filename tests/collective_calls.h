@@ -136,6 +136,7 @@ CALL(fluid_get_pressure, mps_fluid_get_pressure(s->fluid, 0, 1, high, (double[1]
 CALL(fluid_set_boundary, mps_fluid_set_boundary(s->fluid, 0, NULL))
 CALL(fluid_set_load, mps_fluid_set_load(s->fluid, 0, NULL))
 CALL(fluid_remove_load, mps_fluid_remove_load(s->fluid, 0))
+CALL(fluid_set_material, mps_fluid_set_material(s->fluid, s->material, 0, NULL))
 CALL(fluid_add_body, mps_fluid_add_body(s->fluid, s->body, 0, NULL))
 CALL(elastic_set_boundary, mps_elastic_set_boundary(s->elastic, 0, NULL))
 CALL(elastic_set_load, mps_elastic_set_load(s->elastic, 0, NULL))
@@ -235,6 +236,7 @@ static const struct {
     ROW(fluid_set_boundary),
     ROW(fluid_set_load),
     ROW(fluid_remove_load),
+    ROW(fluid_set_material),
     ROW(fluid_add_body),
 
     ROW(elastic_set_boundary),

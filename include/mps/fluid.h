@@ -41,6 +41,7 @@
 #include "domain.h"
 #include "io.h"
 #include "kernel.h"
+#include "material.h"
 #include "particles.h"
 #include "signal.h"
 #include "solver.h"
@@ -52,8 +53,9 @@ typedef struct mps_fluid mps_fluid;
 typedef struct mps_fluid_def {
   uint32_t struct_size;
   int32_t iterations;  /* most iterations of the pressure solution, >= 1; default 2000 */
-  double density;      /* rho, kg/m3, > 0; default 1000 */
-  double viscosity;    /* Pa s, dynamic, >= 0; default 0 */
+  double density;      /* rho, kg/m3, 1e-3 to 1e6; NaN (default): that of the field `density`, which
+                          must be one value then; 1000 where the set has none */
+  double viscosity;    /* Pa s, dynamic, 0 to 1e6; NaN (default): 0. Not read with a material */
   double gravity[3];   /* m/s2; [2] must be 0; default 0, -9.81, 0 */
   double level;        /* m, height (against gravity, from the origin) at which q = p: the level of
                           the water at rest. NaN (default): half a spacing above the highest
@@ -68,6 +70,9 @@ typedef struct mps_fluid_def {
   mps_domain *domain;  /* ranks that share the work; NULL (default): none. Kept alive */
   mps_kernel *kernel;  /* weight function, MPS_KERNEL_SMOOTH, its radius in [2.6, 4] spacings; NULL
                           (default): that of radius_ratio. Kept alive */
+  mps_material *material; /* Newtonian: its viscosity is copied, its bulk modulus not read, as the
+                             fluid is incompressible; NULL (default): what `viscosity` says.
+                             mps_fluid_get_def tells the viscosity, and NULL here */
 } mps_fluid_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
@@ -96,6 +101,16 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_def_sized(const mps_fluid *fluid,
 static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def *out) {
   return mps_fluid_get_def_sized(fluid, out, sizeof *out);
 }
+
+/** Says what the fluid is made of, from the next step on, between steps: the viscosity of a
+ *  Newtonian `material`, as by the member of the definition. All particles are of it: `ids` NULL
+ *  with `count` 0, or a list of all. The density stays that of creation. MPS_ERROR_UNSUPPORTED:
+ *  another law, or a list of some of the particles; MPS_ERROR_ARGUMENT: no material, a viscosity
+ *  beyond 1e6 Pa s, an id that the set lacks. On an error nothing has
+ *  changed. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
+                                                        const mps_material *material, int64_t count,
+                                                        const int64_t *ids);
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
 

@@ -9,6 +9,9 @@
  *   mps_S_destroy          destroys and nulls; accepts NULL
  *   mps_S_particles, mps_S_context   lent, as long as the solver lives; NULL for NULL
  *   mps_S_get_def          the definition as the solver has completed it
+ *   mps_S_set_material     (solver, material, count, ids): what particles are made of, NULL with
+ *                          count 0 all of them; a law that the solver does not have is
+ *                          MPS_ERROR_UNSUPPORTED. Densities are the field `density`
  *   mps_S_add_boundary, mps_S_add_load   copies lists, keeps signals alive, gives a number (into
  *                          `number`, which may be NULL)
  *   mps_S_set_boundary, mps_S_set_load, mps_S_remove_boundary, mps_S_remove_load

@@ -521,5 +521,10 @@ mps_status mpsi_fluid_closed(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
 /* access.c: checks `dt` (s; NaN: chosen by the library). */
 mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt);
+mps_status mpsi_fluid_check_viscosity(mps_context *context, const char *function, double viscosity);
+/* material.c: density and viscosity of a definition where it leaves them to the set's field and a
+ * material. */
+mps_status mpsi_fluid_read_material(mps_context *context, const char *function,
+                                    const mps_particles *particles, mps_fluid_def *def);
 
 #endif

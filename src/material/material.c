@@ -56,6 +56,14 @@ void mps_material_destroy(mps_material **material) {
   if (atomic_fetch_sub(&m->references, 1) == 1) release(m);
 }
 
+mps_status mpsi_material_check_newtonian(mps_context *context, const char *function,
+                                         const mps_material *material) {
+  if (!material) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
+  if (material->type->kind == MPSI_LAW_NEWTONIAN) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                   "material: the law is %s, a fluid is newtonian", material->name);
+}
+
 /* ---- questions ------------------------------------------------------------------------------- */
 
 const char *mps_material_name(const mps_material *material) {

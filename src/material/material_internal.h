@@ -38,6 +38,10 @@ mps_material *mpsi_material_retain(mps_material *material);
 mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
                                        const mps_material *material);
 
+/* MPS_ERROR_ARGUMENT of NULL, MPS_ERROR_UNSUPPORTED of another law than a Newtonian fluid. */
+mps_status mpsi_material_check_newtonian(mps_context *context, const char *function,
+                                         const mps_material *material);
+
 /* Adds the constants of the law; for NULL, that there is none. */
 void mpsi_material_give(mpsi_given *list, const mps_material *material);
 

@@ -36,12 +36,22 @@ static void fluid_create(api *a) {
   if (api_chance(a, 20)) def.level = api_optional(a, "level", -1e12, 1e12, 0.6);
   if (isfinite(def.level)) a->wrong = before;
   def.tolerance = api_real(a, "tolerance", 1e-14, 1e-2, 1e-5);
+  if (!a->latest && api_chance(a, 10)) def.material = api_maybe(a, API_MATERIAL, "material");
   if (!a->latest && api_chance(a, 5)) def.kernel = api_maybe(a, API_KERNEL, "kernel");
   if (a->wrong == 1 && strcmp(a->wrong_name, "level") == 0) a->wrong = 0;
   const mps_status status =
       mps_fluid_create(context, set, a->wrong == 0 && api_chance(a, 5) ? NULL : &def,
                        api_null(a, "out") ? NULL : &made);
   (void)api_end_made(a, status, API_FLUID, made, NULL);
+}
+
+static void fluid_set_material(api *a) {
+  api_begin(a, "mps_fluid_set_material");
+  int64_t ids[8] = {0};
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  mps_material *material = api_any(a, API_MATERIAL)->handle;
+  const int64_t count = api_chance(a, 30) ? api_ids(a, mps_fluid_particles(fluid), 8, ids) : 0;
+  (void)api_end(a, mps_fluid_set_material(fluid, material, count, count ? ids : NULL));
 }
 
 /* ---- walls ----------------------------------------------------------------------------------- */
@@ -327,6 +337,7 @@ static const api_call calls[] = {
     {"mps_fluid_get_wall", 1, API_FLUID, fluid_get_wall},
     {"mps_fluid_get_pressure", 2, API_FLUID, fluid_get_pressure},
     {"mps_fluid_get_levels", 1, API_FLUID, fluid_get_levels},
+    {"mps_fluid_set_material", 2, API_FLUID, fluid_set_material},
     {"mps_fluid_add_body", 3, API_FLUID, fluid_add_body},
     {"mps_fluid_remove_body", 1, API_FLUID, fluid_remove_body},
     {"mps_fluid_float_body", 2, API_FLUID, fluid_float_body},

@@ -158,7 +158,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.6, 0.4}, extra[2] = {0.3, 0.7};
   set.spacing = 0.02;
   def.domain = domain;
-  if (what == OTHER_DENSITY) def.density += rank;
+  if (what == OTHER_DENSITY) def.density = 1000.0 + rank;
   mps_status status = mps_particles_create(own, &set, &s.set);
   TRY(mps_particles_fill_box(s.set, lower, upper, NULL));
   if (what == OTHER_SET && rank == 1) TRY(mps_particles_append(s.set, 1, extra));

@@ -25,7 +25,7 @@ static void bad_definitions_are_refused(void **state) {
     const char *text;
   } cases[] = {
       {offsetof(mps_fluid_def, density), 0.0, "density of the fluid is 0"},
-      {offsetof(mps_fluid_def, density), NAN, "density of the fluid is nan"},
+      {offsetof(mps_fluid_def, density), INFINITY, "density of the fluid is inf"},
       {offsetof(mps_fluid_def, viscosity), -1.0, "viscosity of the fluid is -1"},
       {offsetof(mps_fluid_def, gravity), INFINITY, "|gravity| of the fluid is inf"},
       {offsetof(mps_fluid_def, gravity) + 2 * sizeof(double), 1.0, "gravity[2]"},
@@ -52,6 +52,93 @@ static void bad_definitions_are_refused(void **state) {
                    "another context");
   mps_context_destroy(&other);
   mps_particles_destroy(&p);
+}
+
+static mps_material *newtonian(double viscosity) {
+  mps_material *material = NULL;
+  mps_material_newtonian_def law = mps_material_newtonian_defaults();
+  law.bulk_modulus = 1e6, law.viscosity = viscosity;
+  mps_assert_ok(context, mps_material_create_newtonian(context, &law, &material));
+  return material;
+}
+
+/* A square of water between walls of no slip, sheared: what is left of its speeds after ten steps,
+ * a digest of them all. */
+static double sheared(mps_fluid_def def, const mps_material *later, double density) {
+  mps_particles *p = block(0.1);
+  mps_fluid *f = NULL;
+  mps_edit u;
+  double sum = 0.0;
+  def.dt = 1e-3;
+  if (density > 0.0) mps_assert_ok(context, mps_particles_set(p, "density", 0, density));
+  mps_assert_ok(context, mps_particles_add_field(p, "velocity", 0));
+  mps_assert_ok(context, mps_particles_edit(p, "velocity", &u));
+  for (int64_t i = 0; i < u.view.shape[0]; i++) *mps_edit_f64(&u, i, 0) = 0.01 * (double)(i / 10);
+  mps_assert_ok(context, mps_particles_commit(p, &u));
+  mps_assert_ok(context, mps_fluid_create(context, p, &def, &f));
+  (void)tank_wall(context, f, 0.0, 0.0, 0.0, 1.0, NULL);
+  if (later) mps_assert_ok(context, mps_fluid_set_material(f, later, 0, NULL));
+  mps_assert_ok(context, mps_fluid_step(f, 10));
+  mps_view v;
+  mps_assert_ok(context, mps_particles_view(p, "velocity", &v));
+  for (int64_t i = 0; i < v.shape[0]; i++)
+    sum += *mps_view_f64(&v, i, 0) * (double)(1 + i);
+  mps_fluid_destroy(&f);
+  mps_particles_destroy(&p);
+  return sum;
+}
+
+/* One fluid, told by numbers, by a material at creation or after it, by the set's field. */
+static void a_fluid_is_a_material(void **state) {
+  (void)state;
+  mps_fluid_def plain = mps_fluid_defaults(), numbers = plain, law = plain, now;
+  mps_material *syrup = newtonian(50.0), *rock = NULL;
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &rock));
+  assert_true(isnan(plain.density) && isnan(plain.viscosity));
+  numbers.density = 1300.0, numbers.viscosity = 50.0;
+  law.material = syrup, law.viscosity = 7.0; /* not read with a material */
+  const double expected = sheared(numbers, NULL, 0.0);
+  assert_true(sheared(law, NULL, 1300.0) == expected);
+  assert_true(sheared(plain, syrup, 1300.0) == expected);
+  assert_true(sheared(plain, NULL, 1300.0) != expected);
+  mps_particles *p = block(0.1);
+  mps_fluid *f = NULL;
+  int64_t ids[51];
+  for (int64_t k = 0; k < 51; k++) ids[k] = k % 50;
+  mps_assert_ok(context, mps_fluid_create(context, p, &law, &f));
+  mps_assert_ok(context, mps_fluid_get_def(f, &now));
+  assert_true(now.density == 1000.0 && now.viscosity == 50.0 && now.material == NULL);
+  mps_assert_ok(context, mps_fluid_set_material(f, syrup, 51, ids)); /* all, one of them twice */
+  mps_assert_fails(context, mps_fluid_set_material(f, syrup, 49, ids), MPS_ERROR_UNSUPPORTED,
+                   "ids are 49 of the 50 particles");
+  mps_assert_fails(context, mps_fluid_set_material(f, rock, 0, NULL), MPS_ERROR_UNSUPPORTED,
+                   "the law is linear_elastic");
+  mps_assert_fails(context, mps_fluid_set_material(f, NULL, 0, NULL), MPS_ERROR_ARGUMENT,
+                   "material is NULL");
+  mps_assert_fails(context, mps_fluid_set_material(f, syrup, 3, NULL), MPS_ERROR_ARGUMENT,
+                   "count is 3");
+  mps_material_destroy(&syrup);
+  syrup = newtonian(2e6);
+  mps_assert_fails(context, mps_fluid_set_material(f, syrup, 0, NULL), MPS_ERROR_ARGUMENT,
+                   "viscosity of the fluid is 2e+06");
+  mps_assert_ok(context, mps_fluid_get_def(f, &now));
+  assert_true(now.viscosity == 50.0);
+  mps_fluid_destroy(&f);
+  law = plain, law.material = rock;
+  mps_assert_fails(context, mps_fluid_create(context, p, &law, &f), MPS_ERROR_UNSUPPORTED,
+                   "the law is linear_elastic");
+  mps_edit rho;
+  mps_assert_ok(context, mps_particles_set(p, "density", 0, 1000.0));
+  mps_assert_ok(context, mps_particles_edit(p, "density", &rho));
+  *mps_edit_f64(&rho, 4, 0) = 1025.0;
+  mps_assert_ok(context, mps_particles_commit(p, &rho));
+  mps_assert_fails(context, mps_fluid_create(context, p, NULL, &f), MPS_ERROR_ARGUMENT,
+                   "is 1025 kg/m3, that of particle 0 1000");
+  mps_assert_ok(context, mps_fluid_create(context, p, &numbers, &f));
+  mps_fluid_destroy(&f);
+  mps_particles_destroy(&p);
+  mps_material_destroy(&syrup);
+  mps_material_destroy(&rock);
 }
 
 static void the_definition_comes_back_completed(void **state) {
@@ -711,6 +798,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_definitions_are_refused),
       cmocka_unit_test(the_definition_comes_back_completed),
+      cmocka_unit_test(a_fluid_is_a_material),
       cmocka_unit_test(takes_a_kernel),
       cmocka_unit_test(bad_boundaries_are_refused),
       cmocka_unit_test(a_run_ends_on_time_and_its_callback_only_reads),

@@ -428,6 +428,10 @@ static void make_fluid(scene *s) {
   mps_fluid_load_def load = mps_fluid_load_defaults();
   make_set(s, 0.05, 0.4);
   OK(create_fluid(s));
+  mps_material_newtonian_def oil = mps_material_newtonian_defaults();
+  oil.bulk_modulus = 1e6, oil.viscosity = 0.1;
+  mps_material_destroy(&s->second); /* ground */
+  OK(mps_material_create_newtonian(s->own, &oil, &s->second));
   for (int k = 0; k < 3; k++) {
     mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
     def.kind = MPS_BOUNDARY_ROLLER; /* slip */
@@ -481,6 +485,9 @@ static mps_status fluid_set_load(scene *s) {
   mps_fluid_load_def def = mps_fluid_load_defaults();
   def.ids = some, def.id_count = 3;
   return mps_fluid_set_load(s->fluid, 0, &def);
+}
+static mps_status fluid_set_material(scene *s) {
+  return mps_fluid_set_material(s->fluid, s->second, 0, NULL);
 }
 static mps_status fluid_add_body(scene *s) {
   return mps_fluid_add_body(s->fluid, s->other, MPS_BOUNDARY_ROLLER, NULL);
@@ -622,6 +629,7 @@ static const row rows[] = {
     {make_fluid, fluid_set_boundary, "mps_fluid_set_boundary", false},
     {make_fluid, fluid_add_load, "mps_fluid_add_load", false},
     {make_fluid, fluid_set_load, "mps_fluid_set_load", false},
+    {make_fluid, fluid_set_material, "mps_fluid_set_material", false},
     {make_fluid, fluid_add_body, "mps_fluid_add_body", false},
     {make_fluid, fluid_pressure, "mps_fluid_get_pressure", true},
     {make_fluid, fluid_wall, "mps_fluid_get_wall", true},

@@ -11,7 +11,8 @@
 static const mps_fluid_def defaults = {
     .struct_size = sizeof(mps_fluid_def),
     .iterations = 2000,
-    .density = 1000.0,
+    .density = NAN,
+    .viscosity = NAN,
     .gravity = {0.0, -9.81, 0.0},
     .level = NAN,
     .measure = 1.0,
@@ -28,6 +29,13 @@ mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size) {
 
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
 
+mps_status mpsi_fluid_check_viscosity(mps_context *context, const char *function,
+                                      double viscosity) {
+  if (within(viscosity, 0.0, 1e6)) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "viscosity of the fluid is %g, allowed is in [0, 1e6] Pa s", viscosity);
+}
+
 static mps_status check_def(mps_context *context, const mps_fluid_def *d, double l0) {
   const double g = hypot(d->gravity[0], d->gravity[1]);
   const double longest = g > 0.0 ? 0.5 * sqrt(l0 / g) : INFINITY;
@@ -38,7 +46,6 @@ static mps_status check_def(mps_context *context, const mps_fluid_def *d, double
   } checks[] = {
       {"iterations", ">= 1", d->iterations, d->iterations >= 1},
       {"density", "in [1e-3, 1e6] kg/m3", d->density, within(d->density, 1e-3, 1e6)},
-      {"viscosity", "in [0, 1e6] Pa s", d->viscosity, within(d->viscosity, 0.0, 1e6)},
       {"|gravity|", "at most 1e6 m/s2", g, g <= 1e6},
       {"gravity[2]", "0: the fluid is in the plane", d->gravity[2], d->gravity[2] == 0.0},
       {"level", "finite or NaN", d->level, isnan(d->level) || isfinite(d->level)},
@@ -53,7 +60,7 @@ static mps_status check_def(mps_context *context, const mps_fluid_def *d, double
       return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
                        "%s of the fluid is %g, allowed is %s", checks[k].name, checks[k].value,
                        checks[k].allowed);
-  return MPS_OK;
+  return mpsi_fluid_check_viscosity(context, "mps_fluid_create", d->viscosity);
 }
 
 /* The radius is that of the kernel, if given. */
@@ -206,6 +213,7 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   if (status == MPS_OK) status = check_particles(context, particles);
   const double l0 = mps_particles_spacing(particles);
   if (status == MPS_OK) status = read_kernel(context, &def, l0);
+  if (status == MPS_OK) status = mpsi_fluid_read_material(context, __func__, particles, &def);
   if (status == MPS_OK) status = check_def(context, &def, l0);
   if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
