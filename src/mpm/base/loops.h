@@ -19,6 +19,11 @@
 #define MPSI_LEVELLED(name) MPSI_JOIN(name##_v, MPSI_LEVEL)
 #define MPSI_SIMD _Pragma("omp simd")
 #define MPSI_UNROLL _Pragma("GCC unroll 4")
+#if defined(__GNUC__) || defined(__clang__)
+#define MPSI_APART static __attribute__((noinline)) /* large, and called from several places */
+#else
+#define MPSI_APART static
+#endif
 
 #define MPSI_VARIANTS(X)                                                                           \
   X(plane_strain, cubic, MPS_MPM_GEOMETRY_PLANE_STRAIN, 3)                                         \
@@ -133,6 +138,7 @@ MPSI_INLINE mpsi_lanes mpsi_excess(int spline, mpsi_lanes t) {
   return spline == 3 ? 0.5 * (f * f) * (g * g) : 2.0 * f * (f * f - 0.25);
 }
 
+/* Weights of these differences. */
 MPSI_INLINE double mpsi_difference(int spline, int i) {
   static const double second[4] = {1.0, -2.0, 1.0, 0.0}, third[4] = {-1.0, 3.0, -3.0, 1.0};
   return spline == 3 ? third[i] : second[i];

@@ -24,52 +24,94 @@ MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, b
     }
 }
 
-/* Differences along y of a stencil, node by node along x, in each of its planes across z. */
-typedef struct differences {
-  int32_t first; /* lowest node of the stencil */
-  mpsi_node along_y[4][4];
-} differences;
+/* What all particles of a stencil take of a row of nodes along y, at each of its places along x and
+ * in each of its planes across z: with f the place along y from the second node, the nodes times
+ * their B-splines are term[0] + term[1] f + term[2] f^2 + term[3] f^3. Its derivative by f is
+ * theirs, and its last coefficient, the third (quadratic: second) one, is their difference of
+ * mpsi_excess over spline!. */
+typedef struct polynomials {
+  int32_t first;           /* lowest node of the stencil */
+  mpsi_node term[4][4][4]; /* by plane, place along x, power */
+} polynomials;
 
-MPSI_INLINE void find_differences(int dim, int spline, int32_t first, const mpsi_node *tile,
-                                  differences *out) {
+MPSI_INLINE void find_polynomials(int dim, int spline, int32_t first, const mpsi_node *tile,
+                                  polynomials *out) {
   out->first = first;
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++)
     MPSI_UNROLL for (int i = 0; i <= spline; i++) {
-      mpsi_quad sum = {0.0};
-      MPSI_UNROLL for (int j = 0; j <= spline; j++) sum +=
-          mpsi_difference(spline, j) * mpsi_get(tile[first + mpsi_tile_index(i, j, plane)]);
-      mpsi_put(out->along_y[plane][i], sum);
+      const mpsi_node *node = tile + first + mpsi_tile_index(i, 0, plane);
+      mpsi_node *to = out->term[plane][i];
+      const mpsi_quad a = mpsi_get(node[0]), b = mpsi_get(node[mpsi_tile_index(0, 1, 0)]);
+      const mpsi_quad c = mpsi_get(node[mpsi_tile_index(0, 2, 0)]);
+      if (spline == 3) {
+        const mpsi_quad d = mpsi_get(node[mpsi_tile_index(0, 3, 0)]), outer = a + c;
+        mpsi_put(to[0], (outer + 4.0 * b) * (1.0 / 6.0));
+        mpsi_put(to[1], 0.5 * (c - a));
+        mpsi_put(to[2], 0.5 * outer - b);
+        mpsi_put(to[3], (d - a) * (1.0 / 6.0) + 0.5 * (b - c));
+      } else {
+        const mpsi_quad outer = a + c;
+        mpsi_put(to[0], 0.125 * outer + 0.75 * b);
+        mpsi_put(to[1], 0.5 * (c - a));
+        mpsi_put(to[2], 0.5 * outer - b);
+      }
     }
 }
 
-/* Sums over the nodes across x, for one component at one place along x: by w of y and z, by w s of
- * y, of z, and by the differences of y, of z. */
+/* Sums over the nodes of a row along y, for one component, and what they grow by. */
+typedef struct row_sums {
+  mpsi_lanes value, growth; /* by w; by its derivative, or at a wall by w s */
+} row_sums;
+
+/* By the polynomials of the stencil; f: along y from the second node. */
+MPSI_INLINE row_sums sum_splines(int spline, const mpsi_node *term, int lane, mpsi_lanes f) {
+  const double top = term[spline][lane];
+  mpsi_lanes value = top * f + term[spline - 1][lane], growth = top * f + value;
+  if (spline == 3) {
+    value = value * f + term[1][lane];
+    growth = growth * f + value;
+  }
+  return (row_sums){value * f + term[0][lane], growth};
+}
+
+/* By any weights: at a wall. */
+MPSI_INLINE row_sums sum_weights(int spline, const mpsi_places *places, int k,
+                                 const mpsi_node *node, int lane) {
+  row_sums out = {{0.0}, {0.0}};
+  MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+    const double v = node[mpsi_tile_index(0, j, 0)][lane];
+    out.value += mpsi_get_lanes(places->w[1][j] + k) * v;
+    out.growth += mpsi_get_lanes(places->ws[1][j] + k) * v;
+  }
+  return out;
+}
+
+/* Sums over the nodes across x, for one component at one place along x: by w of y and z, by the
+ * growth of y, w s of z, and by the differences of y, of z. */
 typedef struct across {
   mpsi_lanes value, slope[2], rise[2];
 } across;
 
-MPSI_INLINE across sum_across(int dim, int spline, const mpsi_places *places, int k,
-                              const mpsi_node *node, int lane, const differences *difference,
-                              int i) {
+MPSI_INLINE across sum_across(int dim, int spline, bool at_wall, const mpsi_places *places, int k,
+                              const mpsi_node *node, int lane, const polynomials *rows, int i) {
+  const mpsi_lanes f = mpsi_get_lanes(places->t[1] + k) - 1.0;
   across out = {{0.0}, {{0.0}}, {{0.0}}};
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
-    const double rise = difference->along_y[plane][i][lane];
-    mpsi_lanes value = {0.0}, slope = {0.0};
-    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-      const double v = node[mpsi_tile_index(i, j, plane)][lane];
-      value += mpsi_get_lanes(places->w[1][j] + k) * v;
-      slope += mpsi_get_lanes(places->ws[1][j] + k) * v;
-    }
+    const mpsi_node *term = rows->term[plane][i];
+    const row_sums row =
+        at_wall ? sum_weights(spline, places, k, node + mpsi_tile_index(i, 0, plane), lane)
+                : sum_splines(spline, term, lane, f);
+    const double rise = term[spline][lane];
     if (dim == 2) {
-      out = (across){value, {slope}, {rise + out.rise[0]}};
+      out = (across){row.value, {row.growth}, {rise + out.rise[0]}};
       continue;
     }
     const mpsi_lanes w = mpsi_get_lanes(places->w[2][plane] + k);
-    out.value += w * value;
-    out.slope[0] += w * slope;
-    out.slope[1] += mpsi_get_lanes(places->ws[2][plane] + k) * value;
+    out.value += w * row.value;
+    out.slope[0] += w * row.growth;
+    out.slope[1] += mpsi_get_lanes(places->ws[2][plane] + k) * row.value;
     out.rise[0] += w * rise;
-    out.rise[1] += mpsi_difference(spline, plane) * value;
+    out.rise[1] += mpsi_difference(spline, plane) * row.value;
   }
   return out;
 }
@@ -77,22 +119,24 @@ MPSI_INLINE across sum_across(int dim, int spline, const mpsi_places *places, in
 #define EVERY_AXIS 3
 
 /* Particles from `k` of `places`, all of one stencil (what is behind them comes to nothing),
- * to `out` from `to` on: sums of the rows by their weights across, w and w s, and at last along x.
+ * to `out` from `to` on: sums of the rows by their weights across, and at last along x.
  * The derivative along `plain` (-1: none) is the slope. */
-MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mpsi_places *places,
-                              int k, const mpsi_node *tile, const differences *difference,
-                              int plain, mpsi_gathered *out, int to) {
+MPSI_INLINE void gather_body(const mps_mpm *mpm, int dim, int spline, bool at_wall,
+                             const mpsi_places *places, int k, const mpsi_node *tile,
+                             const polynomials *rows, int plain, mpsi_gathered *out, int to) {
   const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
-  const mpsi_node *node = tile + difference->first;
+  const double factorial = spline == 3 ? 6.0 : 2.0;
+  const mpsi_node *node = tile + rows->first;
   mpsi_lanes excess[3] = {{0.0}}; /* see mpsi_excess */
-  MPSI_UNROLL for (int d = 0; d < dim; d++) {
-    if (d != plain && plain != EVERY_AXIS)
-      excess[d] = mpm->grid.inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
-  }
-  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+  MPSI_UNROLL for (int d = 0; d < dim; d++) excess[d] =
+      mpm->grid.inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
+  excess[1] *= factorial;
+#pragma GCC unroll 1 /* all components would fill the instruction cache */
+  for (int c = 0; c < dim; c++) {
     mpsi_lanes v = {0.0}, slope[3] = {{0.0}}, rise[3] = {{0.0}};
     MPSI_UNROLL for (int i = 0; i <= spline; i++) {
-      const across sum = sum_across(dim, spline, places, k, node, MPSI_VECTOR + c, difference, i);
+      const across sum =
+          sum_across(dim, spline, at_wall, places, k, node, MPSI_VECTOR + c, rows, i);
       const mpsi_lanes w = mpsi_get_lanes(places->w[0][i] + k);
       v += w * sum.value;
       slope[0] += mpsi_get_lanes(places->ws[0][i] + k) * sum.value;
@@ -104,24 +148,28 @@ MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mps
     }
     mpsi_put_lanes(out->v[c] + to, v);
     MPSI_UNROLL for (int d = 0; d < dim; d++) {
-      slope[d] *= scale;
+      const mpsi_lanes more = excess[d] * rise[d];
+      slope[d] = d == 1 && !at_wall ? mpm->grid.inverse * slope[d] - more : scale * slope[d];
       mpsi_put_lanes(out->slope[dim * c + d] + to, slope[d]);
-      mpsi_put_lanes(out->derivative[dim * c + d] + to, slope[d] + excess[d] * rise[d]);
+      mpsi_put_lanes(out->derivative[dim * c + d] + to,
+                     d == plain || plain == EVERY_AXIS ? slope[d] : slope[d] + more);
     }
   }
 }
 
 /* The same at the wall across `axis`, where the laws see the slope across it; `n` particles. */
-MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                int spline, const mpsi_places *places, int axis, int k, int n,
-                                const mpsi_node *tile, const differences *difference,
-                                mpsi_gathered *out) {
+MPSI_INLINE void gather_wall_body(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                  int spline, const mpsi_places *places, int axis, int k, int n,
+                                  const mpsi_node *tile, const polynomials *rows,
+                                  mpsi_gathered *out) {
   mpsi_wall wall;
   mpsi_gathered along;
-  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_ALONG, &wall);
-  gather_lanes(mpm, dim, spline, &wall.places, 0, tile, difference, axis, &along, 0);
-  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_SLOPE, &wall);
-  gather_lanes(mpm, dim, spline, &wall.places, 0, tile, difference, axis, out, k);
+  for (int part = 0; part < 2; part++) {
+    mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis,
+                     part == 0 ? MPSI_WALL_ALONG : MPSI_WALL_SLOPE, &wall);
+    gather_body(mpm, dim, spline, true, &wall.places, 0, tile, rows, axis, part == 0 ? &along : out,
+                part == 0 ? 0 : k);
+  }
   for (int c = 0; c < dim; c++)
     for (int d = 0; d < dim; d++) {
       const size_t bytes = (size_t)n * sizeof(double);
@@ -130,6 +178,26 @@ MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells
       memcpy(out->derivative[dim * c + d] + k, along.derivative[dim * c + d], bytes);
     }
 }
+
+/* Both as functions, so that each stands once in the code of a block. */
+#define DEFINE_GATHER(dim, spline)                                                                 \
+  MPSI_APART void gather_lanes_##dim##_##spline(                                                   \
+      const mps_mpm *mpm, const mpsi_places *places, int k, const mpsi_node *tile,                 \
+      const polynomials *rows, int plain, mpsi_gathered *out) {                                    \
+    gather_body(mpm, dim, spline, false, places, k, tile, rows, plain, out, k);                    \
+  }                                                                                                \
+  MPSI_APART void gather_at_wall_##dim##_##spline(                                                 \
+      const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places, int axis,       \
+      int k, int n, const mpsi_node *tile, const polynomials *rows, mpsi_gathered *out) {          \
+    gather_wall_body(mpm, cells, dim, spline, places, axis, k, n, tile, rows, out);                \
+  }
+DEFINE_GATHER(2, 2)
+DEFINE_GATHER(2, 3)
+DEFINE_GATHER(3, 2)
+DEFINE_GATHER(3, 3)
+/* That of a dimension and spline, which are literal. */
+#define OF_KIND(name, dim, spline)                                                                 \
+  ((dim) == 2 ? (spline) == 2 ? name##_2_2 : name##_2_3 : (spline) == 2 ? name##_3_2 : name##_3_3)
 
 /* One particle near bodies or corners. */
 static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
@@ -151,7 +219,7 @@ static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
 MPSI_INLINE void gather_beside(mps_mpm *mpm, const mpsi_cell_block *cells,
                                const mpsi_worker *worker, int dim, int spline,
                                const mpsi_places *places, int64_t chunk, int k, int end,
-                               const differences *difference, mpsi_gathered *out) {
+                               const polynomials *rows, mpsi_gathered *out) {
   const mpsi_node *tile = (const mpsi_node *)worker->tile;
   const mpsi_batched done =
       mpm->flip > 0.0
@@ -161,7 +229,7 @@ MPSI_INLINE void gather_beside(mps_mpm *mpm, const mpsi_cell_block *cells,
     for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, chunk + q, out, q);
   else if (done == MPSI_BATCHED_FULL)
     for (int q = k; q < end; q += MPSI_LANES)
-      gather_lanes(mpm, dim, spline, places, q, tile, difference, EVERY_AXIS, out, q);
+      OF_KIND(gather_lanes, dim, spline)(mpm, places, q, tile, rows, EVERY_AXIS, out);
 }
 
 /* The first `n` (at most 4) values of a vector. */
@@ -313,27 +381,25 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
                               int dim, int spline, int64_t begin, int n, mpsi_gathered *out) {
   const mpsi_node *tile = (const mpsi_node *)worker->tile;
   mpsi_places places;
-  differences difference;
+  polynomials rows;
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
   if (mpm->p.stencil)
     memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
   for (int k = 0, end; k < n; k = end) {
     const int32_t first = places.first[k];
     for (end = k + 1; end < n && places.first[end] == first;) end++;
-    find_differences(dim, spline, first, tile, &difference);
+    find_polynomials(dim, spline, first, tile, &rows);
     const uint32_t state = cells->cut ? mpsi_support_state(worker, dim, spline, first) : 0;
     const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
     if (cells->light)
       for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
     else if (!state)
       for (int q = k; q < end; q += MPSI_LANES)
-        gather_lanes(mpm, dim, spline, &places, q, tile, &difference, -1, out, q);
+        OF_KIND(gather_lanes, dim, spline)(mpm, &places, q, tile, &rows, -1, out);
     else if (axis >= 0)
-      for (int q = k; q < end; q += MPSI_LANES)
-        gather_at_wall(mpm, cells, dim, spline, &places, axis, q,
-                       end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &difference, out);
-    else
-      gather_beside(mpm, cells, worker, dim, spline, &places, begin, k, end, &difference, out);
+      for (int q = k; q < end; q += MPSI_LANES) OF_KIND(gather_at_wall, dim, spline)
+    (mpm, cells, &places, axis, q, end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &rows, out);
+    else gather_beside(mpm, cells, worker, dim, spline, &places, begin, k, end, &rows, out);
   }
   if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }
