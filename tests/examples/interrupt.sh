@@ -95,7 +95,7 @@ fi
 
 # Above the ground there is nothing to scale the axes of a picture by.
 program=mps-penetrometer
-"$programs/"$program --soil 4x4x2 --h 0.025 --depth 0.05 --rate 0.01 --every-checkpoint 0.001 --checkpoint "$work/air.h5" \
+"$programs/"$program --soil 4x4x2 --h 0.025 --depth 0.05 --every-checkpoint 0.01 --checkpoint "$work/air.h5" \
   --threads 1 --out "$work/air" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -s "$work/air.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
