@@ -142,6 +142,23 @@ int app_finish(app *a, int code) {
   return code;
 }
 
+static bool inside_character(char c) { return ((unsigned char)c & 0xc0) == 0x80; } /* of UTF-8 */
+
+void app_print_line(const char *format, va_list args) {
+  enum { MOST = 900, FIRST = 500, LAST = 350 };
+  char line[16384];
+  vsnprintf(line, sizeof line, format, args);
+  const size_t length = strlen(line);
+  if (length <= MOST) {
+    fprintf(stderr, "%s\n", line);
+    return;
+  }
+  size_t first = FIRST, last = length - LAST;
+  while (inside_character(line[first])) first--;
+  while (inside_character(line[last])) last++;
+  fprintf(stderr, "%.*s ... %s\n", (int)first, line, line + last);
+}
+
 bool app_error(app *a, const char *format, ...) {
   va_list args;
   va_start(args, format);
@@ -150,8 +167,7 @@ bool app_error(app *a, const char *format, ...) {
   } else {
     progress_clear(&a->bar);
     fprintf(stderr, "%s: ", a->program);
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
+    app_print_line(format, args);
   }
   va_end(args);
   return false;

@@ -8,6 +8,7 @@
 
 #include <mps/domain.h>
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -67,6 +68,10 @@ bool app_error(app *a, const char *format, ...) APP_PRINTF(2, 3);
 /* One line "program: warning: ..." to stderr, as of the library's warnings: of the first two. All
  * of them are in summary.json. */
 void app_warn(app *a, const char *format, ...) APP_PRINTF(2, 3);
+/* A line on stderr. Of one that a value of thousands of characters makes too long, beginning and
+ * end are printed. */
+void app_print_line(const char *format, va_list args);
+
 /* As app_error, out of memory. */
 bool app_no_memory(app *a);
 /* True for MPS_OK; otherwise prints the record of the context. */

@@ -26,7 +26,7 @@ static void complain(const char *format, ...) {
   va_list args;
   if (ranks_number() > 0) return;
   va_start(args, format);
-  vfprintf(stderr, format, args);
+  app_print_line(format, args);
   va_end(args);
 }
 
@@ -150,7 +150,7 @@ static int print_help(const options_program *program) {
 /* What was printed must have arrived: a full disk is an error. */
 static int close_output(const options_program *program) {
   if (fflush(stdout) == 0 && !ferror(stdout)) return 0;
-  complain("%s: standard output could not be written\n", program->name);
+  complain("%s: standard output could not be written", program->name);
   return 1;
 }
 
@@ -183,7 +183,7 @@ static int refuse_unknown(const options_program *program, const char *name) {
   int least = MAX_NAME;
   const standard_former *former = standard_find_former(program->table, name);
   if (former) {
-    complain("%s: --%s is --%s%s\n", program->name, name, former->now,
+    complain("%s: --%s is --%s%s", program->name, name, former->now,
              former->value ? former->value : "");
     return USAGE;
   }
@@ -196,9 +196,9 @@ static int refuse_unknown(const options_program *program, const char *name) {
     nearest = o->name;
   }
   if (nearest)
-    complain("%s: unknown option --%s, did you mean --%s?\n", program->name, name, nearest);
+    complain("%s: unknown option --%s, did you mean --%s?", program->name, name, nearest);
   else
-    complain("%s: unknown option --%s, see %s --help\n", program->name, name, program->name);
+    complain("%s: unknown option --%s, see %s --help", program->name, name, program->name);
   return USAGE;
 }
 
@@ -209,7 +209,7 @@ static int refuse_value(const options_program *program, const option *o, const c
                         const char *allowed) {
   const bool unit = o->number && o->unit && strcmp(o->unit, "1") != 0;
   const bool own = unit && units_written(value);
-  complain("%s: --%s is %s%s%s, must be %s%s%s\n", program->name, o->name, *value ? value : "empty",
+  complain("%s: --%s is %s%s%s, must be %s%s%s", program->name, o->name, *value ? value : "empty",
            unit && !own ? " " : "", unit && !own ? o->unit : "", allowed, own ? " " : "",
            own ? o->unit : "");
   return USAGE;
@@ -218,8 +218,16 @@ static int refuse_value(const options_program *program, const option *o, const c
 static int refuse_unit(const options_program *program, const option *o, const char *value) {
   char wanted[160];
   units_wanted(o->unit, wanted, sizeof wanted);
-  complain("%s: --%s is %s: %s\n", program->name, o->name, value, wanted);
+  complain("%s: --%s is %s: %s%s", program->name, o->name, value, wanted,
+           strchr(value, ',') ? " with a decimal point" : "");
   return USAGE;
+}
+
+/* Nothing, or an infinity or NaN, which are numbers out of the range. */
+static bool is_special(const char *value) {
+  char *end;
+  if (*value == '\0') return true;
+  return !isfinite(strtod(value, &end)) && *end == '\0';
 }
 
 static bool in_range(const option_range *r, double value) {
@@ -244,7 +252,8 @@ static int read_numbers(const options_program *program, option *o, const char *v
     memcpy(word, rest, length);
     word[length] = '\0';
     const units_status status = units_read(word, o->unit, &number[i]);
-    if (status == UNITS_OTHER) return refuse_unit(program, o, value);
+    if (status == UNITS_OTHER || (status == UNITS_NO_NUMBER && count == 1 && !is_special(value)))
+      return refuse_unit(program, o, value);
     if (status != UNITS_GOOD || !in_range(&o->range, number[i]))
       return refuse_value(program, o, value, allowed);
     rest += length;
@@ -292,7 +301,7 @@ static int read_value(const options_program *program, option *o, const char *val
   if (*value == '\0') return refuse_value(program, o, value, o->unit);
   if (strcmp(o->name, "checkpoint") == 0 && units_read(value, "s", &number) == UNITS_GOOD) {
     complain("%s: --checkpoint is %s: a file is wanted; the time between checkpoints is "
-             "--every-checkpoint\n",
+             "--every-checkpoint",
              program->name, value);
     return USAGE;
   }
@@ -333,6 +342,29 @@ bool options_doubt(int k, char *out, size_t size) {
   return false;
 }
 
+/* A word that belongs to no option; one that is the unit of the number before it is put there. */
+static int refuse_word(const options_program *program, int i, char **argv) {
+  const char *word = argv[i], *equals = i > 1 ? strchr(argv[i - 1], '=') : NULL;
+  const option *o =
+      i > 2 && strncmp(argv[i - 2], "--", 2) == 0 ? find(program->table, argv[i - 2] + 2) : NULL;
+  const char *number = equals ? equals + 1 : o ? argv[i - 1] : NULL;
+  char name[MAX_NAME + 1], both[80];
+  double value;
+  if (equals && strncmp(argv[i - 1], "--", 2) == 0) {
+    const ptrdiff_t length = equals - argv[i - 1] - 2;
+    snprintf(name, sizeof name, "%.*s", (int)(length < MAX_NAME ? length : MAX_NAME),
+             argv[i - 1] + 2);
+    o = find(program->table, name);
+  }
+  if (o && o->number && number &&
+      snprintf(both, sizeof both, "%s%s", number, word) < (int)sizeof both &&
+      units_read(both, o->unit, &value) == UNITS_GOOD && units_written(both))
+    complain("%s: unexpected argument \"%s\": write --%s %s", program->name, word, o->name, both);
+  else
+    complain("%s: unexpected argument \"%s\", see %s --help", program->name, word, program->name);
+  return USAGE;
+}
+
 static int parse(const options_program *program, int argc, char **argv) {
   for (int i = 1; i < argc; i++) {
     const char *argument = argv[i];
@@ -344,15 +376,15 @@ static int parse(const options_program *program, int argc, char **argv) {
       printf("%s (libmps %s)\n", program->name, mps_version());
       return close_output(program);
     }
-    if (strncmp(argument, "--", 2) != 0) {
-      complain("%s: unexpected argument \"%s\", see %s --help\n", program->name, argument,
-               program->name);
-      return USAGE;
-    }
+    if (strncmp(argument, "--", 2) != 0) return refuse_word(program, i, argv);
     char name[MAX_NAME + 1];
     const size_t length = strcspn(argument + 2, "=");
     snprintf(name, sizeof name, "%.*s", (int)(length < MAX_NAME ? length : MAX_NAME), argument + 2);
     option *o = find(program->table, name);
+    if (strcmp(name, "help") == 0 || strcmp(name, "version") == 0) {
+      complain("%s: --%s must be given without a value", program->name, name);
+      return USAGE;
+    }
     if (!o) return refuse_unknown(program, name);
     const char *value = argument[2 + length] == '=' ? argument + 3 + length : NULL;
     if (o->flag) {
@@ -361,7 +393,7 @@ static int parse(const options_program *program, int argc, char **argv) {
       continue;
     }
     if (!value && (i + 1 >= argc || strncmp(argv[i + 1], "--", 2) == 0)) {
-      complain("%s: --%s needs a value: %s\n", program->name, name, o->unit ? o->unit : "a number");
+      complain("%s: --%s needs a value: %s", program->name, name, o->unit ? o->unit : "a number");
       return USAGE;
     }
     const int code = read_value(program, o, value ? value : argv[++i]);
@@ -377,7 +409,7 @@ int options_parse(const options_program *program, int argc, char **argv) {
   for (option *o = program->table; o->name || o->help; o++)
     o->usual = o->number && o->count < 2 ? *o->number : 0.0;
   if (!standard_complete(program->table, &name)) {
-    complain("%s: --%s is not in the table of options\n", program->name, name);
+    complain("%s: --%s is not in the table of options", program->name, name);
     return USAGE;
   }
   const int code = parse(program, argc, argv);
@@ -441,7 +473,7 @@ int options_refuse(const options_program *program, const char *reason) {
     snprintf(name, sizeof name, "%.*s ", (int)strcspn(doubt, " "), doubt);
     doubted = strstr(reason, name) != NULL;
   }
-  complain("%s: %s%s%s%s\n", program->name, reason, defaults, doubted ? "; " : "",
+  complain("%s: %s%s%s%s", program->name, reason, defaults, doubted ? "; " : "",
            doubted ? doubt : "");
   return USAGE;
 }

@@ -2,11 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "resume.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { OPTIONS = 2048 }; /* bytes of the options' text, which comes first */
 
@@ -158,11 +160,23 @@ static bool name_results(app *a, const char *restart, const char **out) {
   return true;
 }
 
+/* A new file needs a directory that is there. Of OUT/checkpoint.h5 it is made later. */
+static bool check_directory(app *a, const char *path) {
+  char directory[1200];
+  const char *slash = strrchr(path, '/');
+  if (!slash || slash == path) return true;
+  if (snprintf(directory, sizeof directory, "%.*s", (int)(slash - path), path) >=
+      (int)sizeof directory)
+    return app_error(a, "--checkpoint is too long");
+  if (access(directory, W_OK | X_OK) == 0) return true;
+  return app_error(a, "cannot write --checkpoint %s: %s", path, strerror(errno));
+}
+
 /* What the library finds when it saves, before hours of computing. */
 static bool check_place(app *a, const char *path) {
   mps_checkpoint info = mps_checkpoint_defaults();
   struct stat file;
-  if (stat(path, &file) != 0) return true;
+  if (stat(path, &file) != 0) return check_directory(a, path);
   if (!S_ISREG(file.st_mode))
     return app_error(a, "--checkpoint is %s, a %s: it must be a new file or a checkpoint", path,
                      S_ISDIR(file.st_mode) ? "directory" : "device or pipe");
@@ -174,13 +188,13 @@ static bool check_place(app *a, const char *path) {
 
 bool resume_places(app *a, const char *restart, const char **checkpoint, const char **out) {
   static char path[1200];
+  struct stat info;
   if (!name_results(a, restart, out)) return false;
-  if (!*checkpoint) {
-    if (snprintf(path, sizeof path, "%s/checkpoint.h5", *out) >= (int)sizeof path)
-      return app_error(a, "--out is too long");
-    *checkpoint = path;
-  }
-  return check_place(a, *checkpoint);
+  if (*checkpoint) return check_place(a, *checkpoint);
+  if (snprintf(path, sizeof path, "%s/checkpoint.h5", *out) >= (int)sizeof path)
+    return app_error(a, "--out is too long");
+  *checkpoint = path;
+  return stat(*out, &info) != 0 || check_place(a, path);
 }
 
 static int64_t due(const resume_schedule *s, double now) {

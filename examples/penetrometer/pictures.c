@@ -32,9 +32,13 @@ static bool draw_force(app *a, const penetrometer *p) {
   output_text(&f,
               "set title \"%s\\n{/*0.85 diameter %g m, h = %g m, %g m/s, {/Symbol m} = %g}\"\n"
               "set xlabel 'depth of the lowest point (mm)'\nset ylabel '%s'\n"
-              "set key left top Left reverse opaque\nset xrange [0:*]\nset yrange [0:*]\nplot ",
+              "set key left top Left reverse opaque\n",
               title_of(p), p->s.diameter, p->s.h, p->s.rate, p->s.friction,
               clay ? "force over c {/Symbol p}D^2/4" : "force (kN)");
+  /* a run that ends above the ground has nothing to scale the axes by */
+  output_text(&f, "%s\nplot ",
+              pen_reached(&p->run[0]) > 0.0 ? "set xrange [0:*]\nset yrange [0:*]"
+                                            : "set xrange [0:1]\nset yrange [0:1]");
   plot_curve(&f, "force.csv", 2, unit, "linecolor rgb '#bbbbbb' linewidth 0.7", "every row");
   if (p->runs == 2)
     plot_curve(&f, "force-axisymmetric.csv", 5, unit, "linecolor rgb '#c0392b' linewidth 1.6",

@@ -157,7 +157,7 @@ static void begin_sections(output *f, const pile *p, const section *x, int panel
               "'#08306b')\nset size ratio -1\nset xtics %.9g\n"
               "set xlabel 'r (m)'\nset ylabel 'z (m)' offset 1.5\nset xrange [0:%.9g]\nset yrange "
               "[%.9g:%.9g]\n",
-              plot_tics(p->s.width, panel / 75.0), p->s.width, section_bottom(p), section_top(p));
+              plot_tics(p->s.width, panel / 45.0), p->s.width, section_bottom(p), section_top(p));
   plot_colours(f, 0.0, fabs(q->factor) * most_of(p, last, q->field, q->share), x->least, x->most);
 }
 
@@ -202,7 +202,7 @@ static bool draw_sections(app *a, const pile *p, const section *x) {
 static bool draw_overview(app *a, const pile *p, const section *stress, const section *strain) {
   output f;
   const double high = section_top(p) - section_bottom(p), pixels = 0.63 * 760.0;
-  const int panel = (int)(pixels * p->s.width / high), width = 1080 + 2 * (panel + 190);
+  const int panel = (int)(pixels * p->s.width / high), width = 1080 + 2 * (panel + 210);
   if (!plot_open(&f, a, p->s.out, "pile", width, 760)) return false;
   output_text(
       &f,
@@ -217,7 +217,7 @@ static bool draw_overview(app *a, const pile *p, const section *stress, const se
   plot_plug(&f);
   const section *const shown[2] = {stress, strain};
   for (int k = 0; k < 2; k++) {
-    const double left = 1110.0 + k * (panel + 190.0);
+    const double left = 1110.0 + k * (panel + 210.0);
     place(&f, left / width, (left + panel) / width);
     output_text(
         &f,

@@ -1,12 +1,14 @@
 """Fields of particles as arrays: the set's own memory, looked at only while it is valid."""
 
+import warnings
+
 import numpy
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from ._call import StaleError, ffi, library
 
-#: Ways to the memory itself, which would outlive the check.
-_RAW = frozenset(("base", "ctypes", "data", "flat", "getbuffer"))
+#: Ways to the memory itself, which would outlive the check, or around a commit.
+_RAW = frozenset(("base", "ctypes", "data", "flat", "getbuffer", "setflags"))
 
 
 class _Loan:
@@ -79,6 +81,8 @@ class Field(NDArrayOperatorsMixin):
         if name in _RAW or name.startswith("__"):
             raise AttributeError(f"a field has no {name!r}: copy it, numpy.array(field)")
         found = getattr(self._plain(), name)
+        if name == "flags":  # to be read: those of the memory stay as they are
+            return self._plain().view().flags
         if not callable(found):
             return self._lend(found)
 
@@ -148,12 +152,21 @@ class Edit:
     """A field open for writing: `array`, or the value of a `with` block, whose end commits; left by
     an exception it abandons, and the values are those from before. Where a value is out of range
     commit() raises and the field stays open: mend it and commit again, or abandon(). After that the
-    array is stale, and so are all parts of it."""
+    array is stale, and so are all parts of it. An edit that is let go of is abandoned, with a warning."""
 
     def __init__(self, owner, name):
         self._owner, self._edit = owner, ffi.new("mps_edit *")
         owner._invoke("particles_edit", (name, self._edit), {})
         self.array = lend(owner, self._edit.view, True)
+        self._name = name
+
+    def __del__(self):
+        array = getattr(self, "array", None)
+        if array is None or array.stale or self._owner.context.pointer is None:
+            return
+        warnings.warn(f"the edit of {self._name!r} was let go of without commit(), and is abandoned",
+                      RuntimeWarning, stacklevel=2)
+        self.abandon()
 
     def commit(self):
         self._owner._invoke("particles_commit", (self._edit,), {})

@@ -92,6 +92,19 @@ def column(pointer, count):
 _DTYPES = {"double": numpy.float64, "int64_t": numpy.int64, "int32_t": numpy.int32}
 
 
+def _numbers(value, dtype):
+    """The value, if all that it holds are numbers of that type: a mask is no array of numbers, and
+    1.5 is no whole one."""
+    given = numpy.asarray(value)
+    whole = numpy.issubdtype(dtype, numpy.integer)
+    if given.size and given.dtype.kind == "b":
+        raise TypeError(f"a mask is no array of {dtype.__name__}: numpy.flatnonzero(mask) has the places")
+    if given.size and (given.dtype.kind == "c" or (whole and given.dtype.kind == "f" and
+                                                   not (given == numpy.floor(given)).all())):
+        raise TypeError(f"{given.ravel()[:3]} ... are no numbers of {dtype.__name__}")
+    return given
+
+
 class Call:
     """One call: keeps alive what C sees by pointer, and knows how long arrays are. What callbacks raise
     goes into `raised`, in this call or a later one that asks them."""
@@ -109,7 +122,7 @@ class Call:
             raise TypeError(f"{item.cname} * is no array of numbers")
         if not constant and not isinstance(value, numpy.ndarray):
             raise TypeError("the function writes this array: give a NumPy array")
-        held = numpy.ascontiguousarray(value, dtype)
+        held = numpy.ascontiguousarray(_numbers(value, dtype), dtype)
         if not constant and held is not value:
             raise TypeError(f"the function writes this array: it must be contiguous, of {dtype.__name__}")
         self.alive.append(held)
@@ -187,7 +200,10 @@ class Call:
             self.fits(name, kind, value)
             getattr(made, name)[0:len(value)] = [float(x) for x in value]
         else:
-            setattr(made, name, self.to_c(value, kind, True))
+            try:
+                setattr(made, name, self.to_c(value, kind, True))
+            except (TypeError, OverflowError) as error:
+                raise type(error)(f"{name!r} is {value!r}: {error}") from error
 
     @staticmethod
     def fits(name, kind, value):
@@ -203,7 +219,10 @@ class Call:
         if kind.kind == "function" and not isinstance(value, ffi.CData):
             return self.callback(kind, value)
         if kind.kind == "pointer" and kind.item.cname == "char":
-            made = ffi.new("char[]", os.fspath(value).encode())
+            text = os.fsencode(value)
+            if b"\0" in text:
+                raise ValueError(f"{value!r} has a null character, where C would end it")
+            made = ffi.new("char[]", text)
             self.alive.append(made)
             return made
         if kind.kind == "pointer" and kind.item.kind == "pointer" and not isinstance(value, ffi.CData):

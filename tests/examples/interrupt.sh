@@ -93,6 +93,15 @@ if [ -x "$programs/mps-seawall" ]; then
   wrote long force.csv summary.json
 fi
 
+# Above the ground there is nothing to scale the axes of a picture by.
+program=mps-penetrometer
+"$programs/"$program --soil 4x4x2 --h 0.025 --depth 0.05 --every-checkpoint 0.01 --checkpoint "$work/air.h5" \
+  --threads 1 --out "$work/air" >"$work/out" 2>"$work/log" &
+pid=$!
+until [ -s "$work/air.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
+stop
+wrote air force.csv summary.json
+
 # Before there is any result: the program ends at once, and the summary has null for all results.
 # early SECONDS COMMAND KEY...: the keys are null
 early() {

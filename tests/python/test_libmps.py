@@ -197,6 +197,57 @@ class Errors(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "of int64"):
             sand.select_box([0, 5], [0.2, 5.2], 4, np.zeros(4))
 
+    def test_arrays_that_c_reads_hold_numbers_of_its_type(self):
+        """A mask would be taken for the ids 0 and 1, and 1.5 for 1."""
+        context = mps.Context()
+        sand = block(context)
+        for wrong in ([1.5], np.array([True, False]), np.array([1j])):
+            with self.assertRaises(TypeError):
+                sand.remove(len(wrong), wrong)
+        with self.assertRaises(TypeError):
+            sand.append(1, np.array([0.5 + 1j, 0.5]))
+        self.assertEqual(len(sand), 100)
+        sand.remove(2, [3.0, 4.0])
+        sand.remove(0, [])
+        self.assertEqual(len(sand), 98)
+
+    def test_names_are_taken_whole(self):
+        """No null character ends a name early; a path may be bytes."""
+        context = mps.Context()
+        sand = block(context)
+        with self.assertRaisesRegex(ValueError, "null character"):
+            sand["density\0x"]
+        self.assertEqual(sand[b"density"][0], 1800.0)
+
+    def test_a_wrong_member_is_named(self):
+        context = mps.Context()
+        with self.assertRaisesRegex(TypeError, "'spacing' is 'a'"):
+            context.particles_create(spacing="a")
+        with self.assertRaisesRegex(TypeError, "'spacing' is None"):
+            context.particles_create(spacing=None)
+
+    def test_a_read_array_cannot_be_made_writeable(self):
+        context = mps.Context()
+        sand = block(context)
+        density = sand["density"]
+        density.flags.writeable = True
+        with self.assertRaises(ValueError):
+            density[0] = 5.0
+        with self.assertRaises(AttributeError):
+            density.setflags(write=True)
+        self.assertEqual(sand["density"][0], 1800.0)
+
+    def test_an_edit_let_go_of_is_abandoned(self):
+        context = mps.Context()
+        sand = block(context)
+        edit = sand.edit("density")
+        edit.array[:] = 1.0
+        with self.assertWarnsRegex(RuntimeWarning, "the edit of 'density' was let go of"):
+            del edit
+            gc.collect()
+        self.assertEqual(sand["density"][0], 1800.0)
+        sand.fill_box([2.0, 5.0], [3.0, 6.0])
+
     def test_what_is_closed_says_so(self):
         context = mps.Context()
         sand = block(context)
