@@ -3,6 +3,7 @@
 #include "body_internal.h"
 
 #include "mesh.h"
+#include "core/base/digits.h"
 
 #include <string.h>
 
@@ -70,8 +71,9 @@ static mps_status check_numbers(mps_context *context, const char *function, cons
   } list[] = {{"damping[0]", "1/s", d->damping[0]}, {"damping[1]", "1/s", d->damping[1]}};
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
     if (!(list[k].value >= 0.0 && list[k].value <= MPSI_BODY_HEAVY))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g %s, must be in 0 to %g",
-                       list[k].name, list[k].value, list[k].unit, MPSI_BODY_HEAVY);
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s %s, must be in 0 to %g",
+                       list[k].name, mpsi_outside(list[k].value, 0.0, MPSI_BODY_HEAVY).text,
+                       list[k].unit, MPSI_BODY_HEAVY);
   return MPS_OK;
 }
 

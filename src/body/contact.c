@@ -3,6 +3,7 @@
 #include "contact_internal.h"
 
 #include "rotation.h"
+#include "core/base/digits.h"
 
 #include <string.h>
 
@@ -44,12 +45,12 @@ static mps_status check_choices(mps_context *context, const char *function,
 static mps_status check_shear(mps_context *context, const char *function,
                               const mps_contact_def *d) {
   if (!(d->adhesion >= 0.0 && d->adhesion <= MPSI_BODY_HEAVY))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "adhesion is %g Pa, must be in 0 to %g",
-                     d->adhesion, MPSI_BODY_HEAVY);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "adhesion is %s Pa, must be in 0 to %g",
+                     mpsi_outside(d->adhesion, 0.0, MPSI_BODY_HEAVY).text, MPSI_BODY_HEAVY);
   if (!isnan(d->strength) && !(d->strength > 0.0 && d->strength <= MPSI_BODY_HEAVY))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "strength is %g Pa, must be > 0 and at most %g, or NaN", d->strength,
-                     MPSI_BODY_HEAVY);
+                     "strength is %s Pa, must be > 0 and at most %g, or NaN",
+                     mpsi_outside(d->strength, 0.0, MPSI_BODY_HEAVY).text, MPSI_BODY_HEAVY);
   if (d->method == MPS_CONTACT_METHOD_PENALTY && (d->adhesion > 0.0 || !isnan(d->strength)))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "%s is given, and method is 1 (penalty), which has Coulomb friction alone: "
@@ -61,8 +62,8 @@ static mps_status check_shear(mps_context *context, const char *function,
 static mps_status check_corner(mps_context *context, const char *function,
                                const mps_contact_def *d) {
   if (!(d->corner >= 0.0 && d->corner <= MPSI_BODY_FAR))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "corner is %g m, must be in 0 to %g",
-                     d->corner, MPSI_BODY_FAR);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "corner is %s m, must be in 0 to %g",
+                     mpsi_outside(d->corner, 0.0, MPSI_BODY_FAR).text, MPSI_BODY_FAR);
   if (d->method == MPS_CONTACT_METHOD_PENALTY && d->corner > 0.0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "corner is %g m, and method is 1 (penalty), which rounds no corners: choose "
@@ -80,12 +81,12 @@ static mps_status check_numbers(mps_context *context, const char *function,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "tolerance is %g, must be >= 0 and below 1, or NaN", d->tolerance);
   if (!(d->friction >= 0.0 && d->friction <= ROUGHEST))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "friction is %g, must be in 0 to %g",
-                     d->friction, ROUGHEST);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "friction is %s, must be in 0 to %g",
+                     mpsi_outside(d->friction, 0.0, ROUGHEST).text, ROUGHEST);
   if (!isnan(d->penalty) && !(d->penalty > 0.0 && d->penalty <= MPSI_BODY_HEAVY))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "penalty is %g N/m, must be > 0 and at most %g, or NaN", d->penalty,
-                     MPSI_BODY_HEAVY);
+                     "penalty is %s N/m, must be > 0 and at most %g, or NaN",
+                     mpsi_outside(d->penalty, 0.0, MPSI_BODY_HEAVY).text, MPSI_BODY_HEAVY);
   if (!isnan(d->xi) && !(d->xi > 0.0 && d->xi < 1.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "xi is %g, must be in (0, 1), or NaN",
                      d->xi);
@@ -100,7 +101,8 @@ static mps_status check_numbers(mps_context *context, const char *function,
                      d->penalty);
   if (!isnan(d->offset) && !(d->offset >= 0.0 && d->offset <= MPSI_BODY_FAR))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "offset is %g m, must be in 0 to %g, or NaN", d->offset, MPSI_BODY_FAR);
+                     "offset is %s m, must be in 0 to %g, or NaN",
+                     mpsi_outside(d->offset, 0.0, MPSI_BODY_FAR).text, MPSI_BODY_FAR);
   if (!isnan(d->depth) && !(d->depth > 0.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "depth is %g m, must be > 0, or NaN",
                      d->depth);

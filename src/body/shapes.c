@@ -3,6 +3,7 @@
 #include "body_internal.h"
 
 #include "core/base/polygon.h"
+#include "core/base/digits.h"
 
 #include <stdio.h>
 
@@ -11,8 +12,9 @@
 mps_status mpsi_body_check_length(mps_context *context, const char *function, const char *name,
                                   double value) {
   if (value >= MPSI_BODY_SMALL && value <= MPSI_BODY_FAR) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g m, must be in %g to %g m", name,
-                   value, MPSI_BODY_SMALL, MPSI_BODY_FAR);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s m, must be in %g to %g m", name,
+                   mpsi_outside(value, MPSI_BODY_SMALL, MPSI_BODY_FAR).text, MPSI_BODY_SMALL,
+                   MPSI_BODY_FAR);
 }
 
 /* Twice the area, positive when the corners run anticlockwise. */

@@ -1,6 +1,7 @@
 /* coupling.c - the coupling as an object: definition, guesses, the next values to try, memory.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "coupling_private.h"
+#include "core/base/digits.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,8 +46,8 @@ static mps_status check_def(mps_context *context, const mps_coupling_def *d) {
   for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
     if (!checks[k].good)
       return mpsi_fail(context, "mps_coupling_create", MPS_ERROR_ARGUMENT,
-                       "%s of the coupling is %g, allowed is %s", checks[k].name, checks[k].value,
-                       checks[k].allowed);
+                       "%s of the coupling is %s, allowed is %s", checks[k].name,
+                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
   return MPS_OK;
 }
 

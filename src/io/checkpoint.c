@@ -262,7 +262,7 @@ static mps_status stage_user_data(reading *r, const mps_checkpoint *wanted) {
 static mps_status check_key(const reading *r, const char *wanted) {
   if (!wanted[0] || strcmp(wanted, r->user_key) == 0) return MPS_OK;
   return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
-                   "'%.200s' has user_key '%.63s', wanted is '%.63s'", r->path, r->user_key,
+                   "path: '%.200s' has user_key '%.63s', wanted is '%.63s'", r->path, r->user_key,
                    wanted);
 }
 
@@ -274,11 +274,11 @@ static mps_status check_set(const reading *r) {
   const double spacing = mps_particles_spacing(r->particles);
   if (h->dim != dim || h->count < 0 || (h->count != count && !r->any_particles))
     return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has %lld particles in %lldD, the set has %lld in %dD", r->path,
+                     "path: '%.200s' has %lld particles in %lldD, the set has %lld in %dD", r->path,
                      (long long)h->count, (long long)h->dim, (long long)count, dim);
   if (h->spacing != spacing)
     return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has spacing %.17g m, the set has %.17g m", r->path, h->spacing,
+                     "path: '%.200s' has spacing %.17g m, the set has %.17g m", r->path, h->spacing,
                      spacing);
   return MPS_OK;
 }
@@ -374,7 +374,7 @@ static mps_status match_ids(reading *r) {
     const int64_t i = mps_particles_index(r->particles, value);
     if (i < 0 || r->source[i] >= 0)
       return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
-                       "'%.200s' has a particle of id %lld, %s", r->path, (long long)value,
+                       "path: '%.200s' has a particle of id %lld, %s", r->path, (long long)value,
                        i < 0 ? "the set has none" : "more than once");
     r->source[i] = k;
   }
@@ -523,13 +523,15 @@ mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function
   snprintf(source, sizeof source, "'%.200s'", path ? path : "");
   r.values.particles = r.header.count;
   if (status == MPS_OK)
-    status = mpsi_state_agree(of, function, &r.values, source, MPS_ERROR_ARGUMENT);
+    status = mpsi_fail_of(
+        of->context, mpsi_state_agree(of, function, &r.values, source, MPS_ERROR_ARGUMENT), "path");
   const char *what = "its values do not fit";
   if (status == MPS_OK && of->fits && !of->fits(of->solver, &r.values, &what))
     status = mpsi_checkpoint_malformed(&r, what);
   if (of->take_share) status = of->take_share(of->solver, function, status, &r.values);
   if (status == MPS_OK)
-    status = mpsi_state_put(of, function, &r.values, source, MPS_ERROR_ARGUMENT);
+    status = mpsi_fail_of(
+        of->context, mpsi_state_put(of, function, &r.values, source, MPS_ERROR_ARGUMENT), "path");
   if (status == MPS_OK) tell(&r, info);
   drop_reading(&r);
   return status;

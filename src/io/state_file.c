@@ -176,7 +176,7 @@ mps_status mpsi_h5_read_state(mpsi_reading *r, const mpsi_state_of *of) {
     status = mpsi_checkpoint_malformed(r, "the name of its solver");
   else if (strcmp(name, of->name) != 0)
     status = mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
-                       "'%.200s' is of the solver %s, not of %s", r->path, name, of->name);
+                       "path: '%.200s' is of the solver %s, not of %s", r->path, name, of->name);
   if (status == MPS_OK) status = read_values(r, &p, of);
   close_place(&p);
   return status;

@@ -2,6 +2,7 @@
  * match Mohr and Coulomb, Nakamura (55)-(56).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
+#include "core/base/digits.h"
 
 #define RIGHT_ANGLE 1.57079632679489662
 #define ROOT3 1.7320508075688772
@@ -14,8 +15,8 @@ static mps_status out_of_range(mps_context *context, const char *function, const
   if (isinf(high))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g%s, must be finite and %s %g",
                      name, value, unit, sign, low);
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g%s, must be %s %g and < %g",
-                   name, value, unit, sign, low, high);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s%s, must be %s %g and < %g",
+                   name, mpsi_outside(value, low, high).text, unit, sign, low, high);
 }
 
 mps_status mpsi_check_within(mps_context *context, const char *function, const char *name,
@@ -41,9 +42,9 @@ mps_status mpsi_check_friction(mps_context *context, const char *function, doubl
   if (!(dilation >= 0.0 && dilation <= friction))
     return mpsi_fail(
         context, function, MPS_ERROR_ARGUMENT,
-        "dilation: the dilation angle is %g rad, must be >= 0 and at most the friction angle, "
+        "dilation: the dilation angle is %s rad, must be >= 0 and at most the friction angle, "
         "%g rad",
-        dilation, friction);
+        mpsi_outside(dilation, 0.0, friction).text, friction);
   status = mpsi_check_range_or_0(context, function, "cohesion", cohesion, MPSI_RANGE_STRESS);
   if (status != MPS_OK) return status;
   if (friction == 0.0 && cohesion == 0.0)

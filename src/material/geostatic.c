@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "core/base/ranges.h"
+#include "core/base/digits.h"
 
 #include <mps/geostatic.h>
 
@@ -46,11 +47,13 @@ static mps_status check_layers(const geostatic *g) {
     if (!mpsi_in_range(MPSI_RANGE_LENGTH, layer->thickness) &&
         !(lowest && layer->thickness == INFINITY))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layers: layer %d has thickness %g m, must be > 0 (1e-9 to 1e9)%s", (int)k,
-                       layer->thickness, lowest ? "" : "; only the lowest may be infinite");
+                       "layers: layer %d has thickness %s m, must be > 0 (1e-9 to 1e9)%s", (int)k,
+                       mpsi_outside(layer->thickness, 1e-9, 1e9).text,
+                       lowest ? "" : "; only the lowest may be infinite");
     if (layer->k0 != 0.0 && !mpsi_in_range(MPSI_RANGE_STRESS_RATIO, layer->k0))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layers: layer %d has k0 %g, must be 0 or 1e-9 to 1e6", (int)k, layer->k0);
+                       "layers: layer %d has k0 %s, must be 0 or 1e-9 to 1e6", (int)k,
+                       mpsi_outside(layer->k0, 1e-9, 1e6).text);
     if (layer->density != 0.0 && !mpsi_in_range(MPSI_RANGE_DENSITY, layer->density))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
                        "layers: layer %d has density %g kg/m3, must be 1e-9 to 1e9, or 0 for the "

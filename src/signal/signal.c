@@ -6,6 +6,7 @@
 #include "core/context/guard.h"
 #include "core/base/hash.h"
 #include "core/context/retain.h"
+#include "core/base/digits.h"
 
 #include <stdio.h>
 
@@ -185,8 +186,9 @@ static mps_status check_motion(mps_context *context, const char *function, doubl
 
 static mps_status check_frequency(mps_context *context, const char *function, double frequency) {
   if (frequency >= FREQUENCY_MIN && frequency <= FREQUENCY_MAX) return MPS_OK; /* not NaN */
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "frequency is %g Hz, must be in %g..%g",
-                   frequency, FREQUENCY_MIN, FREQUENCY_MAX);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "frequency is %s Hz, must be in %g..%g",
+                   mpsi_outside(frequency, FREQUENCY_MIN, FREQUENCY_MAX).text, FREQUENCY_MIN,
+                   FREQUENCY_MAX);
 }
 
 mps_status mps_signal_create_ricker(mps_context *context, double frequency, double peak_time,

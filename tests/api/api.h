@@ -227,6 +227,8 @@ void api_print_log(const api *a, int descriptor);
 /* ---- names.c --------------------------------------------------------------------------------- */
 /* Whether the message has the name of a parameter of the function, or of a member of one. */
 bool api_names_argument(const char *function, const char *message);
+/* Does it refuse a value that, as it is printed, is within the bounds that it gives? */
+bool api_prints_allowed(const char *message);
 
 /* ---- hooks.c --------------------------------------------------------------------------------- */
 void api_hooks(api *a, mps_context_def *def);

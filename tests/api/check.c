@@ -132,6 +132,9 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
   else if (status == MPS_ERROR_ARGUMENT && !a->faulted &&
            !api_names_argument(a->name, record->message))
     api_broken(a, "the record names no argument: %.200s", record->message);
+  else if (status == MPS_ERROR_ARGUMENT && api_prints_allowed(record->message))
+    api_broken(a, "the record refuses a value and prints one that is allowed: %.200s",
+               record->message);
 }
 
 static void check_status(api *a, mps_status status) {

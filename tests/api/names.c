@@ -1,10 +1,12 @@
-/* names.c - whether the message of an error names an argument: a parameter of the function as its
- * header declares it, or a member of a struct that it takes. SPDX-License-Identifier: BSD-3-Clause
+/* names.c - what the message of an error must say: an argument, which is a parameter of the
+ * function as its header declares it or a member of a struct that it takes; and a value that is
+ * not, as it is printed, one of those that it calls allowed. SPDX-License-Identifier: BSD-3-Clause
  */
 #include "api.h"
 
 #include <ctype.h>
 #include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,5 +116,72 @@ bool api_names_argument(const char *function, const char *message) {
     const char *body = body_of(type, &stop);
     if (body && names_one_of(body, stop, message)) return true;
   }
+  return false;
+}
+
+/* The number that `*text` begins with, which is moved behind it. "0..9" begins with 0. */
+static bool number_at(const char **text, double *value) {
+  char *end = NULL, own[48];
+  const char *two = strstr(*text, "..");
+  const size_t length = two ? (size_t)(two - *text) : strlen(*text);
+  snprintf(own, sizeof own, "%.*s", (int)(length < sizeof own ? length : sizeof own - 1), *text);
+  const double read = strtod(own, &end);
+  if (end == own) return false;
+  *value = read;
+  *text += end - own;
+  return true;
+}
+
+static bool skip(const char **text, const char *words) {
+  const size_t length = strlen(words);
+  if (strncmp(*text, words, length) != 0) return false;
+  *text += length;
+  return true;
+}
+
+/* Is it, as printed, what "must be" asks for? Bounds are "1 to 2", "1..2", ">= 1", "above 1 and at
+ * most 2"; of an upper one that is no number, as "the friction angle", nothing is known. */
+static bool is_within(const char *text, double value) {
+  static const char *const least[] = {">= ", "at least ", "from "}, *const above[] = {"> ",
+                                                                                      "above "};
+  static const char *const most[] = {"at most ", "<= "}, *const below[] = {"below ", "< "};
+  double low = -HUGE_VAL, high = HUGE_VAL, bound = 0.0;
+  bool inside = true;
+  for (int k = 0; k < 3; k++)
+    if (skip(&text, least[k]) && number_at(&text, &low)) inside = value >= low;
+  for (int k = 0; k < 2; k++)
+    if (skip(&text, above[k]) && number_at(&text, &low)) inside = value > low;
+  if (low > -HUGE_VAL) {
+    if (skip(&text, " and ") || skip(&text, ", ")) high = -HUGE_VAL;
+    for (int k = 0; k < 2; k++) {
+      if (skip(&text, most[k]) && number_at(&text, &high)) return inside && value <= high;
+      if (skip(&text, below[k]) && number_at(&text, &high)) return inside && value < high;
+    }
+    if (skip(&text, "from ") && number_at(&text, &low) && skip(&text, " to "))
+      return number_at(&text, &high) && value >= low && value <= high;
+    return inside && high == HUGE_VAL;
+  }
+  for (int k = 0; k < 2; k++)
+    if (skip(&text, most[k]) && number_at(&text, &bound)) return value <= bound;
+  const bool open = skip(&text, "in (");
+  (void)(open || skip(&text, "in [") || skip(&text, "in ") || skip(&text, "0 or "));
+  if (!number_at(&text, &low)) return false;
+  if (!(skip(&text, " to ") || skip(&text, "..") || skip(&text, ", "))) return false;
+  if (!number_at(&text, &high) || (open && value == low)) return false;
+  return value >= low && (*text == ')' ? value < high : value <= high);
+}
+
+bool api_prints_allowed(const char *message) {
+  static const char *const asks[] = {"must be ", "allowed is ", "allowed are "};
+  const char *at = strstr(message, " is ");
+  double value = 0.0;
+  if (!at) return false;
+  at += 4;
+  if (!number_at(&at, &value)) return false;
+  const char *comma = strpbrk(at, ",:");
+  if (!comma || comma - at > 8 || comma[1] != ' ') return false;
+  at = comma + 2;
+  for (int k = 0; k < API_COUNT(asks); k++)
+    if (skip(&at, asks[k])) return is_within(at, value);
   return false;
 }

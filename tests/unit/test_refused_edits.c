@@ -33,6 +33,7 @@ static mps_dynamics *held_block(mps_context *own, mps_particles *set, bool watch
   mps_dynamics_boundary_def bottom = mps_dynamics_boundary_defaults();
   mps_dynamics *made = NULL;
   def.watch_damping = watch;
+  if (watch) OK(mps_particles_set(set, "damping", 0, 0.0)); /* there, and of no effect so far */
   bottom.lower[0] = bottom.lower[1] = 0.0, bottom.upper[0] = 0.4, bottom.upper[1] = 0.1;
   bottom.dofs = MPS_DOF_X | MPS_DOF_Y;
   OK(mps_dynamics_create(own, set, &def, &made));
@@ -99,9 +100,18 @@ static void a_refused_file_takes_no_edit_in(void **state) {
 
 /* ---- materials ------------------------------------------------------------------------------- */
 
-/* Ground that becomes damped, of a solver that is to watch what damping takes, needs memory. */
-static void a_material_is_refused_as_a_whole(void **state) {
-  (void)state;
+static mps_status to_stiff(mps_dynamics *dynamics, const mps_material *stiff) {
+  return mps_dynamics_set_material(dynamics, stiff, 0, NULL);
+}
+
+/* Its field "damping" is zero: only now does the solver need memory to watch what damping takes. */
+static mps_status to_damped(mps_dynamics *dynamics, const mps_material *stiff) {
+  (void)stiff;
+  return mps_particles_set(mps_dynamics_particles(dynamics), "damping", 0, 0.05);
+}
+
+/* One allocation after the other is refused within `change`: none leaves other coefficients. */
+static void refuse_memory_within(mps_status (*change)(mps_dynamics *, const mps_material *)) {
   mps_status status = MPS_ERROR_MEMORY;
   for (int refusals = 0; status == MPS_ERROR_MEMORY; refusals++) {
     test_allocator memory = {0};
@@ -115,7 +125,7 @@ static void a_material_is_refused_as_a_whole(void **state) {
     OK(mps_dynamics_get_totals(dynamics, &totals));
     const uint64_t before = seen_dynamics(dynamics, false);
     memory.refuse_at = memory.calls + 1 + refusals;
-    status = mps_dynamics_set_material(dynamics, stiff, 0, NULL);
+    status = change(dynamics, stiff);
     memory.refuse_at = 0;
     if (status != MPS_OK) assert_true(seen_dynamics(dynamics, false) == before);
     mps_material_destroy(&stiff);
@@ -125,6 +135,16 @@ static void a_material_is_refused_as_a_whole(void **state) {
     assert_int_equal(memory.live, 0);
   }
   assert_int_equal(status, MPS_OK);
+}
+
+static void a_material_is_refused_as_a_whole(void **state) {
+  (void)state;
+  refuse_memory_within(to_stiff);
+}
+
+static void damping_is_refused_as_a_whole(void **state) {
+  (void)state;
+  refuse_memory_within(to_damped);
 }
 
 /* WLS-MPM refuses the density where a volume is not positive: no field has another value then. */
@@ -246,6 +266,7 @@ int main(void) {
       cmocka_unit_test(a_refused_snapshot_takes_no_edit_in),
       cmocka_unit_test(a_refused_file_takes_no_edit_in),
       cmocka_unit_test(a_material_is_refused_as_a_whole),
+      cmocka_unit_test(damping_is_refused_as_a_whole),
       cmocka_unit_test(fields_of_a_material_that_is_refused_stay),
       cmocka_unit_test(no_motion_begins_at_a_speed_without_an_energy),
       cmocka_unit_test(accelerations_that_are_not_finite_are_not_shown),

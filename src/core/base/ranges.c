@@ -1,8 +1,6 @@
 /* ranges.c - see ranges.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "ranges.h"
-
-#include <stdio.h>
-#include <stdlib.h>
+#include "core/base/digits.h"
 
 static const struct {
   const char *unit;
@@ -20,13 +18,9 @@ bool mpsi_in_range(mpsi_range range, double value) {
 static mps_status check(mps_context *context, const char *function, const char *name, double value,
                         mpsi_range range, const char *zero) {
   if (mpsi_in_range(range, value) || (zero[0] && value == 0.0)) return MPS_OK;
-  char text[32];
-  snprintf(text, sizeof text, "%.6g", value);
-  if (mpsi_in_range(range,
-                    strtod(text, NULL))) /* rounded, it would read as the bound that it exceeds */
-    snprintf(text, sizeof text, "%.17g", value);
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s%s, must be %s%g to %g", name,
-                   text, table[range].unit, zero, table[range].low, table[range].high);
+                   mpsi_outside(value, table[range].low, table[range].high).text, table[range].unit,
+                   zero, table[range].low, table[range].high);
 }
 
 mps_status mpsi_check_range(mps_context *context, const char *function, const char *name,

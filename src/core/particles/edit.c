@@ -12,6 +12,7 @@
 
 #include "fields.h"
 #include "core/base/hash.h"
+#include "core/base/digits.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -98,10 +99,10 @@ static mps_status check_value(const mps_particles *p, const char *function, cons
   char whose[48] = "";
   if (particle >= 0) snprintf(whose, sizeof whose, " of particle %lld", (long long)particle);
   (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                  "%s of field '%s'%s is %g%s%s, allowed are %g to %g",
-                  particle >= 0 ? "edit" : "value", field->name, whose, value,
-                  *field->unit ? " " : "", strcmp(field->unit, "-") == 0 ? "" : field->unit,
-                  r.lower, r.upper);
+                  "%s of field '%s'%s is %s%s%s, allowed are %g to %g",
+                  particle >= 0 ? "edit" : "value", field->name, whose,
+                  mpsi_outside(value, r.lower, r.upper).text, *field->unit ? " " : "",
+                  strcmp(field->unit, "-") == 0 ? "" : field->unit, r.lower, r.upper);
   mpsi_fail_where(p->context, -1, particle);
   mpsi_fail_object(p->context, "field '%s'", field->name);
   return MPS_ERROR_ARGUMENT;

@@ -318,7 +318,9 @@ static mps_status read_ball(const mps_particles *p, const char *function, const 
   const double inner = radius - ON_EDGE * p->def.spacing;
   *out = (ball){.square = inner > 0.0 ? inner * inner : 0.0, .dim = p->def.dim};
   for (int32_t c = 0; c < out->dim; c++) {
-    const mps_status status = check_bound(p, function, "centre", c, centre_of[c]);
+    mps_status status = check_bound(p, function, "centre", c, centre_of[c]);
+    for (int side = -1; side <= 1 && status == MPS_OK; side += 2)
+      status = check_bound(p, function, "radius: the ball", c, centre_of[c] + side * radius);
     if (status != MPS_OK) return status;
     out->centre[c] = centre_of[c];
   }

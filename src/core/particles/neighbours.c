@@ -8,6 +8,7 @@
  * and rows are sorted, so the result is the same for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
+#include "core/base/digits.h"
 
 #include <mps/neighbours.h>
 
@@ -308,9 +309,9 @@ static mps_status check_def(mps_context *context, const char *function,
   if (def->dim != 2 && def->dim != 3)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3", def->dim);
   if (!(def->radius >= MIN_RADIUS && def->radius <= MAX_RADIUS))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "radius is %g m, must be > 0, from %g to %g", def->radius, MIN_RADIUS,
-                     MAX_RADIUS);
+    return mpsi_fail(
+        context, function, MPS_ERROR_ARGUMENT, "radius is %s m, must be > 0, from %g to %g",
+        mpsi_outside(def->radius, MIN_RADIUS, MAX_RADIUS).text, MIN_RADIUS, MAX_RADIUS);
   if (def->half != 0 && def->half != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "half is %d, must be 0 or 1",
                      def->half);

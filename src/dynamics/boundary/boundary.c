@@ -5,6 +5,7 @@
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 #include "signal/signal_internal.h"
+#include "core/base/digits.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -56,8 +57,8 @@ static mps_status check_def(mps_dynamics *dynamics, const char *function,
   for (int k = 0; k < 3; k++)
     if (!isnan(values[k]) && !(values[k] >= 1e-6 && values[k] <= 1e9))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "%s is %g, must be in 1e-6..1e9, or NaN for that of the particles", names[k],
-                       values[k]);
+                       "%s is %s, must be in 1e-6..1e9, or NaN for that of the particles", names[k],
+                       mpsi_outside(values[k], 1e-6, 1e9).text);
   return MPS_OK;
 }
 

@@ -7,6 +7,7 @@
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 #include "signal/signal_internal.h"
+#include "core/base/digits.h"
 
 static const mps_dynamics_load_def load_defaults = {
     .struct_size = sizeof(mps_dynamics_load_def),
@@ -41,8 +42,8 @@ static mps_status check_def(mps_dynamics *dynamics, const char *function,
   }
   if (!isnan(def->area) && !(def->area >= 1e-30 && def->area <= 1e30))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "area is %g m2, must be in 1e-30..1e30, or NaN for spacing times measure",
-                     def->area);
+                     "area is %s m2, must be in 1e-30..1e30, or NaN for spacing times measure",
+                     mpsi_outside(def->area, 1e-30, 1e30).text);
   return MPS_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "core/context/retain.h"
 #include "core/state/state.h"
 #include "material/material_internal.h"
+#include "core/base/digits.h"
 
 #include <mps/experimental.h>
 
@@ -70,7 +71,8 @@ static mps_status check_numbers(mps_context *context, const mps_dynamics_def *de
     const bool above = checks[k].open ? value > checks[k].least : value >= checks[k].least;
     if ((above && value <= checks[k].most) || (isnan(value) && checks[k].may_lack)) continue;
     return mpsi_fail(context, "mps_dynamics_create", MPS_ERROR_ARGUMENT,
-                     "%s is %g, must be %s %g and at most %g%s", checks[k].name, value,
+                     "%s is %s, must be %s %g and at most %g%s", checks[k].name,
+                     mpsi_outside(value, checks[k].least, checks[k].most).text,
                      checks[k].open ? "above" : "at least", checks[k].least, checks[k].most,
                      checks[k].unit);
   }
@@ -123,9 +125,9 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
   const double re = def->kernel ? mps_kernel_radius(def->kernel) : def->radius_ratio * D;
   if (!(re > D && re <= 4.0 * D * (1.0 + 1e-12)))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the kernel's radius of influence is %g m, must be above the spacing %g m and "
+                     "the kernel's radius of influence is %s m, must be above the spacing %g m and "
                      "at most 4 times that",
-                     re, D);
+                     mpsi_outside(re, D, 4.0 * D).text, D);
   int64_t body = 0;
   for (int64_t k = 0; k < n; k++) {
     if (side && (side[k] < 0 || side[k] > MPS_DYNAMICS_SIDE_RIGHT))
@@ -153,9 +155,10 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
                      "period_x is %g m, must be NaN with free-field columns", def->period_x);
   if (def->period_x > 0.0 && (def->period_x <= re || def->period_x <= hi[0] - lo[0]))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "period_x is %g m, must be above re = %g m and the body's width %g m "
+                     "period_x is %s m, must be above re = %g m and the body's width %g m "
                      "between outer particle centres",
-                     def->period_x, re, hi[0] - lo[0]);
+                     mpsi_outside(def->period_x, fmax(re, hi[0] - lo[0]), INFINITY).text, re,
+                     hi[0] - lo[0]);
   return MPS_OK;
 }
 
@@ -184,8 +187,10 @@ static mps_status choose_kernel(mps_dynamics *dynamics) {
     dynamics->kernel = mpsi_kernel_retain(dynamics->def.kernel);
     dynamics->radius = mps_kernel_radius(dynamics->kernel);
   } else {
-    status =
-        mps_kernel_create(dynamics->context, MPS_KERNEL_MPS, dynamics->radius, &dynamics->kernel);
+    status = mpsi_fail_of(
+        dynamics->context,
+        mps_kernel_create(dynamics->context, MPS_KERNEL_MPS, dynamics->radius, &dynamics->kernel),
+        "radius_ratio");
   }
   if (status != MPS_OK) return status;
   return mps_kernel_density(dynamics->context, dynamics->kernel, 2, dynamics->spacing,

@@ -1,6 +1,7 @@
 /* dt.c - the length of the time step: chosen from the linear limit, or given and compared with it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics/dynamics_private.h"
+#include "core/base/digits.h"
 
 /* Warns of a `dt` above the limit. */
 static mps_status compare_dt(mps_dynamics *dynamics, const char *function, double dt) {
@@ -28,10 +29,11 @@ static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
   if (status != MPS_OK) return status;
   if (!(limit.dt > 0.0))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                     "Euler without damping has no stable time step to choose: give dt");
+                     "dynamics: Euler without damping has no stable time step to choose: give dt");
   if (isinf(limit.dt))
-    return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                     "no force between particles that can move limits the time step: give dt");
+    return mpsi_fail(
+        dynamics->context, function, MPS_ERROR_ARGUMENT,
+        "dynamics: no force between particles that can move limits the time step: give dt");
   dynamics->dt = dynamics->def.courant * limit.dt;
   return MPS_OK;
 }
@@ -55,7 +57,9 @@ mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
   if (status != MPS_OK) return status;
   if (!(dt >= MPSI_DYN_LEAST_DT && dt <= MPSI_DYN_MOST_DT))
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                     "dt is %g s, must be in %g..%g", dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT);
+                     "dt is %s s, must be in %g..%g",
+                     mpsi_outside(dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT).text, MPSI_DYN_LEAST_DT,
+                     MPSI_DYN_MOST_DT);
   status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "dt", dt);
   if (status == MPS_OK) status = compare_dt(dynamics, __func__, dt);
   if (status != MPS_OK) return status;

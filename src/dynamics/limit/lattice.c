@@ -6,6 +6,7 @@
  * below about 3.7 it is the spin mode k = 0: w^2 = 24 Vs^2/D^2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics/dynamics_private.h"
+#include "core/base/digits.h"
 
 #define WAVES 96 /* wave vectors a direction in [0, pi/D] */
 /* A body has edges, where neighbours are missing. The spin mode has a lower frequency there; modes
@@ -123,9 +124,10 @@ static mps_status check(mps_context *context, const mps_dynamics_predict_def *de
   };
   for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
     if (!(checks[k].value >= checks[k].least && checks[k].value <= checks[k].most))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g, must be in %g..%g%s",
-                       checks[k].name, checks[k].value, checks[k].least, checks[k].most,
-                       checks[k].unit);
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s, must be in %g..%g%s",
+                       checks[k].name,
+                       mpsi_outside(checks[k].value, checks[k].least, checks[k].most).text,
+                       checks[k].least, checks[k].most, checks[k].unit);
   if (def->integrator != MPS_DYNAMICS_INTEGRATOR_VERLET &&
       def->integrator != MPS_DYNAMICS_INTEGRATOR_LEAPFROG)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,

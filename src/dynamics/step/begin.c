@@ -54,11 +54,12 @@ mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
   for (int c = 0; c < 6 && status == MPS_OK; c++)
     for (int64_t k = 0; k < dynamics->count && status == MPS_OK; k++)
       if (!(fabs(column[c][k]) <= most[c]))
-        status = mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                           "the initial state of particle %lld is not finite (%g), or a speed "
-                           "beyond %g m/s",
-                           (long long)mpsi_particles_integers(dynamics->particles, "id")[k],
-                           column[c][k], MPSI_DYNAMICS_FASTEST);
+        status =
+            mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
+                      "dynamics: the initial state of particle %lld is not finite (%g), or a speed "
+                      "beyond %g m/s",
+                      (long long)mpsi_particles_integers(dynamics->particles, "id")[k],
+                      column[c][k], MPSI_DYNAMICS_FASTEST);
   status = mpsi_domain_agree_same(dynamics->domain, __func__, status, "time", time);
   if (status != MPS_OK) return status;
   return mpsi_dynamics_begin(dynamics, __func__, time);

@@ -5,6 +5,7 @@
 #include "dynamics/dynamics_private.h"
 #include "material/material_internal.h"
 #include "signal/signal_internal.h"
+#include "core/base/digits.h"
 
 #include <string.h>
 
@@ -36,8 +37,9 @@ mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *func
     for (int64_t k = 0; k < n; k++)
       if (!(column[f][k] >= LEAST && column[f][k] <= MOST)) {
         (void)mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                        "%s of particle %lld is %g, must be in 1e-6..1e9 %s", names[f],
-                        (long long)id[k], column[f][k], f == 0 ? "kg/m3" : "m/s");
+                        "%s of particle %lld is %s, must be in 1e-6..1e9 %s", names[f],
+                        (long long)id[k], mpsi_outside(column[f][k], LEAST, MOST).text,
+                        f == 0 ? "kg/m3" : "m/s");
         return fail_particle(particles, k);
       }
   }
@@ -52,8 +54,8 @@ mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *func
     }
     if (damping && !(damping[k] >= 0.0 && damping[k] <= 1000.0)) {
       (void)mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                      "damping of particle %lld is %g, must be in 0..1000", (long long)id[k],
-                      damping[k]);
+                      "damping of particle %lld is %s, must be in 0..1000", (long long)id[k],
+                      mpsi_outside(damping[k], 0.0, 1000.0).text);
       return fail_particle(particles, k);
     }
   }

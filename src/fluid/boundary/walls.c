@@ -93,8 +93,8 @@ mps_status mps_fluid_set_wall_motion(mps_fluid *f, int32_t number, const double 
                      number, velocity ? "given" : "NULL");
   mpsi_fluid_wall *w = &f->wall[number];
   if (w->signal)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "boundary %d follows a signal",
-                     number);
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "number: boundary %d follows a signal", number);
   for (int64_t k = 0; k < w->nodes; k++) {
     const double s = displacement_of ? displacement_of[k] : 0.0;
     if (!(fabs(velocity[k]) <= 1e6 && fabs(s) <= 1e12))

@@ -3,6 +3,7 @@
 #include "fluid/pressure/coarse.h"
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
+#include "core/base/digits.h"
 
 #include <mps/body.h>
 
@@ -58,8 +59,8 @@ static mps_status check_def(mps_context *context, const mps_fluid_def *d, double
   for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
     if (!checks[k].good)
       return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
-                       "%s of the fluid is %g, allowed is %s", checks[k].name, checks[k].value,
-                       checks[k].allowed);
+                       "%s of the fluid is %s, allowed is %s", checks[k].name,
+                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
   return mpsi_fluid_check_viscosity(context, "mps_fluid_create", d->viscosity);
 }
 

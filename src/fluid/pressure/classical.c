@@ -10,6 +10,7 @@
  * < .97 n0. Walls are mirror images here too, with their parent's p.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
+#include "core/base/digits.h"
 
 #include <mps/experimental.h>
 
@@ -23,8 +24,8 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   status = mpsi_domain_agree_same(f->def.domain, __func__, status, "gamma", gamma);
   if (status != MPS_OK) return status;
   if (!(gamma > 0.0 && gamma <= 1.0))
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "gamma is %g, must be in (0, 1]",
-                     gamma);
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "gamma is %s, must be in (0, 1]",
+                     mpsi_outside(gamma, 0.0, 1.0).text);
   if (f->steps > 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE, "the fluid has made %lld steps",
                      (long long)f->steps);

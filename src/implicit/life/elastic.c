@@ -6,6 +6,7 @@
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
 #include "material/material_internal.h"
+#include "core/base/digits.h"
 
 #include <mps/experimental.h>
 
@@ -25,8 +26,8 @@ static mps_status check_choice(mps_context *context, const char *function, const
 static mps_status check_range(mps_context *context, const char *function, const char *name,
                               double value, double low, double high) {
   if (value >= low && value <= high) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g, allowed is %g to %g", name,
-                   value, low, high);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s, allowed is %g to %g", name,
+                   mpsi_outside(value, low, high).text, low, high);
 }
 
 static mps_status check_numbers(mps_context *context, const char *function,
@@ -34,8 +35,8 @@ static mps_status check_numbers(mps_context *context, const char *function,
   mps_status status = MPS_OK;
   if (!(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "radius_ratio is %g, must be above 1 and at most 4 (NaN: default)",
-                     def->radius_ratio);
+                     "radius_ratio is %s, must be above 1 and at most 4 (NaN: default)",
+                     mpsi_outside(def->radius_ratio, 1.0, 4.0).text);
   if (!(def->memory_limit >= 0.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "memory_limit is %g bytes, must be >= 0 (NaN: none)", def->memory_limit);
@@ -75,9 +76,10 @@ static mps_status read_def(mps_context *context, const char *function, const mps
   if (def->kernel) def->radius_ratio = mps_kernel_radius(def->kernel) / spacing;
   if (def->kernel && !(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the kernel's radius of influence is %g m, must be above the spacing %g m and "
+                     "the kernel's radius of influence is %s m, must be above the spacing %g m and "
                      "at most 4 times that",
-                     mps_kernel_radius(def->kernel), spacing);
+                     mpsi_outside(mps_kernel_radius(def->kernel), spacing, 4.0 * spacing).text,
+                     spacing);
   if (isnan(def->radius_ratio)) def->radius_ratio = published ? 3.0 : 1.5;
   if (isnan(def->memory_limit)) def->memory_limit = INFINITY;
   if (isnan(def->measure) || dim == 3) def->measure = 1.0;

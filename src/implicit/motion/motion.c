@@ -12,6 +12,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
 #include "implicit/elastic_private.h"
+#include "core/base/digits.h"
 
 #include <string.h>
 
@@ -19,15 +20,17 @@
 
 static mps_status check_dt(mps_context *context, const char *function, double dt) {
   if (dt >= MPSI_ELASTIC_LEAST && dt <= MPSI_ELASTIC_MOST) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dt is %g s, allowed is %g to %g", dt,
-                   MPSI_ELASTIC_LEAST, MPSI_ELASTIC_MOST);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dt is %s s, allowed is %g to %g",
+                   mpsi_outside(dt, MPSI_ELASTIC_LEAST, MPSI_ELASTIC_MOST).text, MPSI_ELASTIC_LEAST,
+                   MPSI_ELASTIC_MOST);
 }
 
 static mps_status read_family(mps_context *context, const char *function,
                               const mps_elastic_motion_def *def, mpsi_elastic_motion *m) {
   const double r = def->rho_inf;
   if (!(r >= 0.0 && r <= 1.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "rho_inf is %g, allowed is 0 to 1", r);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "rho_inf is %s, allowed is 0 to 1",
+                     mpsi_outside(r, 0.0, 1.0).text);
   m->alpha_m = m->alpha_f = 0.0;
   m->beta = 0.25;
   m->gamma = 0.5;
@@ -47,9 +50,9 @@ static mps_status read_family(mps_context *context, const char *function,
                      "rho_inf is %g and beta or gamma is given: only one of both is possible", r);
   if (!(g >= 0.5 && g <= 1.0 && def->beta >= least * (1.0 - 1e-12) && def->beta <= 10.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "gamma is %g, must be in [0.5, 1]; beta is %g, must be in [(gamma + 1/2)^2 / "
+                     "gamma is %s, must be in [0.5, 1]; beta is %s, must be in [(gamma + 1/2)^2 / "
                      "4, 10] for an unconditionally stable step",
-                     g, def->beta);
+                     mpsi_outside(g, 0.5, 1.0).text, mpsi_outside(def->beta, least, 10.0).text);
   m->beta = def->beta;
   m->gamma = g;
   m->conserving = def->beta == 0.25 && g == 0.5;

@@ -6,6 +6,7 @@
 #include "core/base/boundary_kind.h"
 #include "core/context/retain.h"
 #include "signal/signal_internal.h"
+#include "core/base/digits.h"
 
 #include <string.h>
 
@@ -59,9 +60,9 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function, int32_t numb
   const bool frictional = def->kind == MPS_BOUNDARY_FRICTIONAL;
   if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !frictional))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "friction is %g with a boundary of kind %d, must be in 0 to %g, and 0 for "
+                     "friction is %s with a boundary of kind %d, must be in 0 to %g, and 0 for "
                      "other than frictional ones (3)",
-                     def->friction, def->kind, ROUGHEST);
+                     mpsi_outside(def->friction, 0.0, ROUGHEST).text, def->kind, ROUGHEST);
   if (!isfinite(def->settle) || def->settle < 0.0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "settle is %g s, must be finite and >= 0", def->settle);
@@ -198,7 +199,8 @@ mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function) {
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (hold[k].kind == MPS_BOUNDARY_ABSORBING)
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "boundary %d is absorbing, which the standard method does not allow", k);
+                       "mpm: boundary %d is absorbing, which the standard method does not allow",
+                       k);
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (hold[k].kind != MPSI_BOUNDARY_NONE) place_side(mpm, k, hold[k].kind);
   mpm->boundaries.outdated = true;

@@ -5,6 +5,7 @@
 
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
+#include "core/base/digits.h"
 
 #include <mps/experimental.h>
 
@@ -65,20 +66,22 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
 static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   if (!(d->cell > 0.0 && d->cell <= FAR))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "cell is %g m, must be > 0 and at most %g", d->cell, FAR);
+                     "cell is %s m, must be > 0 and at most %g",
+                     mpsi_outside(d->cell, 0.0, FAR).text, FAR);
   if (!isnan(d->dt) && !(d->dt >= MPSI_MPM_LEAST_DT && d->dt <= FAR))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "dt is %g s, must be at least %g s, or NaN for a step that follows the limit",
-                     d->dt, MPSI_MPM_LEAST_DT);
+                     "dt is %s s, must be %g to %g s, or NaN for a step that follows the limit",
+                     mpsi_outside(d->dt, MPSI_MPM_LEAST_DT, FAR).text, MPSI_MPM_LEAST_DT, FAR);
   if (!(d->courant > 0.0 && d->courant <= 1.0))
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
-                     d->courant);
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %s, must be in (0, 1]",
+                     mpsi_outside(d->courant, 0.0, 1.0).text);
   if (!(d->local_damping >= 0.0 && d->local_damping < 1.0) ||
       !(d->viscous_damping >= 0.0 && d->viscous_damping <= FAR))
     return mpsi_fail(
         context, create, MPS_ERROR_ARGUMENT,
-        "local_damping is %g and viscous_damping %g 1/s, must be in [0, 1) and 0 to %g",
-        d->local_damping, d->viscous_damping, FAR);
+        "local_damping is %s and viscous_damping %s 1/s, must be in [0, 1) and 0 to %g",
+        mpsi_outside(d->local_damping, 0.0, 1.0).text,
+        mpsi_outside(d->viscous_damping, 0.0, FAR).text, FAR);
   for (int c = 0; c < dim_of(d); c++)
     if (!(fabs(d->origin[c]) <= FAR) || !(fabs(d->gravity[c]) <= FAR))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -619,8 +622,8 @@ mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   const mps_status status = check_before_steps(mpm, __func__, "flip", flip);
   if (status != MPS_OK) return status;
   if (!(flip >= 0.0 && flip <= 1.0))
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %g, must be in [0, 1]",
-                     flip);
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %s, must be in [0, 1]",
+                     mpsi_outside(flip, 0.0, 1.0).text);
   mpm->standard = true;
   mpm->flip = flip;
   const mps_status widened =

@@ -301,8 +301,8 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
     for (int c = 0; c < mpm->dim; c++)
       if (!(fabs(points[3 * i + c]) <= 1e15))
         return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                         "point %lld has %c = %g m, must be within 1e15 m", (long long)i, "xyz"[c],
-                         points[3 * i + c]);
+                         "points: point %lld has %c = %g m, must be within 1e15 m", (long long)i,
+                         "xyz"[c], points[3 * i + c]);
   return MPS_OK;
 }
 

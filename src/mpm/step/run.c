@@ -3,6 +3,7 @@
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
 #include "settle.h"
+#include "core/base/digits.h"
 
 /* All ranks are asked for the same. */
 static mps_status same_on_ranks(mps_mpm *mpm, const char *function, mps_status status,
@@ -19,9 +20,9 @@ mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
   const double limit = mps_mpm_limit(mpm);
   if (status == MPS_OK && !isnan(dt) && !(dt >= MPSI_MPM_LEAST_DT && dt <= limit))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                       "dt is %g s, must be %g s to the Courant limit of the present state, %g s, "
+                       "dt is %s s, must be %g s to the Courant limit of the present state, %g s, "
                        "or NaN for a step that follows the limit",
-                       dt, MPSI_MPM_LEAST_DT, limit);
+                       mpsi_outside(dt, MPSI_MPM_LEAST_DT, limit).text, MPSI_MPM_LEAST_DT, limit);
   status = same_on_ranks(mpm, __func__, status, "dt", dt);
   if (status == MPS_OK) mpm->def.dt = dt;
   return status;
