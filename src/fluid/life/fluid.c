@@ -30,13 +30,6 @@ mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size) {
 
 static bool within(double value, double low, double high) { return value >= low && value <= high; }
 
-mps_status mpsi_fluid_check_viscosity(mps_context *context, const char *function,
-                                      double viscosity) {
-  if (within(viscosity, 0.0, 1e6)) return MPS_OK;
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                   "viscosity of the fluid is %g, allowed is in [0, 1e6] Pa s", viscosity);
-}
-
 static mps_status check_def(mps_context *context, const mps_fluid_def *d, double l0) {
   const double g = hypot(d->gravity[0], d->gravity[1]);
   const double longest = g > 0.0 ? 0.5 * sqrt(l0 / g) : INFINITY;

@@ -36,6 +36,14 @@ static mps_status read_viscosity(mps_context *context, const char *function,
   return status;
 }
 
+mps_status mpsi_fluid_check_viscosity(mps_context *context, const char *function,
+                                      double viscosity) {
+  if (viscosity >= 0.0 && viscosity <= 1e6) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "viscosity of the fluid is %s, allowed is in [0, 1e6] Pa s",
+                   mpsi_outside(viscosity, 0.0, 1e6).text);
+}
+
 mps_status mpsi_fluid_read_material(mps_context *context, const char *function,
                                     const mps_particles *particles, mps_fluid_def *def) {
   mps_status status = MPS_OK;
