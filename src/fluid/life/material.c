@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
+#include "core/base/digits.h"
 #include "core/particles/particles_internal.h"
 #include "material/material_internal.h"
 
