@@ -77,7 +77,7 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
 static inline void refuse_memory(result_fn *run, int what, int64_t length, int64_t stride) {
   mps_status worst = MPS_ERROR_MEMORY;
   for (int64_t refuse = 3; worst != MPS_OK;
-       refuse += refuse < 60 ? 1 : stride * (test_quick() ? 5 : 1)) {
+       refuse += refuse < 60 ? test_refusals_apart() : stride * (test_quick() ? 5 : 1)) {
     ranks s = {.compute = run, .what = what, .threads = 1, .length = length, .refuse = refuse};
     run_team(&s, 3);
     worst = s.rank[1].status;

@@ -48,7 +48,7 @@ typedef mps_status (*test_make_fn)(mps_context *own, int what);
  * MPS_ERROR_MEMORY and leave nothing behind. The first allocation is the context's. */
 static inline void test_allocator_sweep(test_make_fn make, int what) {
   mps_status status = MPS_ERROR_MEMORY;
-  for (int64_t refuse = 2; status != MPS_OK; refuse++) {
+  for (int64_t refuse = 2; status != MPS_OK; refuse += test_refusals_apart()) {
     test_allocator allocator = {.refuse_at = refuse};
     mps_context *own = test_allocator_context(&allocator);
     assert_non_null(own);

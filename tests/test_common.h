@@ -76,6 +76,11 @@ static inline mps_context_def test_context_defaults(void) {
  * threads. */
 static inline bool test_quick(void) { return getenv("MPS_TEST_QUICK") != NULL; }
 
+/* The thread sanitizer looks for races alone: what a refused allocation leaves behind, and how much
+ * memory a run takes, the other configurations see. There one in seven allocations is refused. */
+static inline bool test_races(void) { return getenv("MPS_TEST_RACES") != NULL; }
+static inline int64_t test_refusals_apart(void) { return test_races() ? 7 : 1; }
+
 /* Of so many steps a quarter where it is to be quick. */
 static inline int64_t test_steps(int64_t steps) { return test_quick() ? (steps + 3) / 4 : steps; }
 

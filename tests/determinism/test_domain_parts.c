@@ -113,6 +113,7 @@ static mps_status begin_wide(mps_context *own, mps_domain *domain, const peak_al
 static void test_memory(void **state) {
   (void)state;
   creation made = {.here = {0}};
+  if (test_races()) skip();
   const int64_t one = memory_most(1, begin_wide, &made), four = memory_most(4, begin_wide, &made);
   /* ids, places, densities and velocities are not copied to make the solver: 48 B a particle */
   for (int r = 0; r < 4; r++) assert_true(made.beside[r] < 24 * made.here[r]);

@@ -80,6 +80,7 @@ static mps_status begin_ground(mps_context *own, mps_domain *domain,
 
 static void compare_memory(double width, double height) {
   double hi[2] = {width, height};
+  if (test_races()) skip();
   const int64_t one = memory_most(1, begin_ground, hi), four = memory_most(4, begin_ground, hi);
   print_message("%g x %g particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
                 width, height, (long long)one, (long long)four, (double)four / (double)one);
