@@ -10,6 +10,7 @@
 #include "core/base/exact.h"
 #include "core/base/given.h"
 #include "core/internal.h"
+#include "core/state/row_source.h"
 #include "core/state/state.h"
 
 #include <mps/domain.h>
@@ -91,5 +92,12 @@ void mpsi_domain_free_mail(mpsi_mailbox *box); /* not collective */
 /* gather.c: the first `rows` of a value's rows on each rank, one behind the other, on rank 0. */
 mps_status mpsi_domain_gather_rows(mps_domain *domain, const char *function, int64_t rows,
                                    mpsi_value *value);
+
+/* rows.c: calls `take` on rank 0 with the particles of all ranks in the order of the whole set,
+ * which come in pieces: no rank has memory for all of them. Status of all ranks. `take` calls
+ * source->begin, and returns source->status where that is an error. */
+typedef mps_status mpsi_take_rows_fn(void *user, mpsi_row_source *source);
+mps_status mpsi_domain_write_rows(mps_domain *domain, const char *function,
+                                  mps_particles *particles, mpsi_take_rows_fn *take, void *user);
 
 #endif

@@ -54,38 +54,72 @@ static mps_status read_info(mps_context *context, const char *function, const mp
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-static bool write_field(hid_t group, const mps_particles_field_info *info, const mps_view *view) {
-  const hsize_t size[2] = {(hsize_t)view->shape[1], (hsize_t)view->shape[0]};
+/* A component of a field in the file, and in memory so many rows of it. */
+typedef struct column {
+  hid_t dataset, type, target;
+  hsize_t component;
+} column;
+
+static bool write_rows(void *user, int64_t first, int64_t rows, const void *values) {
+  const column *c = user;
+  const hsize_t start[2] = {c->component, (hsize_t)first}, count[2] = {1, (hsize_t)rows};
+  const hid_t source = H5Screate_simple(1, count + 1, NULL);
+  const bool good = source >= 0 &&
+                    H5Sselect_hyperslab(c->target, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+                    H5Dwrite(c->dataset, c->type, source, c->target, H5P_DEFAULT, values) >= 0;
+  if (source >= 0) H5Sclose(source);
+  return good;
+}
+
+static bool write_field(hid_t group, mpsi_row_source *from, int32_t field,
+                        const mps_particles_field_info *info) {
+  const hsize_t size[2] = {(hsize_t)info->components, (hsize_t)from->particles};
+  const hid_t target = H5Screate_simple(2, size, NULL);
   const hid_t type = mpsi_h5_number_type(info->dtype.code == 0);
-  const hid_t target = H5Screate_simple(2, size, NULL),
-              source = H5Screate_simple(1, size + 1, NULL);
   const hid_t dataset = mpsi_h5_dataset(group, info->name, type, target);
-  bool good = source >= 0 && dataset >= 0 &&
-              (!info->unit[0] || mpsi_h5_attribute_text(dataset, "unit", info->unit));
-  for (int64_t c = 0; good && c < view->shape[1] && view->shape[0] > 0; c++) {
-    const hsize_t start[2] = {(hsize_t)c, 0}, count[2] = {1, size[1]};
-    const char *column = (const char *)view->data + 8 * c * view->stride[1];
-    good = H5Sselect_hyperslab(target, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-           H5Dwrite(dataset, type, source, target, H5P_DEFAULT, column) >= 0;
+  column to = {.dataset = dataset, .type = type, .target = target};
+  bool good =
+      dataset >= 0 && (!info->unit[0] || mpsi_h5_attribute_text(dataset, "unit", info->unit));
+  for (int32_t c = 0; good && c < info->components; c++) {
+    to.component = (hsize_t)c;
+    good = from->column(from, field, c, write_rows, &to);
   }
   if (dataset >= 0) good = H5Dclose(dataset) >= 0 && good;
-  if (source >= 0) H5Sclose(source);
   if (target >= 0) H5Sclose(target);
   return good;
 }
 
-static bool write_fields(hid_t root, mps_particles *particles) {
+static bool write_fields(hid_t root, mpsi_row_source *from) {
   const hid_t group = H5Gcreate2(root, "fields", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   bool good = group >= 0;
-  for (int32_t k = 0; good && k < mps_particles_field_count(particles); k++) {
+  for (int32_t k = 0; good && k < mps_particles_field_count(from->set); k++) {
     mps_particles_field_info info;
-    mps_view view;
-    good = mps_particles_get_field_info(particles, k, &info) == MPS_OK &&
-           mps_particles_view(particles, info.name, &view) == MPS_OK &&
-           write_field(group, &info, &view);
+    good = mps_particles_get_field_info(from->set, k, &info) == MPS_OK &&
+           write_field(group, from, k, &info);
   }
   if (group >= 0) H5Gclose(group);
   return good;
+}
+
+/* Rows of a set that is here as a whole. */
+static mps_status begin_own(mpsi_row_source *source, mps_status status) {
+  (void)source;
+  return status;
+}
+
+static bool put_own(mpsi_row_source *source, int32_t field, int32_t component, mpsi_put_rows_fn put,
+                    void *user) {
+  mps_particles_field_info info;
+  mps_view view;
+  return mps_particles_get_field_info(source->set, field, &info) == MPS_OK &&
+         mps_particles_view(source->set, info.name, &view) == MPS_OK &&
+         (view.shape[0] == 0 ||
+          put(user, 0, view.shape[0], (const char *)view.data + 8 * component * view.stride[1]));
+}
+
+static mpsi_row_source source_of(mps_particles *set) {
+  return (mpsi_row_source){
+      .set = set, .particles = mps_particles_count(set), .begin = begin_own, .column = put_own};
 }
 
 static bool write_user_data(hid_t root, const mps_checkpoint *info) {
@@ -101,20 +135,20 @@ static bool write_user_data(hid_t root, const mps_checkpoint *info) {
 }
 
 /* With the state of a solver of the kind `solver`, if that is not NULL. */
-static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoint *info,
+static bool write_file(hid_t root, mpsi_row_source *from, const mps_checkpoint *info,
                        const char *solver, const mpsi_values *state) {
   const header h = {.version = FORMAT_VERSION,
-                    .dim = mps_particles_dim(particles),
-                    .count = mps_particles_count(particles),
+                    .dim = mps_particles_dim(from->set),
+                    .count = from->particles,
                     .step = info->step,
-                    .spacing = mps_particles_spacing(particles),
+                    .spacing = mps_particles_spacing(from->set),
                     .time = info->time,
                     .dt = info->dt};
   return mpsi_h5_attribute_text(root, "format", FORMAT_NAME) &&
          mpsi_h5_attribute_text(root, "library", mps_version()) &&
          mpsi_h5_attribute_text(root, "user_key", info->user_key) &&
          mpsi_h5_write_rows(root, header_table, HEADER_ROWS, &h) && write_user_data(root, info) &&
-         write_fields(root, particles) && (!solver || mpsi_h5_write_state(root, solver, state));
+         write_fields(root, from) && (!solver || mpsi_h5_write_state(root, solver, state));
 }
 
 /* A checkpoint that is being written, with the caller's `info`. */
@@ -142,16 +176,18 @@ static mps_status open_checkpoint(writing *w, const char *path, const mps_checkp
   return mpsi_replace_begin(context, w->function, path, &w->replacement);
 }
 
-static mps_status fill_checkpoint(writing *w, mps_particles *particles, const char *solver,
+static mps_status fill_checkpoint(writing *w, mpsi_row_source *from, const char *solver,
                                   const mpsi_values *state) {
   mps_status status = MPS_OK;
   mpsi_h5_file file;
   mpsi_h5_stay stay;
   mpsi_h5_enter(&stay);
   bool good = mpsi_h5_open(&file, w->replacement.fd, w->replacement.part, true) &&
-              write_file(file.id, particles, &w->info, solver, state);
+              write_file(file.id, from, &w->info, solver, state);
   good = mpsi_h5_close(&file) && good;
-  if (!good || file.error)
+  if (from->status != MPS_OK)
+    status = from->status;
+  else if (!good || file.error)
     status = mpsi_h5_fail(w->context, w->function, MPS_ERROR_IO, &stay, &file, "write",
                           w->replacement.part);
   mpsi_h5_leave(&stay);
@@ -165,7 +201,8 @@ mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
   if (!particles) return MPS_ERROR_ARGUMENT;
   writing w = {.context = mpsi_particles_context(particles), .function = __func__};
   const mps_status status = open_checkpoint(&w, path, info);
-  return status == MPS_OK ? fill_checkpoint(&w, particles, NULL, NULL) : status;
+  mpsi_row_source own = source_of(particles);
+  return status == MPS_OK ? fill_checkpoint(&w, &own, NULL, NULL) : status;
 }
 
 static mps_status open_solver(writing *w, const mpsi_state_of *of, const char *path,
@@ -181,12 +218,14 @@ static mps_status open_solver(writing *w, const mpsi_state_of *of, const char *p
   return open_checkpoint(w, path, &info);
 }
 
-mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
-                                       const char *path, const mps_checkpoint *user_info,
-                                       mps_particles *whole, const mpsi_values *state) {
-  writing w = {.context = of->context, .function = function};
-  const mps_status status = open_solver(&w, of, path, user_info);
-  return status == MPS_OK ? fill_checkpoint(&w, whole, of->name, state) : status;
+mps_status mpsi_checkpoint_save_rows(void *user, mpsi_row_source *source) {
+  const mpsi_checkpoint_request *q = user;
+  writing w = {.context = q->of->context, .function = q->function};
+  const mps_status own = open_solver(&w, q->of, q->path, q->info);
+  const mps_status status = source->begin(source, own);
+  if (status == MPS_OK) return fill_checkpoint(&w, source, q->of->name, q->state);
+  if (own == MPS_OK) mpsi_replace_abandon(q->of->context, &w.replacement);
+  return status;
 }
 
 /* The file is opened before the solver reads edits: an error of the path leaves the solver
@@ -198,8 +237,9 @@ mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, c
   mps_status status = open_solver(&w, of, path, info);
   if (status != MPS_OK) return status;
   status = mpsi_state_get(of, function, &state);
+  mpsi_row_source own = source_of(of->particles);
   if (status == MPS_OK)
-    status = fill_checkpoint(&w, of->particles, of->name, &state.state);
+    status = fill_checkpoint(&w, &own, of->name, &state.state);
   else
     mpsi_replace_abandon(of->context, &w.replacement);
   mpsi_values_free(of->context, &state.state);

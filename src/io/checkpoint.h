@@ -3,6 +3,7 @@
 #ifndef MPSI_IO_CHECKPOINT_H
 #define MPSI_IO_CHECKPOINT_H
 
+#include "core/state/row_source.h"
 #include "core/state/state.h"
 
 #include <mps/io.h>
@@ -11,11 +12,15 @@
  * and the user_data are read: time, step and dt are those of `of`. */
 mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
                                 const mps_checkpoint *info);
-/* The same with the particles and values of other ranks: `whole` in the place of the solver's set.
- */
-mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
-                                       const char *path, const mps_checkpoint *info,
-                                       mps_particles *whole, const mpsi_values *state);
+/* The same with the particles and values of all ranks: the rows of `source` in the place of the
+ * solver's set. `request` is an mpsi_checkpoint_request. */
+typedef struct mpsi_checkpoint_request {
+  const mpsi_state_of *of;
+  const char *function, *path;
+  const mps_checkpoint *info;
+  const mpsi_values *state;
+} mpsi_checkpoint_request;
+mps_status mpsi_checkpoint_save_rows(void *request, mpsi_row_source *source);
 /* Restores a solver that was built in the same way, and its set, to that state and order. `info`
  * (may be NULL) is as for mps_checkpoint_info. On an error nothing has changed. */
 mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,

@@ -61,9 +61,7 @@ mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function
   return unsupported(of->context, function);
 }
 
-mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
-                                       const char *path, const mps_checkpoint *info,
-                                       mps_particles *whole, const mpsi_values *state) {
-  (void)path, (void)info, (void)whole, (void)state;
-  return unsupported(of->context, function);
+mps_status mpsi_checkpoint_save_rows(void *user, mpsi_row_source *source) {
+  const mpsi_checkpoint_request *q = user;
+  return source->begin(source, unsupported(q->of->context, q->function));
 }

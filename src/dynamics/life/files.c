@@ -81,19 +81,13 @@ mps_status mpsi_dynamics_save_partitions(mps_dynamics *dynamics, const mpsi_stat
                                          const char *function, const char *path,
                                          const mps_checkpoint *info) {
   mps_snapshot state = {.context = dynamics->context};
-  mps_particles *whole = NULL;
+  const mpsi_checkpoint_request request = {of, function, path, info, &state.state};
   mps_status status =
       mpsi_domain_agree(dynamics->domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(dynamics, function, &state.state);
   if (status == MPS_OK)
-    status = mpsi_as(dynamics->context, function,
-                     mps_domain_gather(dynamics->domain, dynamics->particles, &whole));
-  if (status == MPS_OK) {
-    if (mps_domain_rank(dynamics->domain) == 0)
-      status = mpsi_checkpoint_save_values(of, function, path, info, whole, &state.state);
-    status = mpsi_domain_agree(dynamics->domain, function, status);
-  }
-  mps_particles_destroy(&whole);
+    status = mpsi_domain_write_rows(dynamics->domain, function, dynamics->particles,
+                                    mpsi_checkpoint_save_rows, (void *)&request);
   mpsi_values_free(dynamics->context, &state.state);
   return status;
 }

@@ -91,20 +91,15 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
                                   const char *path, const mps_checkpoint *info) {
   mps_domain *domain = mpm->partition->domain;
   mps_snapshot state = {.context = mpm->context};
-  mps_particles *whole = NULL;
+  const mpsi_checkpoint_request request = {of, function, path, info, &state.state};
   mps_status status = mpsi_mpm_share_warm_start(mpm, function, MPS_OK);
   mpsi_mpm_order_warm_start(mpm);
   if (status == MPS_OK)
     status = mpsi_domain_agree(domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(mpm, function, &state.state);
   if (status == MPS_OK)
-    status = mpsi_as(mpm->context, function, mps_domain_gather(domain, mpm->particles, &whole));
-  if (status == MPS_OK) {
-    if (mps_domain_rank(domain) == 0)
-      status = mpsi_checkpoint_save_values(of, function, path, info, whole, &state.state);
-    status = mpsi_domain_agree(domain, function, status);
-  }
-  mps_particles_destroy(&whole);
+    status = mpsi_domain_write_rows(domain, function, mpm->particles, mpsi_checkpoint_save_rows,
+                                    (void *)&request);
   mpsi_values_free(mpm->context, &state.state);
   return status;
 }
