@@ -73,7 +73,7 @@ static bool join(app *a, int64_t threads) {
 
 bool app_start(app *a, const char *program, int64_t threads) {
   *a = (app){.program = program, .outcome = "finished", .rank = ranks_number()};
-  progress_start(&a->bar);
+  progress_start(&a->bar, program);
   char doubt[200];
   for (int k = 0; options_doubt(k, doubt, sizeof doubt); k++) note_warning(a, doubt);
   if (ranks_launched() == 1) return make_context(a, threads);

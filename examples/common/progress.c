@@ -12,13 +12,19 @@
 /* A signal handler can reach nothing but static variables. The library has none and installs no
  * handler: both are the program's. */
 static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t presses; /* of Ctrl-C */
+static char third[120];               /* the line upon the third */
 static char last_line[PROGRESS_LAST_LINE + 1];
 static char last_part[PROGRESS_PATH], last_whole[PROGRESS_PATH]; /* "": no file */
 static volatile sig_atomic_t last_length;                        /* > 0: leave at once */
 
 static void on_interrupt(int number) {
-  (void)number;
   interrupted = 1;
+  if (number == SIGINT && ++presses > 2) {
+    const ssize_t sent = write(STDERR_FILENO, third, strlen(third));
+    (void)sent;
+    _exit(130);
+  }
   if (last_length == 0) return;
   if (last_part[0] && rename(last_part, last_whole) != 0) last_part[0] = '\0';
   const ssize_t written = write(STDERR_FILENO, last_line, (size_t)last_length);
@@ -44,9 +50,11 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void progress_start(progress *bar) {
+void progress_start(progress *bar, const char *program) {
   *bar = (progress){.terminal = isatty(STDERR_FILENO) == 1, .share = 1.0, .first = -1.0};
-  struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
+  snprintf(third, sizeof third, "%s%.40s: ended at once: what was not yet written is lost\n",
+           bar->terminal ? "\r\x1b[K" : "", program);
+  struct sigaction action = {.sa_handler = on_interrupt};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   action.sa_handler = SIG_IGN;

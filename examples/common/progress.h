@@ -27,10 +27,12 @@ typedef struct progress {
 
 enum { PROGRESS_LAST_LINE = 1400, PROGRESS_PATH = 1400 };
 
-/* Starts the clock and, from now on, turns the first Ctrl-C into a request to stop; a second one
- * kills the program as usual. A write beyond a limit on the size of files fails like one to a full
- * disk, instead of killing the program. */
-void progress_start(progress *bar);
+/* Starts the clock and, from now on, turns Ctrl-C into a request to stop. A second one changes
+ * nothing, as a terminal and a program that started this one may both pass on the same; a third one
+ * ends the program at once, with exit code 130 and a line after the name of the `program`. A write
+ * beyond a limit on the size of files fails like one to a full disk, instead of killing the
+ * program. */
+void progress_start(progress *bar, const char *program);
 /* From now on SIGTERM and SIGUSR1 are requests to stop too: mpirun and srun send them to ranks. */
 void progress_heed_launcher(void);
 /* What the hook draws from now on: a part `share` of the whole, with `done` before it, in which the

@@ -49,16 +49,17 @@ static const struct line {
 
 static void plot_load(output *f, const pile *p, int width) {
   const size_t count = sizeof lines / sizeof *lines;
-  double left = 90.0;
+  double left = 125.0;
   for (size_t k = 0; k < count; k++, left += 95.0)
     output_text(f, "set label %d '%s' at screen %.4g,0.05 textcolor rgb '%s'\n", (int)k + 1,
                 lines[k].title, left / width, lines[k].colour);
-  output_text(f,
-              "set title 'Load'\nset xlabel 'force (kN)'\nset ylabel 'depth of the tip (m)'\n"
-              "set xrange [0:*]\nset yrange [%.9g:0]\nunset key\n"
-              "plot 'load.csv' every ::1 using ($2/1e3):1 with lines linecolor rgb '#999999' "
-              "linewidth 0.7",
-              p->s.depth);
+  output_text(
+      f,
+      "set title 'Load'\nset xlabel 'force (kN)'\nset ylabel 'depth of the tip (m)' offset 1\n"
+      "set xrange [0:*]\nset yrange [%.9g:0]\nunset key\n"
+      "plot 'load.csv' every ::1 using ($2/1e3):1 with lines linecolor rgb '#999999' "
+      "linewidth 0.7",
+      p->s.depth);
   for (size_t k = 0; k < count; k++)
     output_text(f,
                 ", \\\n  '' every ::1 using ($%d/1e3):1 with lines dashtype %s linecolor rgb '%s'",
@@ -211,9 +212,9 @@ static bool draw_overview(app *a, const pile *p, const section *stress, const se
       "{/Symbol m} = %g}\" font ',18'\n",
       p->s.inner_diameter, 1e3 * p->s.wall, p->s.depth, p->s.rate, 1e3 * p->s.h,
       (long long)p->particles, p->s.phi, pile_cone_name(&p->s), p->s.friction);
-  place(&f, 90.0 / width, 520.0 / width);
+  place(&f, 125.0 / width, 535.0 / width);
   plot_load(&f, p, width);
-  place(&f, 600.0 / width, 1000.0 / width);
+  place(&f, 615.0 / width, 1005.0 / width);
   plot_plug(&f);
   const section *const shown[2] = {stress, strain};
   for (int k = 0; k < 2; k++) {

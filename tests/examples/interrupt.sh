@@ -13,9 +13,11 @@ used() {
   while now=$(processor_time) && [ -n "$now" ] && [ "$now" -lt "$until" ]; do sleep 0.02; done
 }
 
-# stop: presses Ctrl-C and waits for $pid, which may use 3 s of the processor until it has ended.
+# stop: presses Ctrl-C and waits for $pid, which may use 3 s of the processor until it has ended. The
+# same press may come twice, from the terminal and from a program between.
 stop() {
   before=$(processor_time)
+  kill -INT "$pid" 2>/dev/null || :
   kill -INT "$pid" 2>/dev/null || :
   while now=$(processor_time) && [ -n "$now" ]; do
     [ $((now - ${before:-now})) -le 300 ] || fail "$program: more than 3 s after Ctrl-C"
@@ -92,6 +94,20 @@ if [ -x "$programs/mps-seawall" ]; then
   interrupt long 0.5 mps-seawall --period 1e6 --amplitude 0
   wrote long force.csv summary.json
 fi
+
+# Pressed again and again: it ends, and says so.
+"$programs/mps-tank" --duration 100 --threads 1 --out "$work/again" >"$work/out" 2>"$work/log" &
+pid=$!
+until [ -s "$work/out" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done
+for press in 1 2 3 4 5 6; do
+  kill -INT "$pid" 2>/dev/null || :
+  sleep 0.002
+done
+status=0
+wait "$pid" || status=$?
+[ "$status" -eq 130 ] || fail "mps-tank: exit code $status: $(cat "$work/log")"
+has "$work/log" "mps-tank: "
+[ "$(wc -l <"$work/log")" -le 2 ] || fail "mps-tank: $(cat "$work/log")"
 
 # Above the ground there is nothing to scale the axes of a picture by.
 program=mps-penetrometer
