@@ -71,6 +71,8 @@ enum {
   SIGNAL_DIFFERS, /* of a boundary, from some time on */
   FACTOR_DIFFERS, /* of a load */
   SOLVER_FAILS,
+  OTHER_KERNEL,
+  OTHER_SNAPSHOT,
   TROUBLES
 };
 
@@ -180,6 +182,19 @@ static mps_status ask(mps_elastic *elastic, double *out) {
   return status;
 }
 
+/* To the first of two states, the odd rank to the second. */
+static mps_status go_back(mps_elastic *elastic, bool odd) {
+  mps_snapshot *state[2] = {NULL, NULL};
+  mps_status status = MPS_OK;
+  for (int k = 0; k < 2; k++) {
+    TRY(mps_elastic_step(elastic, 1));
+    TRY(mps_elastic_snapshot(elastic, &state[k]));
+  }
+  TRY(mps_elastic_rollback(elastic, state[odd]));
+  for (int k = 0; k < 2; k++) mps_snapshot_destroy(&state[k]);
+  return status;
+}
+
 static mps_status compute(mps_context *own, mps_domain *domain, int what, int64_t length,
                           result *r) {
   shared s = {.domain = domain};
@@ -198,6 +213,9 @@ static mps_status compute(mps_context *own, mps_domain *domain, int what, int64_
   solver.part = rank, solver.parts = domain ? mps_domain_size(domain) : 1;
   motion.dt = 0.1;
   mps_status status = make_set(own, what, &set);
+  if (what == OTHER_KERNEL)
+    TRY(mps_kernel_create(own, rank == 1 ? MPS_KERNEL_SPLINE3 : MPS_KERNEL_MPS,
+                          1.5 * mps_particles_spacing(set), &def.kernel));
   if (what == OTHER_BODY && rank == 1) TRY(mps_particles_set(set, "young", 0, 51.0));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_elastic_create(own, set, &def, &elastic));
@@ -207,6 +225,7 @@ static mps_status compute(mps_context *own, mps_domain *domain, int what, int64_
   TRY(ask(elastic, r->other));
   if (what == CANCELLED) mps_context_set_cancel(own, cancel, &u);
   TRY(mps_elastic_start(elastic, &motion));
+  if (what == OTHER_SNAPSHOT) TRY(go_back(elastic, rank == 1));
   TRY(mps_elastic_step(elastic, length));
   TRY(ask(elastic, r->other + 20));
   r->time = mps_elastic_time(elastic);
@@ -214,6 +233,7 @@ static mps_status compute(mps_context *own, mps_domain *domain, int what, int64_
   if (status == MPS_OK) status = mps_elastic_get_reaction(elastic, 0, &r->reaction[0]);
   TRY(keep(set, r));
   if (domain) status = mps_domain_agree(domain, status);
+  mps_kernel_destroy(&def.kernel);
   mps_elastic_destroy(&elastic);
   mps_particles_destroy(&set);
   forget(&s);
@@ -245,6 +265,8 @@ static void test_troubles(void **state) {
       [SIGNAL_DIFFERS] = {MPS_ERROR_ARGUMENT, "the motion of a boundary is ", 0.1},
       [FACTOR_DIFFERS] = {MPS_ERROR_ARGUMENT, "the present factor on a load is ", 0.1},
       [SOLVER_FAILS] = {MPS_ERROR_IO, "rank 1: the callback matrix", 0.0},
+      [OTHER_KERNEL] = {MPS_ERROR_ARGUMENT, "the kind of the kernel is ", 0.0},
+      [OTHER_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is ", 0.2},
   };
   (void)state;
   for (int what = OTHER_BODY; what < TROUBLES; what++) {

@@ -138,10 +138,15 @@ mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
 
 mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
                                const mps_snapshot *snapshot) {
-  if (!snapshot) return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL");
-  const mps_status status = check_owner(of, function, snapshot);
-  if (status != MPS_OK) return status;
-  return mpsi_state_put(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);
+  mps_status status = MPS_OK;
+  if (!snapshot)
+    status = mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL");
+  else
+    status = check_owner(of, function, snapshot);
+  if (status == MPS_OK)
+    return mpsi_state_put(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);
+  return of->settle ? of->settle(of->solver, function, status)
+                    : status; /* other ranks wait there */
 }
 
 mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,

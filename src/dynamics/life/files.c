@@ -5,6 +5,7 @@
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 #include "io/checkpoint.h"
+#include "domain/moment.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -157,7 +158,7 @@ mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_sta
   if (status == MPS_OK && !(rows = mpsi_alloc(dynamics->context, ranks, sizeof *rows)))
     status = mpsi_fail_memory(dynamics->context, function, (size_t)ranks * 8);
   if (status == MPS_OK) status = take_fields(dynamics, function, values);
-  status = mpsi_domain_agree(domain, function, status);
+  status = mpsi_domain_agree_moment(domain, function, status, values);
   for (int32_t k = 0; status == MPS_OK && k < values->state.count; k++) {
     mpsi_value *value = &values->state.item[k];
     const merging how = merging_of(value);

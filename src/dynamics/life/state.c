@@ -6,6 +6,7 @@
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
 #include "io/checkpoint.h"
+#include "domain/moment.h"
 
 #include <string.h>
 
@@ -233,7 +234,9 @@ static mps_status settle_back(mps_dynamics *dynamics, const char *function, mps_
 
 mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *snapshot) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status == MPS_OK)
+    status = mpsi_domain_agree_moment(dynamics->domain, __func__, status, snapshot);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
   return settle_back(dynamics, __func__, mpsi_state_rollback(&of, __func__, snapshot));

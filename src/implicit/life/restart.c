@@ -4,6 +4,7 @@
 
 #include "core/state/state.h"
 #include "io/checkpoint.h"
+#include "domain/moment.h"
 
 #include <string.h>
 
@@ -116,8 +117,8 @@ static mps_status settle(void *solver, const char *function, mps_status status) 
 
 static mps_status have_read(void *solver, const char *function, mps_status status,
                             mps_snapshot *values) {
-  (void)values; /* every rank keeps all of them */
-  return settle(solver, function, status);
+  /* every rank keeps all of them */
+  return mpsi_domain_agree_moment(((mps_elastic *)solver)->def.domain, function, status, values);
 }
 
 static mpsi_state_of state_of(mps_elastic *e) {
@@ -160,7 +161,9 @@ mps_status mps_elastic_snapshot(mps_elastic *e, mps_snapshot **snapshot) {
 mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot) {
   if (!e) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(e);
-  const mps_status status = check(e, __func__, true);
+  mps_status status = check(e, __func__, true);
+  if (status == MPS_OK)
+    status = mpsi_domain_agree_moment(e->def.domain, __func__, status, snapshot);
   return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
 }
 

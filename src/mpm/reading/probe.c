@@ -306,6 +306,23 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
   return MPS_OK;
 }
 
+/* Do all ranks ask for the same? Each adds the particles that it has to every point. */
+static mps_status agree_on_points(mps_mpm *mpm, const char *function, mps_status status,
+                                  const char *field, int32_t component, int64_t count,
+                                  const double *points) {
+  mpsi_given given;
+  if (!mpm->partition) return status;
+  mpsi_given_begin(&given);
+  if (status == MPS_OK) {
+    mpsi_give_text(&given, "a hash of field", field);
+    mpsi_give(&given, "component", component);
+    mpsi_give(&given, "count", (double)count);
+    for (int64_t i = 0; i < count; i++) /* in the plane the third coordinate is not read */
+      mpsi_give_vector(&given, "points", mpm->dim, points + 3 * i);
+  }
+  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+}
+
 mps_status mps_grid_evaluate(mps_grid *grid, const char *field, int32_t component, int64_t count,
                              const double *points, double *values, int32_t *states) {
   if (!grid) return MPS_ERROR_ARGUMENT;
@@ -313,7 +330,7 @@ mps_status mps_grid_evaluate(mps_grid *grid, const char *field, int32_t componen
   near list = {.mpm = mpm};
   int32_t components = 0;
   mps_status status = check(mpm, __func__, field, component, count, points, values, &components);
-  status = mpsi_mpm_agree(mpm, __func__, status);
+  status = agree_on_points(mpm, __func__, status, field, component, count, points);
   if (status != MPS_OK || count == 0) return status;
   const int32_t first = component < 0 ? 0 : component, width = component < 0 ? components : 1;
   list.columns = width;

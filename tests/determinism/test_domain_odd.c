@@ -1,0 +1,369 @@
+/* test_domain_odd.c - one rank of three that gives another value than the others: constants of
+ * definitions, weight functions, what a body is to do next, states to go back to. All ranks get the
+ * same error, which names what differs, and none goes on to a third result.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "ranks_team.h"
+
+#include <mps/experimental.h>
+#include <mps/mps.h>
+
+#define TRY(call)                                                                                  \
+  do {                                                                                             \
+    if (status == MPS_OK) status = (call);                                                         \
+  } while (0)
+
+static mps_status make_set(mps_context *own, double spacing, double width, double height,
+                           mps_particles **set) {
+  mps_particles_def def = mps_particles_defaults();
+  const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
+  def.spacing = spacing;
+  mps_status status = mps_particles_create(own, &def, set);
+  TRY(mps_particles_fill_box(*set, lo, hi, NULL));
+  TRY(mps_particles_set(*set, "density", 0, 1000.0));
+  return status;
+}
+
+/* ---- WLS-MPM --------------------------------------------------------------------------------- */
+
+enum {
+  MPM_DEGREE,
+  MPM_LAW,
+  MPM_STATEV,
+  MPM_SWEEPS,
+  MPM_ADHESION,
+  MPM_STRENGTH,
+  MPM_CORNER,
+  MPM_TOLERANCE,
+  MPM_OFFSET,
+  MPM_INSIDE,
+  MPM_BODY_LOAD,
+  MPM_BODY_FACTOR,
+  MPM_BODY_MOTION,
+  MPM_SETTLE,
+  MPM_FLIP,
+  MPM_POINTS,
+  MPM_COMPONENT,
+  MPM_END,
+  MPM_SNAPSHOT,
+  MPM_NO_SNAPSHOT,
+  MPM_FILE,
+  MPM_SETTLING_SIDE,
+  MPM_CASES
+};
+
+static const trouble_case of_mpm[MPM_CASES] = {
+    [MPM_DEGREE] = {MPS_ERROR_ARGUMENT, "spline is "},
+    [MPM_LAW] = {MPS_ERROR_ARGUMENT, "another value on others"},
+    [MPM_STATEV] = {MPS_ERROR_ARGUMENT, "histories is "},
+    [MPM_SWEEPS] = {MPS_ERROR_ARGUMENT, "sweeps is "},
+    [MPM_ADHESION] = {MPS_ERROR_ARGUMENT, "adhesion is "},
+    [MPM_STRENGTH] = {MPS_ERROR_ARGUMENT, "strength is "},
+    [MPM_CORNER] = {MPS_ERROR_ARGUMENT, "corner is "},
+    [MPM_TOLERANCE] = {MPS_ERROR_ARGUMENT, "tolerance is "},
+    [MPM_OFFSET] = {MPS_ERROR_ARGUMENT, "offset is "},
+    [MPM_INSIDE] = {MPS_ERROR_ARGUMENT, "inside is "},
+    [MPM_BODY_LOAD] = {MPS_ERROR_ARGUMENT, "the load on the body is "},
+    [MPM_BODY_FACTOR] = {MPS_ERROR_ARGUMENT, "the body's "},
+    [MPM_BODY_MOTION] = {MPS_ERROR_ARGUMENT, "the body's "},
+    [MPM_SETTLE] = {MPS_ERROR_ARGUMENT, "max_steps is "},
+    [MPM_FLIP] = {MPS_ERROR_ARGUMENT, "flip is "},
+    [MPM_POINTS] = {MPS_ERROR_ARGUMENT, "points"},
+    [MPM_COMPONENT] = {MPS_ERROR_ARGUMENT, "component"},
+    [MPM_END] = {MPS_ERROR_ARGUMENT, "t_end"},
+    [MPM_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "time is "},
+    [MPM_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
+    [MPM_FILE] = {MPS_ERROR_ARGUMENT, "time is "},
+    [MPM_SETTLING_SIDE] = {MPS_ERROR_ARGUMENT, "settle is "},
+};
+
+static MPS_MATERIAL_UMAT(umat_that_does_nothing) { MPS_MATERIAL_UMAT_UNUSED; }
+
+static mps_status make_law(mps_context *own, int what, bool odd, mps_material **law) {
+  mps_material_umat_def def = mps_material_umat_defaults();
+  const double initial[1] = {odd && what == MPM_STATEV ? 2.0 : 1.0};
+  if (what != MPM_LAW && what != MPM_STATEV)
+    return mps_material_create_linear_elastic(own, 1e5, 0.3, law);
+  def.umat = umat_that_does_nothing;
+  def.wave_modulus = 1e5;
+  def.statev_count = 1;
+  def.statev_initial = initial;
+  if (odd && what == MPM_LAW) def.temperature = 300.0;
+  return mps_material_create_umat(own, &def, law);
+}
+
+/* A body above the ground, and what is done to it. */
+static mps_status with_body(mps_context *own, mps_mpm *mpm, int what, bool odd) {
+  mps_contact_def contact = mps_contact_defaults();
+  mps_body_def def = mps_body_defaults();
+  mps_body_motion motion = mps_body_motion_defaults();
+  mps_body *body = NULL;
+  mps_signal *signal = NULL;
+  const double force[3] = {0.0, odd ? -2.0 : -1.0, 0.0}, moment[3] = {0.0, 0.0, 0.0};
+  def.position[0] = 0.6, def.position[1] = 0.76;
+  if (what == MPM_BODY_LOAD)
+    def.motion = MPS_BODY_MOTION_FREE, def.mass = 10.0, def.inertia[2] = 1.0;
+  if (odd && what == MPM_SWEEPS) contact.sweeps = 40;
+  if (odd && what == MPM_ADHESION) contact.adhesion = 10.0;
+  if (odd && what == MPM_STRENGTH) contact.strength = 10.0;
+  if (odd && what == MPM_CORNER) contact.corner = 0.01;
+  if (what == MPM_TOLERANCE) contact.sweeps = 60, contact.tolerance = odd ? 1e-6 : 1e-5;
+  if (odd && what == MPM_OFFSET) contact.offset = 0.04;
+  if (odd && what == MPM_INSIDE) contact.inside = MPS_CONTACT_INSIDE_REMOVE;
+  motion.velocity[1] = odd ? -0.2 : -0.1;
+  mps_status status = mps_signal_create_ramp(own, 0.0, 0.1, -0.01, &signal);
+  TRY(mps_body_create_box(own, &def, 0.4, 0.2, &body));
+  TRY(mps_mpm_add_contact(mpm, body, &contact, NULL));
+  if (what == MPM_BODY_LOAD) TRY(mps_body_set_load(body, force, moment));
+  if (what == MPM_BODY_FACTOR) TRY(mps_body_drive(body, 1, signal, odd ? 2.0 : 1.0));
+  if (what == MPM_BODY_MOTION) TRY(mps_body_set_motion(body, &motion));
+  TRY(mps_mpm_step(mpm, 3));
+  mps_signal_destroy(&signal);
+  mps_body_destroy(&body);
+  return status;
+}
+
+/* Two states, of which one rank goes back to the other one. */
+static mps_status back(mps_mpm *mpm, int what, bool odd) {
+  static const char *const file[2] = {TEST_TMP "/odd-1.h5", TEST_TMP "/odd-2.h5"};
+  mps_snapshot *state[2] = {NULL, NULL};
+  mps_status status = MPS_OK;
+  for (int k = 0; k < 2; k++) {
+    TRY(mps_mpm_step(mpm, 2));
+    if (what != MPM_FILE) TRY(mps_mpm_snapshot(mpm, &state[k]));
+    if (what == MPM_FILE) TRY(mps_mpm_save(mpm, file[k], NULL));
+  }
+  if (what == MPM_SNAPSHOT) TRY(mps_mpm_rollback(mpm, state[odd]));
+  if (what == MPM_NO_SNAPSHOT) TRY(mps_mpm_rollback(mpm, odd ? NULL : state[0]));
+  if (what == MPM_FILE) TRY(mps_mpm_restore(mpm, file[odd], NULL));
+  TRY(mps_mpm_step(mpm, 2));
+  for (int k = 0; k < 2; k++) mps_snapshot_destroy(&state[k]);
+  return status;
+}
+
+static mps_status ask_grid(mps_mpm *mpm, int what, bool odd) {
+  const double point[3] = {0.4, odd && what == MPM_POINTS ? 0.31 : 0.3, 0.0};
+  double value[2];
+  mps_status status = mps_mpm_step(mpm, 1);
+  TRY(mps_grid_evaluate(mps_mpm_grid(mpm), "velocity", odd && what == MPM_COMPONENT ? 0 : -1, 1,
+                        point, value, NULL));
+  return status;
+}
+
+static mps_status run_mpm(mps_context *own, mps_domain *domain, int what, int32_t rank) {
+  const bool odd = rank == 1;
+  mps_mpm_def def = mps_mpm_defaults();
+  mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
+  mps_mpm_settle_def settle = mps_mpm_settle_defaults();
+  mps_particles *set = NULL;
+  mps_material *law = NULL;
+  mps_mpm *mpm = NULL;
+  def.domain = domain;
+  def.cell = 0.2, def.gravity[1] = -9.81;
+  for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c ? 2.0 : 1.2;
+  mps_status status = make_set(own, 0.1, 1.2, 0.6, &set);
+  if (what == MPM_DEGREE)
+    TRY(mps_kernel_create(own, odd ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3, odd ? 0.3 : 0.4,
+                          &def.kernel));
+  TRY(make_law(own, what, odd, &law));
+  TRY(mps_mpm_create(own, set, law, &def, &mpm));
+  if (what == MPM_FLIP) TRY(mps_experimental_mpm_standard(mpm, odd ? 0.9 : 1.0));
+  if (what == MPM_SETTLING_SIDE) {
+    side.kind = MPS_BOUNDARY_ABSORBING;
+    side.settle = odd ? 0.2 : 0.1;
+    TRY(mps_mpm_set_boundary(mpm, MPS_MPM_SIDE_X_LOWER, &side));
+  }
+  settle.max_steps = odd ? 3 : 2, settle.tolerance = 0.99;
+  if (what == MPM_SETTLE) TRY(mps_mpm_settle(mpm, &settle, NULL));
+  if (what >= MPM_SWEEPS && what <= MPM_BODY_MOTION) TRY(with_body(own, mpm, what, odd));
+  if (what == MPM_POINTS || what == MPM_COMPONENT) TRY(ask_grid(mpm, what, odd));
+  if (what == MPM_END) TRY(mps_mpm_run(mpm, odd ? 0.01 : 0.02, 1, NULL, NULL));
+  if (what >= MPM_SNAPSHOT && what <= MPM_FILE) TRY(back(mpm, what, odd));
+  mps_mpm_destroy(&mpm);
+  mps_material_destroy(&law);
+  mps_kernel_destroy(&def.kernel);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void test_mpm(void **state) {
+  (void)state;
+  meet_troubles(run_mpm, of_mpm, MPM_CASES);
+}
+
+/* ---- the fluid ------------------------------------------------------------------------------- */
+
+enum {
+  FLUID_ITERATIONS,
+  FLUID_LEVEL,
+  FLUID_RADIUS,
+  FLUID_GAMMA,
+  FLUID_KIND,
+  FLUID_MOTION,
+  FLUID_DT,
+  FLUID_SNAPSHOT,
+  FLUID_NO_SNAPSHOT,
+  FLUID_CASES
+};
+
+static const trouble_case of_fluid[FLUID_CASES] = {
+    [FLUID_ITERATIONS] = {MPS_ERROR_ARGUMENT, "iterations is "},
+    [FLUID_LEVEL] = {MPS_ERROR_ARGUMENT, "level is "},
+    [FLUID_RADIUS] = {MPS_ERROR_ARGUMENT, "radius_ratio is "},
+    [FLUID_GAMMA] = {MPS_ERROR_ARGUMENT, "gamma is "},
+    [FLUID_KIND] = {MPS_ERROR_ARGUMENT, "kind is "},
+    [FLUID_MOTION] = {MPS_ERROR_ARGUMENT, "wall's motion"},
+    [FLUID_DT] = {MPS_ERROR_ARGUMENT, "dt is "},
+    [FLUID_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "time is "},
+    [FLUID_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
+};
+
+static mps_status wall(mps_fluid *fluid, int32_t kind, double x, double nx, double ny) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = kind;
+  def.point[0] = x, def.normal[0] = nx, def.normal[1] = ny;
+  return mps_fluid_add_boundary(fluid, &def, NULL);
+}
+
+static mps_status step_fluid(mps_fluid *fluid, int what, bool odd) {
+  mps_snapshot *state[2] = {NULL, NULL};
+  const double velocity[1] = {odd ? 0.02 : 0.01};
+  mps_status status = MPS_OK;
+  if (what == FLUID_MOTION) TRY(mps_fluid_set_wall_motion(fluid, 1, NULL, velocity));
+  if (what == FLUID_DT) {
+    TRY(mps_fluid_begin_step(fluid, odd ? 1e-3 : 2e-3));
+    TRY(mps_fluid_solve_pressure(fluid));
+    TRY(mps_fluid_end_step(fluid));
+  }
+  for (int k = 0; k < 2; k++) {
+    TRY(mps_fluid_step(fluid, 1));
+    if (what >= FLUID_SNAPSHOT) TRY(mps_fluid_snapshot(fluid, &state[k]));
+  }
+  if (what >= FLUID_SNAPSHOT)
+    TRY(mps_fluid_rollback(fluid, odd && what == FLUID_NO_SNAPSHOT ? NULL : state[odd]));
+  TRY(mps_fluid_step(fluid, 1));
+  for (int k = 0; k < 2; k++) mps_snapshot_destroy(&state[k]);
+  return status;
+}
+
+static mps_status run_fluid(mps_context *own, mps_domain *domain, int what, int32_t rank) {
+  const bool odd = rank == 1;
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_particles *set = NULL;
+  mps_fluid *fluid = NULL;
+  def.domain = domain;
+  if (odd && what == FLUID_ITERATIONS) def.iterations = 1999;
+  if (odd && what == FLUID_LEVEL) def.level = 0.5;
+  mps_status status = make_set(own, 0.02, 0.6, 0.4, &set);
+  if (what == FLUID_RADIUS)
+    TRY(mps_kernel_create(own, MPS_KERNEL_SMOOTH, odd ? 0.06 : 0.062, &def.kernel));
+  TRY(mps_fluid_create(own, set, &def, &fluid));
+  if (what == FLUID_GAMMA) TRY(mps_experimental_fluid_classical(fluid, odd ? 0.1 : 0.2));
+  TRY(wall(fluid, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0));
+  TRY(wall(fluid, odd && what == FLUID_KIND ? MPS_BOUNDARY_HELD : MPS_BOUNDARY_ROLLER, 0.0, 1.0,
+           0.0));
+  TRY(wall(fluid, MPS_BOUNDARY_ROLLER, 0.6, -1.0, 0.0));
+  TRY(step_fluid(fluid, what, odd));
+  mps_fluid_destroy(&fluid);
+  mps_kernel_destroy(&def.kernel);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void test_fluid(void **state) {
+  (void)state;
+  meet_troubles(run_fluid, of_fluid, FLUID_CASES);
+}
+
+/* ---- explicit dynamics ----------------------------------------------------------------------- */
+
+enum {
+  DYNAMICS_KERNEL,
+  DYNAMICS_WATCH,
+  DYNAMICS_PERIOD,
+  DYNAMICS_HALF_SPACE,
+  DYNAMICS_AREA,
+  DYNAMICS_START,
+  DYNAMICS_END,
+  DYNAMICS_SNAPSHOT,
+  DYNAMICS_NO_SNAPSHOT,
+  DYNAMICS_FILE,
+  DYNAMICS_CASES
+};
+
+static const trouble_case of_dynamics[DYNAMICS_CASES] = {
+    [DYNAMICS_KERNEL] = {MPS_ERROR_ARGUMENT, "the kind of the kernel is "},
+    [DYNAMICS_WATCH] = {MPS_ERROR_ARGUMENT, "watch_damping is "},
+    [DYNAMICS_PERIOD] = {MPS_ERROR_ARGUMENT, "period_x is "},
+    [DYNAMICS_HALF_SPACE] = {MPS_ERROR_ARGUMENT, "shear_velocity is "},
+    [DYNAMICS_AREA] = {MPS_ERROR_ARGUMENT, "area is "},
+    [DYNAMICS_START] = {MPS_ERROR_ARGUMENT, "time is "},
+    [DYNAMICS_END] = {MPS_ERROR_ARGUMENT, "t_end"},
+    [DYNAMICS_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "steps is "},
+    [DYNAMICS_NO_SNAPSHOT] = {MPS_ERROR_ARGUMENT, "rank 1: snapshot is NULL"},
+    [DYNAMICS_FILE] = {MPS_ERROR_ARGUMENT, "steps is "},
+};
+
+static mps_status step_dynamics(mps_dynamics *dynamics, int what, bool odd) {
+  static const char *const file[2] = {TEST_TMP "/odd-3.h5", TEST_TMP "/odd-4.h5"};
+  mps_snapshot *state[2] = {NULL, NULL};
+  mps_status status = MPS_OK;
+  const bool memory = what == DYNAMICS_SNAPSHOT || what == DYNAMICS_NO_SNAPSHOT;
+  for (int k = 0; k < 2; k++) {
+    TRY(mps_dynamics_step(dynamics, 2));
+    if (memory) TRY(mps_dynamics_snapshot(dynamics, &state[k]));
+    if (what == DYNAMICS_FILE) TRY(mps_dynamics_save(dynamics, file[k], NULL));
+  }
+  if (memory)
+    TRY(mps_dynamics_rollback(dynamics, odd && what == DYNAMICS_NO_SNAPSHOT ? NULL : state[odd]));
+  if (what == DYNAMICS_FILE) TRY(mps_dynamics_restore(dynamics, file[odd], NULL));
+  TRY(mps_dynamics_step(dynamics, 2));
+  if (what == DYNAMICS_END) TRY(mps_dynamics_run(dynamics, odd ? 0.2 : 0.1, 1, NULL, NULL));
+  for (int k = 0; k < 2; k++) mps_snapshot_destroy(&state[k]);
+  return status;
+}
+
+static mps_status run_dynamics(mps_context *own, mps_domain *domain, int what, int32_t rank) {
+  const bool odd = rank == 1;
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
+  mps_dynamics_load_def load = mps_dynamics_load_defaults();
+  mps_particles *set = NULL;
+  mps_dynamics *dynamics = NULL;
+  def.domain = domain;
+  if (odd && what == DYNAMICS_WATCH) def.watch_damping = 1;
+  if (what == DYNAMICS_PERIOD) def.period_x = odd ? 44.0 : 40.0;
+  base.kind = MPS_BOUNDARY_ABSORBING;
+  base.lower[0] = 0.0, base.upper[0] = 40.0, base.lower[1] = 0.0, base.upper[1] = 1.0;
+  base.shear_velocity = odd && what == DYNAMICS_HALF_SPACE ? 300.0 : 200.0;
+  load.lower[0] = 0.0, load.upper[0] = 40.0, load.lower[1] = 29.0, load.upper[1] = 30.0;
+  load.traction[0] = 1.0;
+  load.area = odd && what == DYNAMICS_AREA ? 2.0 : 1.0;
+  mps_status status = make_set(own, 1.0, 40.0, 30.0, &set);
+  TRY(mps_particles_set(set, "shear_velocity", 0, 150.0));
+  TRY(mps_particles_set(set, "pressure_velocity", 0, 300.0));
+  if (what == DYNAMICS_KERNEL)
+    TRY(mps_kernel_create(own, odd ? MPS_KERNEL_SPLINE3 : MPS_KERNEL_MPS, 1.5, &def.kernel));
+  TRY(mps_dynamics_create(own, set, &def, &dynamics));
+  TRY(mps_dynamics_add_boundary(dynamics, &base, NULL));
+  TRY(mps_dynamics_add_load(dynamics, &load, NULL));
+  if (what == DYNAMICS_START) TRY(mps_dynamics_restart(dynamics, odd ? 1.0 : 0.0));
+  TRY(step_dynamics(dynamics, what, odd));
+  mps_dynamics_destroy(&dynamics);
+  mps_kernel_destroy(&def.kernel);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void test_dynamics(void **state) {
+  (void)state;
+  meet_troubles(run_dynamics, of_dynamics, DYNAMICS_CASES);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_mpm),
+      cmocka_unit_test(test_fluid),
+      cmocka_unit_test(test_dynamics),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
