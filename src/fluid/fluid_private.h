@@ -9,7 +9,7 @@
  *   pressure.c  rows of the pressure equation; pcg.c solves it with the coarse space of coarse.c,
  *               whose equation envelope.c solves, or solver.c has it solved
  *   classical.c the classical scheme's own parts of these
- *   move.c      pressure gradient, velocity, guards, positions
+ *   move.c      pressure gradient, velocity, guards, positions; smooth.c: smoothing, viscosity
  *   exchange.c  momentum that goes to walls besides the pressure's, and what has no owner
  *   loads.c     forces on particles and pressures on the surface
  *   probe.c     pressure at walls, level of the surface
@@ -131,8 +131,7 @@ typedef struct mpsi_fluid_weight {
 /* What a particle knows of its surroundings; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy. */
 typedef struct mpsi_fluid_local {
   double n, m[2], S;      /* sum w, sum w dx, sum w r^2/4 */
-  double inverse[3];      /* of M = sum w dx dx^T/r^2 */
-  double with_surface[3]; /* of M + c e e^T */
+  double inverse[3];      /* of M = sum w dx dx^T/r^2, at the surface of M + c e e^T */
   double gradient[4];     /* of velocity, 1/s */
   double rest[2];         /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
   double shift[2];        /* sum w dx/(r n0) */
@@ -266,6 +265,8 @@ struct mps_fluid {
   mpsi_room near_wall_room;     /* of a wall, see probe.c */
   int32_t *slot; /* cloud sorted by cells, while neighbours are looked for: in lower_room */
   double *slot_x[2];
+  float *flux[5];           /* of the cloud: b and G of smooth.c, once q is known; in lower_room */
+  bool paired;              /* some b are not 0 */
   mpsi_fluid_given **given; /* loads by number, NULL: none */
   int32_t given_room;
   mpsi_room push_room;    /* of the following */
@@ -419,7 +420,8 @@ bool mpsi_fluid_near_corner(const mps_fluid *fluid, int64_t i);
 bool mpsi_fluid_near_wedge(const mps_fluid *fluid, int64_t i, const double *e);
 /* Whether a face other than `wall` is between two points. */
 bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
-/* near.c */
+/* near.c; room for a sorted cloud of so many: five values of 4 bytes each lie in lower_room. */
+int64_t mpsi_fluid_sorted_room(int64_t all);
 mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
 /* moments.c; rise: height of the surface above particle i against gravity, m; 0: none. */
 void mpsi_fluid_find_moments(mps_fluid *fluid);

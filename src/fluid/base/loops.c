@@ -117,6 +117,25 @@ static void slope(const mps_fluid *f, int64_t i, double *out) {
   out[0] = sx, out[1] = sy;
 }
 
+static void smooth(const mps_fluid *f, int64_t i, double *out) {
+  const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
+  const float *weight = f->w + f->start[i], *rate = f->flux[0], *xx = f->flux[1], *xy = f->flux[2],
+              *yx = f->flux[3], *yy = f->flux[4];
+  const double *x = f->x[0], *y = f->x[1], *u = f->u[0], *v = f->u[1];
+  const double x0 = x[i], y0 = y[i], u0 = u[i], v0 = v[i];
+  const float rate0 = rate[i], xx0 = xx[i], xy0 = xy[i], yx0 = yx[i], yy0 = yy[i];
+  double su = 0.0, sv = 0.0;
+#pragma omp simd reduction(+ : su, sv)
+  for (int32_t k = 0; k < all; k++) {
+    const int32_t j = index[k];
+    const double hx = 0.5 * (x[j] - x0), hy = 0.5 * (y[j] - y0);
+    const double part = 0.5 * weight[k] * (rate[j] + rate0);
+    su += part * (u[j] - u0 - ((xx[j] + xx0) * hx + (xy[j] + xy0) * hy));
+    sv += part * (v[j] - v0 - ((yx[j] + yx0) * hx + (yy[j] + yy0) * hy));
+  }
+  out[0] = su, out[1] = sv;
+}
+
 /* Where v[i - 1] is needed it is the last of a row's entries (near.c finds neighbours in the order
  * of the cells that particles are sorted by), so that a row hardly waits for the one before. */
 static void forward(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v) {
@@ -225,4 +244,4 @@ static bool mixed(const mps_fluid *f, int64_t i, const int32_t *of) {
 }
 
 const mpsi_fluid_loops JOIN(mpsi_fluid_loops_v, MPSI_LEVEL) = {
-    search, weigh, add_up, times, forward, descend, rise, norm, mixed, slope};
+    search, weigh, add_up, times, forward, descend, rise, norm, mixed, slope, smooth};

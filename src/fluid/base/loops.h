@@ -43,6 +43,8 @@ struct mpsi_fluid_loops {
   bool (*mixed)(const mps_fluid *f, int64_t i, const int32_t *of);
   /* sum w (q_j - q_i) dx/r^2 */
   void (*slope)(const mps_fluid *f, int64_t i, double *sum);
+  /* Change of velocity by smoothing between pairs, m/s, see smooth.c. */
+  void (*smooth)(const mps_fluid *f, int64_t i, double *sum);
 };
 
 /* dispatch.c: the loops of an x86-64 level; 0: the best that processor and build have. */

@@ -75,7 +75,7 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
   if (f->over) local->qs += f->over[i];
   const double c = local->c;
   const double with[3] = {M[0] + c * e[0] * e[0], M[1] + c * e[0] * e[1], M[2] + c * e[1] * e[1]};
-  invert(with, local->with_surface);
+  invert(with, local->inverse);
 }
 
 /* Says to all within 1.6 l0 of a surface particle, own images included, that they may be in its
@@ -110,9 +110,7 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
         local.rest[c] =
             (s.du[c] - local.gradient[2 * c] * s.m[0] - local.gradient[2 * c + 1] * s.m[1]) / s.n;
         local.shift[c] = s.shift[c] / n0;
-        local.with_surface[c] = I[c];
       }
-      local.with_surface[2] = I[2];
       const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
       f->state[i] = at_surface(f, i, s.n, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);

@@ -48,7 +48,7 @@ static int64_t cell_along(const cells *c, int axis, double x) {
 }
 
 /* Of the sorted cloud, whose last part is read in whole vectors. */
-static int64_t sorted_room(int64_t all) { return (all + 7) / 8 * 8 + 24; }
+int64_t mpsi_fluid_sorted_room(int64_t all) { return (all + 7) / 8 * 8 + 24; }
 
 static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
   const int64_t all = f->count + f->ghosts;
@@ -74,11 +74,11 @@ static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
                      (long long)c->n[1], 1.0 / c->inverse);
   const int64_t number = c->n[0] * c->n[1];
   if (!mpsi_room_fit(f->context, &f->lower_col_room, 2 * (number + 1 + all), sizeof(uint16_t)) ||
-      !mpsi_room_fit(f->context, &f->lower_room, 5 * sorted_room(all), sizeof(float)))
+      !mpsi_room_fit(f->context, &f->lower_room, 5 * mpsi_fluid_sorted_room(all), sizeof(float)))
     return mpsi_fail_memory(f->context, function, (size_t)(number + 6 * all) * sizeof(int32_t));
   f->slot_x[0] = f->lower_room.item;
-  f->slot_x[1] = f->slot_x[0] + sorted_room(all);
-  f->slot = (int32_t *)(f->slot_x[1] + sorted_room(all));
+  f->slot_x[1] = f->slot_x[0] + mpsi_fluid_sorted_room(all);
+  f->slot = (int32_t *)(f->slot_x[1] + mpsi_fluid_sorted_room(all));
   return MPS_OK;
 }
 

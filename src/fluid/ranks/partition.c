@@ -401,6 +401,20 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
     if (in[k] > 0.0) atomic_store_explicit(&f->zone[s->back.guest[k]], 1, memory_order_relaxed);
 }
 
+/* In columns that the pressure no longer needs. */
+void mpsi_fluid_tell_flux(mps_fluid *f) {
+  mpsi_fluid_partition *s = f->partition;
+  if (!s) return;
+  mpsi_fluid_system *y = &f->system;
+  double *const column[] = {y->p, y->q, y->r, y->z, y->diagonal};
+  for (int c = 0; c < 5; c++)
+    for (int64_t i = f->own[0]; i < f->own[1]; i++) column[c][i] = f->flux[c][i];
+  mpsi_fluid_tell_near(f, 5, column);
+  for (int c = 0; c < 5; c++)
+    for (int64_t k = 0; s->lost == MPS_OK && k < s->near.guests; k++)
+      f->flux[c][s->near.guest[k]] = (float)column[c][s->near.guest[k]];
+}
+
 void mpsi_fluid_tell_local(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s || s->knows_local) return;

@@ -58,6 +58,8 @@ void mpsi_fluid_tell_most(mps_fluid *fluid, int64_t count, double *values);
 void mpsi_fluid_tell_exact(mps_fluid *fluid, int32_t count, mpsi_exact *sums);
 /* States, numbers of neighbours and moments m, and who may be in whose zone (moments.c). */
 void mpsi_fluid_tell_looks(mps_fluid *fluid);
+/* fluid->flux of the neighbours that other ranks own. */
+void mpsi_fluid_tell_flux(mps_fluid *fluid);
 /* fluid->local of all particles, as far as levels and loads use it, for who asks. */
 void mpsi_fluid_tell_local(mps_fluid *fluid);
 

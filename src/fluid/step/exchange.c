@@ -6,7 +6,7 @@
  * becomes part of the wall's impulse, and of a body's; one that floats feels it in the next step.
  *
  * What is left has no owner: the gradients of the pressure at the particles sum up to the pressures
- * along the walls only nearly, smoothing is not the same from both sides of a pair of particles,
+ * along the walls only nearly, smoothing of gentle flow is not the same from both sides of a pair,
  * and cut velocities and shifts change momentum too. It is found as what the water has gained less
  * all of the above, gravity and loads.
  *
@@ -83,46 +83,6 @@ void mpsi_fluid_stick(const mps_fluid *f, int64_t ghost, double *u) {
     if (!(f->flips[ghost] & f->sticky & UINT32_C(1) << b)) continue;
     const double across = u[0] * N[0] + u[1] * N[1];
     for (int c = 0; c < 2; c++) u[c] = 2.0 * across * N[c] - u[c];
-  }
-}
-
-/* Of the viscosity's change of velocity what is not along a normal: to the first wall of no slip.
- */
-static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
-                           const double *dv) {
-  const uint32_t stuck = f->flips[ghost] & f->sticky;
-  double along[2] = {dv[0], dv[1]};
-  int first = 0;
-  if (!stuck) return;
-  while (!(stuck >> first & 1)) first++;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    const double *N = f->wall[b].normal;
-    if (!(f->flips[ghost] >> b & 1)) continue;
-    const double across = along[0] * N[0] + along[1] * N[1];
-    for (int c = 0; c < 2; c++) along[c] -= across * N[c];
-  }
-  mpsi_fluid_exchange_wall(f, chunk, first, i, along);
-}
-
-void mpsi_fluid_exchange_smoothing(const mps_fluid *f, int64_t chunk, int64_t i, double smooth,
-                                   double viscous) {
-  const mpsi_fluid_local *local = &f->local[i];
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
-  for (int32_t k = 0; k < f->near[i]; k++) {
-    const int64_t j = index[k], ghost = j - f->count;
-    if (ghost < 0) continue;
-    const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
-    const double *G = local->gradient, part = w[k] / local->n;
-    double dv[2], stuck[2] = {f->u[0][j], f->u[1][j]};
-    if (viscous > 0.0 && f->sticky) mpsi_fluid_stick(f, ghost, stuck);
-    for (int c = 0; c < 2; c++) {
-      const double linear = f->u[c][i] + G[2 * c] * dx + G[2 * c + 1] * dy;
-      dv[c] = part * (smooth * (f->u[c][j] - linear) + viscous * (stuck[c] - linear));
-      stuck[c] = part * viscous * (stuck[c] - linear);
-    }
-    mpsi_fluid_exchange_image(f, chunk, ghost, i, dv);
-    if (viscous > 0.0) exchange_along(f, chunk, ghost, i, stuck);
   }
 }
 

@@ -12,9 +12,6 @@ void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, i
 /* Of dv, from an image, what is along the normals of the walls that it is mirrored at. */
 void mpsi_fluid_exchange_image(const mps_fluid *fluid, int64_t chunk, int64_t ghost, int64_t i,
                                const double *dv);
-/* What images have in the shares `smooth` and `viscous` of v that particle i takes over. */
-void mpsi_fluid_exchange_smoothing(const mps_fluid *fluid, int64_t chunk, int64_t i, double smooth,
-                                   double viscous);
 /* Sum of the changes of velocity, m/s, of particles of a chunk in the step. */
 void mpsi_fluid_gain(const mps_fluid *fluid, int64_t chunk, const double *du);
 /* The velocity u that an image has to move with at walls of no slip: against its parent's. */

@@ -1,31 +1,22 @@
 /* move.c - from the pressure to the new velocities and positions:
  *
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
- *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
+ *   u += -(dt/rho) grad q, smoothing and viscosity (smooth.c).
  *
- * the first part of a .12 dt s0 near the surface but in breakers and the second times 10 dt s0 <= 1
- * where walls meet it, where v is what a linear velocity
- * field leaves over (moments.c) and s0 = sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu
- * takes the share nu dt n/S of v, and a only what that leaves. Guards: pairs that approach within
- * l0/2 share their momentum, who strikes a wall is stopped .35 l0 before it, |u| <= 1.1 of
- * the neighbours' largest plus a free fall's share, and nobody comes nearer than .1 l0 to a wall;
- * the report counts them. Then
+ * Guards: pairs that approach within l0/2 share their momentum, who strikes a wall is stopped .35
+ * l0 before it, |u| <= 1.1 of the neighbours' largest plus a free fall's share, and nobody comes
+ * nearer than .1 l0 to a wall; the report counts them. Then
  *
  *   x += dt u + f,  u += b G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
  *
  * near the surface .3 of its part along it, keeps the particles evenly apart (Lind 2012, Khayyer
- * 2017); b = max(0, 1 - |G|^2/(.05 s0^2)).
+ * 2017); s0 = sqrt(g/l0), b = max(0, 1 - |G|^2/(.05 s0^2)).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
+#include "fluid/step/smooth.h"
 
-#define SMOOTH 0.6
-#define FREE_SMOOTH 0.18 /* the same without gravity, where the rate is that of the fastest jet */
-#define ZONE_SMOOTH 0.2  /* of it, within 1.6 l0 of the surface */
-#define BREAKING 0.05    /* g/l0: |G|^2 where all of smoothing and shift is left there */
-#define MOST_SMOOTH 0.5
-#define LONGEST_STEP 0.1 /* (l0/g)^1/2: the limit of a fluid at rest */
 #define SHIFT 2.5
 #define MOST_SHIFT 0.05 /* l0 */
 #define ZONE_SHIFT 0.3  /* of the shift, within 1.6 l0 of the surface */
@@ -33,13 +24,6 @@
 #define PAIR 0.5        /* l0: where two particles collide */
 #define OWN_IMAGE 0.7   /* l0: one and its image, .35 l0 from the wall, .. */
 #define IMPACT 0.3      /* (g/l0)^1/2: .. where they approach at this rate */
-
-/* How steep the flow at particle i is, 1 where it is as in breakers. */
-static double steepness(const mps_fluid *f, int64_t i) {
-  const double *G = f->local[i].gradient, s0 = mpsi_fluid_rate(f);
-  const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
-  return s0 > 0.0 ? square / (BREAKING * s0 * s0) : 0.0;
-}
 
 static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
   const mpsi_fluid_local *local = &f->local[i];
@@ -49,74 +33,23 @@ static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
     const double s = (local->qs - f->q[i]) / (local->h * local->h);
     sum[0] -= s * local->m[0], sum[1] -= s * local->m[1];
   }
-  const double *I = local->with_surface;
+  const double *I = local->inverse;
   gradient[0] = I[0] * sum[0] + I[1] * sum[1];
   gradient[1] = I[1] * sum[0] + I[2] * sum[1];
 }
 
-/* Share of smoothing and shift: less near the surface, `least` of them in gentle waves, all where
- * the flow is as steep as in breakers; round a body's corner it is as steep without breaking. */
-static double near_surface(const mps_fluid *f, int64_t i, double least) {
-  if (!f->zone[i] || !(mpsi_fluid_rate(f) > 0.0)) return 1.0;
-  if (f->company[i] & MPSI_FLUID_NEAR_CORNER) return least;
-  return fmin(1.0, least + steepness(f, i));
-}
-
-/* Part of v that is taken over: of a rough velocity field more, but not where the flow turns around
- * a corner, which is no linear field however smooth it is. Near the surface less: among neighbours
- * on one side v is not 0 for the curved field of a wave, which it would damp. Where a wall meets
- * the surface the water rises by ln r beside it: v is no roughness there either, and what is taken
- * of it in a step must not grow as the steps get shorter. */
-static double smoothing(const mps_fluid *f, int64_t i) {
-  const mpsi_fluid_local *local = &f->local[i];
-  double steep = 1e-4 * f->g * f->l0, v2 = 0.0;
-  for (int c = 0; c < 4; c++) steep += f->l0 * f->l0 * local->gradient[c] * local->gradient[c];
-  for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
-  const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
-  const bool waterline = f->zone[i] && (f->company[i] & MPSI_FLUID_NEAR_IMAGES);
-  const double time = waterline ? fmin(f->dt * mpsi_fluid_rate(f) / LONGEST_STEP, 1.0) : 1.0;
-  const double rough = steep > 0.0 && !corner ? 2.0 * time * v2 / steep : 0.0;
-  const double part = f->g > 0.0 ? SMOOTH : FREE_SMOOTH;
-  const double a = part * near_surface(f, i, ZONE_SMOOTH) * f->dt * mpsi_fluid_rate(f) + rough;
-  return fmin(a, MOST_SMOOTH);
-}
-
-/* v of the velocity field that sticks to the walls of no slip: there an image moves with the
- * opposite velocity. */
-static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
-  const mpsi_fluid_local *local = &f->local[i];
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
-  v[0] = local->rest[0], v[1] = local->rest[1];
-  if (!f->sticky) return;
-  for (int32_t k = 0; k < f->near[i]; k++) {
-    const int64_t j = index[k], ghost = j - f->count;
-    if (ghost < 0 || !(f->flips[ghost] & f->sticky)) continue;
-    double stuck[2] = {f->u[0][j], f->u[1][j]};
-    mpsi_fluid_stick(f, ghost, stuck);
-    for (int c = 0; c < 2; c++) v[c] += w[k] * (stuck[c] - f->u[c][j]) / local->n;
-  }
-}
-
 static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  const double rho = f->def.density, dt = f->dt, nu = f->def.viscosity / rho;
+  const double rho = f->def.density, dt = f->dt;
   for (int64_t i = begin; i < end; i++) {
-    const mpsi_fluid_local *local = &f->local[i];
-    double u[2] = {f->u[0][i], f->u[1][i]};
+    double gradient[2], du[2], u[2] = {f->u[0][i], f->u[1][i]};
+    mpsi_fluid_smooth(f, chunk, i, du);
     if (f->state[i] == MPSI_FLUID_APART) {
       for (int c = 0; c < 2; c++) u[c] -= dt * f->g * f->up[c];
     } else {
-      double gradient[2];
       pressure_gradient(f, i, gradient);
-      const double share = nu * dt * local->n / local->S, a = fmax(smoothing(f, i) - share, 0.0);
-      double v[2] = {0.0, 0.0};
-      if (share > 0.0) viscous_rest(f, i, v);
-      for (int c = 0; c < 2; c++)
-        u[c] += -dt / rho * gradient[c] + share * v[c] + a * local->rest[c];
-      if ((f->company[i] & MPSI_FLUID_NEAR_IMAGES) && a + share > 0.0)
-        mpsi_fluid_exchange_smoothing(f, chunk, i, a, share);
+      for (int c = 0; c < 2; c++) u[c] -= dt / rho * gradient[c];
     }
-    for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c];
+    for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c] + du[c];
   }
 }
 
@@ -210,6 +143,7 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   const bool classical = f->classical.gamma > 0.0;
   for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
+  if (!classical) mpsi_fluid_prepare_smoothing(f);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_accelerate : accelerate);
   mpsi_fluid_tell_near(f, 2, f->u_new);
@@ -236,7 +170,7 @@ static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
   if (f->zone[i]) {
     const double e[2] = {f->zone_normal[0][i], f->zone_normal[1][i]};
     const double across = shift[0] * e[0] + shift[1] * e[1];
-    const double least = near_surface(f, i, ZONE_SHIFT);
+    const double least = mpsi_fluid_near_surface(f, i, ZONE_SHIFT);
     for (int c = 0; c < 2; c++) shift[c] = least * (shift[c] - across * e[c]);
   }
   const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1]), most = MOST_SHIFT * f->l0;
@@ -247,7 +181,9 @@ static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
 /* Share of G f in the velocity of a shifted particle: all in gentle flow, nothing in breakers. G is
  * that of one side at the root of a jet, and as particles shift into the jet they gain energy by
  * it: two blocks of 10 x 10 particles that strike ended with .94 of theirs, where .73 is right. */
-static double carried(const mps_fluid *f, int64_t i) { return fmax(1.0 - steepness(f, i), 0.0); }
+static double carried(const mps_fluid *f, int64_t i) {
+  return fmax(1.0 - mpsi_fluid_steepness(f, i), 0.0);
+}
 
 /* Puts x of particle i back to `off` from a wall that is nearer than that, and takes its velocity
  * into the wall. */
