@@ -35,6 +35,7 @@
 #include <mps/fluid.h>
 
 #define MPSI_FLUID_CHUNK 256   /* particles in a unit of work: sums are made in this order */
+#define MPSI_FLUID_WIDE 8      /* lists of neighbours are filled up to a multiple of this */
 #define MPSI_FLUID_COPIED 1024 /* in one that only copies */
 
 /* How a wall moves along its normal, at its nodes: linear between them, constant beyond the ends.
@@ -128,15 +129,17 @@ typedef struct mpsi_fluid_weight {
   double square;      /* sum w r^2/4 over the lattice, m2 */
 } mpsi_fluid_weight;
 
-/* What a particle knows of its surroundings; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy. */
+/* What a particle knows of its surroundings; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy.
+ * What the pressure answers to is exact to round-off; single precision is enough for the rest. */
 typedef struct mpsi_fluid_local {
-  double n, m[2], S;      /* sum w, sum w dx, sum w r^2/4 */
-  double inverse[3];      /* of M = sum w dx dx^T/r^2, at the surface of M + c e e^T */
-  double gradient[4];     /* of velocity, 1/s */
-  double rest[2];         /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
-  double shift[2];        /* sum w dx/(r n0) */
-  double h, c;            /* distance of the surface (m), its weight |m|/h; 0, 0 farther inside */
-  double qs;              /* reduced pressure of the surface there, Pa */
+  double n, m[2];    /* sum w, sum w dx */
+  double inverse[3]; /* of M = sum w dx dx^T/r^2, at the surface of M + c e e^T, c = |m|/h */
+  double divergence; /* of velocity, 1/s */
+  double h, qs;      /* distance of the surface (m), 0 farther inside; reduced pressure there, Pa */
+  float S;           /* sum w r^2/4 */
+  float shear[3];    /* of the velocity's gradient xx, xy, yx, 1/s */
+  float rest[2];     /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
+  float shift[2];    /* sum w dx/(r n0) */
 } mpsi_fluid_local;
 
 /* Whether a particle has images among its neighbours, neighbours within .7 l0, a body's corner
@@ -156,7 +159,7 @@ enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 /* Rows of the pressure equation and what its solution needs; see pcg.c. */
 typedef struct mpsi_fluid_system {
   double *diagonal, *right; /* count */
-  double *x;                /* count + ghosts */
+  double *x;                /* count + ghosts; in the place of q, which a solution becomes */
   double *p, *r, *z, *q;    /* count */
   int32_t *lower_end;       /* of row i, in its block's stretch of lower_col and lower */
   uint16_t *lower_col;      /* from the first row of the block */
@@ -245,18 +248,18 @@ struct mps_fluid {
                                          stand on: bits, see sight.c */
   double wedge[MPSI_FLUID_WEDGES][2]; /* m, edges of acute corners between faces and boundaries */
   int wedges;
-  uint32_t bent, sticky; /* walls with several nodes; of no slip: bits */
-  int64_t cloud_capacity;
-  double *u_new[2], *pressure; /* count; pressure is in the place of system.right */
-  uint8_t *state;              /* MPSI_FLUID_..., count */
-  bool any_apart;              /* some are MPSI_FLUID_APART */
-  atomic_uchar *zone;          /* at the surface or within 1.6 l0 of it */
-  uint8_t *company;            /* MPSI_FLUID_NEAR_..., bits */
-  double *zone_normal[2];
+  uint32_t bent, sticky;                  /* walls with several nodes; of no slip: bits */
+  int64_t cloud_capacity, ghost_capacity; /* of particles and ghosts together; of ghosts */
+  double *u_new[2], *pressure;            /* count; pressure is in the place of system.right */
+  uint8_t *state;                         /* MPSI_FLUID_..., count */
+  bool any_apart;                         /* some are MPSI_FLUID_APART */
+  atomic_uchar *zone;                     /* at the surface or within 1.6 l0 of it */
+  uint8_t *company;                       /* MPSI_FLUID_NEAR_..., bits */
+  float *zone_normal[2];
   mpsi_fluid_local *local;
   /* neighbours */
-  int64_t *start;               /* first pair of each particle */
-  int32_t *near;                /* pairs of each particle */
+  int32_t *start;               /* first pair of each particle over MPSI_FLUID_WIDE */
+  uint16_t *near;               /* pairs of each particle, at most CROWD of near.c */
   int64_t most_near;            /* room for pairs, a particle on average over a chunk */
   mpsi_room index_room, w_room; /* int32_t, float: pairs */
   int32_t *index;               /* of the pairs' other ends, ghosts too */
@@ -319,6 +322,23 @@ static inline double mpsi_fluid_w(const mpsi_fluid_weight *weight, double r) {
   return a * a * a * a * (5.0 - 4.0 * a);
 }
 
+/* The first of particle i's pairs. */
+static inline int64_t mpsi_fluid_pairs(const mps_fluid *f, int64_t i) {
+  return (int64_t)f->start[i] * MPSI_FLUID_WIDE;
+}
+
+/* c = |m|/h, the weight of a particle's surface point; 0 where it has none. */
+static inline double mpsi_fluid_surface_weight(const mpsi_fluid_local *local) {
+  const double *m = local->m;
+  return local->h > 0.0 ? sqrt(m[0] * m[0] + m[1] * m[1]) / local->h : 0.0;
+}
+
+/* G, the gradient of velocity, 1/s. */
+static inline void mpsi_fluid_gradient(const mpsi_fluid_local *local, double *G) {
+  for (int k = 0; k < 3; k++) G[k] = local->shear[k];
+  G[3] = local->divergence - G[0];
+}
+
 /* Heights of the surface above the particles, from their move to the fields: where the pressure's
  * search direction was, which nobody needs by then. */
 static inline double *mpsi_fluid_rises(const mps_fluid *f) { return f->system.p; }
@@ -346,8 +366,8 @@ mps_status mpsi_fluid_look_ahead(mps_fluid *fluid, const char *function, double 
 void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt); /* next, from signals and callers */
 void mpsi_fluid_end_walls(mps_fluid *fluid);              /* now = next */
 void mpsi_fluid_add_impulses(mps_fluid *fluid);
-bool mpsi_fluid_grow_cloud(mps_fluid *fluid,
-                           int64_t capacity); /* room for the ghosts; false: none */
+/* Room for so many particles and ghosts; false: none. */
+bool mpsi_fluid_grow_cloud(mps_fluid *fluid, int64_t particles, int64_t ghosts);
 mps_status mpsi_fluid_make_ghosts(mps_fluid *fluid, const char *function);
 void mpsi_fluid_mirror_point(const mps_fluid *fluid, uint32_t flips,
                              double *x);       /* at these walls */

@@ -59,8 +59,8 @@ static int32_t weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *inde
 }
 
 static void add_up(const mps_fluid *f, int64_t i, mpsi_fluid_sums *out) {
-  const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
-  const float *weight = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i), all = mpsi_fluid_padded(f->near[i]);
+  const float *weight = f->w + mpsi_fluid_pairs(f, i);
   const double *x = f->x[0], *y = f->x[1], *u = f->u[0], *v = f->u[1];
   const double least = LEAST * f->l0 * f->l0, x0 = x[i], y0 = y[i], u0 = u[i], v0 = v[i];
   double n = 0.0, mx = 0.0, my = 0.0, square = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, su = 0.0,
@@ -90,8 +90,8 @@ static void add_up(const mps_fluid *f, int64_t i, mpsi_fluid_sums *out) {
 static double times(const mps_fluid *f, int64_t begin, int64_t end, const double *v, double *out) {
   double dot = 0.0;
   for (int64_t i = begin; i < end; i++) {
-    const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
-    const float *w = f->w + f->start[i];
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i), all = mpsi_fluid_padded(f->near[i]);
+    const float *w = f->w + mpsi_fluid_pairs(f, i);
     double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
     for (int32_t k = 0; k < all; k++) sum += w[k] * v[index[k]];
@@ -102,8 +102,8 @@ static double times(const mps_fluid *f, int64_t begin, int64_t end, const double
 }
 
 static void slope(const mps_fluid *f, int64_t i, double *out) {
-  const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
-  const float *weight = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i), all = mpsi_fluid_padded(f->near[i]);
+  const float *weight = f->w + mpsi_fluid_pairs(f, i);
   const double *x = f->x[0], *y = f->x[1], *q = f->q;
   const double least = LEAST * f->l0 * f->l0, x0 = x[i], y0 = y[i], q0 = q[i];
   double sx = 0.0, sy = 0.0;
@@ -118,9 +118,9 @@ static void slope(const mps_fluid *f, int64_t i, double *out) {
 }
 
 static void smooth(const mps_fluid *f, int64_t i, double *out) {
-  const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
-  const float *weight = f->w + f->start[i], *rate = f->flux[0], *xx = f->flux[1], *xy = f->flux[2],
-              *yx = f->flux[3], *yy = f->flux[4];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i), all = mpsi_fluid_padded(f->near[i]);
+  const float *weight = f->w + mpsi_fluid_pairs(f, i), *rate = f->flux[0], *xx = f->flux[1],
+              *xy = f->flux[2], *yx = f->flux[3], *yy = f->flux[4];
   const double *x = f->x[0], *y = f->x[1], *u = f->u[0], *v = f->u[1];
   const double x0 = x[i], y0 = y[i], u0 = u[i], v0 = v[i];
   const float rate0 = rate[i], xx0 = xx[i], xy0 = xy[i], yx0 = yx[i], yy0 = yy[i];
@@ -191,8 +191,8 @@ static double descend(const mps_fluid *f, int64_t first, int64_t end, int64_t of
 
 /* What the matrix has outside of the block in row i, times z. */
 static double outside_block(const mps_fluid *f, int64_t first, int64_t end, int64_t i) {
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
   double sum = 0.0;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
@@ -236,7 +236,8 @@ static double norm(const mps_fluid *f, int64_t first, int64_t end, int64_t offse
 }
 
 static bool mixed(const mps_fluid *f, int64_t i, const int32_t *of) {
-  const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]), here = of[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i), all = mpsi_fluid_padded(f->near[i]),
+                here = of[i];
   int32_t differs = 0;
 #pragma omp simd reduction(| : differs)
   for (int32_t k = 0; k < all; k++) differs |= of[index[k]] ^ here;

@@ -7,8 +7,6 @@
 
 #include "fluid/fluid_private.h"
 
-#define MPSI_FLUID_WIDE 8 /* entries of a list are a multiple of this */
-
 static inline int32_t mpsi_fluid_padded(int32_t near) {
   return (near + MPSI_FLUID_WIDE - 1) & ~(MPSI_FLUID_WIDE - 1);
 }

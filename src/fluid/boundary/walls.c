@@ -147,7 +147,7 @@ static bool mirror(mps_fluid *f, int wall, int64_t begin, int64_t end) {
     if (ghost >= 0 && !mirrors_again(f, wall, f->flips[ghost])) continue;
     const double to[2] = {x - 2.0 * d * w->normal[0], y - 2.0 * d * w->normal[1]};
     if (w->of_body && beyond_the_ends(f, w, x, y)) continue;
-    if (f->count + f->ghosts == f->cloud_capacity) return false;
+    if (f->ghosts == f->ghost_capacity) return false;
     const int64_t g = f->ghosts++;
     f->x[0][f->count + g] = to[0], f->x[1][f->count + g] = to[1];
     f->parent[g] = (int32_t)own;
@@ -185,23 +185,24 @@ static bool mirror_all(mps_fluid *f, int wall) {
   return mirror(f, wall, f->count, all);
 }
 
-/* Arrays over the cloud; keeps the particles' part. */
-bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
-  enum { COLUMNS = 6 };
-  double **column[COLUMNS] = {&f->x[0], &f->x[1], &f->u[0], &f->u[1], &f->q, &f->system.x};
-  const int64_t padded = (capacity + 7) / 8 * 8 + 24;
-  double *block = mpsi_alloc(f->context, padded * (COLUMNS + 2), sizeof *block);
+/* Arrays over the cloud, and over its ghosts; keeps the particles' part. */
+bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t particles, int64_t ghosts) {
+  enum { COLUMNS = 5 };
+  double **column[COLUMNS] = {&f->x[0], &f->x[1], &f->u[0], &f->u[1], &f->q};
+  const int64_t padded = (particles + ghosts + 7) / 8 * 8 + 24;
+  double *block = mpsi_alloc(f->context, padded * COLUMNS + 2 * ghosts, sizeof *block);
   if (!block) return false;
   for (int k = 0; k < COLUMNS; k++) {
     if (f->cloud) memcpy(block + k * padded, *column[k], (size_t)f->count * sizeof *block);
     *column[k] = block + k * padded;
   }
+  f->system.x = f->q;
   f->offset = block + COLUMNS * padded;
-  f->parent = (int32_t *)(block + (COLUMNS + 1) * padded);
-  f->flips = (uint32_t *)(f->parent + padded);
+  f->parent = (int32_t *)(f->offset + ghosts);
+  f->flips = (uint32_t *)(f->parent + ghosts);
   mpsi_free(f->context, f->cloud);
   f->cloud = block;
-  f->cloud_capacity = capacity;
+  f->cloud_capacity = particles + ghosts, f->ghost_capacity = ghosts;
   return true;
 }
 
@@ -220,9 +221,10 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
                        << b;
     for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
       if (f->wall[b].used) room = mirror_all(f, b);
-    const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 8 + 256;
-    if (!room && !mpsi_fluid_grow_cloud(f, capacity))
-      return mpsi_fail_memory(f->context, function, (size_t)capacity * 12 * sizeof(double));
+    const int64_t ghosts = f->ghost_capacity + f->ghost_capacity / 4 + 256;
+    if (!room && !mpsi_fluid_grow_cloud(f, f->capacity, ghosts))
+      return mpsi_fail_memory(f->context, function,
+                              (size_t)(f->capacity + ghosts) * 7 * sizeof(double));
   }
   f->report.ghosts = f->ghosts;
   return MPS_OK;

@@ -306,9 +306,9 @@ mps_status mps_fluid_get_totals_sized(const mps_fluid *f, mps_totals *out, size_
 
 static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
-  return 8 * (13 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
-         f->cloud_capacity * (8 * 8) + f->index_room.capacity * 4 + f->w_room.capacity * 4 +
-         f->push_room.capacity * 8 + f->exchange.rows.capacity * 8 +
+  return 8 * (9 * n + 2 * chunks) + 18 * n + f->count * ((int64_t)sizeof *f->local + 3) +
+         f->cloud_capacity * (5 * 8) + f->ghost_capacity * 16 + f->index_room.capacity * 4 +
+         f->w_room.capacity * 4 + f->push_room.capacity * 8 + f->exchange.rows.capacity * 8 +
          f->exchange.sums.capacity * (int64_t)sizeof(mpsi_exact) + f->lower_col_room.capacity * 2 +
          f->lower_room.capacity * 4 + mpsi_fluid_coarse_bytes(f);
 }

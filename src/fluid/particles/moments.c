@@ -46,7 +46,7 @@ static void regularise(double *M) {
 /* True where nobody stands in the cone about e. */
 static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
   const double reach2 = CONE_REACH * CONE_REACH * f->l0 * f->l0;
-  const int32_t *index = f->index + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   for (int32_t k = 0; k < f->near[i]; k++) {
     const double dx = f->x[0][index[k]] - f->x[0][i], dy = f->x[1][index[k]] - f->x[1][i];
     const double r2 = dx * dx + dy * dy, along = dx * e[0] + dy * e[1];
@@ -70,10 +70,9 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
   const double l0 = f->l0, e[2] = {-local->m[0] / length, -local->m[1] / length};
   const double h = l0 * (0.5 + (local->n - f->weight.half) / f->weight.slope);
   local->h = fmin(fmax(h, 0.1 * l0), 2.0 * l0);
-  local->c = length / local->h;
   local->qs = mpsi_fluid_head(f, f->x[0][i] + local->h * e[0], f->x[1][i] + local->h * e[1]);
   if (f->over) local->qs += f->over[i];
-  const double c = local->c;
+  const double c = mpsi_fluid_surface_weight(local);
   const double with[3] = {M[0] + c * e[0] * e[0], M[1] + c * e[0] * e[1], M[2] + c * e[1] * e[1]};
   invert(with, local->inverse);
 }
@@ -82,7 +81,7 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
  * zone. At a bent wall two particles may be at different distances from each other's images. */
 static void tell_zone(mps_fluid *f, int64_t i) {
   const double reach2 = 1.2 * ZONE * ZONE * f->l0 * f->l0;
-  const int32_t *index = f->index + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   atomic_store_explicit(&f->zone[i], 1, memory_order_relaxed);
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int32_t j = index[k], own = j < f->count ? j : f->parent[j - f->count];
@@ -97,7 +96,7 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
   for (int64_t i = begin; i < end; i++) {
     mpsi_fluid_sums s;
     f->loops->add_up(f, i, &s);
-    mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = 0.25 * s.r2};
+    mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = (float)(0.25 * s.r2)};
     f->state[i] = MPSI_FLUID_APART;
     double M[3] = {s.M[0], s.M[1], s.M[2]};
     if (f->near[i] >= 2 && s.n >= APART * n0) {
@@ -105,11 +104,13 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       const double *I = local.inverse;
       invert(M, local.inverse);
       for (int c = 0; c < 2; c++) {
-        local.gradient[2 * c] = s.G[2 * c] * I[0] + s.G[2 * c + 1] * I[1];
-        local.gradient[2 * c + 1] = s.G[2 * c] * I[1] + s.G[2 * c + 1] * I[2];
-        local.rest[c] =
-            (s.du[c] - local.gradient[2 * c] * s.m[0] - local.gradient[2 * c + 1] * s.m[1]) / s.n;
-        local.shift[c] = s.shift[c] / n0;
+        const double *sum = s.G + 2 * c;
+        const double by_x = sum[0] * I[0] + sum[1] * I[1], by_y = sum[0] * I[1] + sum[1] * I[2];
+        local.divergence += c == 0 ? by_x : by_y;
+        local.shear[2 * c] = (float)by_x;
+        if (c == 0) local.shear[1] = (float)by_y;
+        local.rest[c] = (float)((s.du[c] - by_x * s.m[0] - by_y * s.m[1]) / s.n);
+        local.shift[c] = (float)(s.shift[c] / n0);
       }
       const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
       f->state[i] = at_surface(f, i, s.n, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
@@ -137,8 +138,8 @@ static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double reach2 = ZONE * ZONE * f->l0 * f->l0;
   for (int64_t i = begin; i < end; i++) {
     if (!f->zone[i]) continue;
-    const int32_t *index = f->index + f->start[i];
-    const float *w = f->w + f->start[i];
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+    const float *w = f->w + mpsi_fluid_pairs(f, i);
     bool near = f->state[i] != MPSI_FLUID_INSIDE;
     double sum[2] = {near ? f->local[i].m[0] : 0.0, near ? f->local[i].m[1] : 0.0};
     for (int32_t k = 0; k < f->near[i]; k++) {
@@ -154,15 +155,15 @@ static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
     }
     const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1]) + 1e-300;
     f->zone[i] = near;
-    for (int c = 0; c < 2; c++) f->zone_normal[c][i] = -sum[c] / length;
+    for (int c = 0; c < 2; c++) f->zone_normal[c][i] = (float)(-sum[c] / length);
   }
 }
 
 /* Distance (m) along e to the mean surface point of i's neighbours at the surface; 0: none. *over
  * receives their mean pressure, Pa. Images are left out: on average they add nothing. */
 static double depth_below(const mps_fluid *f, int64_t i, const double *e, double *over) {
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
   double sum = 0.0, depth = 0.0;
   *over = 0.0;
   for (int32_t k = 0; k < f->near[i]; k++) {
@@ -192,7 +193,7 @@ static void find_depths(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
     double over;
     const double h = depth_below(f, i, e, &over);
     if (!(h > LEAST_DEPTH * f->l0 && h < f->weight.re)) continue;
-    local->h = h, local->c = length / h;
+    local->h = h;
     local->qs = mpsi_fluid_head(f, f->x[0][i] + h * e[0], f->x[1][i] + h * e[1]) + over;
   }
 }

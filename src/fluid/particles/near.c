@@ -184,8 +184,8 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     f->company[i] =
         (uint8_t)(company | (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
                   (mpsi_fluid_near_wedge(f, i, NULL) ? MPSI_FLUID_NEAR_WEDGE : 0));
-    f->start[i] = at;
-    f->near[i] = (int32_t)found;
+    f->start[i] = (int32_t)(at / MPSI_FLUID_WIDE);
+    f->near[i] = (uint16_t)found;
     at += mpsi_fluid_padded((int32_t)found);
   }
 }

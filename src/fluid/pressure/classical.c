@@ -63,7 +63,7 @@ static void weigh(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double least = 0.05 * f->l0;
   for (int64_t i = begin; i < end; i++) {
     double n = 0.0;
-    for (int64_t k = f->start[i]; k < f->start[i] + f->near[i]; k++) {
+    for (int64_t k = mpsi_fluid_pairs(f, i); k < mpsi_fluid_pairs(f, i) + f->near[i]; k++) {
       const int32_t j = f->index[k];
       const double r = fmax(hypot(f->x[0][j] - f->x[0][i], f->x[1][j] - f->x[1][i]), least);
       f->w[k] = (float)(f->weight.re / r - 1.0);
@@ -99,7 +99,8 @@ void mpsi_fluid_classical_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t
   for (int64_t i = begin; i < end; i++) {
     const bool surface = f->state[i] == MPSI_FLUID_APART;
     double sum = 0.0;
-    for (int64_t k = f->start[i]; k < f->start[i] + f->near[i]; k++) sum += f->w[k];
+    for (int64_t k = mpsi_fluid_pairs(f, i); k < mpsi_fluid_pairs(f, i) + f->near[i]; k++)
+      sum += f->w[k];
     s->diagonal[i] = surface ? 1.0 : sum * (1.0 + 1e-10);
     s->right[i] = surface ? 0.0 : size * (f->local[i].n / c->n0 - 1.0);
     s->x[i] = surface ? 0.0 : p[i];
@@ -123,7 +124,7 @@ void mpsi_fluid_classical_accelerate(mps_fluid *f, int64_t begin, int64_t end, i
   for (int64_t i = begin; i < end; i++) {
     double least = f->pressure[i], sum[2] = {0.0, 0.0};
     for (int pass = 0; pass < 2; pass++)
-      for (int64_t k = f->start[i]; k < f->start[i] + f->near[i]; k++) {
+      for (int64_t k = mpsi_fluid_pairs(f, i); k < mpsi_fluid_pairs(f, i) + f->near[i]; k++) {
         const int64_t j = f->index[k], own = j < f->count ? j : f->parent[j - f->count];
         const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
         const double r = fmax(hypot(dx, dy), 0.05 * f->l0);

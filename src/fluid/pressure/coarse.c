@@ -98,8 +98,8 @@ typedef struct beside {
 
 /* Weights of row i by the aggregates of its neighbours; returns what the row has in its own. */
 static double split_row(const mps_fluid *f, int64_t i, beside *b) {
-  const int32_t *index = f->index + f->start[i], *of = f->coarse->of, here = of[i];
-  const float *w = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i), *of = f->coarse->of, here = of[i];
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
   double inside = 0.0;
   b->count = 0;
   for (int32_t k = 0; k < f->near[i]; k++) {
@@ -161,7 +161,7 @@ static void find_rows(void *data, int64_t b, int32_t worker) {
   for (int64_t i = first; i < end; i++) {
     const int32_t here = c->of[i];
     if (here == 0) continue;
-    if (alone && f->local[i].c == 0.0 && !f->loops->mixed(f, i, c->of)) continue;
+    if (alone && f->local[i].h == 0.0 && !f->loops->mixed(f, i, c->of)) continue;
     const double own = split_row(f, i, &row);
     if (row.count == 0 && own <= NOTHING * f->system.diagonal[i]) continue;
     const bool full = r.count + row.count + 1 > c->room, crowded = r.slots + row.count > UINT16_MAX;

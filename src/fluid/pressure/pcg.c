@@ -44,8 +44,8 @@
 static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, uint16_t *column,
                          float *lower) {
   const mpsi_fluid_system *s = &f->system;
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
   const double *inverse = s->inverse, *upper = s->z;
   double own = s->diagonal[i], pivot = 0.0, right = 0.0;
   int32_t count = 0;

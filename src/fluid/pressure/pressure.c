@@ -35,11 +35,11 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double *old = mpsi_particles_column(f->particles, "reduced_pressure_old", 0);
   const double ahead = f->last_dt > 0.0 ? f->dt / f->last_dt : 0.0;
   for (int64_t i = begin; i < end; i++) {
-    s->diagonal[i] = 1.0, s->x[i] = 0.0;
+    s->diagonal[i] = 1.0;
     if (f->state[i] == MPSI_FLUID_APART) continue;
-    const int32_t *index = f->index + f->start[i];
-    const float *w = f->w + f->start[i];
-    double sum = f->local[i].c + (f->any_apart ? 0.0 : f->local[i].n);
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+    const float *w = f->w + mpsi_fluid_pairs(f, i);
+    double sum = mpsi_fluid_surface_weight(&f->local[i]) + (f->any_apart ? 0.0 : f->local[i].n);
     for (int32_t k = 0; f->any_apart && k < f->near[i]; k++) {
       const int64_t j = index[k], ghost = j - f->count;
       if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
@@ -55,20 +55,22 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
   const double rho = f->def.density, dt = f->dt, share = step_share(f);
   for (int64_t i = begin; i < end; i++) {
     f->system.right[i] = 0.0;
-    if (f->state[i] == MPSI_FLUID_APART) continue;
+    if (f->state[i] == MPSI_FLUID_APART) {
+      f->system.x[i] = 0.0; /* q of the solution before */
+      continue;
+    }
     const mpsi_fluid_local *local = &f->local[i];
-    const int32_t *index = f->index + f->start[i];
-    const float *w = f->w + f->start[i];
-    double right = local->c * local->qs;
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+    const float *w = f->w + mpsi_fluid_pairs(f, i);
+    double right = mpsi_fluid_surface_weight(local) * local->qs;
     const int32_t near = f->company[i] & MPSI_FLUID_NEAR_IMAGES ? f->near[i] : 0;
     for (int32_t k = 0; k < near; k++) {
       const int64_t ghost = index[k] - f->count;
       if (ghost >= 0 && f->state[f->parent[ghost]] != MPSI_FLUID_APART)
         right += w[k] * f->offset[ghost];
     }
-    const double divergence = local->gradient[0] + local->gradient[3];
     f->system.right[i] =
-        right - local->S * rho / dt * (divergence - density_source(f, i, share) / dt);
+        right - local->S * rho / dt * (local->divergence - density_source(f, i, share) / dt);
   }
 }
 

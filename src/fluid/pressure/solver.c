@@ -90,8 +90,8 @@ bool mpsi_fluid_solved_outside(const mps_fluid *f) {
 
 /* Row i to `column` and `value`, which have room for near[i] + 1; returns its length. */
 static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *value) {
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
   int64_t count = 1;
   column[0] = (int32_t)i, value[0] = f->system.diagonal[i];
   if (f->state[i] == MPSI_FLUID_APART) return 1;
@@ -116,7 +116,7 @@ static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *
 static void fill_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   mpsi_fluid_outside *o = f->outside;
-  int64_t at = f->start[begin] - f->start[f->own[0]] + begin - f->own[0];
+  int64_t at = mpsi_fluid_pairs(f, begin) - mpsi_fluid_pairs(f, f->own[0]) + begin - f->own[0];
   for (int64_t i = begin; i < end; i++) {
     int64_t *const length = &o->start[i - f->own[0] + 1];
     *length =
@@ -129,7 +129,8 @@ static mps_status make_room(mps_fluid *f, const char *function) {
   mpsi_fluid_outside *o = f->outside;
   const int64_t last = f->own[1] - 1, rows = f->own[1] - f->own[0];
   const int64_t entries =
-      rows > 0 ? f->start[last] + f->near[last] - f->start[f->own[0]] + rows : 0;
+      rows > 0 ? mpsi_fluid_pairs(f, last) + f->near[last] - mpsi_fluid_pairs(f, f->own[0]) + rows
+               : 0;
   if (o->rows < rows || !o->start) {
     mpsi_free(f->context, o->start);
     o->rows = 0;
@@ -152,7 +153,8 @@ static void close_gaps(mps_fluid *f) {
   o->start[0] = 0;
   for (int64_t row = 0; row < f->own[1] - f->own[0]; row++) {
     const int64_t i = f->own[0] + row, length = o->start[row + 1];
-    if (i % MPSI_FLUID_CHUNK == 0) from = f->start[i] - f->start[f->own[0]] + row;
+    if (i % MPSI_FLUID_CHUNK == 0)
+      from = mpsi_fluid_pairs(f, i) - mpsi_fluid_pairs(f, f->own[0]) + row;
     memmove(column + at, column + from, (size_t)length * sizeof *column);
     memmove(value + at, value + from, (size_t)length * sizeof *value);
     at += length, from += length;

@@ -308,7 +308,7 @@ static void find_guests(void *data, int64_t chunk, int32_t worker) {
   mps_fluid *f = s->fluid;
   const int64_t end = (chunk + 1) * MPSI_FLUID_CHUNK;
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < end && i < f->count; i++) {
-    const int32_t *index = f->index + f->start[i];
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     for (int32_t k = 0; k < f->near[i]; k++) {
       const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
       if (is_own(f, j) || is_guest(f, j)) continue;
@@ -386,7 +386,7 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
   mpsi_fluid_tell_near(f, 3, (double *const[]){y->p, y->q, y->r});
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k], word = (int64_t)y->z[i];
-    f->state[i] = (uint8_t)(word % 4), f->near[i] = (int32_t)(word / 4);
+    f->state[i] = (uint8_t)(word % 4), f->near[i] = (uint16_t)(word / 4);
   }
   for (int64_t k = 0; k < s->near.guests; k++) {
     const int64_t i = s->near.guest[k];

@@ -60,7 +60,7 @@ static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
   const double allowed = 0.5 * sqrt(f->g * f->l0) + 2.0 * f->g * f->dt;
   int64_t cuts = 0;
   for (int64_t i = begin; i < end; i++) {
-    const int32_t *index = f->index + f->start[i];
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     const double u2 = f->u_new[0][i] * f->u_new[0][i] + f->u_new[1][i] * f->u_new[1][i];
     double most = f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i];
     const double least = 1.1 * sqrt(most) + allowed;
@@ -106,7 +106,7 @@ static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double l02 = f->l0 * f->l0, pair2 = PAIR * PAIR * l02, own2 = OWN_IMAGE * OWN_IMAGE * l02;
   int64_t collisions = 0;
   for (int64_t i = begin; i < end; i++) {
-    const int32_t *index = f->index + f->start[i];
+    const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     double u[2] = {f->u_new[0][i], f->u_new[1][i]};
     const double own[2] = {u[0], u[1]};
     const int32_t near = f->company[i] & MPSI_FLUID_NEAR_CLOSE ? f->near[i] : 0;
@@ -232,7 +232,9 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     find_shift(f, i, shift);
     /* the classical particles have moved by u* already */
     const bool moved = f->classical.gamma > 0.0;
-    const double *G = f->local[i].gradient, part = carried(f, i);
+    double G[4];
+    mpsi_fluid_gradient(&f->local[i], G);
+    const double part = carried(f, i);
     for (int c = 0; c < 2; c++) {
       x[c] = f->x[c][i] + f->dt * (f->u_new[c][i] - (moved ? f->u[c][i] : 0.0)) + shift[c];
       u[c] = f->u_new[c][i] + part * (G[2 * c] * shift[0] + G[2 * c + 1] * shift[1]);

@@ -35,7 +35,9 @@
 #define LONGEST_STEP 0.1  /* (l0/g)^1/2: the limit of a fluid at rest */
 
 double mpsi_fluid_steepness(const mps_fluid *f, int64_t i) {
-  const double *G = f->local[i].gradient, s0 = mpsi_fluid_rate(f);
+  const double s0 = mpsi_fluid_rate(f);
+  double G[4];
+  mpsi_fluid_gradient(&f->local[i], G);
   const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
   return s0 > 0.0 ? square / (BREAKING * s0 * s0) : 0.0;
 }
@@ -49,7 +51,7 @@ double mpsi_fluid_near_surface(const mps_fluid *f, int64_t i, double least) {
 }
 
 static double viscous_share(const mps_fluid *f, int64_t i) {
-  return f->def.viscosity / f->def.density * f->dt * f->local[i].n / f->local[i].S;
+  return f->def.viscosity / f->def.density * f->dt * f->local[i].n / (double)f->local[i].S;
 }
 
 /* Parts of smoothing at a particle. */
@@ -65,9 +67,10 @@ typedef struct parts {
  * grow as the steps get shorter. */
 static parts find_parts(const mps_fluid *f, int64_t i) {
   const mpsi_fluid_local *local = &f->local[i];
-  double steep = 1e-4 * f->g * f->l0, v2 = 0.0;
-  for (int c = 0; c < 4; c++) steep += f->l0 * f->l0 * local->gradient[c] * local->gradient[c];
-  for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
+  double steep = 1e-4 * f->g * f->l0, v2 = 0.0, G[4];
+  mpsi_fluid_gradient(local, G);
+  for (int c = 0; c < 4; c++) steep += f->l0 * f->l0 * G[c] * G[c];
+  for (int c = 0; c < 2; c++) v2 += (double)local->rest[c] * local->rest[c];
   const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
   const bool waterline = f->zone[i] && (f->company[i] & MPSI_FLUID_NEAR_IMAGES);
   const double time = waterline ? fmin(f->dt * mpsi_fluid_rate(f) / LONGEST_STEP, 1.0) : 1.0;
@@ -95,7 +98,9 @@ static void prepare(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   for (int64_t i = begin; i < end; i++) {
     const mpsi_fluid_local *local = &f->local[i];
     f->flux[0][i] = 0.0f;
-    for (int k = 0; k < 4; k++) f->flux[1 + k][i] = (float)local->gradient[k];
+    double G[4];
+    mpsi_fluid_gradient(local, G);
+    for (int k = 0; k < 4; k++) f->flux[1 + k][i] = (float)G[k];
     if (f->state[i] == MPSI_FLUID_APART) continue;
     const parts p = find_parts(f, i);
     const double a = p.paired * left(PAIRED_SMOOTH * p.gentle + p.rough, viscous_share(f, i));
@@ -150,8 +155,8 @@ void mpsi_fluid_prepare_smoothing(mps_fluid *f) {
  * opposite velocity. */
 static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
   const mpsi_fluid_local *local = &f->local[i];
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
   v[0] = local->rest[0], v[1] = local->rest[1];
   for (int32_t k = 0; f->sticky && k < f->near[i]; k++) {
     const int64_t j = index[k], ghost = j - f->count;
@@ -185,13 +190,15 @@ static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int
 /* To walls what particle i, which keeps the part `smooth` of v, exchanges with their images. */
 static void exchange(const mps_fluid *f, int64_t chunk, int64_t i, double smooth, double viscous) {
   const mpsi_fluid_local *local = &f->local[i];
-  const int32_t *index = f->index + f->start[i];
-  const float *w = f->w + f->start[i];
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
+  double G[4];
+  mpsi_fluid_gradient(local, G);
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t j = index[k], ghost = j - f->count;
     if (ghost < 0) continue;
     const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
-    const double *G = local->gradient, part = w[k] / local->n;
+    const double part = w[k] / local->n;
     const double pair = f->paired ? 0.5 * w[k] * (f->flux[0][i] + f->flux[0][j]) : 0.0;
     double dv[2], stuck[2] = {f->u[0][j], f->u[1][j]};
     if (viscous > 0.0 && f->sticky) mpsi_fluid_stick(f, ghost, stuck);
