@@ -132,7 +132,8 @@ typedef struct mpsi_fluid_weight {
 } mpsi_fluid_weight;
 
 /* Moments of a particle's neighbourhood; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy.
- * Inputs of the pressure equation are exact to round-off; single precision is enough for the rest. */
+ * Inputs of the pressure equation are exact to round-off; single precision is enough for the rest.
+ */
 typedef struct mpsi_fluid_local {
   double n, m[2];    /* sum w, sum w dx */
   double inverse[3]; /* of M = sum w dx dx^T/r^2, at the surface of M + c e e^T, c = |m|/h */

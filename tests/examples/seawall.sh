@@ -1,12 +1,12 @@
 #!/bin/sh
 # seawall.sh DIRECTORY: mps-seawall on coarse particles: its forces at the crest, the wall under still
-# water, and going on from a checkpoint. The paper's size: docs/verification/fluid.md.
+# water, and going on from a checkpoint. The paper's size: docs/verification/fluid/seawall.md.
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/checks.sh"
 coarse="--spacing 0.02 --dt 0.002 --wall-height 0.44 --threads 1"
 
 # The force at 5.16 s is 629 N with this spacing in a computation apart from this one, 643 to 657 N
-# with finer ones; see docs/verification/fluid.md.
+# with finer ones; see docs/verification/fluid/seawall.md.
 "$1/mps-seawall" $coarse --frames 6 --duration 5.2 --out "$work/a" >"$work/log"
 s=$work/a/summary.json
 in_range "$s" particles_water 1200 1200

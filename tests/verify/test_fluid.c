@@ -1,5 +1,5 @@
 /* test_fluid.c - the fluid against theory: water at rest, sloshing, the elliptic drop, waves of a
- * piston in a closed tank against nonlinear potential flow. docs/verification/fluid.md has the
+ * piston in a closed tank against nonlinear potential flow. docs/verification/fluid/tests.md has the
  * tables; finer resolutions run in test_fluid_long.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"

@@ -5,10 +5,10 @@
  * by the viscosity; and the momentum of a particle that is moved back from a wall. It is part of
  * the wall's impulse, and of a body's; it acts on a floating body in the next step.
  *
- * The remainder is an error of the scheme: the gradients of the pressure at the particles sum up to the pressures
- * along the walls only nearly, smoothing of gentle flow is not the same from both sides of a pair,
- * and cut velocities and shifts change momentum too. It is found as what the water has gained less
- * all of the above, gravity and loads.
+ * The remainder is an error of the scheme: the gradients of the pressure at the particles sum up to
+ * the pressures along the walls only nearly, smoothing of gentle flow is not the same from both
+ * sides of a pair, and cut velocities and shifts change momentum too. It is found as what the water
+ * has gained less all of the above, gravity and loads.
  *
  * Sums are made by chunk, and over chunks without round-off: the same bits on any number of ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
