@@ -101,11 +101,13 @@ static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def
 
 /* Kinds (mps_boundary_kind) of a wall and of a body's surface:
  *
- * HELD    no flow across; no slip where the fluid has a viscosity; the wall does not move along
- * itself DRIVEN  the same, moved along the normal by a signal ROLLER  no flow across, no shear:
- * slip; at rest or moved along the normal by a signal OPEN    no wall: particles that have passed
- * it are removed at the end of a step and counted in its reaction; the pressure there is that of
- * the air, as where water falls over an edge. It does not move */
+ *   HELD    no flow across; no slip where the fluid has a viscosity; the wall does not move along
+ *           itself
+ *   DRIVEN  the same, moved along the normal by a signal
+ *   ROLLER  no flow across, no shear: slip; at rest or moved along the normal by a signal
+ *   OPEN    no wall: particles that have passed it are removed at the end of a step and counted in
+ *           its reaction; the pressure there is that of the air, as where water falls over an edge.
+ *           It does not move */
 
 #define MPS_FLUID_MAX_BOUNDARIES 16
 

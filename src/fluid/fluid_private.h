@@ -1,24 +1,24 @@
 /* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
  *
- *   walls.c     where the walls are and go (wall.c: one); the particles' images (ghosts) there
- *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves those that float
- *   look.c      copies of the particles, their order and surroundings
- *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
+ *   walls.c     positions and motions of walls (wall.c: one); the particles' images (ghosts)
+ *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves floating ones
+ *   look.c      copies of the particles, their order and neighbours
+ *   near.c      neighbour lists, and the weights w; sight.c: visibility past finite walls
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
  *   closed.c    fluid without a free surface
  *   pressure.c  rows of the pressure equation; pcg.c solves it with the coarse space of coarse.c,
- *               whose equation envelope.c solves, or solver.c has it solved
+ *               whose equation envelope.c solves; solver.c: a solver of the caller
  *   classical.c the classical scheme's own parts of these
  *   move.c      pressure gradient, velocity, guards, positions
- *   exchange.c  momentum that goes to walls besides the pressure's, and what has no owner
+ *   exchange.c  momentum of walls besides the pressure's, and the momentum error
  *   loads.c     forces on particles and pressures on the surface
  *   probe.c     pressure at walls, level of the surface
- *   warn.c      what the model assumes and a step may break
- *   step.c      the order of all this
- *   partition.c  ranks of a domain that do it together
+ *   warn.c      assumptions of the model
+ *   step.c      the stages of a step in order
+ *   partition.c  ranks of a domain that compute a fluid together
  *
  * Indices below `count` are particles, those from `count` on are ghosts. A step works on copies of
- * positions and velocities and writes the particles' fields only when all has gone well.
+ * positions and velocities and writes the particles' fields only on success.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_FLUID_PRIVATE_H
 #define MPSI_FLUID_PRIVATE_H
@@ -43,19 +43,20 @@ typedef struct mpsi_fluid_motion {
   double *s, *u, *a; /* m, m/s, m/s2; a is the mean over the step that ends there */
 } mpsi_fluid_motion;
 
-/* What a wall exerts on the fluid. */
+/* Force, moment and power of a wall on the fluid. */
 typedef struct mpsi_fluid_load {
   double force[2], moment, power; /* N; N m about the origin; W */
   int64_t wetted;                 /* points with water */
 } mpsi_fluid_load;
 
-/* What a wall gives to the fluid in a step besides: by collisions and smoothing, see exchange.c. */
+/* Impulse, moment and work of a wall by collisions and smoothing in a step, see exchange.c. */
 typedef struct mpsi_fluid_struck {
   double impulse[2], moment, work; /* N s; N m s about the origin; J */
 } mpsi_fluid_struck;
 
 /* Sums of momentum that is exchanged in a step: a row of values for each chunk of particles, see
- * exchange.c; and since creation what gravity and loads give, and what has no owner, N s. */
+ * exchange.c; and since creation the impulse of gravity and loads, and the momentum error of the
+ * scheme, N s. */
 typedef struct mpsi_fluid_exchange {
   mpsi_room rows, sums; /* double, mpsi_exact */
   int64_t width;        /* values of a row */
@@ -69,9 +70,9 @@ typedef struct mpsi_fluid_wall {
   bool used;               /* as a wall */
   bool open;               /* an open side instead */
   int32_t of_body;         /* 0: a boundary; number of the body + 1 */
-  double from, to, length; /* of a face, m along it: it ends there, or goes on behind a boundary */
+  double from, to, length; /* of a face, m along it: its end, or its extension behind a boundary */
   uint32_t stands_on[2];   /* boundaries that the ends of a face stand on, bits */
-  bool given, placed;      /* the caller wants next.u, and next.s */
+  bool given, placed;      /* next.u, and next.s, are prescribed by the caller */
   int32_t kind;
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
   mps_signal *signal;
@@ -92,7 +93,7 @@ typedef struct mpsi_fluid_wall {
   double removed_mass;
 } mpsi_fluid_wall;
 
-/* Where a body is and how it moves. */
+/* Pose and motion of a body. */
 typedef struct mpsi_fluid_pose {
   double x[2], R[4], v[2], spin;
 } mpsi_fluid_pose;
@@ -103,14 +104,15 @@ typedef struct mpsi_fluid_body {
   mpsi_fluid_pose pose, next;
   mpsi_body_source source;
   mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the water, and its points on each part */
-  mpsi_load owed[MPS_BODY_MAX_PARTS];  /* N s, N m s: of collisions, that it has not felt yet */
+  mpsi_load
+      owed[MPS_BODY_MAX_PARTS]; /* N s, N m s: of collisions, to be applied in the next step */
   int64_t wetted[MPS_BODY_MAX_PARTS];
   bool floats;             /* see afloat.c */
   double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
   double rate_before[3], mass_before[9]; /* before the step being made */
 } mpsi_fluid_body;
 
-/* Whether the caller has made boundary `number`. */
+/* Whether boundary `number` exists. */
 #define MPSI_FLUID_IS_BOUNDARY(f, number)                                                          \
   ((number) >= 0 && (number) < MPS_FLUID_MAX_BOUNDARIES &&                                         \
    ((f)->wall[number].used || (f)->wall[number].open))
@@ -128,13 +130,13 @@ typedef struct mpsi_fluid_weight {
   double square;      /* sum w r^2/4 over the lattice, m2 */
 } mpsi_fluid_weight;
 
-/* What a particle knows of its surroundings; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy. */
+/* Moments of a particle's neighbourhood; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy. */
 typedef struct mpsi_fluid_local {
   double n, m[2], S;      /* sum w, sum w dx, sum w r^2/4 */
   double inverse[3];      /* of M = sum w dx dx^T/r^2 */
   double with_surface[3]; /* of M + c e e^T */
   double gradient[4];     /* of velocity, 1/s */
-  double rest[2];         /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
+  double rest[2];         /* sum w (du - G dx)/n: deviation from a linear velocity field, m/s */
   double shift[2];        /* sum w dx/(r n0) */
   double h, c;            /* distance of the surface (m), its weight |m|/h; 0, 0 farther inside */
   double qs;              /* reduced pressure of the surface there, Pa */
@@ -154,7 +156,7 @@ enum {
 
 enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 
-/* Rows of the pressure equation and what its solution needs; see pcg.c. */
+/* Rows of the pressure equation and vectors of its solution; see pcg.c. */
 typedef struct mpsi_fluid_system {
   double *diagonal, *right; /* count */
   double *x;                /* count + ghosts */
@@ -164,10 +166,10 @@ typedef struct mpsi_fluid_system {
   float *lower;             /* of L */
   double *inverse;          /* of D */
   double *sums;             /* by chunk or block, two values each */
-  double mean; /* of the right side, or what the solution is shifted by; see closed.c */
+  double mean;              /* of the right side, or the shift of the solution; see closed.c */
 } mpsi_fluid_system;
 
-/* A solver of the caller, and the matrix as it gets it; see solver.c. */
+/* A solver of the caller, and its matrix; see solver.c. */
 typedef struct mpsi_fluid_outside {
   void *user;
   mps_status (*matrix)(void *user, int64_t rows, const int64_t *start, const int32_t *column,
@@ -195,7 +197,7 @@ typedef enum mpsi_fluid_stage {
   MPSI_FLUID_MOVED /* the cloud is at the end of the step, the fields are not */
 } mpsi_fluid_stage;
 
-/* Warnings that a solver gives once. */
+/* Warnings that are logged once per solver. */
 typedef enum mpsi_fluid_warning {
   MPSI_FLUID_WARNED_GUARDS = 1, /* act often */
   MPSI_FLUID_WARNED_TRAVEL = 2, /* of a wall in a step */
@@ -203,7 +205,7 @@ typedef enum mpsi_fluid_warning {
   MPSI_FLUID_WARNED_ANGLE = 8   /* of body 0 with a boundary; of the next ones the bits above */
 } mpsi_fluid_warning;
 
-/* Who adds or removes particles. */
+/* Origin of added or removed particles. */
 typedef enum mpsi_fluid_change {
   MPSI_FLUID_UNCHANGED = 0,
   MPSI_FLUID_CHANGED_BY_CALLER,
@@ -264,7 +266,7 @@ struct mps_fluid {
   float *w;                     /* of the pairs: the weight, rounded, wherever it is used */
   mpsi_room fit_room;           /* sums of fits, see probe.c */
   mpsi_room near_wall_room;     /* of a wall, see probe.c */
-  int32_t *slot; /* cloud sorted by cells, while neighbours are looked for: in lower_room */
+  int32_t *slot; /* cloud sorted by cells during the neighbour search: in lower_room */
   double *slot_x[2];
   mpsi_fluid_given **given; /* loads by number, NULL: none */
   int32_t given_room;
@@ -291,11 +293,11 @@ struct mps_fluid {
   bool stale;                  /* the cloud is not that of the fields */
   bool edited;                 /* the caller has written fields, which ranks have not compared */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
-  uint32_t warned; /* given already: mpsi_fluid_warning, bits */
+  uint32_t warned; /* logged already: mpsi_fluid_warning, bits */
   mpsi_identity *identity;
   mps_fluid_report report, before;     /* before: as the step being made began */
   mps_fluid_report report_before_look; /* of mpsi_fluid_refresh, until mpsi_fluid_show_surface */
-  double energy_before;                /* J, before particles come or go */
+  double energy_before;                /* J, before particles are added or removed */
   double energy;                       /* J, kinetic and potential at creation */
   double work_boundaries, work_loads;  /* J, since creation */
   mpsi_fluid_exchange exchange;
@@ -318,17 +320,17 @@ static inline double mpsi_fluid_w(const mpsi_fluid_weight *weight, double r) {
   return a * a * a * a * (5.0 - 4.0 * a);
 }
 
-/* Heights of the surface above the particles, from their move to the fields: where the pressure's
- * search direction was, which nobody needs by then. */
+/* Heights of the surface above the particles, from their move to the fields: in the memory of the
+ * pressure's search direction, which is free then. */
 static inline double *mpsi_fluid_rises(const mps_fluid *f) { return f->system.p; }
 
-/* rho g (height - level), Pa: what the reduced pressure has more than the pressure. */
+/* rho g (height - level), Pa: reduced pressure less pressure. */
 static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
   return f->def.density * f->g * (f->up[0] * x + f->up[1] * y - f->level);
 }
 
-/* The rate (g/l0)^1/2 of what the scheme adds to the equations, 1/s: smoothing, shifting, the
- * density's source; without gravity that of the largest velocity. */
+/* The rate (g/l0)^1/2, 1/s, of smoothing, shifting and the density's source; without gravity that
+ * of the largest velocity. */
 static inline double mpsi_fluid_rate(const mps_fluid *f) {
   return f->g > 0.0 ? sqrt(f->g / f->l0) : f->speed / f->l0;
 }
@@ -339,8 +341,8 @@ mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
 mps_status mpsi_fluid_make_motion(mps_fluid *fluid, const char *function, mpsi_fluid_wall *wall,
                                   int64_t nodes, const double *points);
 void mpsi_fluid_drop_wall(mps_fluid *fluid, mpsi_fluid_wall *wall);
-/* Evaluates the signals of walls for the end of a step of dt; not collective, and nothing has
- * changed where one refuses. */
+/* Evaluates the signals of walls for the end of a step of dt; not collective; on an error nothing
+ * has changed. */
 mps_status mpsi_fluid_look_ahead(mps_fluid *fluid, const char *function, double dt);
 void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt); /* next, from signals and callers */
 void mpsi_fluid_end_walls(mps_fluid *fluid);              /* now = next */
@@ -357,7 +359,7 @@ void mpsi_fluid_press_ghosts(
 static inline double mpsi_fluid_along(const mpsi_fluid_wall *w, double x, double y) {
   return -(x - w->at[0]) * w->normal[1] + (y - w->at[1]) * w->normal[0];
 }
-/* Where walls are, and their accelerations, in the state that the cloud has. */
+/* Positions and accelerations of walls in the state of the cloud. */
 static inline const double *mpsi_fluid_places(const mps_fluid *f, const mpsi_fluid_wall *w) {
   return f->stage == MPSI_FLUID_MOVED ? w->next.s : w->now.s;
 }
@@ -365,7 +367,7 @@ static inline const double *mpsi_fluid_accelerations(const mps_fluid *f, const m
   return f->stage >= MPSI_FLUID_SOLVED ? w->next.a : w->now.a;
 }
 double mpsi_fluid_between(const mpsi_fluid_wall *wall, const double *values, double along);
-/* Displacement, velocity or acceleration of the wall where (x, y) is mirrored. */
+/* Displacement, velocity or acceleration of the wall at the foot of (x, y). */
 static inline double mpsi_fluid_of_wall(const mpsi_fluid_wall *w, const double *values, double x,
                                         double y) {
   return w->nodes == 1 ? values[0] : mpsi_fluid_between(w, values, mpsi_fluid_along(w, x, y));
@@ -382,7 +384,7 @@ void mpsi_fluid_drop_loads(mps_fluid *fluid);
 /* push and over as of time t, of the particles in their present order. */
 mps_status mpsi_fluid_find_loads(mps_fluid *fluid, const char *function, double t);
 double mpsi_fluid_work_of_loads(const mps_fluid *fluid); /* J, of the step being made */
-/* Pressure below which particle i has none: 0, or the suction on its surface, Pa. */
+/* Least pressure of particle i: 0, or the suction on its surface, Pa. */
 static inline double mpsi_fluid_least(const mps_fluid *f, int64_t i) {
   return f->over && f->over[i] < 0.0 ? f->over[i] : 0.0;
 }
@@ -400,7 +402,7 @@ void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
 double mpsi_fluid_angle(const mps_fluid *fluid, const mpsi_fluid_wall *face, int b);
 /* Corner k of a body at the beginning of the step, or at its end (next). */
 void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x);
-/* The face nearest to x as the body has it, and the distance, negative inside. */
+/* The face nearest to x, in the body's order, and the distance, negative inside. */
 int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool moved,
                        const double *x, double *distance);
 /* Whether x is inside a body other than number `besides` - 1. */
@@ -425,9 +427,9 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
 void mpsi_fluid_find_moments(mps_fluid *fluid);
 void mpsi_fluid_count(mps_fluid *fluid); /* to the report: neighbours, particles at the surface */
 double mpsi_fluid_rise(const mps_fluid *fluid, int64_t i);
-/* closed.c: refuses a step that changes the volume of a space that the fluid fills. */
+/* closed.c: MPS_ERROR_STATE for a step that changes the volume of a space that the fluid fills. */
 mps_status mpsi_fluid_check_space(mps_fluid *fluid, const char *function);
-/* Of a fluid without surface: takes the mean off the right side; chooses the solution's constant.
+/* For a fluid without surface: subtracts the mean of the right side; sets the solution's constant.
  */
 void mpsi_fluid_balance(mps_fluid *fluid);
 void mpsi_fluid_set_level(mps_fluid *fluid);
@@ -442,16 +444,16 @@ bool mpsi_fluid_solved_outside(const mps_fluid *fluid);
 mps_status mpsi_fluid_hand_matrix(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_outside(mps_fluid *fluid, const char *function);
 void mpsi_fluid_drop_solver(mps_fluid *fluid);
-/* Has a solver of the caller forget what it keeps from step to step. */
+/* Lets a solver of the caller discard its data of former equations. */
 mps_status mpsi_fluid_forget(mps_fluid *fluid, const char *function);
-/* warn.c: refuses a step whose walls go or bend too far; warnings to the log. */
+/* warn.c: MPS_ERROR_DIVERGED for a step whose walls move or bend too far; warnings to the log. */
 mps_status mpsi_fluid_check_walls(mps_fluid *fluid, const char *function);
 void mpsi_fluid_warn_of_guards(mps_fluid *fluid);
 void mpsi_fluid_warn_of_angles(mps_fluid *fluid);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
-int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */
-/* exchange.c: room for a step's sums; their values, on all ranks; after all, what has no owner. */
+int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that failed, or -1 */
+/* exchange.c: memory of a step's sums; their values, on all ranks; finally the momentum error. */
 mps_status mpsi_fluid_begin_exchange(mps_fluid *fluid, const char *function);
 void mpsi_fluid_end_exchange(mps_fluid *fluid);
 void mpsi_fluid_book_momentum(mps_fluid *fluid);
@@ -462,7 +464,8 @@ void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int
 void mpsi_fluid_classical_solution(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_accelerate(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 /* particles.c */
-void mpsi_fluid_let_go(mps_fluid *fluid); /* what has passed an open side, at the end of a step */
+void mpsi_fluid_let_go(
+    mps_fluid *fluid); /* removes particles beyond an open side, at the end of a step */
 #define MPSI_FLUID_MOST_PARTICLES (INT32_MAX / 4)
 bool mpsi_fluid_reserve(mps_fluid *fluid, int64_t count);
 void mpsi_fluid_find_speed(mps_fluid *fluid);
@@ -480,21 +483,21 @@ mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 void mpsi_fluid_load_cloud(mps_fluid *fluid);
 mps_status mpsi_fluid_look_around(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
-/* look.c: what readings rely on between steps, so that it follows from the state alone: the fields
- * of the surface (know); and with them the cloud, its loads and walls (refresh). After the latter
- * mpsi_fluid_show_surface writes the fields where all of the reading has succeeded, or leaves all
- * as it was; it returns `status`. */
+/* look.c: data of readings between steps, which follow from the state alone: the fields of the
+ * surface (know); and with them the cloud, its loads and walls (refresh). After the latter
+ * mpsi_fluid_show_surface writes the fields if the whole reading has succeeded, and otherwise
+ * changes nothing; it returns `status`. */
 mps_status mpsi_fluid_know(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_show_surface(mps_fluid *fluid, mps_status status);
-/* look.c: sorts the particles by place. */
+/* look.c: sorts the particles by position. */
 mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
 /* access.c: MPS_ERROR_STATE within a callback of the run (free), while a step is open (closed), or
  * both (ready). */
 mps_status mpsi_fluid_free(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_closed(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
-/* access.c: whether `dt` (s; NaN: the library chooses) is a step that the fluid may take. */
+/* access.c: checks `dt` (s; NaN: chosen by the library). */
 mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt);
 
 #endif

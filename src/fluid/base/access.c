@@ -1,5 +1,5 @@
-/* access.c - what the other files ask of the solver object: whether it may be used, whether a step
- * may have a size, its energy; and loops over its particles by all threads.
+/* access.c - access to the solver object: its guard, checks of a step size, its energy; and loops
+ * over its particles by all threads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 

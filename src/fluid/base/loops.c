@@ -18,7 +18,7 @@ static int64_t search(const mps_fluid *f, int64_t i, int64_t begin, int64_t end,
     const int32_t count = (int32_t)(end - first < PART ? end - first : PART);
     const double *sx = f->slot_x[0] + first, *sy = f->slot_x[1] + first;
     const int32_t *slot = f->slot + first;
-    /* whole vectors: the sorted cloud goes on far enough (near.c) */
+    /* whole vectors: the sorted cloud is padded (near.c) */
 #pragma omp simd
     for (int32_t k = 0; k < mpsi_fluid_padded(count); k++)
       square[k] = (sx[k] - x) * (sx[k] - x) + (sy[k] - y) * (sy[k] - y);
@@ -117,8 +117,8 @@ static void slope(const mps_fluid *f, int64_t i, double *out) {
   out[0] = sx, out[1] = sy;
 }
 
-/* Where v[i - 1] is needed it is the last of a row's entries (near.c finds neighbours in the order
- * of the cells that particles are sorted by), so that a row hardly waits for the one before. */
+/* v[i - 1], where needed, is the last of a row's entries (near.c finds neighbours in the order of
+ * the cells by which particles are sorted), so that a row depends little on the previous one. */
 static void forward(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v) {
   const mpsi_fluid_system *s = &f->system;
   const int32_t *stop = s->lower_end;
@@ -170,7 +170,7 @@ static double descend(const mps_fluid *f, int64_t first, int64_t end, int64_t of
   return rz;
 }
 
-/* What the matrix has outside of the block in row i, times z. */
+/* Entries of row i outside of the block, times z. */
 static double outside_block(const mps_fluid *f, int64_t first, int64_t end, int64_t i) {
   const int32_t *index = f->index + f->start[i];
   const float *w = f->w + f->start[i];

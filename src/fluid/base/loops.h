@@ -19,8 +19,8 @@ typedef struct mpsi_fluid_sums {
 } mpsi_fluid_sums;
 
 struct mpsi_fluid_loops {
-  /* Appends slots [begin, end) of the sorted cloud that are within re of particle i, at most all;
-   * `index` and `r2` have room for these and one more. Returns how many there are then. */
+  /* Appends slots [begin, end) of the sorted cloud within re of particle i; `index` and `r2` have
+   * room for all and one more. Returns the new length of the list. */
   int64_t (*search)(const mps_fluid *f, int64_t i, int64_t begin, int64_t end, int64_t found,
                     int32_t *index, double *r2);
   /* Weights of squares of distances, both filled up as the list is; MPSI_FLUID_NEAR_IMAGES and
@@ -31,8 +31,8 @@ struct mpsi_fluid_loops {
   /* Rows [begin, end) of the pressure's matrix times v, to `out`; v . out over these rows. */
   double (*times)(const mps_fluid *f, int64_t begin, int64_t end, const double *v, double *out);
   /* Parts of an iteration of pcg.c for the rows [first, end) of a block, whose entries of L begin
-   * at `offset`. forward: v = U^-T v. descend: p, x, s, r go on, then z = U^-1 D^-1 r; r . D^-1 r.
-   * rise: q = U^-T A (z - Z e), e as of coarse.h, z = U^-1 D^-1 r; q . D^-1 r. */
+   * at `offset`. forward: v = U^-T v. descend: update of p, x, s, r, then z = U^-1 D^-1 r; r . D^-1
+   * r. rise: q = U^-T A (z - Z e), e as of coarse.h, z = U^-1 D^-1 r; q . D^-1 r. */
   void (*forward)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v);
   double (*descend)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double alpha,
                     double beta);

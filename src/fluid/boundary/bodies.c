@@ -1,7 +1,7 @@
 /* bodies.c - rigid bodies in the fluid: convex polygons whose edges are walls of finite length
  * (faces). A face has two nodes, its corners: the velocity of a rigid body along a straight edge's
- * normal is linear between them. The body is moved by its caller between steps; the fluid keeps the
- * pose that it had at the last step, and takes the present one as that of the end of the next.
+ * normal is linear between them. The caller moves the body between steps; the fluid keeps its pose
+ * at the last step, and uses the present one as that of the end of the next.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
@@ -11,7 +11,7 @@
 #include <string.h>
 
 #define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
-#define FLUSH 0.1      /* l0: a corner that near a boundary stands on it */
+#define FLUSH 0.1      /* l0: distance at which a corner stands on a boundary */
 
 /* Corner k of the body in a pose. */
 static void corner(const mps_body *body, const mpsi_fluid_pose *pose, int64_t k, double *x) {
@@ -51,8 +51,8 @@ static uint32_t standing_on(const mps_fluid *f, const double *x) {
   return on;
 }
 
-/* Puts the faces where the pose has them. Where a corner stands on a boundary the face goes on
- * behind it; one that lies on a boundary is none. */
+/* Places the faces at the pose. Where a corner stands on a boundary the face extends behind it; a
+ * face on a boundary is no wall. */
 static void place_faces(mps_fluid *f, mpsi_fluid_body *body) {
   for (int k = 0; k < body->faces; k++) {
     mpsi_fluid_wall *w = &f->wall[body->first + k];
@@ -88,7 +88,7 @@ double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *f) {
   return sum / 6.283185307179586;
 }
 
-/* Where the body is at the end of a step with the accelerations `rate`. */
+/* Pose of the body at the end of a step with the accelerations `rate`. */
 static void drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
   const mps_body_def *def = &body->body->def;
   mpsi_fluid_pose *p = &body->next;
@@ -104,7 +104,7 @@ static void drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
     p->R[c] = C * R[c] - S * R[2 + c], p->R[2 + c] = S * R[c] + C * R[2 + c];
 }
 
-/* Where the faces go in the step being made. */
+/* Motion of the faces in the step being made. */
 void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
     mpsi_fluid_body *body = &f->body[b];
@@ -158,9 +158,9 @@ static void find_struck(const mps_fluid *f, const mpsi_fluid_body *own, const do
   }
 }
 
-/* The body feels the step's forces: of one that floats those with which its accelerations agree. As
- * it moves by these, what collisions and smoothing give to it is owed to the next step, in which it
- * moves the water around it too: without that a light body would be thrown about. */
+/* Applies the step's forces to the body: to a floating one those in balance with its accelerations.
+ * Impulses of collisions and smoothing act in its next step, where the water around it takes part:
+ * otherwise a light body would be unstable. */
 static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
   mpsi_load struck[MPS_BODY_MAX_PARTS] = {0};
   find_struck(f, own, own->next.x, struck);
@@ -280,7 +280,7 @@ void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
   *body = (mpsi_fluid_body){0};
 }
 
-/* Walls one after the other that no body has; -1: none. */
+/* First of consecutive free walls; -1: none. */
 static int free_faces(const mps_fluid *f, int64_t faces) {
   int run = 0;
   for (int b = MPS_FLUID_MAX_BOUNDARIES; b < MPSI_FLUID_WALLS; b++) {
@@ -290,7 +290,7 @@ static int free_faces(const mps_fluid *f, int64_t faces) {
   return -1;
 }
 
-/* Status of all ranks, and whether all give the same body (NULL: none) this number. */
+/* Status of all ranks, and a check that all have the same body (NULL: none) of this number. */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          int32_t kind, const mps_body *body) {
   if (!f->partition) return status;
@@ -302,7 +302,7 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
   return mpsi_domain_agree_given(f->def.domain, function, status, &given);
 }
 
-/* The walls from `first` on that the faces of body number `b` become. */
+/* Walls of the faces of body number `b`, from `first` on. */
 static mps_status make_faces(mps_fluid *f, const char *function, mps_body *body, int32_t kind,
                              int32_t b, int first) {
   mpsi_fluid_body *own = &f->body[b];

@@ -1,5 +1,4 @@
-/* boundaries.c - plane walls as the caller gives them: their definitions, what is refused, how they
- * come, change and go.
+/* boundaries.c - plane walls: definitions, checks, and how they are added, changed and removed.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
@@ -100,7 +99,7 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
   return MPS_OK;
 }
 
-/* Where the signal (NULL: none) is now counts as a displacement of 0. */
+/* The present value of the signal (NULL: none) is a displacement of 0. */
 static mps_status start_motion(mps_fluid *f, const char *function, const mps_signal *signal,
                                int32_t number, mpsi_fluid_wall *w) {
   const mpsi_signal_use use = {f->context, function, "boundary", number, -1};
@@ -112,7 +111,7 @@ static mps_status start_motion(mps_fluid *f, const char *function, const mps_sig
   return status;
 }
 
-/* Checks a definition and makes the wall of it that is to have `number`. */
+/* Checks a definition and makes its wall, of `number`. */
 static mps_status make_wall(mps_fluid *f, const char *function,
                             const mps_fluid_boundary_def *user_def, int32_t number,
                             mpsi_fluid_wall *out) {
@@ -137,7 +136,7 @@ static mps_status make_wall(mps_fluid *f, const char *function,
   return MPS_OK;
 }
 
-/* The same wall made on all ranks, or on none; `status` is what has become of this rank so far. */
+/* Makes the wall on all ranks, or on none; `status` is that of this rank so far. */
 static mps_status make_alike(mps_fluid *f, const char *function, mps_status status,
                              const mps_fluid_boundary_def *def, int32_t number,
                              mpsi_fluid_wall *w) {

@@ -1,21 +1,20 @@
 /* closed.c - fluid that fills a closed space. Without a free surface the pressure equation has only
- * Neumann boundaries: it has a solution only where the walls keep the volume, and that one up to a
- * constant. So
+ * Neumann boundaries: it has a solution only where the walls keep the volume, up to a constant. So
  *
- *   - a step whose walls or bodies change the volume of a closed space that the fluid fills is
- *     refused, and so is one after which there is less space than fluid;
- *   - the mean of the right side, which then is an error of the divergence, is taken off it;
+ *   - a step whose walls or bodies change the volume of a closed space that the fluid fills is an
+ *     error, as is one with less space than fluid at its end;
+ *   - the mean of the right side, then an error of the divergence, is subtracted from it;
  *   - the constant is chosen such that the least pressure of a particle is rho g l0/2, as under a
- * lid that lies on water at rest.
+ *     lid that lies on water at rest.
  *
  * The space is the intersection of the boundaries' half-planes less the bodies: its area follows
  * from the lengths of the boundaries within the others, by the divergence theorem.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
-#define ROUNDING 1e-9 /* of the area: its change in a step that counts as none */
+#define ROUNDING 1e-9 /* of the area: largest change in a step that is accepted as none */
 #define STAIRS                                                                                     \
-  0.25 /* l0: the fluid may seem to reach that far beyond its walls, as a fill's lattice           \
+  0.25 /* l0: apparent overlap of the fluid with its walls, as a fill's lattice                    \
           follows slopes by steps */
 #define MOST_CORNERS (2 * MPSI_FLUID_WALLS)
 
@@ -53,7 +52,7 @@ static double mean_of(const mpsi_fluid_wall *w, const double *s, double low, dou
   return sum;
 }
 
-/* Cuts a convex polygon of n corners to what lies in front of a wall; its corners then. */
+/* Clips a convex polygon of n corners by a wall; returns the number of corners. */
 static int cut(const mpsi_fluid_wall *w, int n, double (*x)[2]) {
   double out[MOST_CORNERS][2], d[MOST_CORNERS];
   int count = 0;
@@ -113,8 +112,8 @@ static bool find_space(const mps_fluid *f, space *s) {
   return s->area > 0.0;
 }
 
-/* A body that stands on several boundaries and moves, as it may part the fluid: how much volume
- * each part has is not known. -1: none. */
+/* A moving body that stands on several boundaries, which may divide the fluid into parts of unknown
+ * volume. -1: none. */
 static int parting_body(const mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
     const mpsi_fluid_body *body = &f->body[b];

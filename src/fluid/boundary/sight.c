@@ -1,16 +1,17 @@
-/* sight.c - who sees whom. A wall that ends (the face of a body, a boundary that meets another one
- * at an angle other than 90 degrees) is a mirror of finite size: a particle sees an image in it
- * only where the straight line to the image passes through the mirror, and sees another particle
- * only where no face is in between. The line from a to the image of b folds into the one from b to
- * the image of a, so a sees b's image exactly when b sees a's: the matrix stays symmetric. Every
- * line from a particle meets one mirror first, so that images neither overlap nor leave gaps, at
- * concave and at convex corners. Around a convex corner particles that do not see each other are
- * neighbours at the length of the way around it: without them the water turns too hard there.
+/* sight.c - visibility between particles and images. A wall that ends (the face of a body, a
+ * boundary that joins another one at an angle other than 90 degrees) is a mirror of finite size: an
+ * image in it is visible to a particle only where the straight line to the image passes through the
+ * mirror, and another particle only where no face is in between. The line from a to the image of b
+ * is the reflection of that from b to the image of a, so b's image is visible to a exactly when a's
+ * is to b: the matrix is symmetric. Every line from a particle has one first mirror, so that images
+ * neither overlap nor leave gaps, at concave and at convex corners. Around a convex corner
+ * particles without a line of sight are neighbours at the length of the path around it: without
+ * them the flow around the corner is too stiff.
  *
- * A boundary that a body stands on ends at the body: its images are seen like those of a face.
- * Where the body leans over the water, lines of sight that are reflected several times lead
- * nowhere, as images at walls at an angle are not mirrored again; what particles lack there is no
- * free surface. SPDX-License-Identifier: BSD-3-Clause */
+ * A boundary that a body stands on ends at the body: its images are visible like those of a face.
+ * Where the body overhangs the water, lines of sight of several reflections have no image, as
+ * images at walls at an angle are not mirrored again; these missing neighbours are no free surface.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/fluid_private.h"
 
 #define EDGE 1e-6  /* l0 */
@@ -32,7 +33,7 @@ static bool makes_wedge(const mps_fluid *f, const mpsi_fluid_wall *face, uint32_
   return false;
 }
 
-/* Where faces lean over the water at the boundary that they stand on. */
+/* Acute corners of the water between faces and the boundary on which they stand. */
 static void find_wedges(mps_fluid *f) {
   f->wedges = 0;
   for (int b = MPS_FLUID_MAX_BOUNDARIES; b < MPSI_FLUID_WALLS; b++) {
@@ -56,7 +57,7 @@ bool mpsi_fluid_near_wedge(const mps_fluid *f, int64_t i, const double *e) {
   return false;
 }
 
-/* Which walls end, which are faces, and the acute corners between these and boundaries. */
+/* Finite walls, faces, and the acute corners between these and boundaries. */
 void mpsi_fluid_find_limits(mps_fluid *f) {
   f->limited = f->faces = f->stood_on = 0;
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
@@ -75,8 +76,8 @@ static double ahead(const mpsi_fluid_wall *w, const double *x) {
   return mpsi_fluid_distance(w, w->now.s, x[0], x[1]);
 }
 
-/* Whether the line from a to b passes through the wall, and where. Through a corner is past it, and
- * so it is from b to a, whatever the rounding. */
+/* Whether the line from a to b passes through the wall, and where. Through a corner counts as past
+ * it, and so does it from b to a, whatever the rounding. */
 static bool passes(const mps_fluid *f, const mpsi_fluid_wall *w, const double *a, const double *b,
                    double *at) {
   const double da = ahead(w, a), db = ahead(w, b);
@@ -100,7 +101,7 @@ bool mpsi_fluid_hidden(const mps_fluid *f, int wall, const double *a, const doub
   return hidden(f, UINT32_C(1) << wall, a, b);
 }
 
-/* Whether the mirror passes through is there: not behind a boundary at an angle to it. */
+/* Whether the mirror exists at the point of passage: not behind a boundary at an angle to it. */
 static bool mirror_is_there(const mps_fluid *f, int wall, const double *at) {
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
@@ -126,8 +127,8 @@ static bool sees(const mps_fluid *f, int64_t i, int64_t j) {
   return true;
 }
 
-/* Whether particle i may have something in its list that it must not see: images are up to re
- * behind and beyond a wall that ends. */
+/* Whether the list of particle i may have invisible entries: images are up to re behind and beyond
+ * a wall that ends. */
 static bool near_limit(const mps_fluid *f, int64_t i) {
   const double x[2] = {f->x[0][i], f->x[1][i]}, reach = 2.0 * f->weight.re;
   for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
@@ -149,7 +150,7 @@ bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
   return false;
 }
 
-/* The way from a to b around the nearest corner of a body, m; INFINITY where there is none. */
+/* Length of the path from a to b around the nearest corner of a body, m; INFINITY without one. */
 static double way_around(const mps_fluid *f, const double *a, const double *b) {
   double least = INFINITY;
   for (uint32_t k = MPS_FLUID_MAX_BOUNDARIES; k < MPSI_FLUID_WALLS; k++) {

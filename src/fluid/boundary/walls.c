@@ -1,12 +1,11 @@
-/* walls.c - plane walls, what moves them, and the mirror images (ghosts) of the particles within re
- * of each. Walls are taken in the order of their numbers, and images are mirrored at later walls
- * that stand at right angles to the earlier ones, so that corners of 90 degrees fill. At other
- * corners only the particles themselves are mirrored, and sight.c says who sees which image.
+/* walls.c - plane walls, their motion, and the mirror images (ghosts) of the particles within re of
+ * each. Walls are taken in the order of their numbers, and images are mirrored at later walls that
+ * stand at right angles to the earlier ones, so that corners of 90 degrees fill. At other corners
+ * only the particles themselves are mirrored, and sight.c finds the visible images.
  *
- * A ghost moves as the mirror image of its parent seen from the wall (velocity of the step before:
- * free slip); its reduced pressure is the parent's less
- * rho (a . N)(distance of the two), N out of the fluid: the one place where the wall's new velocity
- * enters.
+ * A ghost has the mirrored velocity of its parent relative to the wall (velocity of the previous
+ * step: free slip); its reduced pressure is the parent's less rho (a . N)(distance of the two), N
+ * out of the fluid: the one place where the wall's new velocity enters.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/fluid_private.h"
 #include "signal/signal_internal.h"
@@ -36,7 +35,7 @@ mps_status mpsi_fluid_look_ahead(mps_fluid *f, const char *function, double dt) 
   return status;
 }
 
-/* Walls that nobody moves go on as they are. */
+/* Walls without a new motion continue at their velocity. */
 void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
@@ -134,8 +133,8 @@ static bool beyond_the_ends(const mps_fluid *f, const mpsi_fluid_wall *w, double
 }
 
 /* Images of [begin, end) of the cloud at one wall; false where there is no room. A bent wall
- * mirrors at its local position, and goes on beyond other walls as their mirror image: where an
- * image's parent is. */
+ * mirrors at its local position, and continues beyond other walls as its mirror image there: at the
+ * position of an image's parent. */
 static bool mirror(mps_fluid *f, int wall, int64_t begin, int64_t end) {
   const mpsi_fluid_wall *w = &f->wall[wall];
   for (int64_t i = begin; i < end; i++) {
@@ -228,7 +227,7 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
   return MPS_OK;
 }
 
-/* A load acts on an image as on its parent: so it presses the water against the wall. */
+/* A load acts on an image as on its parent, so that water under a load exerts it on the wall. */
 static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   for (int64_t g = begin; g < end; g++) {
@@ -253,12 +252,13 @@ void mpsi_fluid_move_ghosts(mps_fluid *f) {
   mpsi_fluid_for_all(f, f->ghosts, MPSI_FLUID_CHUNK, move_images);
 }
 
-/* Share of a wall's acceleration that the images of particle i take a step late, as velocity. The
- * matrix is not quite the divergence of the gradient that moves the particles (move.c), so a step
- * leaves divergence that the next one takes away: a force in phase with the wall's velocity. Where
- * the first answer is too high it drives the wall, as where a wall crosses the surface (.3 rho
- * l0^2 of mass, q is r ln r there). With these shares the first answer is too low instead, at every
- * frequency and shape of the wall, and the force damps: by some .005 sin(omega dt) m omega. */
+/* Fraction of a wall's acceleration that the images of particle i receive a step late, as velocity.
+ * The matrix is not quite the divergence of the gradient that moves the particles (move.c), so a
+ * step leaves divergence that the next one removes: a force in phase with the wall's velocity.
+ * Where the first response is too high that force drives the wall, as where a wall crosses the
+ * surface (.3 rho l0^2 of mass, q is r ln r there). With this fraction the first response is too
+ * low instead, at every frequency and shape of the wall, and the force damps: by some .005
+ * sin(omega dt) m omega. */
 static double late_share(const mps_fluid *f, int64_t i) {
   return f->state[i] == MPSI_FLUID_SURFACE ? LATE_AT_SURFACE : LATE;
 }

@@ -1,4 +1,4 @@
-/* fluid.c - the fluid solver as an object: definition, creation, boundaries, questions.
+/* fluid.c - the fluid solver as an object: definition, creation, boundaries, queries.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/pressure/coarse.h"
 #include "fluid/base/loops.h"
@@ -56,7 +56,7 @@ static mps_status check_def(mps_context *context, const mps_fluid_def *d, double
   return MPS_OK;
 }
 
-/* The radius is that of the kernel, where there is one. */
+/* The radius is that of the kernel, if given. */
 static mps_status read_kernel(mps_context *context, mps_fluid_def *d, double l0) {
   if (!d->kernel) return MPS_OK;
   if (mps_kernel_get_kind(d->kernel) != MPS_KERNEL_SMOOTH)
@@ -173,7 +173,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   return MPS_OK;
 }
 
-/* Do all ranks make the same fluid? */
+/* Have all ranks the same fluid? */
 static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, mps_status status,
                                  mps_particles *particles) {
   mpsi_given given;

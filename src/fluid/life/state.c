@@ -1,6 +1,6 @@
-/* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. What follows
- * from the particles' places, their neighbours and the surface, is found again when it is asked
- * for. SPDX-License-Identifier: BSD-3-Clause */
+/* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. Data that
+ * follow from the particles' positions, neighbours and the surface are computed again when needed.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
 #include "core/state/state.h"
@@ -95,7 +95,7 @@ static void list_state(mpsi_state *s, void *solver) {
   }
 }
 
-/* Of a file: a step relies on places that are numbers. */
+/* Of a file: positions must be finite. */
 static bool fits(void *solver, mps_snapshot *values, const char **what) {
   (void)solver;
   const char *const names[] = {"position", "velocity", "reduced_pressure", "reduced_pressure_old"};
@@ -118,7 +118,7 @@ static void after(void *solver) {
   mps_fluid *f = solver;
   f->stale = true;
   f->count = mps_particles_count(f->particles);
-  f->ghosts = 0; /* of other particles: found again */
+  f->ghosts = 0; /* of other particles: computed again */
   mpsi_fluid_place_bodies(f);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
 }
@@ -150,7 +150,7 @@ static mpsi_state_of state_of(mps_fluid *f) {
                          .steps = f->steps};
 }
 
-/* What a solver of the caller keeps from step to step belongs to no state. */
+/* Data of a caller's solver of former equations are in no state. */
 static mps_status forget(mps_fluid *f, const char *function, mps_status status) {
   return status == MPS_OK ? mpsi_fluid_forget(f, function) : status;
 }

@@ -1,5 +1,5 @@
-/* look.c - the particles as a step finds them: copies of their fields, their order in memory, who
- * is near them, and the sums over these. SPDX-License-Identifier: BSD-3-Clause */
+/* look.c - the particles at the start of a step: copies of their fields, their order in memory,
+ * neighbours, and the sums over these. SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
 #include <string.h>
@@ -42,8 +42,8 @@ mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
   return mpsi_fluid_look_around(f, function, mpsi_fluid_find_loads(f, function, f->load_time));
 }
 
-/* A step has written what it knew of the surface; otherwise it is found now. In an open step the
- * cloud has the fields' particles and their surroundings. */
+/* After a step the fields of the surface are written; otherwise they are computed now. In an open
+ * step the cloud has the fields' particles and neighbours. */
 static mps_status find_surface(mps_fluid *f, const char *function) {
   if (!f->unknown) return MPS_OK;
   f->report_before_look = f->report;
@@ -56,7 +56,7 @@ static mps_status find_surface(mps_fluid *f, const char *function) {
 
 mps_status mpsi_fluid_show_surface(mps_fluid *f, mps_status status) {
   if (!f->unknown) return status;
-  if (status != MPS_OK) { /* found again by the next call that asks */
+  if (status != MPS_OK) { /* computed again by the next query */
     f->report = f->report_before_look;
     return status;
   }
@@ -71,7 +71,7 @@ mps_status mpsi_fluid_know(mps_fluid *f, const char *function) {
   return f->unknown ? mpsi_fluid_show_surface(f, find_surface(f, function)) : MPS_OK;
 }
 
-/* Loads are read as of the last step's time, of the particles where they are now. */
+/* Loads are evaluated at the last step's time, for the particles' present positions. */
 mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
   const mps_status status = find_surface(f, function);
   if (status != MPS_OK || f->stage != MPSI_FLUID_BETWEEN) return status;
@@ -79,7 +79,7 @@ mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
     const int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
     mpsi_fluid_load_cloud(f);
     for (int64_t i = 0; i < f->count; i++) f->state[i] = (uint8_t)surface[i];
-    f->ghosts = 0, f->travel = INFINITY; /* images are not looked at */
+    f->ghosts = 0, f->travel = INFINITY; /* images are not read */
     f->stale = false;
   }
   mpsi_fluid_find_limits(f);
@@ -87,7 +87,7 @@ mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
 }
 
 /* Sorts the set by columns of cells half of re wide, so that neighbours lie near each other in
- * memory. It only serves speed: where the fluid is strewn or memory is short the order stays. */
+ * memory. It only serves speed: where the fluid is scattered or memory is short the order stays. */
 mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
   const double *x = column(f, "position", 0), *y = column(f, "position", 1);
   const int64_t n = f->count;

@@ -1,18 +1,18 @@
-/* moments.c - what each particle's neighbours, ghosts included, say of its surroundings, with
- * w = (1-z)^4 (1+4z), z = r/re:
+/* moments.c - moments of each particle's neighbourhood, ghosts included, with w = (1-z)^4 (1+4z), z
+ * = r/re:
  *
  *   n = sum w,  m = sum w dx,  S = sum w r^2/4,  M = sum w dx dx^T/r^2,
  *   G = grad u = (sum w du dx^T/r^2) M^-1.
  *
- * A particle is at the free surface where |m| > .15 n0 l0 and nobody is within 2.1 l0 inside the
- * cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010), but not
- * where e points into an acute corner between a body and a boundary (sight.c). The surface then
+ * A particle is at the free surface where |m| > .15 n0 l0 and no particle is within 2.1 l0 inside
+ * the cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010), but
+ * not where e points into an acute corner between a body and a boundary (sight.c). The surface then
  * lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half a spacing
- * outside. A particle with n < .12 n0 is apart from the rest and falls freely.
+ * outside. A particle with n < .12 n0 is isolated and falls freely.
  *
- * Particles of the second row lack neighbours beyond the surface too (|m| = .06 n0 l0 in a
+ * Particles of the second row have missing neighbours beyond the surface too (|m| = .06 n0 l0 in a
  * lattice). Without a surface term their row of the pressure equation is not exact for a linear q,
- * and water that a wall accelerates answers first as if its surface lay .2 l0 higher. Their
+ * and water that a wall accelerates responds at first as if its surface were .2 l0 higher. Their
  * surface point is the mean of those of their neighbours at the surface, with c = |m|/h too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
@@ -20,7 +20,7 @@
 
 #define APART 0.12     /* n/n0 */
 #define FEW 0.72       /* n/n0 */
-#define LEVEL 0.35     /* n/n0: below, spray, which tells no level */
+#define LEVEL 0.35     /* n/n0: below, spray, without a level */
 #define ONE_SIDED 0.15 /* |m|/(n0 l0) */
 #define CONE_REACH 2.1 /* l0 */
 #define CONE 0.70710678118654752
@@ -43,7 +43,7 @@ static void regularise(double *M) {
   if (add > 0.0) M[0] += add, M[2] += add;
 }
 
-/* True where nobody stands in the cone about e. */
+/* True where no particle is in the cone about e. */
 static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
   const double reach2 = CONE_REACH * CONE_REACH * f->l0 * f->l0;
   const int32_t *index = f->index + f->start[i];
@@ -64,7 +64,7 @@ static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m,
   return (few || sees_out(f, i, e)) && !(wedge && mpsi_fluid_near_wedge(f, i, e));
 }
 
-/* Where the surface lies, and M with it. */
+/* Position of the surface, and M with it. */
 static void place_surface(const mps_fluid *f, int64_t i, const double *M, double length,
                           mpsi_fluid_local *local) {
   const double l0 = f->l0, e[2] = {-local->m[0] / length, -local->m[1] / length};
@@ -78,7 +78,7 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
   invert(with, local->with_surface);
 }
 
-/* Says to all within 1.6 l0 of a surface particle, own images included, that they may be in its
+/* Marks all particles within 1.6 l0 of a surface particle, own images included, as possibly in its
  * zone. At a bent wall two particles may be at different distances from each other's images. */
 static void tell_zone(mps_fluid *f, int64_t i) {
   const double reach2 = 1.2 * ZONE * ZONE * f->l0 * f->l0;
@@ -133,7 +133,7 @@ static void mirrored_moment(const mps_fluid *f, int64_t ghost, double *m) {
   }
 }
 
-/* Who is near the surface, and the surface's mean direction there. */
+/* Particles near the surface, and the surface's mean direction there. */
 static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   const double reach2 = ZONE * ZONE * f->l0 * f->l0;

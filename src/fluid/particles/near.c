@@ -1,9 +1,9 @@
-/* near.c - who is near whom: all particles and ghosts closer than re to each particle, found by
+/* near.c - neighbour lists: all particles and ghosts closer than re to each particle, found by
  * cells of half that size, and the weights w of the pairs.
  *
- * Cells ascend in y first, so that the cells a search looks at lie side by side in each column of
- * cells. Particles are sorted in the same order now and then (step.c), so that indices of
- * neighbours are near each other too.
+ * Cells ascend in y first, so that the cells of a search are contiguous in each column of cells.
+ * Particles are sorted in the same order now and then (step.c), so that indices of neighbours are
+ * near each other too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
@@ -47,7 +47,7 @@ static int64_t cell_along(const cells *c, int axis, double x) {
   return (int64_t)((x - c->low[axis]) * c->inverse);
 }
 
-/* Of the sorted cloud, whose last part is read in whole vectors. */
+/* Length of the sorted cloud, padded to whole vectors. */
 static int64_t sorted_room(int64_t all) { return (all + 7) / 8 * 8 + 24; }
 
 static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
@@ -82,7 +82,7 @@ static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
   return MPS_OK;
 }
 
-/* Sorts the cloud by cells: slot[] says which index stands at each place, slot_x where it is. */
+/* Sorts the cloud by cells: slot[] has the index at each place, slot_x its position. */
 static void sort_cloud(mps_fluid *f, cells *c) {
   const int64_t all = f->count + f->ghosts, number = c->n[0] * c->n[1];
   int32_t *first = f->lower_col_room.item, *cell = first + number + 1;
@@ -117,7 +117,7 @@ static void column_range(const cells *c, int64_t column, double y, int64_t *begi
 }
 
 /* Neighbours of particle i and the squares of their distances; at most `room` - 1 are written, and
- * one that does not count. Returns their number. */
+ * one that is not counted. Returns their number. */
 static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t room, int32_t *index,
                       double *r2) {
   const double y = f->x[1][i];
@@ -166,7 +166,8 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
   const int64_t limit = full < p->pairs ? full : p->pairs;
   int64_t at = chunk * p->per_chunk;
   double r2[CROWD + MPSI_FLUID_WIDE];
-  int32_t apart[CROWD + MPSI_FLUID_WIDE]; /* where the stretch has no room for all candidates */
+  int32_t
+      apart[CROWD + MPSI_FLUID_WIDE]; /* where the chunk's memory is too small for all candidates */
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
     const int64_t left = limit - at;
     int32_t *index = left >= CROWD + MPSI_FLUID_WIDE ? f->index + at : apart;

@@ -1,4 +1,4 @@
-/* particles.c - particles that the caller edits, adds and removes between steps.
+/* particles.c - particles edited, added and removed between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/fluid_private.h"
 
@@ -11,8 +11,8 @@ static int64_t room_for_ghosts(int64_t count) {
   return (int64_t)(12.0 * sqrt((double)count)) + 256;
 }
 
-/* The arrays over particles, from three blocks, in place of smaller ones; what they held is found
- * again. false: as before. */
+/* The arrays over particles, from three blocks, in place of smaller ones; their contents are
+ * computed again. false: as before. */
 bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   if (count <= f->capacity) return true;
   mpsi_fluid_system *s = &f->system;
@@ -43,7 +43,7 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   mpsi_free(f->context, f->state);
   f->slab = block, f->local = local, f->state = state;
   for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
-  f->pressure = s->right; /* of a solution, whose right side is of no more use */
+  f->pressure = s->right; /* of a solution, whose right side is not needed any more */
   f->start = (int64_t *)(block + DOUBLES * n);
   f->near = (int32_t *)(block + (DOUBLES + 1) * n);
   s->lower_end = f->near + n;
@@ -99,7 +99,7 @@ mps_status mpsi_fluid_commit(void *self, const char *function, const char *field
   return MPS_OK;
 }
 
-/* The set may still refuse what it is asked for: the surface is unknown when it has changed. */
+/* The set may still return an error: the surface is unknown once it has changed. */
 static void expect_change(mps_fluid *f, mpsi_fluid_change by) {
   double kinetic;
   f->energy_before = mpsi_fluid_energy(f, &kinetic);
@@ -145,7 +145,7 @@ static int passed(const mps_fluid *f, uint32_t open, double x, double y) {
   return -1;
 }
 
-/* What a particle carries out is taken from those that stay, as by an impulse. */
+/* The momentum of a removed particle is subtracted from the total, as by an impulse. */
 static void carry_out(const mps_fluid *f, mpsi_fluid_wall *w, const double *x, const double *u) {
   const double mass = f->def.density * f->l0 * f->l0 * f->def.measure;
   const double spin = mass * (x[0] * u[1] - x[1] * u[0]);
@@ -182,7 +182,7 @@ void mpsi_fluid_let_go(mps_fluid *f) {
   mpsi_particles_take_out(f->particles, gone);
 }
 
-/* What came or went with the particles is no work. */
+/* Energy of added or removed particles is no work. */
 void mpsi_fluid_renew(void *self) {
   mps_fluid *f = self;
   double kinetic;

@@ -1,13 +1,13 @@
 /* classical.c - the scheme of the first papers on MPS (Koshizuka, Tamako and Oka 1995), for
  * comparison only (mps/experimental.h): gravity moves the particles first, then a pressure that
- * follows from the density they have by that takes them back,
+ * follows from their density corrects the density,
  *
  *   u* = u + dt g,  x* = x + dt u*,
  *   (2 d/(lambda n0)) sum w (p_j - p_i) = -gamma (rho/dt^2) (n* - n0)/n0,  p >= 0,
  *   u = u* - (dt/rho) (d/n0) sum w (p_j - p_min) dx/r^2,  x likewise,
  *
- * w = re/r - 1, re 2.1 l0 in n and the gradient, 3.1 l0 in the Laplacian, d = 2, and p = 0 where
- * n* < .97 n0. Walls are mirror images here too, with their parent's p.
+ * w = re/r - 1, re 2.1 l0 in n and the gradient, 3.1 l0 in the Laplacian, d = 2, and p = 0 where n*
+ * < .97 n0. Walls are mirror images here too, with their parent's p.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
@@ -77,7 +77,7 @@ static void weigh(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 
 mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_status status) {
   mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, fall);
-  f->stage = MPSI_FLUID_MOVED; /* walls are where the step ends */
+  f->stage = MPSI_FLUID_MOVED; /* walls are at their positions of the end of the step */
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
   status = mpsi_fluid_settle_alike(f, function, status);

@@ -6,12 +6,12 @@
 
 #include <string.h>
 
-#define LEAST 5000       /* particles: fewer are solved for sooner without */
+#define LEAST 5000       /* particles: below, the solution is faster without */
 #define TILE 16.0        /* l0, side of an aggregate */
 #define COARSER 1.5      /* of the side, where there are too many aggregates */
 #define MOST_WORK 300    /* additions of a factorisation, a particle */
 #define CLOSED 1e-6      /* tolerance of a fluid without surface, at least */
-#define NOTHING 1e-8     /* of the diagonal: a sum of a row that counts as 0 */
+#define NOTHING 1e-8     /* of the diagonal: a row sum below is taken as 0 */
 #define MOST_BESIDE 4096 /* aggregates that a row has neighbours in: as many as these (near.c) */
 
 /* ---- aggregates ------------------------------------------------------------------------------ */
@@ -55,7 +55,7 @@ static int32_t fill_tiles(mps_fluid *f, int64_t begin, int64_t end, const box *b
   return count;
 }
 
-/* Tiles that are larger where the block is strewn. */
+/* Tiles that are larger where the block is scattered. */
 static void tile_block(mps_fluid *f, int64_t begin, int64_t end, int64_t block) {
   mpsi_fluid_coarse *c = f->coarse;
   const box b = bounds(f, begin, end);
@@ -96,7 +96,7 @@ typedef struct beside {
   double w[MOST_BESIDE];
 } beside;
 
-/* Weights of row i by the aggregates of its neighbours; returns what the row has in its own. */
+/* Weights of row i by the aggregates of its neighbours; returns that of its own. */
 static double split_row(const mps_fluid *f, int64_t i, beside *b) {
   const int32_t *index = f->index + f->start[i], *of = f->coarse->of, here = of[i];
   const float *w = f->w + f->start[i];
@@ -200,7 +200,7 @@ static int64_t end_block(const mps_fluid *f) {
   return (f->own[1] + f->coarse->block - 1) / f->coarse->block;
 }
 
-/* Values [first, end) of `count`, which this rank has, to all. */
+/* Sends this rank's values [first, end) of `count` to all. */
 static void tell(mps_fluid *f, int64_t count, double *values, int64_t first, int64_t end) {
   if (!f->partition) return;
   for (int64_t k = 0; k < count; k++)
@@ -238,7 +238,7 @@ static mps_status make_aggregates(mps_fluid *f, const char *function) {
   return mpsi_fluid_settle(f, function, status);
 }
 
-/* *crowded: a block has more slots than its entries can name. */
+/* *crowded: a block has more slots than its entries can index. */
 static mps_status make_rows(mps_fluid *f, const char *function, bool *crowded) {
   mpsi_fluid_coarse *c = f->coarse;
   row_pass p = {.fluid = f};
@@ -308,8 +308,8 @@ mps_status mpsi_fluid_coarsen(mps_fluid *f, const char *function, int64_t block,
   mps_status status = MPS_OK;
   c->used = false;
   if (f->count < LEAST) return MPS_OK;
-  /* Without a surface A is singular but for 1e-10 of its diagonal, and so is E: its answers bring
-   * some 1e-7 of the right side into the residual. */
+  /* Without a surface A is singular but for 1e-10 of its diagonal, and so is E: its solutions add
+   * some 1e-7 of the right side to the residual. */
   if (f->report.surface == 0 && f->def.tolerance < CLOSED) return MPS_OK;
   c->block = block, c->blocks = blocks;
   c->side = TILE * f->l0;

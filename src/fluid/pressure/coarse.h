@@ -1,16 +1,17 @@
 /* coarse.h - the coarse space of the pressure's conjugate gradients (pcg.c): functions that are
  * constant over aggregates, tiles of about 16 by 16 particles, columns of Z. Without it the number
- * of iterations grows as the number of particles along the fluid's side; with it the error that an
- * iteration has to deal with is that within an aggregate.
+ * of iterations grows as the number of particles along the fluid's side; with it iterations reduce
+ * the error within aggregates only.
  *
  * Deflation (Nicolaides 1987): with E = Z^T A Z, the residual r stays at right angles to Z, and the
- * preconditioned one, v, becomes v - Z E^-1 (A Z)^T v. pcg.c has no product with A; it needs
- * U^-T A (v - Z e) = U^-T (A v - A Z e), so that A Z e joins what its solution with U^T begins
- * from. A Z has entries only near edges of aggregates and at the free surface, about 1.4 a row.
+ * preconditioned one, v, becomes v - Z E^-1 (A Z)^T v. pcg.c has no product with A; it needs U^-T A
+ * (v - Z e) = U^-T (A v - A Z e), so that A Z e joins what its solution with U^T begins from. A Z
+ * has entries only near edges of aggregates and at the free surface, about 1.4 a row.
  *
- * An aggregate lies in one block of the preconditioner. A block adds up what its rows give to its
- * own aggregates and to others near by, its slots; the sums over blocks are then taken in the order
- * of the slots, on every rank, which all solve the coarse equation. So the bits are those of any
+ * An aggregate lies in one block of the preconditioner. A block sums the contributions of its rows
+ * to its own aggregates and to others near by, its slots; the sums over blocks are then taken in
+ * the order of the slots, on every rank, which all solve the coarse equation. So the bits are those
+ * of any
  * number of threads and ranks. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_FLUID_COARSE_H
 #define MPSI_FLUID_COARSE_H
@@ -44,7 +45,7 @@ struct mpsi_fluid_coarse {
   mpsi_envelope matrix; /* E */
 };
 
-/* Makes aggregates, A Z and the factors of E for the present matrix; `block`: particles in a block
+/* Builds aggregates, A Z and the factors of E for the present matrix; `block`: particles in a block
  * of the preconditioner, of `blocks`. Collective. */
 mps_status mpsi_fluid_coarsen(mps_fluid *fluid, const char *function, int64_t block,
                               int64_t blocks);
@@ -65,7 +66,7 @@ static inline void mpsi_fluid_coarse_deflate(const mpsi_fluid_coarse *c, int64_t
                                              double *v) {
   for (int64_t i = first; i < end; i++) v[i] -= c->value[c->of[i]];
 }
-/* Has x and the residual system.r = b - A x begin with a residual at right angles to Z; returns its
+/* Changes x and the residual system.r = b - A x such that it is orthogonal to Z; returns its
  * square. Collective. */
 double mpsi_fluid_coarse_start(mps_fluid *fluid);
 bool mpsi_fluid_coarse_create(mps_fluid *fluid); /* false: no memory */

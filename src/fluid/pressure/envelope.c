@@ -38,7 +38,7 @@ bool mpsi_envelope_make(mps_context *context, mpsi_envelope *e) {
   return true;
 }
 
-/* In four sums, whatever the compiler makes of them. */
+/* In four partial sums, independent of the compiler's choices. */
 static double dot(int64_t count, const double *a, const double *b) {
   double sum[4] = {0.0, 0.0, 0.0, 0.0};
   int64_t k = 0;

@@ -1,5 +1,5 @@
-/* envelope.h - a small symmetric matrix of which each row keeps what lies between its first entry
- * and the diagonal, and its factors L D L^T in the same place: the coarse equation of coarse.h.
+/* envelope.h - a small symmetric matrix in envelope storage, each row from its first entry to the
+ * diagonal, and its factors L D L^T in the same place: the coarse equation of coarse.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_FLUID_ENVELOPE_H
 #define MPSI_FLUID_ENVELOPE_H
@@ -27,7 +27,7 @@ static inline double *mpsi_envelope_at(const mpsi_envelope *e, int64_t i, int64_
   return i == j ? e->diagonal + i : e->value + e->start[i] + j - e->first[i];
 }
 /* A pivot below 1e-8 of its diagonal belongs to an unknown that the others determine up to
- * round-off, as the last one where the matrix is singular: it is left out, and its value is 0. */
+ * round-off, as the last one where the matrix is singular: it is skipped, and its value is 0. */
 void mpsi_envelope_factor(mpsi_envelope *e);
 void mpsi_envelope_solve(const mpsi_envelope *e, double *x); /* in place */
 void mpsi_envelope_drop(mps_context *context, mpsi_envelope *e);

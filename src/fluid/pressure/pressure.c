@@ -5,11 +5,11 @@
  * symmetric and positive definite, exact for a linear q (Chen 2014, Tsuruta 2015). k holds the
  * density: .003 (n/n0 - 1), not below -.0003; near the surface only what is above 0 (Tanaka 2010,
  * Khayyer and Gotoh 2011). It is a rate in time: with steps below .05 (l0/g)^1/2 it is that much
- * less. And it is less by |n/n0 - 1|/.003 where that is below 1: waves change n a little without
- * changing the density, and a source in proportion to it took 1.5 % of a wave in 20 periods, at any
- * spacing. Images of particles beyond a wall have their parent's q and an offset that the wall's
- * acceleration a gives, -rho (a . N) times their distance, so they bring no unknowns; particles
- * apart from the rest have no row and no column. SPDX-License-Identifier: BSD-3-Clause */
+ * less. And it is less by |n/n0 - 1|/.003 where that is below 1: waves change n slightly without
+ * changing the density, and a source in proportion to it damped a wave by 1.5 % in 20 periods, at
+ * any spacing. Images of particles beyond a wall have their parent's q and an offset that the
+ * wall's acceleration a gives, -rho (a . N) times their distance, so they add no unknowns; isolated
+ * particles have no row and no column. SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
 #define DENSITY 0.003       /* k over the excess of n/n0 */
@@ -17,7 +17,7 @@
 #define FULL_STEP 0.05      /* (l0/g)^1/2: with shorter steps k is less */
 #define LEAST_DENSITY -3e-4 /* k */
 
-/* Share of k in a step of this length. */
+/* Fraction of k in a step of this length. */
 static double step_share(const mps_fluid *f) {
   return fmin(f->dt * mpsi_fluid_rate(f) / FULL_STEP, 1.0);
 }
@@ -28,7 +28,7 @@ static double density_source(const mps_fluid *f, int64_t i, double share) {
   return share * fmax(k, f->zone[i] ? 0.0 : LEAST_DENSITY);
 }
 
-/* The diagonal, and a start vector that goes on as q has changed in the last step. */
+/* The diagonal, and a start vector by extrapolation of q over the last step. */
 static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   mpsi_fluid_system *s = &f->system;
@@ -72,9 +72,8 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
   }
 }
 
-/* No suction that the surface has not: where p would be below 0 it is 0. Particles apart have p =
- * 0.
- */
+/* No suction beyond that of the surface: where p would be below 0 it is 0. Isolated particles have
+ * p = 0. */
 static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   for (int64_t i = begin; i < end; i++) {

@@ -1,6 +1,6 @@
-/* solver.c - the pressure equation handed to a solver of the caller (mps/fluid_solver.h): the
- * matrix by rows with the ghosts' columns folded into their parents', and what the solver answers,
- * checked. SPDX-License-Identifier: BSD-3-Clause */
+/* solver.c - the pressure equation for a solver of the caller (mps/fluid_solver.h): the matrix by
+ * rows with the ghosts' columns added to their parents', and the check of its solution.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
 
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#define ROUNDING 1e-12 /* of |b|: what no solver need be better than */
+#define ROUNDING 1e-12 /* of |b|: the smallest tolerance that is required of a solver */
 
 static const mps_fluid_solver_def defaults = {.struct_size = sizeof(mps_fluid_solver_def)};
 
@@ -24,7 +24,7 @@ void mpsi_fluid_drop_solver(mps_fluid *f) {
   f->outside = NULL;
 }
 
-/* Status of all ranks, and whether all have such a solver. */
+/* Status of all ranks, and a check that all have such a solver. */
 static mps_status settle_solver(mps_fluid *f, const char *function, mps_status status, bool given,
                                 const mps_fluid_solver_def *def) {
   mpsi_given list;
@@ -111,8 +111,8 @@ static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *
   return count;
 }
 
-/* The rows of a chunk one after the other, from where its pairs and diagonals leave room;
- * start[i + 1] receives the length of row i. */
+/* The rows of a chunk one after the other, in the memory behind its pairs and diagonals; start[i +
+ * 1] receives the length of row i. */
 static void fill_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   mpsi_fluid_outside *o = f->outside;

@@ -1,8 +1,8 @@
 /* partition.c - see partition.h.
  *
- * Who is near whom changes with every step, and with it what ranks need of each other. A rank that
- * needs a particle goes on getting it until the set is sorted again: after a few steps hardly any
- * is new, and the way of the messages stays. SPDX-License-Identifier: BSD-3-Clause */
+ * Neighbours change with every step, and with them the halo of a rank. A particle stays in the halo
+ * until the set is sorted again: after a few steps hardly any is new, and the pattern of the
+ * messages stays. SPDX-License-Identifier: BSD-3-Clause */
 #include "partition.h"
 
 #include "body/body_internal.h"
@@ -79,7 +79,7 @@ mps_status mpsi_fluid_settle_max(mps_fluid *f, const char *function, mps_status 
   return mpsi_domain_agree_max(f->def.domain, function, status, count, values);
 }
 
-/* What all ranks have: how walls, bodies and loads move in the step, or have moved. */
+/* Values that all ranks must agree on: motions of walls and bodies, and loads, in the step. */
 static void give_state(const mps_fluid *f, mpsi_given *list) {
   mpsi_given_begin(list);
   mpsi_give(list, "the number of particles", (double)f->count);
@@ -225,7 +225,7 @@ static mps_status join(mps_fluid *f, const char *function, link *l, wanted_fn wa
 
 /* ---- the way back ---------------------------------------------------------------------------- */
 
-/* To each owner the number of the first of its guests here, and who they are. */
+/* Sends each owner the number of its first guest here, and the guests' indices. */
 static mps_status ask_owners(mps_fluid *f, const char *function, mpsi_mailbox *box) {
   const mpsi_fluid_partition *s = f->partition;
   const link *l = &s->near;
@@ -339,7 +339,7 @@ mps_status mpsi_fluid_find_halo(mps_fluid *f, const char *function) {
   return status;
 }
 
-/* ---- what they tell one another -------------------------------------------------------------- */
+/* ---- exchange -------------------------------------------------------------------------------- */
 
 void mpsi_fluid_tell_near(mps_fluid *f, int32_t columns, double *const *column) {
   if (f->partition) copy(f, &f->partition->near, columns, column, column);
@@ -362,7 +362,7 @@ void mpsi_fluid_tell_exact(mps_fluid *f, int32_t count, mpsi_exact *sums) {
     note(f->partition, mpsi_domain_sum_exact(f->partition->domain, "mps_fluid", count, sums));
 }
 
-/* A sum is on its rank, and less than any number on others; what is none must not be sent. */
+/* A sum is on its rank, and below any number on others; a NaN must not be sent. */
 void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
   if (!f->partition) return;
   const int64_t units = (f->count + unit - 1) / unit;
@@ -393,7 +393,7 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
     f->local[i].m[0] = y->p[i], f->local[i].m[1] = y->q[i], f->local[i].h = y->r[i];
     s->mark[k] = atomic_load_explicit(&f->zone[i], memory_order_relaxed);
   }
-  /* several ranks may have copies of a particle: one after the other */
+  /* several ranks may have copies of a particle: applied in turn */
   double *in = s->back.in;
   if (s->lost == MPS_OK) note(s, mpsi_halo_begin(s->back.halo, "mps_fluid", 1, &s->mark));
   if (s->lost == MPS_OK) note(s, mpsi_halo_end(s->back.halo, "mps_fluid", &in));

@@ -1,16 +1,15 @@
-/* probe.c - what the fluid does at its edges: pressures along walls, the forces that they make, and
- * the level of the surface.
+/* probe.c - pressures along walls, their forces, and the level of the surface.
  *
  * The pressure at a point of a wall is a weighted least-squares fit, linear ALONG the wall, with
  * the weight (1 - r/(2.1 l0))^2, of q - rho (a . N)(distance from the wall), N out of the fluid;
  * then p = q - rho g (height - level), and 0 where that is less than the air's at a surface near,
- * or suction. What loads do to a particle counts like -a of the wall.
+ * or suction. The acceleration of a particle by loads counts like -a of the wall.
  *
  * Where a wall that moves ends in a free surface, q is r ln r: a line through the particles alone,
  * extrapolated over the half spacing above them, has .1 rho a l0^2 too much force. So the surface
- * above a particle is a point of the fit too, with the air's pressure. A particle stands for a
- * spacing along the wall and the surface for the end of one: it has half the weight, the less the
- * more the water's surface goes along the wall, or the wall is level.
+ * above a particle is a point of the fit too, with the air's pressure. A particle represents a
+ * spacing along the wall, the surface point the end of one: it has half the weight, less where the
+ * water's surface is along the wall, or the wall is level.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
@@ -22,9 +21,9 @@
 
 /* A particle near a wall. */
 typedef struct neighbour {
-  double d, s, q; /* distance; place along the wall; q carried over to it */
+  double d, s, q; /* distance; coordinate along the wall; q extrapolated to it */
   double air;     /* pressure on its surface, Pa; -infinity where it is inside */
-  double least;   /* pressure that it has at least, Pa */
+  double least;   /* its least pressure, Pa */
   double part;    /* of the weight, for the surface above; 0: none */
   double top[3];  /* d, s and q there */
   int64_t i;
@@ -101,7 +100,7 @@ static void find_top(const mps_fluid *f, const mpsi_fluid_wall *w, neighbour *n)
       n->air + mpsi_fluid_head(f, x[0][n->i] + rise * f->up[0], x[1][n->i] + rise * f->up[1]);
 }
 
-/* What a particle contributes: false where it is too far from the wall. Its acceleration is along
+/* Term of a particle in the fit: false where it is too far from the wall. Its acceleration is along
  * the normal into the fluid, -N. */
 static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, neighbour *out) {
   const double x = f->x[0][i], y = f->x[1][i];
@@ -119,8 +118,8 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, n
   return true;
 }
 
-/* The particles near a wall, in the order of the set, to near_wall_room: all that are have had an
- * image there, unless something has gone further since than images reach beyond the fit. */
+/* The particles near a wall, in the order of the set, to near_wall_room: each has an image there,
+ * unless displacements since exceed the reach of images beyond the fit. */
 static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
                          int64_t *count) {
   const bool imaged = f->travel < f->weight.re - REACH * f->l0;
@@ -147,12 +146,12 @@ static bool among_walls(const mps_fluid *f, int32_t b, const double *x) {
   return !f->faces || !mpsi_fluid_inside_body(f, f->wall[b].of_body, x);
 }
 
-/* Distance of a wall's points: the spacing, or a face's length in whole parts. */
+/* Spacing of a wall's points: l0, or a face's length in whole parts. */
 static double pitch(const mps_fluid *f, const mpsi_fluid_wall *w) {
   return w->of_body ? w->length / fmax(round(w->length / f->l0), 1.0) : f->l0;
 }
 
-/* Places of the wall's points that have particles near: numbers low to high - 1. */
+/* Points of the wall with particles near: numbers low to high - 1. */
 static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near, int64_t *low,
                          int64_t *high) {
   const neighbour *list = f->near_wall_room.item;
@@ -176,7 +175,7 @@ static bool sees_point(const mps_fluid *f, int32_t b, double along, int64_t i) {
   return !mpsi_fluid_hidden(f, b, x, at);
 }
 
-/* Calls `point` for each wetted point of wall b with its place and pressure. */
+/* Calls `point` for each wetted point of wall b with its position and pressure. */
 typedef void (*point_fn)(void *user, const double *x, double p);
 
 static mps_status for_points(mps_fluid *f, int32_t b, const char *function, point_fn point,
@@ -234,7 +233,7 @@ static void add_force(void *user, const double *x, double p) {
 
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
-  if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_tell_local(f); /* by then the rooms are taken */
+  if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_tell_local(f); /* the memory is allocated by then */
   for (int32_t b = 0; status == MPS_OK && b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
@@ -311,7 +310,7 @@ mps_status mps_fluid_get_wall(const mps_fluid *handle, int32_t number, int64_t c
   return status;
 }
 
-/* Points are given on the wall as it is, or as it was without displacement. */
+/* Points are on the wall at its present position, or without displacement. */
 static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
                                int64_t count, const double *x) {
   for (int64_t k = 0; k < count; k++) {

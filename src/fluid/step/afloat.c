@@ -1,12 +1,11 @@
-/* afloat.c - bodies that the water carries. In each step the accelerations a (two of the reference
- * point and one of the rotation, times a length) are sought with which pressure, loads and inertia
- * agree:
+/* afloat.c - floating bodies. In each step the accelerations a (two of the reference point and one
+ * of the rotation, times a length) solve the balance of pressure, loads and inertia:
  *
  *   F(a) + loads - M a = 0,  M the body's masses.
  *
  * F is linear in a but for suction that is cut off: F = F0 - M_a a, M_a the added masses. So
- * Newton's method with E = M + M_a is stable however light the body is. E is learnt from the
- * solutions made (Broyden 1965) and kept from step to step, so that two or three solutions do.
+ * Newton's method with E = M + M_a is stable however light the body is. E is updated by the
+ * solutions (Broyden 1965) and kept from step to step, so that two or three solutions are enough.
  *
  * The pressure acts through the step: velocity first, then place, as the particles move
  * (mpsi_body_advance). SPDX-License-Identifier: BSD-3-Clause */
@@ -20,7 +19,7 @@
 #define REPEATS 40      /* most solutions a step */
 #define AGREED 2e-4     /* of the acceleration */
 #define FLOOR 2e-5      /* of gravity */
-#define FIRST_ADDED 1.0 /* of the displaced mass: added mass before anything is known */
+#define FIRST_ADDED 1.0 /* of the displaced mass: initial added mass */
 
 mps_status mps_fluid_float_body(mps_fluid *f, int32_t number, int32_t floats) {
   if (!f) return MPS_ERROR_ARGUMENT;
@@ -66,9 +65,9 @@ static void masses(const mpsi_fluid_body *body, double length, double *mass) {
   mass[2] = body->body->def.inertia[2] / (length * length);
 }
 
-/* Forces in a step of dt that the accelerations do not explain. Those of other solvers are the
- * impulses that they have given to the body since it last moved, and collisions with the water have
- * given theirs in the step before. */
+/* Residual of the forces in a step of dt with these accelerations. Forces of other solvers are
+ * their impulses on the body since its last step; collisions with the water are those of the
+ * previous step. */
 static void imbalance(const mpsi_fluid_body *own, const double *mass, double length, double dt,
                       double *g) {
   const mps_body *body = own->body;
@@ -83,7 +82,7 @@ static void imbalance(const mpsi_fluid_body *own, const double *mass, double len
   for (int c = 0; c < 3; c++) g[c] -= mass[c] * own->rate[c];
 }
 
-/* Masses with the added ones of a body of whose water nothing is known. */
+/* Masses with initial added ones. */
 static void first_guess(const mps_fluid *f, mpsi_fluid_body *own, const double *mass,
                         double length) {
   const double displaced =
@@ -92,7 +91,7 @@ static void first_guess(const mps_fluid *f, mpsi_fluid_body *own, const double *
   for (int c = 0; c < 3; c++) own->mass[4 * c] = mass[c] + displaced * (c < 2 ? 1.0 : 0.25);
 }
 
-/* x of E x = g, by Cramer's rule; false where E is no mass. */
+/* x of E x = g, by Cramer's rule; false where E is not positive definite. */
 static bool solve3(const double *E, const double *g, double *x) {
   const double minor[3] = {E[4] * E[8] - E[5] * E[7], E[5] * E[6] - E[3] * E[8],
                            E[3] * E[7] - E[4] * E[6]};
@@ -109,7 +108,7 @@ static bool solve3(const double *E, const double *g, double *x) {
   return true;
 }
 
-/* What the change of g over that of a says of E. */
+/* Update of E by the change of g over that of a. */
 static void learn(double *E, const double *da, const double *dg) {
   const double square = da[0] * da[0] + da[1] * da[1] + da[2] * da[2];
   if (!(square > 0.0)) return;
@@ -123,9 +122,10 @@ typedef struct trial {
   double rate[3], g[3];
 } trial;
 
-/* Judges the last solution: true where the body's accelerations agree with it; else the next to
- * try. `before` is the trial before this one, if any. The body then moves with just these
- * accelerations, which the water has answered to: what is left of forces counts as the water's. */
+/* Checks the last solution: true where the body's accelerations are in balance with it; else sets
+ * the next iterate. `before` is the previous iterate, if any. The body then moves with exactly
+ * these accelerations, with which the pressure was solved: the residual of forces is assigned to
+ * the water. */
 static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool first) {
   const double length = mpsi_fluid_body_length(own, f);
   double mass[3], g[3], step[3], largest = 0.0, change = 0.0;

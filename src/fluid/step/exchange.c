@@ -1,14 +1,14 @@
-/* exchange.c - momentum of the water that its pressure on walls does not explain.
+/* exchange.c - exchange of momentum between water and walls besides the pressure.
  *
- * What goes to a wall: of a pair of a particle and an image the change of velocity along the
- * normals of the walls that the image is mirrored at, by smoothing and by collisions; that along a
- * wall of no slip by the viscosity; and what a particle loses that is put back off a wall. It
- * becomes part of the wall's impulse, and of a body's; one that floats feels it in the next step.
+ * To a wall: of a pair of a particle and an image the change of velocity along the normals of the
+ * walls that the image is mirrored at, by smoothing and by collisions; that along a wall of no slip
+ * by the viscosity; and the momentum of a particle that is moved back from a wall. It is part of
+ * the wall's impulse, and of a body's; it acts on a floating body in the next step.
  *
- * What is left has no owner: the gradients of the pressure at the particles sum up to the pressures
- * along the walls only nearly, smoothing is not the same from both sides of a pair of particles,
- * and cut velocities and shifts change momentum too. It is found as what the water has gained less
- * all of the above, gravity and loads.
+ * The remainder is an error of the scheme: the gradients of the pressure at the particles sum up to
+ * the pressures along the walls only approximately, smoothing is not symmetric in a pair of
+ * particles, and limited velocities and shifts change momentum too. It is computed as the change of
+ * the water's momentum less all of the above, gravity and loads.
  *
  * Sums are made by chunk, and over chunks without round-off: the same bits on any number of ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -86,8 +86,8 @@ void mpsi_fluid_stick(const mps_fluid *f, int64_t ghost, double *u) {
   }
 }
 
-/* Of the viscosity's change of velocity what is not along a normal: to the first wall of no slip.
- */
+/* Component of the viscosity's change of velocity that is not along a normal: to the first wall of
+ * no slip. */
 static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
                            const double *dv) {
   const uint32_t stuck = f->flips[ghost] & f->sticky;

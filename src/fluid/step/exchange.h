@@ -1,5 +1,5 @@
-/* exchange.h - what the water and its walls exchange of momentum besides the pressure: see
- * exchange.c. The loops over particles add to their chunk's sums.
+/* exchange.h - exchange of momentum between water and walls besides the pressure: see exchange.c.
+ * The loops over particles add to their chunk's sums.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_FLUID_EXCHANGE_H
 #define MPSI_FLUID_EXCHANGE_H
@@ -9,10 +9,11 @@
 /* Particle i, of this chunk, gets dv (m/s) from the wall. */
 void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, int64_t i,
                               const double *dv);
-/* Of dv, from an image, what is along the normals of the walls that it is mirrored at. */
+/* Component of dv, from an image, along the normals of the walls at which it is mirrored. */
 void mpsi_fluid_exchange_image(const mps_fluid *fluid, int64_t chunk, int64_t ghost, int64_t i,
                                const double *dv);
-/* What images have in the shares `smooth` and `viscous` of v that particle i takes over. */
+/* Contribution of images to the fractions `smooth` and `viscous` of v in the velocity of particle
+ * i. */
 void mpsi_fluid_exchange_smoothing(const mps_fluid *fluid, int64_t chunk, int64_t i, double smooth,
                                    double viscous);
 /* Sum of the changes of velocity, m/s, of particles of a chunk in the step. */

@@ -1,15 +1,14 @@
-/* move.c - from the pressure to the new velocities and positions:
+/* move.c - new velocities and positions from the pressure:
  *
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
  *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
  *
  * the first part of a .12 dt s0 near the surface but in breakers and the second times 10 dt s0 <= 1
- * where walls meet it, where v is what a linear velocity
- * field leaves over (moments.c) and s0 = sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu
- * takes the share nu dt n/S of v, and a only what that leaves. Guards: pairs that approach within
- * l0/2 share their momentum, who strikes a wall is stopped .35 l0 before it, |u| <= 1.1 of
- * the neighbours' largest plus a free fall's share, and nobody comes nearer than .1 l0 to a wall;
- * the report counts them. Then
+ * where walls meet it, where v is what a linear velocity field leaves over (moments.c) and s0 =
+ * sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu takes the share nu dt n/S of v, and a
+ * only what that leaves. Guards: pairs that approach within l0/2 collide, a particle that strikes a
+ * wall is stopped .35 l0 before it, |u| <= 1.1 of the neighbours' largest plus that of free fall,
+ * and no particle comes nearer than .1 l0 to a wall; the report counts them. Then
  *
  *   x += dt u + f,  u += b G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
  *
@@ -34,7 +33,7 @@
 #define OWN_IMAGE 0.7   /* l0: one and its image, .35 l0 from the wall, .. */
 #define IMPACT 0.3      /* (g/l0)^1/2: .. where they approach at this rate */
 
-/* How steep the flow at particle i is, 1 where it is as in breakers. */
+/* Steepness of the flow at particle i, 1 as in breakers. */
 static double steepness(const mps_fluid *f, int64_t i) {
   const double *G = f->local[i].gradient, s0 = mpsi_fluid_rate(f);
   const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
@@ -122,7 +121,7 @@ static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end, int64_t c
 
 /* ---- guards ---------------------------------------------------------------------------------- */
 
-/* Cuts velocities that no neighbour explains. */
+/* Limits velocities by those of the neighbours. */
 static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double allowed = 0.5 * sqrt(f->g * f->l0) + 2.0 * f->g * f->dt;
   int64_t cuts = 0;
@@ -316,7 +315,7 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
   f->system.sums[2 * chunk + 1] = far2;
 }
 
-/* m: the farthest that a wall goes in the step. */
+/* m: largest displacement of a wall in the step. */
 static double wall_travel(const mps_fluid *f) {
   double most = 0.0;
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {

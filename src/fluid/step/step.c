@@ -1,4 +1,4 @@
-/* step.c - the order of a step, its size, and what goes wrong.
+/* step.c - the order of a step, its size, and its errors.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 
@@ -57,7 +57,7 @@ static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
   return status;
 }
 
-/* Loads and the caller's forces on particles, over the step: the pressure then answers to them. */
+/* Loads and the caller's forces on particles, over the step, before the pressure solution. */
 static mps_status add_loads(mps_fluid *f, const char *function) {
   const mps_status status = mpsi_fluid_find_loads(f, function, f->time);
   if (status != MPS_OK) return status;
@@ -68,7 +68,7 @@ static mps_status add_loads(mps_fluid *f, const char *function) {
   return MPS_OK;
 }
 
-/* What a step that fails leaves as it was. */
+/* State that a failed step restores. */
 static void note_state(mps_fluid *f) {
   f->before = f->report;
   f->load_time_before = f->load_time;
@@ -80,7 +80,7 @@ static void note_state(mps_fluid *f) {
   }
 }
 
-/* Forgets what was done of a step, if one was begun. */
+/* Discards an open step, if any. */
 static void abandon(mps_fluid *f) {
   if (f->stage == MPSI_FLUID_BETWEEN) return;
   f->report = f->before;
@@ -95,8 +95,8 @@ static void abandon(mps_fluid *f) {
   f->stale = true;
 }
 
-/* A step is made in three parts. They read and write the cloud; the fields change when all is
- * done. Where one fails, the surroundings are found again when they are asked for. */
+/* A step is made in three parts. They read and write the cloud; the fields change when all is done.
+ * Where one fails, neighbours are computed again when needed. */
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mps_status status = mpsi_particles_ready(f->particles, function);
   if (status == MPS_OK) status = mpsi_fluid_look_ahead(f, function, dt);
@@ -197,8 +197,7 @@ double mps_fluid_time(const mps_fluid *f) { return f ? f->time : 0.0; }
 int64_t mps_fluid_steps(const mps_fluid *f) { return f ? f->steps : 0; }
 
 /* The library chooses no step below LEAST_STEP of that at rest, or of a thousandth of the run
- * (`span`, s) where nothing limits that: the fluid has gone astray, and the run would hardly end.
- */
+ * (`span`, s) where nothing limits that: the fluid has diverged, and the run would hardly end. */
 static mps_status check_dt(mps_fluid *f, const char *function, double span) {
   const double dt = mps_fluid_dt(f), rest = limit_at_rest(f);
   const double least = LEAST_STEP * (isfinite(rest) ? rest : 1e-3 * span);

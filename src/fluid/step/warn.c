@@ -1,9 +1,9 @@
-/* warn.c - what the model assumes and a step may break: walls that go little in a step and bend
- * little, particles that are fine enough for the flow, bodies that leave room for water above what
- * they stand on. A step that breaks it is refused, one that comes near says so to the log, once a
- * solver each, once a body where it is the body's.
+/* warn.c - assumptions of the model: walls that move little in a step and bend little, particles
+ * fine enough for the flow, bodies without acute corners of water at their boundary. A step that
+ * breaks them is an error, one that comes near is a warning in the log, once a solver each, or once
+ * a body.
  *
- * Images are those of the step's beginning, so a wall that goes a spacing passes particles. A bent
+ * Images are those of the step's beginning, so a wall that moves a spacing passes particles. A bent
  * wall mirrors at its local position along the normal that it has when plane: the error grows as
  * the square of the slope.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -16,7 +16,7 @@
 #define FAR_SLOPE 0.1     /* of a bent wall */
 #define MOST_SLOPE 1.0
 
-/* True the first time that this is asked of the solver. */
+/* True the first time that it is called for the solver. */
 static bool first_time(mps_fluid *f, uint32_t warning) {
   const bool first = !(f->warned & warning);
   f->warned |= warning;
@@ -35,7 +35,7 @@ void mpsi_fluid_warn_of_guards(mps_fluid *f) {
            (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
 }
 
-/* A body that rolls makes with time the acute corners that mpsi_fluid_add_body refuses. */
+/* A rolling body may develop acute corners, which mps_fluid_add_body does not accept. */
 void mpsi_fluid_warn_of_angles(mps_fluid *f) {
   for (int number = 0; f->faces && number < MPSI_FLUID_BODIES; number++) {
     const mpsi_fluid_body *body = &f->body[number];
@@ -54,7 +54,7 @@ void mpsi_fluid_warn_of_angles(mps_fluid *f) {
   }
 }
 
-/* The farthest that a node of the wall goes in the step, m. */
+/* Largest displacement of a node of the wall in the step, m. */
 static double travel_of(const mpsi_fluid_wall *w) {
   double most = 0.0;
   for (int64_t k = 0; k < w->nodes; k++) most = fmax(most, fabs(w->next.s[k] - w->now.s[k]));
