@@ -1,4 +1,4 @@
-/* boundary_kind.h - the words of mps_boundary_kind, by which a solver refuses those that it lacks.
+/* boundary_kind.h - names of mps_boundary_kind, for the error of a solver without a kind.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_BOUNDARY_KIND_H
 #define MPSI_BOUNDARY_KIND_H

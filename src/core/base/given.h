@@ -1,5 +1,5 @@
-/* given.h - what a caller has given, as a list of named numbers: ranks compare theirs, and a
- * message names the number that differs. SPDX-License-Identifier: BSD-3-Clause */
+/* given.h - arguments of a caller as a list of named numbers: ranks compare theirs, and a message
+ * names the number that differs. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_GIVEN_H
 #define MPSI_GIVEN_H
 
@@ -8,11 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-#define MPSI_GIVEN_MOST 160 /* what comes after is compared as one number */
+#define MPSI_GIVEN_MOST 160 /* the following are compared as one number */
 
 typedef struct mpsi_given {
   int32_t count;
-  uint64_t rest; /* hash of what comes after the most */
+  uint64_t rest; /* hash of the numbers beyond the capacity */
   const char *name[MPSI_GIVEN_MOST];
   double value[MPSI_GIVEN_MOST]; /* NaN: unset */
 } mpsi_given;
@@ -48,7 +48,7 @@ static inline void mpsi_give_vector(mpsi_given *list, const char *name, int32_t 
 #define MPSI_GIVE_VECTOR(list, def, member, count)                                                 \
   mpsi_give_vector(list, #member, count, (def)->member)
 
-/* What of a hash a double tells exactly. */
+/* The bits of a hash that a double holds exactly. */
 static inline double mpsi_hash_short(uint64_t hash) { return (double)(hash >> 12); }
 
 static inline void mpsi_give_bytes(mpsi_given *list, const char *name, const void *data,

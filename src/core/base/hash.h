@@ -1,4 +1,4 @@
-/* hash.h - a hash of bytes (FNV-1a), to tell whether two are given the same; not against malice.
+/* hash.h - a hash of bytes (FNV-1a), to compare arguments; not cryptographic.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_HASH_H
 #define MPSI_HASH_H
@@ -8,7 +8,7 @@
 
 #define MPSI_HASH UINT64_C(0xcbf29ce484222325) /* of nothing */
 
-/* Goes on with a hash over more bytes. */
+/* Continues a hash over more bytes. */
 static inline uint64_t mpsi_hash(uint64_t hash, const void *data, size_t bytes) {
   const unsigned char *at = data;
   for (size_t k = 0; k < bytes; k++) hash = (hash ^ at[k]) * UINT64_C(0x100000001b3);

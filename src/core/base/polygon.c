@@ -1,4 +1,4 @@
-/* polygon.c - what makes a list of corners a simple polygon.
+/* polygon.c - checks of a simple polygon.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "polygon.h"
 
@@ -50,7 +50,7 @@ static mps_status check_corners(mps_context *context, const char *function, int6
   return MPS_OK;
 }
 
-/* Edges that are not neighbours must not meet; the last is a neighbour of the first. */
+/* Edges that are not neighbours must not intersect; the last is a neighbour of the first. */
 static mps_status check_edges(mps_context *context, const char *function, int64_t n,
                               const double *xy) {
   for (int64_t k = 0; k < n; k++)

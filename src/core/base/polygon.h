@@ -6,7 +6,7 @@
 #include "core/internal.h"
 
 /* MPS_ERROR_ARGUMENT unless the n >= 3 finite corners xy[2 * k], xy[2 * k + 1] make a simple
- * polygon: no two edges cross or touch but neighbours at their corner. */
+ * polygon: no two edges intersect, except neighbours at their common corner. */
 mps_status mpsi_polygon_check(mps_context *context, const char *function, int64_t n,
                               const double *xy);
 

@@ -22,7 +22,8 @@ static mps_status check(mps_context *context, const char *function, const char *
   if (mpsi_in_range(range, value) || (zero[0] && value == 0.0)) return MPS_OK;
   char text[32];
   snprintf(text, sizeof text, "%.6g", value);
-  if (mpsi_in_range(range, strtod(text, NULL))) /* it would read as the bound that it is beyond */
+  if (mpsi_in_range(range,
+                    strtod(text, NULL))) /* rounded, it would read as the bound that it exceeds */
     snprintf(text, sizeof text, "%.17g", value);
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s%s, must be %s%g to %g", name,
                    text, table[range].unit, zero, table[range].low, table[range].high);

@@ -31,7 +31,7 @@ bool mpsi_in_range(mpsi_range range, double value);
 /* MPS_ERROR_ARGUMENT "<name> is <value> <unit>, must be <low> to <high>" for a value outside. */
 mps_status mpsi_check_range(mps_context *context, const char *function, const char *name,
                             double value, mpsi_range range);
-/* The same where 0 is allowed too. */
+/* The same, with 0 allowed too. */
 mps_status mpsi_check_range_or_0(mps_context *context, const char *function, const char *name,
                                  double value, mpsi_range range);
 

@@ -1,4 +1,4 @@
-/* room.h - arrays that grow and are filled anew, such as a grid and its lists that follow the
+/* room.h - arrays that grow and are refilled, such as a grid and its lists that follow the
  * particles. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_ROOM_H
 #define MPSI_ROOM_H
@@ -10,10 +10,10 @@ typedef struct mpsi_room {
   int64_t capacity;
 } mpsi_room;
 
-/* Ensures room for `count` items, keeping none of the contents; false when out of memory. Exactly
- * as much at first, then a little more than asked for: what moves needs no more. */
+/* Ensures room for `count` items, without their contents; false when out of memory. Exactly as much
+ * at first, then slightly more, so that arrays of moving particles are rarely reallocated. */
 bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size_t size);
-/* The same, never more than asked for: for what is large. */
+/* The same, never more than `count`: for large arrays. */
 bool mpsi_room_fit(mps_context *context, mpsi_room *room, int64_t count, size_t size);
 
 #endif

@@ -28,7 +28,8 @@ static void rotate(double a[3][3], double (*axis)[3], int i, int j) {
   }
 }
 
-/* It converges quadratically; 12 sweeps are far more than it ever needs, and end it for a NaN. */
+/* It converges quadratically; 12 sweeps are far more than it ever needs, and end the iteration for
+ * a NaN. */
 void mpsi_symmetric_principal(const double (*matrix)[3], double *value, double (*axis)[3]) {
   double a[3][3];
   memcpy(a, matrix, sizeof a);

@@ -1,9 +1,9 @@
 /* text.c - text files: loading, lines, words, numbers, errors.
  *
  * Numbers. strtod reads with the decimal point of the host's locale, and knows "nan" and hex. So
- * the notation is checked here, character by character, and only what is plain decimal goes to
- * strtod (correctly rounded in the C libraries of our platforms), under the "C" locale set for this
- * thread alone (uselocale, POSIX.1-2008), for just that call.
+ * the notation is checked here, character by character, and only plain decimal notation is passed
+ * to strtod (correctly rounded in the C libraries of our platforms), under the "C" locale set for
+ * this thread alone (uselocale, POSIX.1-2008), for just that call.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "text.h"
 
@@ -102,7 +102,7 @@ mps_status mpsi_file_read(mps_context *context, const char *function, const char
   FILE *file = fopen(path, "rb");
   if (!file) return fail_io(context, function, path, "open", errno);
   const mps_status status = read_all(context, function, path, limit, file, data, size);
-  (void)fclose(file); /* only read: nothing can be lost */
+  (void)fclose(file); /* read only: no data can be lost */
   if (status == MPS_OK) return MPS_OK;
   mpsi_free(context, *data);
   *data = NULL;

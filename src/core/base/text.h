@@ -19,12 +19,12 @@ typedef struct mpsi_slice {
 /* A text in memory, read line by line. A copy of the struct is a bookmark. */
 typedef struct mpsi_text {
   mps_context *context;
-  const char *function; /* public function on whose behalf */
+  const char *function; /* calling public function */
   const char *path;     /* for messages */
   mpsi_slice rest;      /* not read yet */
   int64_t line;         /* number of the line last read, from 1 */
   locale_t locale;      /* "C": numbers are read the same in every host */
-  char *owned;          /* what mpsi_text_close releases */
+  char *owned;          /* released by mpsi_text_close */
 } mpsi_text;
 
 /* The end of a long path, for messages. */
@@ -33,7 +33,7 @@ const char *mpsi_path_tail(const char *path);
 mps_status mpsi_file_read(mps_context *context, const char *function, const char *path,
                           int64_t limit, char **data, int64_t *size);
 /* Loads a file of at most `limit` bytes, or takes `size` bytes at `data`, which must outlive the
- * text. Fails on a NUL byte: not a text. Nothing to close after a failure. */
+ * text. Fails on a NUL byte: not a text. After a failure nothing is open. */
 mps_status mpsi_text_load(mps_context *context, const char *function, const char *path,
                           int64_t limit, mpsi_text *out);
 mps_status mpsi_text_wrap(mps_context *context, const char *function, const char *path,
@@ -45,16 +45,16 @@ mps_status mpsi_text_fail(const mpsi_text *text, const char *format, ...) MPSI_P
 
 /* The next line without its end (\n or \r\n); false at the end of the text. */
 bool mpsi_text_line(mpsi_text *text, mpsi_slice *line);
-/* Takes leading blanks away. */
+/* Removes leading blanks. */
 void mpsi_slice_trim(mpsi_slice *slice);
-/* Takes leading blanks and then a word away: up to a blank or a character of `stops`. Returns the
+/* Removes leading blanks and then a word: up to a blank or a character of `stops`. Returns the
  * word, empty at the end. */
 mpsi_slice mpsi_slice_word(mpsi_slice *slice, const char *stops);
 MPSI_INLINE int64_t mpsi_slice_size(mpsi_slice slice) { return slice.end - slice.begin; }
 /* The next word of the text, on this line or a later one; false at the end. Begin with an empty
  * line. */
 bool mpsi_text_word(mpsi_text *text, mpsi_slice *line, mpsi_slice *word);
-/* What follows `name` (ASCII, any case) in the slice; false where it does not occur. */
+/* The text behind `name` (ASCII, any case) in the slice; false where it does not occur. */
 bool mpsi_slice_find(mpsi_slice slice, const char *name, mpsi_slice *after);
 bool mpsi_slice_starts(mpsi_slice slice, const char *name, mpsi_slice *after);
 /* Printable copy for messages, cut to a short length. */

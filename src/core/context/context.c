@@ -1,4 +1,5 @@
-/* context.c - the context object: its life, and the hooks for log, progress and cancel.
+/* context.c - the context object: creation and destruction, and the hooks for log, progress and
+ * cancel.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "context_private.h"
 

@@ -12,20 +12,20 @@ struct mps_context {
   mps_context_def def;
   mps_error error;
   atomic_int executor_fault; /* the caller's executor gave a bad worker or index once */
-  int64_t failures;          /* how often `error` was written */
+  int64_t failures;          /* number of times `error` was written */
   int32_t threads;
   int32_t level;         /* 1, 3 or 4: of the instruction set of inner loops */
-  atomic_int references; /* the caller's one, and one for each living object */
+  atomic_int references; /* the caller's, and one for each existing object */
   mpsi_pool pool;        /* of MPS_CONTEXT_EXECUTOR_THREADS; its members lie behind the context */
 };
 
 /* memory.c: memory of the system where the caller gives no hooks. */
 void mpsi_use_system_memory(mps_context_def *def);
 
-/* Number of workers that the definition asks for (0 resolved to the processors available). */
+/* Number of workers of the definition (0 resolved to the processors available). */
 int32_t mpsi_executor_threads(const mps_context_def *def);
 
-/* Tries the caller's executor: whether each unit runs once, with a good worker's number. */
+/* Tests the caller's executor: whether each unit runs once, with a valid worker number. */
 bool mpsi_executor_probe(mps_context *context);
 
 #endif

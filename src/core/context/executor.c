@@ -1,4 +1,4 @@
-/* executor.c - parallel loops: serial, threads of our own, OpenMP, or the caller's parallel_for.
+/* executor.c - parallel loops: serial, own threads, OpenMP, or the caller's parallel_for.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "context_private.h"
 
@@ -11,7 +11,7 @@
 
 static int32_t processors(void) {
 #ifdef MPSI_OPENMP
-  const long count = omp_get_num_procs(); /* those that the process may use */
+  const long count = omp_get_num_procs(); /* processors that the process may use */
 #else
   const long count = sysconf(_SC_NPROCESSORS_ONLN);
 #endif
@@ -25,9 +25,9 @@ int32_t mpsi_executor_threads(const mps_context_def *def) {
 
 #ifdef MPSI_OPENMP
 static void openmp_for(int32_t threads, int64_t count, mps_context_task_fn task, void *data) {
-  /* The number of threads is a clause, never omp_set_num_threads: the host program's setting is
-   * not ours to change. Units are claimed one by one; what a unit computes does not depend on
-   * which worker runs it. */
+  /* The number of threads is a clause, never omp_set_num_threads: the host program's setting is not
+   * changed. Units are claimed one by one; the result of a unit does not depend on the worker that
+   * runs it. */
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (int64_t i = 0; i < count; i++) task(data, i, omp_get_thread_num());
 }
@@ -37,7 +37,7 @@ static void serial_for(int64_t count, mps_context_task_fn task, void *data) {
   for (int64_t i = 0; i < count; i++) task(data, i, 0);
 }
 
-/* The caller's executor is not trusted: a worker's number chooses scratch memory. */
+/* The caller's executor is checked: a worker's number selects scratch memory. */
 typedef struct guarded {
   mps_context_task_fn task;
   void *data;
@@ -101,7 +101,7 @@ void mpsi_parallel_for(mps_context *context, int64_t count, mps_context_task_fn 
 /* ---- waiting --------------------------------------------------------------------------------- */
 
 #define LOOKS 200      /* before a thread sleeps: some microseconds */
-#define SLEEP_NS 20000 /* and what the system adds */
+#define SLEEP_NS 20000 /* plus the system's overhead */
 
 bool mpsi_executor_is_own(const mps_context *context) {
   return context->def.executor != MPS_CONTEXT_EXECUTOR_CALLER;

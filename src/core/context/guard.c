@@ -1,4 +1,4 @@
-/* guard.c - re-entrancy of the objects that call back, and what is recorded of a callback's status.
+/* guard.c - re-entrancy of objects with callbacks, and the record of a callback's status.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "guard.h"
 

@@ -6,8 +6,8 @@
 
 #include "core/internal.h"
 
-/* The x86-64 level to use for the one asked for: 0 the best that processor and build have, 1 the
- * plain build. Returns 1, 3 or 4, or 0 when what is asked for is missing. */
+/* The x86-64 level to use for a requested one: 0 the best that processor and build have, 1 the
+ * plain build. Returns 1, 3 or 4, or 0 when the requested one is missing. */
 static inline int32_t mpsi_level(int32_t wanted) {
 #ifdef MPSI_X86_LEVELS
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&

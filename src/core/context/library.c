@@ -1,4 +1,4 @@
-/* library.c - what this build of the library is: version, optional parts, instruction levels.
+/* library.c - properties of this build: version, optional parts, instruction levels.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "levels.h"
 

@@ -1,12 +1,11 @@
-/* pool.c - threads that stay, and share units of work with the caller's thread.
+/* pool.c - persistent threads, which run units of work together with the caller's thread.
  *
- * Made for machines that others use too. Nobody waits for a thread that has not come: the caller
- * takes units like the others, closes the loop when there are no more, and waits only for threads
- * that are inside a unit. Whoever waits looks for some microseconds, which is what most waits last
- * on a quiet machine, then goes on looking but offers the processor to others between the looks -
- * perhaps to the very thread that is waited for - and at last sleeps. Sleep costs tens of
- * microseconds to wake from; a thread that came late for that reason has the others wait, and these
- * would sleep in turn, loop after loop.
+ * For machines with other load, too: a loop does not wait for threads that have not entered it. The
+ * caller runs units like the others, closes the loop when none are left, and waits only for threads
+ * inside a unit. A waiting thread spins for some microseconds, the usual wait on an idle machine,
+ * then spins with yields, and finally blocks on a condition variable. Waking takes tens of
+ * microseconds; a thread that is late for that reason makes the others wait, which would then block
+ * in turn, loop after loop: hence the long spin.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pool.h"
 
@@ -24,10 +23,10 @@ void mpsi_pause(void) {
 #endif
 }
 
-#define LOOKS 400  /* of a thread that waits: 5 to 20 microseconds */
-#define OFFERS 400 /* of its processor, before it sleeps: some 200 microseconds */
+#define LOOKS 400  /* of a waiting thread: 5 to 20 microseconds */
+#define OFFERS 400 /* yields, before it blocks: some 200 microseconds */
 
-/* Between two looks; false: it is time to sleep. */
+/* Pause between two polls; false: time to block. */
 static bool wait_more(int look) {
   if (look < LOOKS)
     mpsi_pause();
@@ -56,7 +55,7 @@ static void *live(void *argument) {
       if (atomic_load_explicit(&p->number, memory_order_relaxed) != seen) break;
     pthread_mutex_lock(&p->lock);
     while (!p->quit && !(p->open && p->number != seen)) {
-      seen = p->number; /* a loop that has been closed meanwhile is over */
+      seen = p->number; /* the loop has been closed meanwhile */
       p->asleep++;
       pthread_cond_wait(&p->work, &p->lock);
       p->asleep--;
@@ -76,8 +75,8 @@ static void *live(void *argument) {
   }
 }
 
-/* The host program's handlers of signals run in its own threads. Where a thread is refused, the
- * others do its work. */
+/* The host program's handlers of signals run in its own threads. Where a thread cannot be created,
+ * the others do its work. */
 static void start(mpsi_pool *p) {
   sigset_t all, old;
   sigfillset(&all);

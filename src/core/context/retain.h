@@ -1,4 +1,4 @@
-/* retain.h - one more owner for the immutable objects that solvers share with the caller. The
+/* retain.h - reference counts of the immutable objects that solvers share with the caller. The
  * public destroy function releases. Thread safe.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_RETAIN_H

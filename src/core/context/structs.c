@@ -1,5 +1,5 @@
-/* structs.c - definitions (in) and results (out) of any size, that of an older program or of a
- * newer one. SPDX-License-Identifier: BSD-3-Clause */
+/* structs.c - definitions (in) and results (out) of any size, of an older or a newer program.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
 
 #include <string.h>

@@ -1,6 +1,5 @@
-/* deal.c - sets whose particles are dealt to ranks as they come: every rank is given the same fill
- * and keeps an equal part of it, with the ids that one process would give. No rank ever has memory
- * for all of them.
+/* deal.c - sets in parts: every rank has the same fill and keeps an equal part of it, with the ids
+ * of one process. No rank ever has memory for all particles.
  *
  * A part is a slab across the longest side of the fill: an interval of the columns of sites along
  * that axis, and of the two columns at its ends the first or the last ones in the fill's order, so
@@ -62,7 +61,7 @@ static void find_bounds(const mpsi_site_runs *sites, int64_t *low, int64_t *high
   }
 }
 
-/* Numbers of sites in each column, from differences where runs begin and end. */
+/* Numbers of sites in each column, from differences at the ends of runs. */
 static void count_columns(const mpsi_site_runs *sites, int32_t axis, int64_t low, int64_t width,
                           int64_t *column) {
   memset(column, 0, (size_t)(width + 1) * sizeof *column);
@@ -105,7 +104,7 @@ void mpsi_slab_next(mpsi_slab *s, const mpsi_site_run *run, int64_t *begin, int6
     const int64_t at = s->first[e], length = run->end - run->begin;
     if (s->axis == 0) {
       const bool crosses = at >= run->begin && at < run->end;
-      /* of that column this run has one site, which lies below the bound or not */
+      /* this run has one site in that column, below the bound or not */
       bound[e] = at + (crosses && s->passed[e] < s->skip[e]);
       s->passed[e] += crosses;
     } else {

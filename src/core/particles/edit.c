@@ -1,5 +1,5 @@
-/* edit.c - the guard of the store: editing of fields by the caller, and the solvers and recorders
- * that hold a set.
+/* edit.c - access control of a set: editing of fields by the caller, and the solvers and recorders
+ * that hold the set.
  *
  *   caller                      set                                holders
  *   mps_particles_edit ------>  field open: steps are refused
@@ -141,7 +141,7 @@ mps_status mpsi_particles_tell(mps_particles *p, const char *function, const cha
 
 /* ---- editing --------------------------------------------------------------------------------- */
 
-/* Copies a field to what is kept of it, or back. */
+/* Copies a field to its backup, or back. */
 static void copy_former(const mps_particles *p, mpsi_field *field, bool back) {
   for (int32_t c = 0; c < field->components; c++) {
     char *column = mpsi_field_column(field, c), *kept = (char *)(field->former + c * p->count);
@@ -149,7 +149,7 @@ static void copy_former(const mps_particles *p, mpsi_field *field, bool back) {
   }
 }
 
-/* Keeps what a field is before the caller writes it; the memory stays for the next time. */
+/* Keeps a backup of a field before an edit; its memory is reused. */
 static mps_status keep_former(mps_particles *p, const char *function, mpsi_field *field) {
   const int64_t items = field->components * p->count;
   if (items > field->former_capacity || !field->former) {
@@ -194,7 +194,7 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_ed
   return MPS_OK;
 }
 
-/* The open field that `edit` is of; NULL with an error recorded. */
+/* The open field of `edit`; NULL with an error recorded. */
 static mpsi_field *find_open(const mps_particles *p, const char *function, const mps_edit *edit) {
   if (!edit) {
     (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "edit is NULL");
@@ -236,7 +236,7 @@ mps_status mps_particles_abandon(mps_particles *particles, mps_edit *edit) {
 
 /* ---- one value for all -------------------------------------------------------------------- */
 
-/* Fills a column; where a holder refuses that, the column is as before. */
+/* Fills a column; on a holder's error the column is as before. */
 static mps_status set_column(mps_particles *p, const char *function, const char *name,
                              int32_t component, double value) {
   double *column = mpsi_particles_column(p, name, component), *former = NULL;
@@ -254,7 +254,7 @@ static mps_status set_column(mps_particles *p, const char *function, const char 
   return status;
 }
 
-/* All ranks give a set in parts the same constants: solvers compare the hash. */
+/* Constants of a set in parts must be the same on all ranks: solvers compare the hash. */
 static uint64_t note_constant(uint64_t hash, const char *name, int32_t component, double value) {
   hash = mpsi_hash(hash, name, strlen(name) + 1);
   hash = mpsi_hash(hash, &component, sizeof component);

@@ -2,8 +2,8 @@
  *
  * Storage: a loop over particles reads many columns side by side. Columns that start at the same
  * offset in a 4 KiB page would compete for the same few lines of the first-level cache, and a load
- * would wait for the store to another column at the same offset. Large blocks are page aligned,
- * so each column is pushed STAGGER lines further into its page than the one before.
+ * would wait for the store to another column at the same offset. Large blocks are page aligned, so
+ * each column starts STAGGER lines later in its page than the previous one.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
@@ -18,7 +18,7 @@
 #define STAGGER 5 /* lines; odd, so that all 64 places of a page are used before one repeats */
 #define MAX_COMPONENTS 16
 
-/* The layout of a view is frozen: bindings spell it out. */
+/* The layout of a view is frozen: bindings repeat it. */
 _Static_assert(sizeof(mps_dtype) == 4, "mps_dtype is DLPack's DLDataType");
 _Static_assert(offsetof(mps_view, data) == 0 && offsetof(mps_view, shape) == 8 &&
                    offsetof(mps_view, stride) == 32 && offsetof(mps_view, dtype) == 56 &&
@@ -168,7 +168,7 @@ static mps_status describe_user_field(const mps_particles *p, const char *functi
   return MPS_OK;
 }
 
-/* What a field of this name and number of components (0: the table's) is. */
+/* Description of a field of this name and number of components (0: the table's). */
 static mps_status describe_field(const mps_particles *p, const char *function, const char *name,
                                  int32_t components, mpsi_field *out) {
   const table_row *row = table_find(name);

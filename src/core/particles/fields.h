@@ -1,8 +1,8 @@
-/* fields.h - the one table of particle fields. It drives allocation, views, docs/fields.md (a test
- * compares them), and whatever else has to know what a field is.
+/* fields.h - the one table of particle fields. Allocation, views, docs/fields.md (a test compares
+ * them) and other descriptions of fields follow from it.
  *
  * X(name, type, components, unit, meaning, written by, valid)
- * type: F64 or I64. components: a number, or one of the codes below for what depends on the
+ * type: F64 or I64. components: a number, or one of the codes below for counts that depend on the
  * dimension of the set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_FIELDS_H
@@ -104,9 +104,9 @@
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
 
-/* The values that a caller may give a field of the table: X(name, lower, upper), both allowed.
- * Fields that are not listed take every value up to MPSI_LARGEST in magnitude. 0 stands for "not
- * given yet" where a solver asks for more. */
+/* Allowed values of a field of the table: X(name, lower, upper), both allowed. Fields that are not
+ * listed take every value up to MPSI_LARGEST in magnitude. 0 stands for "not set yet" where a
+ * solver needs more. */
 #define MPSI_LARGEST 1e100
 #define MPSI_FIELD_RANGES(X)                                                                       \
   X(position, -MPSI_FARTHEST, MPSI_FARTHEST)                                                       \

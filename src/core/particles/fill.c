@@ -1,12 +1,12 @@
 /* fill.c - fills: particles at the lattice sites of a shape, at most one a site.
  *
- * A shape becomes runs of sites, row by row. The set keeps the runs that its fills have occupied;
- * a fill puts particles at its runs less those. Runs, not sites: a box of a million particles is a
+ * A shape becomes runs of sites, row by row. The set keeps the runs that its fills have occupied; a
+ * fill adds particles at its runs less these. Runs, not sites: a box of a million particles is a
  * thousand runs, and the difference and the union of sorted runs take one pass.
  *
  * Half-open convention: site i of an axis belongs to [lo, hi) when lo <= its centre < hi, where a
- * centre within round-off of a bound (1e-9 spacings) lies on it. Boxes and polygons that share an
- * edge so share no site and leave none out.
+ * centre within round-off of a bound (1e-9 spacings) lies on it. So boxes and polygons with a
+ * common edge neither share nor omit a site.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/context/guard.h"
 #include "particles_private.h"
@@ -60,7 +60,7 @@ static bool runs_subtract(mps_context *context, const mpsi_site_runs *a, const m
   for (int64_t m = 0; m < a->count; m++) {
     mpsi_site_run rest = a->item[m];
     while (n < b->count && run_before(&b->item[n], &rest)) n++;
-    /* The last run of b that meets `rest` may meet the next one too: n stays at it. */
+    /* The last run of b that overlaps `rest` may overlap the next one too: n stays at it. */
     for (int64_t q = n; q < b->count && !run_before(&rest, &b->item[q]); q++) {
       mpsi_site_run head = rest;
       head.end = b->item[q].begin;
@@ -137,7 +137,7 @@ static void put_sites(mps_particles *p, const mpsi_site_runs *fresh, mpsi_slab *
   }
 }
 
-/* Who fills: the function, and its arguments that give the shape. */
+/* The calling fill: its function, and the arguments of the shape. */
 typedef struct filler {
   const char *function, *shape;
 } filler;
@@ -165,8 +165,8 @@ static mps_status put_fresh(mps_particles *p, filler by, mps_status status,
   return mpsi_particles_arrive(p, function, by.shape, status, first);
 }
 
-/* Puts particles at the sites of `runs` that are free, and takes the runs' memory in any case.
- * `status`: what has become of them; `complete` false: memory for them ran out. */
+/* Adds particles at the free sites of `runs`, and frees the runs in any case. `status`: that of the
+ * runs; `complete` false: out of memory for them. */
 static mps_status put_runs(mps_particles *p, filler by, mps_status status, mpsi_site_runs *runs,
                            bool complete, int64_t *added) {
   mps_context *context = p->context;
@@ -231,7 +231,7 @@ static bool push_row(const mps_particles *p, const site_box *box, int64_t j, int
   return row.begin >= row.end || runs_push(p->context, out, row);
 }
 
-/* Of a row, the sites that `inside` wants. `*complete` is false where memory was refused. */
+/* The sites of a row at which `inside` gives 1. `*complete` is false where memory was refused. */
 static mps_status push_wanted(const mps_particles *p, const char *function, const site_box *box,
                               int64_t j, int64_t k, mps_particles_predicate_fn inside, void *user,
                               mpsi_site_runs *out, bool *complete) {
@@ -249,7 +249,7 @@ static mps_status push_wanted(const mps_particles *p, const char *function, cons
   return MPS_OK;
 }
 
-/* The runs of a box, cut to where `inside` wants a particle (NULL: everywhere). */
+/* The runs of a box, restricted to sites at which `inside` gives 1 (NULL: all). */
 static mps_status box_runs(const mps_particles *p, const char *function, const site_box *box,
                            mps_particles_predicate_fn inside, void *user, mpsi_site_runs *out,
                            bool *complete) {
@@ -264,7 +264,7 @@ static mps_status box_runs(const mps_particles *p, const char *function, const s
   return status;
 }
 
-/* Where `status`, of the caller's own arguments, is well. */
+/* Only if `status`, of the caller's arguments, is MPS_OK. */
 static mps_status fill_box(mps_particles *p, filler by, mps_status status, const double *lo,
                            const double *hi, mps_particles_predicate_fn inside, void *user,
                            int64_t *added) {
@@ -362,9 +362,9 @@ static mps_status check_polygon(const mps_particles *p, const char *function, co
   return status == MPS_OK ? mpsi_polygon_check(p->context, function, s->n, s->xy) : status;
 }
 
-/* Where row j crosses the edges, as sites, ascending; returns how many: an even number.
- * A corner lies below the first row whose centre is not below it: each has one such row, so that
- * no crossing is counted twice or lost at a corner. */
+/* Crossings of row j and the edges, as sites, ascending; returns their number, which is even. A
+ * corner lies below the first row whose centre is not below it: each has one such row, so that no
+ * crossing is counted twice or lost at a corner. */
 static int64_t cross_row(const mps_particles *p, const polygon *s, const int64_t *row_of, int64_t j,
                          int64_t *sites) {
   int64_t count = 0;

@@ -9,7 +9,7 @@
 /* Slots of a table for so many ids. */
 static int64_t slots_for(int64_t count) { return count + count / 3 + 8; }
 
-/* Where the search for an id begins. Ids of a fill follow one another: every bit counts. */
+/* First slot of the search for an id. Ids of a fill are consecutive: every bit matters. */
 static int64_t first_slot(const mpsi_ids *ids, int64_t id) {
   uint64_t mixed = (uint64_t)id * UINT64_C(0x9e3779b97f4a7c15);
   mixed ^= mixed >> 32;
@@ -17,7 +17,7 @@ static int64_t first_slot(const mpsi_ids *ids, int64_t id) {
   return (int64_t)((mixed >> 32) * (uint64_t)ids->room >> 32);
 }
 
-/* The slot of the id, or the free one where it would be. */
+/* The slot of the id, or the free one for it. */
 static int64_t slot_of(const mpsi_ids *ids, int64_t id) {
   int64_t at = first_slot(ids, id);
   while (ids->id[at] >= 0 && ids->id[at] != id) at = at + 1 < ids->room ? at + 1 : 0;

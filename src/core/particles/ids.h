@@ -3,8 +3,8 @@
  * its memory follows the particles here and not all of them.
  *
  * The table has open addresses with linear probing; it is at most three quarters full, and a
- * removed id is closed up by moving back what comes behind it, so that no marks of removed ones are
- * left. SPDX-License-Identifier: BSD-3-Clause */
+ * removed id is closed by moving later ones back, so that no marks of removed ids remain.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IDS_H
 #define MPSI_IDS_H
 
@@ -25,7 +25,7 @@ typedef struct mpsi_ids {
  * changed. The array keeps what it has below `former`. */
 bool mpsi_ids_reserve(mps_context *context, mpsi_ids *ids, int64_t former, int64_t made,
                       int64_t count);
-/* Gives up slots of a table for more than `count` ids; false as above. */
+/* Releases slots of a table for more than `count` ids; false as above. */
 bool mpsi_ids_fit(mps_context *context, mpsi_ids *ids, int64_t count);
 /* The greatest number of particles that the map has room for now, with ids below `made`. */
 bool mpsi_ids_fits(const mpsi_ids *ids, int64_t made, int64_t count);
@@ -36,7 +36,7 @@ int64_t mpsi_ids_find(const mpsi_ids *ids, int64_t id);
 /* Ids that are in the table already may be put from several threads at once, each by one. */
 void mpsi_ids_put(mpsi_ids *ids, int64_t id, int64_t index);
 void mpsi_ids_drop(mpsi_ids *ids, int64_t id);
-/* Leaves exactly `count` ids, id[k] at index k, of `made` that there ever were. */
+/* Sets exactly `count` ids, id[k] at index k, of `made` that were ever given. */
 void mpsi_ids_renew(mpsi_ids *ids, int64_t made, int64_t count, const int64_t *id);
 
 #endif

@@ -1,4 +1,4 @@
-/* keep.c - a set gives up most of its particles to other ranks, and can take them back.
+/* keep.c - a set keeps a rank's part of its particles, with a backup of the whole.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 

@@ -21,8 +21,8 @@
 
 /* Cells are counted from a particle in the middle of the others. Up to 2^30 cells away, rounding
  * moves a quotient by less than 2^-20, so a cell 2^-18 larger than the radius keeps neighbours in
- * adjoining cells. What lies further away is counted to the last cell: monotone, thus still
- * right, and slow only for many particles out there. */
+ * adjoining cells. Particles farther away are in the last cell: monotone, thus still correct, and
+ * slow only for many such particles. */
 #define CELL_MARGIN 0x1p-18
 #define LAST_CELL 0x1p30
 
@@ -51,7 +51,7 @@ struct mps_neighbours {
   int64_t items_capacity, sorted_capacity, x_capacity, histogram_capacity;
 };
 
-/* What the tasks of one build share. */
+/* Shared data of the tasks of one build. */
 typedef struct build {
   const mps_neighbours *owner;
   const mps_view *position;
@@ -320,9 +320,9 @@ static mps_status check_def(mps_context *context, const char *function,
   return MPS_OK;
 }
 
-/* Room for `count` items whose old content is not wanted any more, in place of `memory`, or NULL;
- * with an eighth to spare, so that lists which change a little from step to step do not allocate
- * at each. */
+/* Memory for `count` items without the former contents, in place of `memory`, or NULL; with an
+ * eighth to spare, so that lists which change a little from step to step do not allocate at each.
+ */
 static void *make_room(mps_context *context, void *memory, int64_t *capacity, int64_t count,
                        size_t size) {
   if (memory && count <= *capacity) return memory;

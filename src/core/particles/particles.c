@@ -1,7 +1,8 @@
 /* particles.c - the particle set: life, growth, order, selection.
  *
  * Ids are given in order of insertion and never twice, so the map from id to index is one array:
- * the identity until somebody sorts or removes. SPDX-License-Identifier: BSD-3-Clause */
+ * the identity until the set is sorted or particles are removed. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "particles_private.h"
 
 #include "core/base/ranges.h"
@@ -65,7 +66,7 @@ mps_status mps_particles_create(mps_context *context, const mps_particles_def *d
   if (status == MPS_OK)
     status = mpsi_as(context, __func__, mps_particles_add_field(p, "position", 0));
   if (status != MPS_OK) {
-    mpsi_fail_memory(context, __func__, sizeof *p); /* the only reason there can be */
+    mpsi_fail_memory(context, __func__, sizeof *p); /* the only possible reason */
     free_set(p);
     return status;
   }
@@ -148,7 +149,7 @@ static void permute_columns(mps_particles *p, permutation *m) {
   if (m->chunks > 1) {
     mpsi_parallel_for(p->context, m->chunks * m->columns, permute_chunk, m);
     mpsi_parallel_for(p->context, m->chunks * m->columns, return_chunk, m);
-  } else { /* not worth waking others for */
+  } else { /* too short for other threads */
     for (int32_t k = 0; k < m->columns; k++) permute_chunk(m, k, 0), return_chunk(m, k, 0);
   }
   m->columns = 0;

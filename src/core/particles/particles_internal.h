@@ -1,4 +1,4 @@
-/* particles_internal.h - what the solvers use of a particle set besides the public functions.
+/* particles_internal.h - the interface of a particle set for solvers, besides the public functions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_PARTICLES_INTERNAL_H
 #define MPSI_PARTICLES_INTERNAL_H
@@ -8,8 +8,8 @@
 
 #include <mps/particles.h>
 
-/* Whether `name` is one of the field table, whose meaning nobody else may change: neither a
- * caller's field of another shape nor a history column of a law. */
+/* Whether `name` is in the field table, and so reserved: neither a caller's field of another shape
+ * nor a history column of a law may have it. */
 bool mpsi_field_reserved(const char *name);
 
 /* One component of a float64 field as a contiguous array, or NULL when the set has no such field
@@ -23,7 +23,7 @@ double *mpsi_particles_column(mps_particles *particles, const char *name, int32_
 int64_t *mpsi_particles_integers(mps_particles *particles, const char *name);
 
 /* Whether `ids` are particles of the set. The second takes NULL with a count of 0 for all of them,
- * as functions do that say what particles are made of. */
+ * as functions that assign materials do. */
 mps_status mpsi_particles_check_ids(const mps_particles *particles, const char *function,
                                     int64_t count, const int64_t *ids);
 mps_status mpsi_particles_check_ids_or_all(const mps_particles *particles, const char *function,
@@ -42,26 +42,26 @@ mps_status mpsi_particles_permute_in(mps_particles *particles, const char *funct
                                      const int64_t *order, void *const *scratch, int32_t columns);
 
 /* ---- holders: who uses a set ------------------------------------------------------------------
- * A held set lives on when the caller destroys it, and goes with the last release. A solver holds
- * the set first of all and releases it last:
+ * A held set exists until the caller has destroyed it and the last holder has released it. A solver
+ * holds the set first of all and releases it last:
  *
  *   s->holder = (mpsi_holder){.name = "an mps_s solver", .self = s, .kind = MPSI_USE_MOVE, ...};
  *   status = mpsi_particles_hold(particles, function, &s->holder);
  *
  * and begins every step with mpsi_particles_ready. */
 typedef enum mpsi_use {
-  MPSI_USE_LOOK, /* looks at whatever is there: a recorder */
+  MPSI_USE_LOOK, /* reads the present set: a recorder */
   MPSI_USE_FIX,  /* relies on order and positions, as other such holders may */
-  MPSI_USE_MOVE  /* moves or sorts the particles: the only one besides those that look */
+  MPSI_USE_MOVE  /* moves or sorts the particles: the only one besides readers */
 } mpsi_use;
 
-/* How the particles of a set are dealt to ranks as they come: each gets an equal part of every
- * addition, before there is a solver. The callbacks are collective. */
+/* Partition of a set in parts: each rank gets an equal part of every addition, before there is a
+ * solver. The callbacks are collective. */
 typedef struct mpsi_deal {
   void *self; /* the domain */
   int32_t rank, size;
-  /* The status of an addition on all ranks, which must be given the same number of particles
-   * and the same hash of their places. */
+  /* The status of an addition on all ranks, which must have the same number of particles and the
+   * same hash of their positions. */
   mps_status (*agree)(void *self, const char *function, mps_status status, int64_t count,
                       uint64_t hash);
   mps_status (*settle)(void *self, const char *function, mps_status status);
@@ -92,38 +92,38 @@ struct mpsi_holder {
   mpsi_use kind;
   const mpsi_guard *guard; /* while a callback of the holder runs, the caller may only read the set;
                               NULL: it has none */
-  /* The caller has written `field`. Refuses with an error recorded for `function` (the edit then
-   * stays open), or notes what it must read or sort before the next step. NULL: all the same to it.
-   * `former`, [component][particle], is what it was, of the fields that it compares; else NULL. */
+  /* The caller has edited `field`. Returns an error recorded for `function` (the edit then stays
+   * open), or notes what to read or sort before the next step. NULL: not affected. `former`,
+   * [component][particle], has the former values, of the fields that it compares; else NULL. */
   mps_status (*commit)(void *self, const char *function, const char *field, const double *former);
   bool (*compares)(const void *self, const char *field); /* NULL: none; of float64 fields */
-  /* Particles [first, first + count) have come, with id and position, all else zero, and columns
-   * may lie elsewhere: refuses, or makes room for them, and gives them values to begin with. NULL:
-   * always refuses (but MPSI_USE_LOOK never). */
+  /* Particles [first, first + count) are added, with id and position, all else zero, and columns
+   * may have moved: returns an error, or allocates memory for them and sets their initial values.
+   * NULL: always an error (MPSI_USE_LOOK: never). */
   mps_status (*insert)(void *self, const char *function, int64_t first, int64_t count);
-  /* These particles are to go (ids of the set, all different): refuses, or makes ready. NULL: as
-   * above. */
+  /* These particles are to be removed (ids of the set, all different): returns an error, or
+   * prepares. NULL: as above. */
   mps_status (*remove)(void *self, const char *function, int64_t count, const int64_t *ids);
-  /* Particles with a mark, by present index, are about to go: after that, or of the holder's own
-   * accord. May be NULL. */
+  /* Particles with a mark, by present index, are about to be removed: after `remove`, or by a
+   * solver itself. May be NULL. */
   void (*leaving)(void *self, const uint8_t *gone);
-  /* After both, also where another holder refused: columns, count and order may have changed.
-   * May be NULL. A holder that only looks is told too when the set goes back in time. */
+  /* After both, also on an error of another holder: columns, count and order may have changed. May
+   * be NULL. Readers are notified too when the set is restored to a former state. */
   void (*renew)(void *self);
-  /* Of a set that lies on several ranks: its rows in runs, whose places tell the order of the whole
-   * (`out` NULL: how many). NULL: rank after rank. */
+  /* Of a set that lies on several ranks: its rows in runs, with their place in the order of the
+   * whole (`out` NULL: how many). NULL: rank after rank. */
   int64_t (*runs)(const void *self, mpsi_row_run *out);
-  /* Of such a set (NULL: all of it is here): what has become of adding the particles from `first`
-   * on, on all ranks, which must have been given the same; and of removing those of a list, of
-   * which `known` are here: *all is then the greatest count that a rank has given. Both come before
-   * insert and remove. */
+  /* Of such a set (NULL: all of it is here): status on all ranks, with the same arguments, of
+   * adding the particles from `first` on; and of removing the particles of a list, of which `known`
+   * are here: *all is then the greatest count of a rank. Both are called before insert and remove.
+   */
   mps_status (*agree)(void *self, const char *function, mps_status status, int64_t first);
   mps_status (*find)(void *self, const char *function, mps_status status, int64_t count,
                      const int64_t *ids, int64_t known, int64_t *all);
   mpsi_holder *next;
 };
 
-/* The runs that a holder tells of, or one of all rows, at `rank` along z. `out` NULL: how many. */
+/* The runs of a holder, or one of all rows, at `rank` along z. `out` NULL: how many. */
 int64_t mpsi_particles_runs(const mps_particles *particles, int32_t rank, mpsi_row_run *out);
 
 /* MPS_ERROR_STATE where another holder is in the way, or a field is being edited; solvers also
@@ -132,8 +132,8 @@ mps_status mpsi_particles_check_hold(const mps_particles *particles, const char 
                                      mpsi_use kind);
 mps_status mpsi_particles_hold(mps_particles *particles, const char *function, mpsi_holder *holder);
 void mpsi_particles_release(mps_particles *particles, mpsi_holder *holder); /* set may be NULL */
-/* Tells the holders that the caller has written a field, which was `former` before that (NULL: not
- * known); one may refuse. */
+/* Notifies the holders of an edited field, with its former values (NULL: not known); one may return
+ * an error. */
 mps_status mpsi_particles_tell(mps_particles *particles, const char *function, const char *field,
                                const double *former);
 /* At the beginning of each step: MPS_ERROR_STATE while the caller edits a field. */
@@ -151,8 +151,8 @@ void mpsi_particles_unpin(mps_particles *particles);         /* accepts NULL */
 
 /* ---- going back ------------------------------------------------------------------------------ */
 
-/* All of a set as it is (fields, values, order, epoch), to go back to when the creation of a solver
- * fails: no particle may come or go in between. Needs the memory of the set once more. */
+/* Backup of a set (fields, values, order, epoch), restored when the creation of a solver fails: no
+ * particle may be added or removed in between. Needs the memory of the set once more. */
 typedef struct mpsi_backup {
   void *memory; /* NULL: none taken */
   int32_t field_count;
@@ -164,35 +164,35 @@ void mpsi_particles_go_back(mps_particles *particles, mpsi_backup *backup);
 void mpsi_backup_drop(mps_particles *particles, mpsi_backup *backup);
 
 /* A set keeps `count` of its particles, rows[0], rows[1], ... in this order, with room for
- * `capacity`, and gives up the rest, on behalf of a solver whose particles lie on several ranks.
- * What it was is in *former, to be taken back or dropped. */
+ * `capacity`, and drops the rest, for a solver whose particles lie on several ranks. The whole is
+ * in *former, to be restored or freed. */
 typedef struct mpsi_storage mpsi_storage;
 mps_status mpsi_particles_keep(mps_particles *particles, const char *function, int64_t count,
                                const int64_t *rows, int64_t capacity, mpsi_storage **former);
 void mpsi_particles_take_back(mps_particles *particles, mpsi_storage **former);
 void mpsi_storage_drop(mps_particles *particles, mpsi_storage **former);
 
-/* Particles go to other ranks and come from there: room for so many, which may move the columns;
- * those with a mark leave; and, once the caller has written all columns of the rows from the count
- * on, others are there. */
+/* Migration: memory for so many particles, which may move the columns; removal of marked ones; and,
+ * once the caller has written all columns of the rows from the count on, addition of received ones.
+ */
 mps_status mpsi_particles_hold_room(mps_particles *particles, const char *function, int64_t count);
-/* population.c: gives up room for more than a few particles beside those that there are. */
+/* population.c: releases memory beyond a few more than the present particles. */
 mps_status mpsi_particles_fit(mps_particles *particles, const char *function);
 void mpsi_particles_make_way(mps_particles *particles, const uint8_t *gone);
 void mpsi_particles_admit(mps_particles *particles, int64_t arriving);
 
-/* Takes back the fields added since there were `keep` of them; nobody may have borrowed them yet.
- */
+/* Removes all fields but the first `keep`; no view of the others may exist yet. */
 void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep);
 
-/* A solver removes particles of its own set, after a step: those with a mark, by present index. The
- * other holders only look; all are told. Nothing is allocated. */
+/* A solver removes the marked particles (by present index) of its own set, after a step. Other
+ * holders are readers; all are notified. Nothing is allocated. */
 void mpsi_particles_take_out(mps_particles *particles, const uint8_t *gone);
 
-/* MPS_ERROR_STATE when particles cannot come now: a holder refuses that, or a field is edited. */
+/* MPS_ERROR_STATE when particles cannot be added: a holder does not allow it, or a field is being
+ * edited. */
 mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);
 
-/* How many particles the set ever had: ids lie below it. */
+/* Number of particles that the set ever had: ids lie below it. */
 int64_t mpsi_particles_made(const mps_particles *particles);
 
 /* Whether the ids are 0 to count - 1, as long as no particle was removed. */

@@ -17,7 +17,7 @@ typedef struct mpsi_field {
   mps_dtype dtype;
   uint32_t flags;
   bool open;      /* the caller is editing it */
-  double *former; /* what it was before that: 8 bytes an item, [component][particle] */
+  double *former; /* former values: 8 bytes an item, [component][particle] */
   int64_t former_capacity;
   int32_t components;
   int64_t first_column; /* number of columns of the fields before it: staggers the addresses */
@@ -26,7 +26,7 @@ typedef struct mpsi_field {
   int64_t stride;       /* items from one column to the next */
 } mpsi_field;
 
-/* Where the columns of a field lie. */
+/* Memory of the columns of a field. */
 typedef struct mpsi_column_place {
   void *block, *data;
   int64_t stride;
@@ -37,7 +37,7 @@ typedef struct mpsi_site_run {
   int64_t begin, end, j, k;
 } mpsi_site_run;
 
-/* Rows ascend in k, then j; runs of a row ascend and neither overlap nor touch. */
+/* Rows ascend in k, then j; runs of a row ascend, with a gap between any two. */
 typedef struct mpsi_site_runs {
   mpsi_site_run *item;
   int64_t count, capacity;
@@ -49,20 +49,20 @@ struct mps_particles {
   int64_t count, capacity;
   uint64_t epoch;
   mpsi_column_place *former; /* of each field, while particles are being added and the columns have
-                                moved: where they were; else NULL */
+                                moved: their former memory; else NULL */
   int64_t former_capacity;
-  mpsi_holder *holders; /* in the order in which they came, the last first */
-  int32_t pins;         /* holders that do not say who they are */
-  bool owned;           /* the caller has not destroyed it */
+  mpsi_holder *holders; /* in the order of addition, the last first */
+  int32_t pins;         /* number of holders without a record (pins) */
+  bool owned;           /* not yet destroyed by the caller */
   int32_t open_edits;   /* fields that the caller is editing */
   int32_t field_count;
   mpsi_field **fields; /* 0: id, 1: position */
   int64_t columns;
   int64_t next_id;      /* ids are given once: 0, 1, 2, ... */
   mpsi_ids ids;         /* id -> index */
-  mpsi_deal *deal;      /* how its particles are dealt to ranks as they come; NULL: all are here */
+  mpsi_deal *deal;      /* partition of a set in parts; NULL: all are here */
   int64_t came;         /* ids given with the last addition, on all ranks */
-  mpsi_site_runs sites; /* what the lattice fills have put */
+  mpsi_site_runs sites; /* sites occupied by lattice fills */
 };
 
 /* ---- fields.c -------------------------------------------------------------------------------- */
@@ -71,7 +71,7 @@ struct mps_particles {
 #define MPSI_FIELD_POSITION 1
 
 mpsi_field *mpsi_field_find(const mps_particles *particles, const char *name); /* or NULL */
-/* The field of that name, or what it would be by the table of fields; MPS_ERROR_FIELD otherwise. */
+/* The field of that name, or its description in the table of fields; MPS_ERROR_FIELD otherwise. */
 mps_status mpsi_field_look_up(const mps_particles *particles, const char *function,
                               const char *name, mpsi_field *out);
 /* Address of a column of 8-byte items. */
@@ -82,9 +82,9 @@ static inline void *mpsi_field_column(const mpsi_field *field, int32_t component
 void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t capacity);
 /* The field lies in a block of mpsi_field_allocate from now on; nothing is copied or freed. */
 void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
-/* Makes room for so many particles; false: no memory, and nothing has changed. The columns lie
- * elsewhere then, and their former memory is kept, for mpsi_particles_settle_columns to free it or
- * to put the columns back there: views that the caller has are valid again. */
+/* Makes room for so many particles; false: no memory, and nothing has changed. The columns have
+ * then moved, and their former memory is kept until mpsi_particles_settle_columns, which frees it
+ * or moves the columns back: then the caller's views are valid again. */
 bool mpsi_particles_reserve(mps_particles *p, int64_t capacity);
 void mpsi_particles_settle_columns(mps_particles *p, bool moved);
 /* Moves a field of `count` particles into a block of mpsi_field_allocate. */
@@ -93,15 +93,15 @@ void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64
 
 /* ---- edit.c ---------------------------------------------------------------------------------- */
 
-/* MPS_ERROR_ARGUMENT unless `value` is one that the caller may give the field. */
+/* MPS_ERROR_ARGUMENT unless `value` is in the field's range. */
 mps_status mpsi_field_check_value(const mps_particles *particles, const char *function,
                                   const mpsi_field *field, double value);
 
 /* ---- population.c ---------------------------------------------------------------------------- */
 
-/* Tells the holders of the particles from index `first` on, which have been added with their
- * positions; where one refuses they are gone again. `status`: that of adding them;
- * `places`: the arguments that have given the positions. */
+/* Notifies the holders of the particles from index `first` on, added with their positions; on an
+ * error of one they are removed again. `status`: that of adding them; `places`: the arguments of
+ * the positions. */
 mps_status mpsi_particles_arrive(mps_particles *particles, const char *function, const char *places,
                                  mps_status status, int64_t first);
 
@@ -111,22 +111,22 @@ mps_status mpsi_particles_arrive(mps_particles *particles, const char *function,
 void mpsi_particles_free_if_unused(mps_particles *particles);
 /* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
 mps_status mpsi_particles_extend(mps_particles *particles, const char *function, int64_t count);
-/* The same of a set whose particles are dealt: `here` of them, the ids of which the caller puts
- * with mpsi_particles_number once it has written them into the field, from index `first` on. */
+/* The same for a set in parts: `here` of them, whose ids the caller enters with
+ * mpsi_particles_number once they are in the field, from index `first` on. */
 mps_status mpsi_particles_extend_part(mps_particles *particles, const char *function, int64_t count,
                                       int64_t here);
 void mpsi_particles_number(mps_particles *particles, int64_t first);
 
 /* ---- deal.c ---------------------------------------------------------------------------------- */
 
-/* Whether what is added now is dealt here: a solver on several ranks that holds the set deals it by
+/* Whether additions are divided here: a solver on several ranks that holds the set divides them
  * itself. */
 bool mpsi_particles_deals(const mps_particles *particles);
 /* The first of `count` that rank `rank` gets. */
 static inline int64_t mpsi_deal_first(const mpsi_deal *deal, int32_t rank, int64_t count) {
   return count / deal->size * rank + count % deal->size * rank / deal->size;
 }
-/* Whether all ranks add the same; `status`: of the call so far on this rank, and the answer for a
+/* Whether all ranks add the same; `status`: of the call so far on this rank, and the result for a
  * set that is not in parts. */
 mps_status mpsi_deal_agree(const mps_particles *particles, const char *function, mps_status status,
                            int64_t count, uint64_t hash);

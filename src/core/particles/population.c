@@ -1,12 +1,12 @@
-/* population.c - particles that come and go, also while solvers hold the set, and the way back when
- * the creation of a solver fails. SPDX-License-Identifier: BSD-3-Clause */
+/* population.c - addition and removal of particles, also while solvers hold the set, and the backup
+ * for a failed creation of a solver. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
 #include "core/base/hash.h"
 
 #include <string.h>
 
-/* Also after a refusal: a holder that had agreed has taken the columns' new places. */
+/* Also after an error: a holder that had agreed uses the columns' new memory. */
 static void renew_holders(const mps_particles *p) {
   for (const mpsi_holder *h = p->holders; h; h = h->next)
     if (h->renew) h->renew(h->self);
@@ -85,7 +85,7 @@ mps_status mpsi_particles_extend_part(mps_particles *p, const char *function, in
                      "%lld particles of a set in parts would lie on one rank, at most %d may",
                      (long long)needed, MPSI_IDS_MOST);
   if (!mpsi_ids_reserve(p->context, &p->ids, p->next_id, p->next_id + count, needed))
-    /* before the columns, which views know, move */
+    /* before the columns, which have views, move */
     return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                      "could not allocate the numbers of %lld particles", (long long)count);
   if (needed > p->capacity) {
@@ -137,7 +137,7 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, const c
     for (int64_t k = first; p->ids.sparse && k < p->count; k++) mpsi_ids_drop(&p->ids, id[k]);
     p->count = first;
     p->next_id -= p->came;
-    p->epoch--; /* what views show is where it was */
+    p->epoch--; /* views still have the former memory */
     if (!p->former) clear_tail(p, count);
   }
   p->came = 0;
@@ -164,7 +164,7 @@ static mps_status check_positions(const mps_particles *p, const char *function, 
   return MPS_OK;
 }
 
-/* This rank's part of a list, as of every other addition an equal one. */
+/* This rank's part of a list, an equal one as in every addition. */
 static mps_status append_part(mps_particles *p, const char *function, mps_status status,
                               int64_t count, const double *positions) {
   const int32_t dim = p->def.dim;
@@ -213,8 +213,8 @@ static const mpsi_holder *sharer(const mps_particles *p) {
   return h;
 }
 
-/* Marks what goes; the marks lie by present index. `known`: where some may be on other ranks, how
- * many are here. */
+/* Marks removed particles, by present index. `known`: where some may be on other ranks, the number
+ * here. */
 static mps_status mark(const mps_particles *p, const char *function, int64_t count,
                        const int64_t *ids, uint8_t *gone, int64_t *known) {
   for (int64_t k = 0; k < count; k++) {

@@ -1,4 +1,4 @@
-/* state.c - see state.h: a solver's state out of it, snapshots, and the way back.
+/* state.c - see state.h: copies of a solver's state, snapshots, and rollback.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "state_private.h"
 
@@ -40,7 +40,7 @@ static void read_values(const mpsi_state *s, mps_snapshot *out) {
   out->state.count = s->count;
 }
 
-/* `status` is that of what comes before: the ranks of a solver that takes edits in agree on it. */
+/* `status` is that of the call so far: the ranks of a solver that reads edits agree on it. */
 static mps_status get(const mpsi_state_of *of, const char *function, mps_status status,
                       mps_snapshot *out) {
   mpsi_state s = {.item = NULL};
@@ -115,8 +115,8 @@ static mps_status check_owner(const mpsi_state_of *of, const char *function,
                    of->name);
 }
 
-/* What is allocated comes first, so that a snapshot that is filled again stays as it was when that
- * is refused: values of the state are written after the fields' memory is there. */
+/* Allocation comes first, so that a snapshot that is filled again is unchanged when memory is
+ * refused: values of the state are written after the fields' memory is allocated. */
 mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
                                mps_snapshot **snapshot) {
   mps_snapshot *made = snapshot ? *snapshot : NULL;

@@ -1,9 +1,9 @@
-/* state.h - the state of a solver, listed once. From the one list follow a snapshot in memory, the
- * way back to it bit for bit (this header), and a checkpoint file (io/checkpoint.h).
+/* state.h - the state of a solver, listed once. From the one list follow a snapshot in memory, its
+ * rollback bit for bit (this header), and a checkpoint file (io/checkpoint.h).
  *
  * A solver writes one function that lists, in a fixed order, what its steps change, and what must
- * not have changed between saving and going back. The particle set goes along by itself: number,
- * ids, order and all fields. All that a solver needs:
+ * be the same when saving and restoring. The particle set is included by itself: number, ids, order
+ * and all fields. A solver needs:
  *
  *   static void list_state(mpsi_state *s, void *solver) {
  *     mps_foo *foo = solver;
@@ -29,11 +29,11 @@
  *   // mps_foo_rollback: mpsi_state_rollback; mps_foo_save: mpsi_checkpoint_save;
  *   // mps_foo_restore: mpsi_checkpoint_restore
  *
- * and `mpsi_state_forget(&foo->identity)` where foo is destroyed. What has a length that steps
- * change, or is kept in another form than the solver's, is a mpsi_state_table.
+ * and `mpsi_state_forget(&foo->identity)` where foo is destroyed. Values whose number changes in
+ * steps, or that are kept in another form, are a mpsi_state_table.
  *
- * Going back has two phases: first everything is compared and every byte of memory is allocated;
- * then values are written, which cannot fail. So an error changes nothing.
+ * A rollback has two phases: first everything is compared and all memory is allocated; then values
+ * are written, which cannot fail. So an error changes nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_STATE_H
 #define MPSI_STATE_H
@@ -51,20 +51,20 @@ typedef struct mpsi_state mpsi_state; /* a list */
 
 /* ---- listing ------------------------------------------------------------------------------- */
 
-/* Values that are always there, `count` of them at an address that holds until the list is used.
+/* Values of fixed number, `count` of them at an address that is valid until the list is used.
  * Copied out and in. In a file all are float64 or int64. */
 void mpsi_state_f64(mpsi_state *state, const char *name, double *values, int64_t count);
 void mpsi_state_i64(mpsi_state *state, const char *name, int64_t *values, int64_t count);
 void mpsi_state_i32(mpsi_state *state, const char *name, int32_t *values, int64_t count);
 void mpsi_state_bool(mpsi_state *state, const char *name, bool *value);
-/* Bytes of the caller's or the machine's own form; a file holds them as they are. */
+/* Bytes in the caller's or the machine's own form, unchanged in a file. */
 void mpsi_state_bytes(mpsi_state *state, const char *name, void *values, int64_t count);
 
 /* The members of a reaction. */
 void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction);
 
-/* How the solver was built or is set up: going back is an error where it differs now, which names
- * the item and both values. */
+/* Construction or setup of the solver: where it differs, a rollback is an error that names the item
+ * and both values. */
 void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value);
 void mpsi_state_agree_number(mpsi_state *state, const char *name, double value);
 void mpsi_state_agree_text(mpsi_state *state, const char *name, const char *value);
@@ -86,19 +86,19 @@ typedef struct mpsi_state_table {
   int32_t columns;
   int64_t (*rows)(const void *solver);
   void (*get)(const void *solver, void *values); /* rows * columns, row by row */
-  /* Makes room for what `set` will write, keeping the present contents; false: memory refused.
-   * NULL: none is needed. */
+  /* Allocates memory for `set`, keeping the present contents; false: memory refused. NULL: none is
+   * needed. */
   bool (*reserve)(void *solver, int64_t rows, const void *values);
   void (*set)(void *solver, int64_t rows, const void *values); /* cannot fail */
 } mpsi_state_table;
 void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_table *table);
-/* A table of another object than the solver, which its functions are given instead. */
+/* A table of another object than the solver, which is passed to its functions instead. */
 void mpsi_state_add_table_of(mpsi_state *state, const char *name, const mpsi_state_table *table,
                              void *owner);
 
 /* ---- a solver's description ---------------------------------------------------------------- */
 
-typedef struct mpsi_identity mpsi_identity; /* tells solvers apart, also those destroyed */
+typedef struct mpsi_identity mpsi_identity; /* identifies a solver, also after its destruction */
 
 typedef struct mpsi_state_of {
   void *solver;
@@ -108,32 +108,33 @@ typedef struct mpsi_state_of {
   mpsi_identity **identity; /* a member of the solver, NULL at first */
   void (*list)(mpsi_state *state, void *solver);
   /* Of a file only, may be NULL: do the values fit, such as indices into arrays? False: the file is
-   * malformed; `*what` says in what. It may mend a value in place. */
+   * malformed, `*what` names the fault. It may correct a value in place. */
   bool (*fits)(void *solver, mps_snapshot *values, const char **what);
-  /* Makes room for what the solver keeps for each of so many particles, keeping what is there;
-   * false: refused. May be NULL. Where neither this nor `prepare` is given, the solver cannot go
-   * back to other particles; where one is, the ids to come and the occupied lattice sites of the
-   * set belong to the state too. */
+  /* Allocates the solver's arrays for so many particles, keeping their contents; false: refused.
+   * May be NULL. Where neither this nor `prepare` is given, the solver cannot be restored to other
+   * particles; where one is, the next id and the occupied lattice sites of the set belong to the
+   * state too. */
   bool (*make_room)(void *solver, int64_t particles);
-  /* The same for a solver that makes more of its particles than room, which `bind` then puts in
-   * place: everything of `from` that it needs, whose ids are known to be good. It refuses, with an
-   * error of status `disagreement` that names `source`, where the state is not of this solver. It
-   * may be called again, or never followed by `bind`. May be NULL. */
+  /* The same for a solver that builds a new structure of the particles of `from`, whose ids have
+   * been checked, which `bind` then installs. It returns an error of status `disagreement` that
+   * names `source` where the state is not of this solver. It may be called again, or never followed
+   * by `bind`. May be NULL. */
   mps_status (*prepare)(void *solver, const char *function, const mps_snapshot *from,
                         const char *source, mps_status disagreement);
-  /* Of a file only, may be NULL: leaves of the values those of this rank's particles; `status` is
-   * what has become of reading them here. */
+  /* Of a file only, may be NULL: keeps the values of this rank's particles; `status` is that of
+   * reading them here. */
   mps_status (*take_share)(void *solver, const char *function, mps_status status,
                            mps_snapshot *values);
-  /* May be NULL: of a solver on several ranks. What has become of all of them, when all that can
-   * fail on this one is done; its own status so far is `status`. */
+  /* May be NULL: of a solver on several ranks. Agrees on a status once everything that can fail is
+   * done; `status` is that of this rank. */
   mps_status (*settle)(void *solver, const char *function, mps_status status);
-  /* May be NULL, of a snapshot or file that is to hold what the caller has edited: takes it in,
-   * once all memory is there; `status` is that of this rank so far, and what comes back
-   * that of all. On an error nothing has been taken in. */
+  /* May be NULL, for a snapshot or file with the caller's edits: reads them once all memory is
+   * allocated; `status` is that of this rank so far, the result that of all. On an error nothing
+   * has been read. */
   mps_status (*take_in)(void *solver, const char *function, mps_status status);
-  /* May be NULL, cannot fail. `bind`: the set is back, its columns may have moved and its number of
-   * particles changed; the values of the list are still to be written. `after`: they are too. */
+  /* May be NULL, cannot fail. `bind`: the set is restored, its columns may have moved and its
+   * number of particles changed; the values of the list are still to be written. `after`: these are
+   * written too. */
   void (*bind)(void *solver);
   void (*after)(void *solver);
   double time, dt; /* s, for the head of a file */
@@ -144,13 +145,13 @@ typedef struct mpsi_state_of {
  * (MPS_ERROR_ARGUMENT): its memory is reused. On an error it is as before. */
 mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
                                mps_snapshot **snapshot);
-/* Puts the solver and its set back. MPS_ERROR_ARGUMENT: NULL, or of another solver;
- * MPS_ERROR_STATE: something that must agree is not as it was. On an error nothing has changed. */
+/* Restores the solver and its set. MPS_ERROR_ARGUMENT: NULL, or of another solver; MPS_ERROR_STATE:
+ * a value that must agree differs. On an error nothing has changed. */
 mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
                                const mps_snapshot *snapshot);
-/* The two phases of a rollback, for a solver that looks ahead and goes back: all that can fail
- * comes before what it does in between. mpsi_state_ready_back: as mpsi_state_rollback, without
- * going; mpsi_state_go goes, once, and cannot fail. */
+/* The two phases of a rollback, for a solver that makes a trial step in between.
+ * mpsi_state_ready_back: everything of mpsi_state_rollback that can fail; mpsi_state_go restores,
+ * once, and cannot fail. */
 typedef struct mpsi_state_prepared {
   const mps_snapshot *from;
   struct mpsi_state_item *item; /* the list */
@@ -160,11 +161,11 @@ typedef struct mpsi_state_prepared {
 mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
                                  const mps_snapshot *snapshot, mpsi_state_prepared *out);
 void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared);
-/* Whether the solver can go back to other particles than the set has. */
+/* Whether the solver can be restored to other particles than those of the set. */
 static inline bool mpsi_state_any_particles(const mpsi_state_of *of) {
   return of->make_room || of->prepare;
 }
-/* Where a solver is destroyed. */
+/* To be called when a solver is destroyed. */
 void mpsi_state_forget(mpsi_identity **identity);
 
 /* ---- the values: for this folder and io ------------------------------------------------------ */
@@ -182,7 +183,7 @@ typedef struct mpsi_value {
 
 typedef struct mpsi_values {
   mpsi_value *item;
-  int32_t count, capacity; /* items from `count` on may have memory for another time */
+  int32_t count, capacity; /* items from `count` on may have memory for later use */
 } mpsi_values;
 
 struct mps_snapshot {
@@ -208,11 +209,11 @@ void mpsi_values_free(mps_context *context, mpsi_values *values);
 
 /* The state alone, without the set, into `out` (empty, or filled before). */
 mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out);
-/* Does what must agree agree? `source` and `status` are those of the following. */
+/* Compares the values that must agree. `source` and `status` are those of the following. */
 mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
                             const char *source, mps_status status);
-/* The first phase, and both. `source` names where the values come from ("'run.h5'", "the
- * snapshot"), `status` is that of a disagreement. Fields that the set lacks are added. */
+/* The first phase, and both. `source` names the origin of the values ("'run.h5'", "the snapshot"),
+ * `status` is that of a disagreement. Fields that the set lacks are added. */
 mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
                               const mps_snapshot *from, const char *source, mps_status status,
                               mpsi_state_prepared *out);
@@ -221,21 +222,21 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
 
 /* ---- state_particles.c: the set's part ------------------------------------------------------- */
 
-/* All fields of the set with their ids, in order: first the memory, then, which cannot fail, the
- * values. */
+/* All fields of the set with their ids, in order: first the memory, then the values, which cannot
+ * fail. */
 mps_status mpsi_particles_reserve_state(mps_particles *particles, const char *function,
                                         mps_snapshot *out);
 void mpsi_particles_get_state(const mps_particles *particles, mps_snapshot *out);
-/* Lists what a set has besides its fields. A state that has it may be gone back to from another
+/* Lists the data of a set besides its fields. A state with them may be restored to a set of another
  * number of particles. */
 void mpsi_particles_list_state(mpsi_state *state, mps_particles *particles);
-/* Makes an item, which has room for one integer, the one of that list that tells the id to come. */
+/* Makes an item, with room for one integer, that of the next id in that list. */
 void mpsi_particles_name_next_id(mpsi_value *item, int64_t next_id);
-/* Once such a state is put back without a solver's list. */
+/* After such a state is restored without a solver's list. */
 void mpsi_particles_take_next_id(mps_particles *particles, const mps_snapshot *from);
-/* The two phases of going back. A field that `from` lacks keeps its values, each with its particle
- * (zero in one that comes back); one that the set lacks is added. `scratch` is what the first phase
- * hands to the second, which frees it. */
+/* The two phases of a rollback. A field that `from` lacks keeps its values, each with its particle
+ * (zero in a restored one); one that the set lacks is added. `scratch` passes data of the first
+ * phase to the second, which frees it. */
 mps_status mpsi_particles_prepare_state(mps_particles *particles, const char *function,
                                         const mps_snapshot *from, void **scratch);
 void mpsi_particles_drop_prepared(mps_particles *particles, void *scratch);

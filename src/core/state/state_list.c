@@ -1,4 +1,4 @@
-/* state_list.c - see state.h: a solver lists what its state is; the values of a list.
+/* state_list.c - see state.h: the list of a solver's state, and the values of a list.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "state_private.h"
 

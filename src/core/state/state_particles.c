@@ -94,11 +94,11 @@ void mpsi_particles_take_next_id(mps_particles *p, const mps_snapshot *from) {
 
 /* ---- going back ---------------------------------------------------------------------------- */
 
-/* What the first phase hands to the second, where order or number change. */
+/* Data of the first phase for the second, where order or number change. */
 typedef struct move {
-  int64_t *from; /* present index of the particle that goes to each new index, -1: it comes back */
+  int64_t *from; /* present index of the particle at each new index, -1: restored */
   double *column;
-  void **block; /* of each field, larger memory; NULL: there is room */
+  void **block; /* of each field, larger memory; NULL: its own is large enough */
   int32_t blocks;
   int64_t capacity;
   int64_t ids; /* that the map has to hold */
@@ -127,7 +127,7 @@ static mps_status check_same(const mps_particles *p, const char *function, const
   return MPS_OK;
 }
 
-/* Other particles, as a file may tell: each id is below the next one, and there once. */
+/* Other particles, as in a file: ids are below the next one, and unique. */
 static mps_status check_ids(const mps_particles *p, const char *function, const mps_snapshot *from,
                             const int64_t *id, int64_t next) {
   bool good = next >= from->particles && next <= MPSI_MAX_PARTICLES;
@@ -225,8 +225,8 @@ static bool reserve_ids(mps_particles *p, move *m, const mps_snapshot *from) {
   return mpsi_ids_reserve(p->context, &p->ids, p->next_id, m->ids, from->particles);
 }
 
-/* In the same order, the ids to come are another number where particles that came later are gone:
- * the map holds them all, without a particle. What it has beyond the set's own ids nobody reads. */
+/* With the same order, the next id may differ, where particles added later were removed: the map
+ * has them all, without a particle. Entries beyond the set's own ids are not read. */
 static bool reserve_ids_to_come(mps_particles *p, const mps_snapshot *from) {
   const mpsi_value *value = mpsi_values_find(&from->state, NEXT_ID);
   const int64_t next = value ? *(const int64_t *)value->data : 0;
@@ -271,7 +271,7 @@ mps_status mpsi_particles_prepare_state(mps_particles *p, const char *function,
                    (long long)from->particles);
 }
 
-/* Column `c` of a field that goes with its particles. */
+/* Column `c` of a field, permuted with its particles. */
 static void carry(const mpsi_field *before, double *to, int32_t c, const move *m, int64_t count) {
   const double *column = mpsi_field_column(before, c);
   for (int64_t k = 0; k < count; k++)
@@ -305,7 +305,7 @@ void mpsi_particles_put_state(mps_particles *p, const mps_snapshot *from, void *
               from->particles);
     if (block) m->block[f] = NULL;
   }
-  if (!m) return; /* the order is the same, and views stay good */
+  if (!m) return; /* the order is the same, and views stay valid */
   p->count = from->particles;
   p->capacity = m->capacity;
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;

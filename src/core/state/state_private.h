@@ -1,5 +1,5 @@
-/* state_private.h - an item of the list of a solver's state, for the files that make lists and go
- * along them. SPDX-License-Identifier: BSD-3-Clause */
+/* state_private.h - an item of the list of a solver's state, for the files that make and traverse
+ * lists. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_STATE_PRIVATE_H
 #define MPSI_STATE_PRIVATE_H
 
@@ -7,7 +7,7 @@
 
 #define MPSI_STATE_DEPTH 3
 
-/* Where a value is and how it is kept there. */
+/* Address and form of a value. */
 typedef enum mpsi_state_width { /* WIDE: as in mpsi_value */
                                 MPSI_STATE_WIDE,
                                 MPSI_STATE_INT32,
@@ -42,7 +42,7 @@ struct mpsi_state {
   int depth;
 };
 
-/* state_list.c: copies the values of an item out, to memory with room for them, and back in. */
+/* state_list.c: copies the values of an item to memory, and back. */
 void mpsi_state_read_item(const mpsi_state_item *from, void *to);
 void mpsi_state_write_item(const mpsi_state_item *to, const mpsi_value *from);
 
