@@ -1,5 +1,5 @@
-/* elastic_moduli.c - the elastic constants of isotropic ground in all their forms, and the fields
- * that the solvers of elasticity read, from a material.
+/* elastic_moduli.c - constants of isotropic elasticity, and the fields that the solvers of
+ * elasticity read, from a material.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 #include "core/particles/particles_internal.h"
@@ -97,8 +97,8 @@ enum { GROUND = 5 }; /* fields that follow from a material and a density */
 static const char *const ground[GROUND] = {"density", "young", "poisson", "shear_velocity",
                                            "pressure_velocity"};
 
-/* Writes the fields, of which `former` are the present values. Where a holder refuses one of them,
- * all are as before, and the holders that have read them read them again. */
+/* Writes the fields, of which `former` are the present values. On an error of a holder all are as
+ * before, and holders that have read them read them again. */
 static mps_status write_ground(mps_particles *particles, const double value[GROUND], int64_t count,
                                const int64_t *ids, double *former) {
   const int64_t all = mps_particles_count(particles);

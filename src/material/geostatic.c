@@ -1,5 +1,5 @@
-/* geostatic.c - the stress of ground at rest: weight of the layers above, K0 sideways; or what a
- * caller's function says.
+/* geostatic.c - geostatic stress: weight of the layers above, K0 horizontally; or by a caller's
+ * function.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "core/base/ranges.h"
@@ -17,7 +17,7 @@ mps_status mps_geostatic_def_init(mps_geostatic_def *def, size_t size) {
 
 static const char set_geostatic[] = "mps_particles_set_geostatic";
 
-/* What one call works with. */
+/* Data of one call. */
 typedef struct geostatic {
   mps_particles *set;
   mps_context *context;
@@ -124,7 +124,8 @@ static double level_of_line(const mps_geostatic_def *d, double x) {
   return p[2 * n - 1];
 }
 
-/* The caller's function has not answered for particle k; a status that is none is an argument. */
+/* The caller's function has failed for particle k; a value that is no status is MPS_ERROR_ARGUMENT.
+ */
 static mps_status refused(const geostatic *g, const char *function, const char *what,
                           mps_status status, int64_t k) {
   const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
@@ -176,7 +177,7 @@ static int32_t layer_at(const geostatic *g, double depth) {
 
 /* ---- weights --------------------------------------------------------------------------------- */
 
-/* Density of the layers that leave it to their particles: one value, or an error. */
+/* Density of the layers that take it from their particles: one value, or an error. */
 static mps_status take_densities(geostatic *g, double *density) {
   const int32_t n = g->def.layer_count;
   for (int32_t k = 0; k < n; k++) density[k] = g->def.layers[k].density;
@@ -224,8 +225,8 @@ static mps_status weigh(geostatic *g) {
 
 /* ---- the public functions -------------------------------------------------------------------- */
 
-/* Makes the field where the set lacks it, and asks the set's holders; where one refuses, the set
- * has the fields that it had. */
+/* Adds the field where the set lacks it, and notifies the set's holders; on an error of one the set
+ * has its former fields. */
 static mps_status open_stress(const geostatic *g, const char *function) {
   const int32_t fields = mps_particles_field_count(g->set);
   mps_status status = mpsi_as(g->context, function, mps_particles_add_field(g->set, "stress", 0));
@@ -277,7 +278,7 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   return status;
 }
 
-/* Asks the caller's function, of one particle after the other: s[6 k + c]. */
+/* Calls the caller's function for each particle in turn: s[6 k + c]. */
 static mps_status ask_stress(const geostatic *g, mps_geostatic_stress_fn fn, void *user,
                              double *s) {
   static const char function[] = "mps_particles_set_stress";

@@ -1,7 +1,7 @@
-/* given.c - what a law is made of, as named numbers. SPDX-License-Identifier: BSD-3-Clause */
+/* given.c - the constants of a law, as named numbers. SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
-/* Of functions of the caller: whether there is one, not which; addresses differ among processes. */
+/* For functions of the caller: whether there is one; addresses differ between processes. */
 void mpsi_material_give(mpsi_given *list, const mps_material *material) {
   mpsi_give(list, "having a material", material != NULL);
   if (!material) return;

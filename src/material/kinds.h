@@ -1,13 +1,13 @@
-/* kinds.h - the library's laws, one row each: all that anything but the law's own loop needs to
- * know of it. From this list come the enumeration, the descriptors (kinds.c) and the loops for
- * every geometry and instruction set (laws.c), so that a law lacks none of them: a row without one
- * of its columns, or one that names a function that is not there, does not compile.
+/* kinds.h - the library's laws, one row each: all properties of it but its loop. From this list
+ * come the enumeration, the descriptors (kinds.c) and the loops for every geometry and instruction
+ * set (laws.c), so that a law lacks none of them: a row without one of its columns, or one that
+ * names a function that is not there, does not compile.
  *
  *   kind      MPSI_LAW_... of the enumeration
  *   loop      the function of laws.c that applies it to a block, inlined for each geometry
  *   name      of its materials; NULL: the definition gives it
  *   columns   how many of plastic_strain, opening it has; of a user's law, what its definition adds
- *   kept      what part of the work against its stresses it gives back
+ *   kept      recoverable part of the work of its stresses
  *   traits    MPSI_LAW_... bits, below
  *   define    from its definition to its constants: all checks of the values
  *   moduli    the wave moduli of a block in its present state; NULL: that of zero strain

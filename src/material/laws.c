@@ -16,7 +16,7 @@
 #define THIRD (1.0 / 3.0)
 #define NOTHING 1e-300 /* Pa: keeps 0/0 away */
 #define PER_ROOT3 0.57735026918962576
-#define CHUNK 64 /* particles whose openings are kept at a time */
+#define CHUNK 64 /* particles whose openings are in memory at a time */
 
 /* ---- return maps ------------------------------------------------------------------------------
  * In the plane of mean stress p and q = sqrt(J2): the deviator keeps its direction. All selections
@@ -25,7 +25,7 @@
 typedef struct meridian {
   double p, q;
   double plastic; /* increment of plastic strain */
-  double opened;  /* volume strain that went into the gap between grains; closing is negative */
+  double opened;  /* volume strain of the gap between grains; closing is negative */
   int64_t flags;
 } meridian;
 
@@ -45,12 +45,11 @@ MPSI_INLINE meridian return_von_mises(const mpsi_law *law, double p, double q, d
 /* The cone q + 3 alpha p = kappa up to the limit of tension p = tension, where its radius is
  * q_tension: 0 at the apex. A trial that the cone's return (which is itself, if elastic) leaves
  * beyond the limit goes to the limit: with its own q if that is smaller than the radius there, else
- * to the circle where cone and limit meet. On the cone before the limit q is never below q_tension,
- * so that one line says it for all.
+ * to the circle where cone and limit intersect. On the cone before the limit q is never below
+ * q_tension, so that one expression covers all cases.
  *
- * What the volume grows by at the limit is a gap between grains, the volume strain `gap`.
- * Compression closes it before the mean stress falls below 0; meanwhile the grains do not dilate.
- */
+ * The volume increase at the limit is a gap between grains, the volume strain `gap`. Compression
+ * closes it before the mean stress falls below 0; meanwhile the grains do not dilate. */
 MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double q, double gap) {
   const double closed = p + law->bulk * gap;
   const double f = q + 3.0 * law->alpha * closed - law->kappa;
@@ -73,15 +72,15 @@ MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double
 
 /* ---- laws of the Jaumann rate ---------------------------------------------------------------- */
 
-/* A volume after the volume strain `growth`. Single grains beside a wall may tremble by a hundredth
+/* A volume after the volume strain `growth`. Single grains beside a wall may vibrate by a hundredth
  * for as long as a pile is driven. The stress keeps the sum of such strains; (1 + x)(1 - x) loses x
- * squared in each turn. So frictional laws take exp(growth), to the third order. */
+ * squared in each cycle. So frictional laws take exp(growth), to the third order. */
 MPSI_INLINE double grown(const bool frictional, double volume, double growth) {
   const double half = 0.5 * at_least(at_most(growth, 1.0), -1.0);
   return frictional ? volume * ((1.0 + half) / (1.0 - half)) : volume + volume * growth;
 }
 
-/* What the loop of the Jaumann rate does with the trial stress. */
+/* Treatment of the trial stress in the loop of the Jaumann rate. */
 enum { ELASTIC, MISES, CONE, PYRAMID };
 
 MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law *constants,
@@ -135,7 +134,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law 
   }
 }
 
-/* V/V0 of particles [begin, end) of a block; `opened`, of these, is what goes into gaps, NULL for
+/* V/V0 of particles [begin, end) of a block; `opened`, of these, is the strain of gaps, NULL for
  * laws without. */
 MPSI_INLINE void volume_loop(const int geometry, const mps_material_block *block, int64_t begin,
                              int64_t end, const double *opened) {

@@ -1,4 +1,4 @@
-/* material.c - life of a material, questions about it, and its application to a block.
+/* material.c - creation and release of a material, queries, and its application to a block.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 

@@ -1,22 +1,24 @@
-/* material_internal.h - what the solvers use of a material: the law on a block, without checks.
+/* material_internal.h - the interface of a material for solvers: the law on a block, without
+ * checks.
  *
  * How a solver calls it, block by block, after its G2P:
  *   1. Columns of the particles of one material in the block: the velocity gradient of the step
  *      (2D: gradient[0, 1, 3, 4]; gradient[8] = v_r/r if axisymmetric, NULL in plane strain; 3D:
- * all nine), in/out stress, volume_ratio, flags, the history columns, and the deformation gradient
- *      if mps_material_needs_deformation. They must not overlap; any alignment will do, 64 bytes is
- *      fastest. They are contiguous: a particle is an index, not a stride. Particles of several
- *      materials: one call for each run of equal ones.
+ *      all nine), in/out stress, volume_ratio, flags, the history columns, and the deformation
+ *      gradient if mps_material_needs_deformation. They must not overlap; any alignment will do,
+ *      64 bytes is fastest. They are contiguous: a particle is an index, not a stride. Particles
+ *      of several materials: one call for each run of equal ones.
  *   2. mpsi_material_apply(). It does everything of Nakamura step 12 and 13: spin, trial stress,
- *      return map, and the new volume ratio (J *= 1 + dt tr(d), or det F). Of frictional
- *      laws that is the volume of the grains, without gaps, else V drifts and dt shrinks.
- *      Laws that do not say mpsi_material_reads_volume() only multiply the column: the volume
- * itself may stand there instead of the ratio.
+ *      return map, and the new volume ratio (J *= 1 + dt tr(d), or det F). Of frictional laws that
+ *      is the volume of the grains, without gaps, else V drifts and dt shrinks. Laws without
+ *      mpsi_material_reads_volume() only multiply the column: the volume itself may stand there
+ *      instead of the ratio.
  *   3. The stable step (49)-(50): M = mps_material_wave_modulus() for every particle, unless
  *      mpsi_material_stiffens(): then mpsi_material_wave_moduli() writes the present M of each.
- *      c = sqrt(M V/m). A viscous law also asks for dt <= rho h^2/(4 dim
- * mpsi_material_viscosity()). A volumetric cure that changes tr(d) hands in the changed gradient,
- * and keeps the volume by itself where that must follow the unchanged one.
+ *      c = sqrt(M V/m). A viscous law also requires
+ *      dt <= rho h^2/(4 dim mpsi_material_viscosity()). A volumetric scheme that changes tr(d)
+ *      passes the changed gradient, and updates the volume itself where that must follow the
+ *      unchanged one.
  *
  * Any number of threads may apply one material at once. Results do not depend on how particles are
  * cut into blocks, nor on the processor's instruction set, bit for bit.
@@ -36,14 +38,13 @@ mps_material *mpsi_material_retain(mps_material *material);
 mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
                                        const mps_material *material);
 
-/* Adds what the law is made of; of NULL, that there is none. */
+/* Adds the constants of the law; for NULL, that there is none. */
 void mpsi_material_give(mpsi_given *list, const mps_material *material);
 
-/* Applies the law to block->count >= 0 particles. Not MPS_OK: a user's law refused the block; its
- * reason is in block->message, its particle in block->refused, which the caller has set to "" and
- * -1. */
+/* Applies the law to block->count >= 0 particles. Not MPS_OK: a user's law has failed; its reason
+ * is in block->message, its particle in block->refused, which the caller has set to "" and -1. */
 mps_status mpsi_material_apply(const mps_material *material, const mps_material_block *block);
-/* Records such a refusal: of the particle `id`, in step `step` (each -1: not known). */
+/* Records such a failure: of the particle `id`, in step `step` (each -1: not known). */
 mps_status mpsi_material_refused(mps_context *context, const char *function,
                                  const mps_material *material, mps_status status,
                                  const char *message, int64_t id, int64_t step);
@@ -54,9 +55,9 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
 bool mpsi_material_reads_volume(const mps_material *material);
 /* True: a frictional law with a gap between its grains; its history is plastic_strain, opening. */
 bool mpsi_material_opens(const mps_material *material);
-/* True: such a law whose plastic flow grows in volume, by an angle of dilation above 0. */
+/* True: such a law with plastic dilation, an angle above 0. */
 bool mpsi_material_dilates(const mps_material *material);
-/* True: a law of the caller's, which may refuse a block. */
+/* True: a user's law, which may fail for a block. */
 bool mpsi_material_may_refuse(const mps_material *material);
 /* True: the wave modulus follows the state. */
 bool mpsi_material_stiffens(const mps_material *material);
@@ -69,18 +70,18 @@ double mpsi_material_rest_modulus(const mps_material *material);
 /* G (Pa) at zero strain; of a user's law that does not state it a third of the wave modulus (nu =
  * 1/4). */
 double mpsi_material_shear(const mps_material *material);
-/* Which part of the work against its stresses the law gives back. */
+/* Recoverable part of the work of the law's stresses. */
 typedef enum mpsi_kept {
-  MPSI_KEPT_ALL,     /* elastic; and users' laws, which do not tell */
-  MPSI_KEPT_ELASTIC, /* what changes the energy of the stress by Hooke's law: elastic-plastic */
+  MPSI_KEPT_ALL,     /* elastic; and users' laws, where it is unknown */
+  MPSI_KEPT_ELASTIC, /* change of the stress's energy by Hooke's law: elastic-plastic */
   MPSI_KEPT_PRESSURE /* the mean stress times tr(d): fluids */
 } mpsi_kept;
 mpsi_kept mpsi_material_kept(const mps_material *material);
 /* Pa s; 0 for all but fluids and users' laws. */
 double mpsi_material_viscosity(const mps_material *material);
-/* Calls `add` with every number that decides what the law does, its kind first, in an order of its
- * kind: two materials are alike if these and the names of material and history columns are.
- * Addresses, as of a user's function, are not among them. */
+/* Calls `add` with every constant of the law, its kind first, in an order of its kind: two
+ * materials are alike if these and the names of material and history columns are. Addresses, as of
+ * a user's function, are not among them. */
 typedef void (*mpsi_constant_fn)(void *user, double value);
 void mpsi_material_constants(const mps_material *material, mpsi_constant_fn add, void *user);
 /* Fills the history columns of new particles [begin, end). */

@@ -9,7 +9,7 @@
 #define MPSI_MATERIAL_NAME 48  /* bytes of a name */
 #define MPSI_MATERIAL_FIELD 96 /* bytes of a field's name: <material>.<column> */
 
-/* Which components there are. Axisymmetric is 2D with a rate of zz. */
+/* Components in use. Axisymmetric is 2D with a rate of zz. */
 typedef enum mpsi_geometry_kind {
   MPSI_PLANE,
   MPSI_AXIAL,
@@ -17,7 +17,7 @@ typedef enum mpsi_geometry_kind {
   MPSI_GEOMETRIES
 } mpsi_geometry_kind;
 
-/* The constants of a law, as its loop wants them. */
+/* The constants of a law, in the form of its loop. */
 typedef struct mpsi_law {
   bool has_moduli; /* shear and bulk are those of an elastic solid at zero strain */
   /* from here to `viscosity` only doubles: mpsi_material_constants has each of them */
@@ -38,7 +38,7 @@ typedef struct mpsi_law {
   void *user;
 } mpsi_law;
 
-/* Applies a law to a block: not MPS_OK when a user's law refuses. */
+/* Applies a law to a block: not MPS_OK when a user's law fails. */
 typedef mps_status (*mpsi_law_fn)(const mpsi_law *law, const mps_material_block *block);
 typedef struct mpsi_law_table {
   mpsi_law_fn apply[MPSI_LAW_COUNT][MPSI_GEOMETRIES];
@@ -64,7 +64,7 @@ struct mps_material {
   char (*history_names)[MPSI_MATERIAL_NAME];
   char (*history_fields)[MPSI_MATERIAL_FIELD];
   double *history_initial;
-  void *owned; /* what law.user is where the library made it, freed with the material; or NULL */
+  void *owned; /* data of law.user that the library allocated, freed with the material; or NULL */
   const double *owned_constants; /* in `owned`: those of a UMAT */
   int32_t owned_count;
 };
@@ -77,13 +77,13 @@ mps_material *mpsi_material_new(mps_context *context, const char *function,
 /* mps_material_create_user of a definition that is complete. */
 mps_status mpsi_material_make_user(mps_context *context, const char *function,
                                    const mps_material_user_def *def, mps_material **out);
-/* What a user's law must not have written: describes the first value that is not finite in
+/* Checks the output of a user's law: describes the first value that is not finite in
  * block->message, its particle in *block->refused. */
 mps_status mpsi_check_results(const mps_material_block *block, int32_t history_count);
 
 /* Maps a trial stress (xx yy zz xy [zx yz]) back to the pyramid of Mohr and Coulomb. Returns its
- * flags; adds to *plastic_strain, opens and closes the gap, and tells where it has flags how much
- * of the step's volume strain is none of the grains' own. */
+ * flags; adds to *plastic_strain, opens and closes the gap, and returns, where it has flags, the
+ * part of the step's volume strain that is not that of the grains. */
 int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
                                  double *plastic_strain, double *gap, double *opened);
 

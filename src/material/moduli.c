@@ -1,5 +1,5 @@
-/* moduli.c - the wave modulus K + 4G/3 of Nakamura (50) in the present state, for laws that
- * stiffen. SPDX-License-Identifier: BSD-3-Clause */
+/* moduli.c - the wave modulus K + 4G/3 of Nakamura (50) in the present state, for laws with a
+ * stiffness that depends on the state. SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 
 bool mpsi_material_stiffens(const mps_material *material) { return material->type->moduli != NULL; }

@@ -1,7 +1,7 @@
 /* mohr_coulomb.c - return map of Mohr-Coulomb in principal stresses: main plane, the two edges and
  * the apex, with a flow potential of the same shape for the angle of dilation; and the cut-off of
  * tension, that no principal stress exceeds T, with its own normal flow. Around it the gap between
- * grains that were drawn apart.
+ * separated grains.
  *
  * The yield functions are linear and the flow directions are constant, so each return is one step:
  * solved exactly, without iteration.
@@ -9,7 +9,7 @@
 #include "core/base/symmetric.h"
 #include "material_private.h"
 
-/* Principal stresses in any order, and how to go back. */
+/* Principal stresses in any order, and the transformation back. */
 typedef struct principal {
   double value[3];
   double axis[3][3]; /* 3D: axis[i][a] is component i of the direction of value[a] */
@@ -24,7 +24,7 @@ static principal split_plane(const double *s) {
   return (principal){.value = {mean + radius, mean - radius, s[2]}};
 }
 
-/* Keeps the directions in the plane, puts the new values there. */
+/* Sets new principal values, with the same directions in the plane. */
 static void join_plane(const principal *trial, const double *value, double *s) {
   const double radius = 0.5 * (trial->value[0] - trial->value[1]);
   const double scale = radius > 0.0 ? 0.5 * (value[0] - value[1]) / radius : 0.0;
@@ -65,18 +65,18 @@ static drop flow_drop(const mpsi_law *law) {
                 .smallest = volume - 2.0 * g * (1.0 - psi / 3.0)};
 }
 
-/* Yield function of the plane that s1 and s3 make. */
+/* Yield function of the plane of s1 and s3. */
 static double yield(const mpsi_law *law, double s1, double s3) {
   return (s1 - s3) + (s1 + s3) * law->sin_phi - 2.0 * law->c_cos_phi;
 }
 
-/* What f(s1, s3) loses when those change by -d1 and -d3. */
+/* Decrease of f(s1, s3) for changes of -d1 and -d3. */
 static double yield_loss(const mpsi_law *law, double d1, double d3) {
   return (d1 - d3) + (d1 + d3) * law->sin_phi;
 }
 
-/* An edge, where two planes meet; `i`, `j` the two equal stresses and `k` the third. By symmetry
- * the equal ones may be replaced by their mean, with the mean of the two flows. */
+/* An edge, the intersection of two planes; `i`, `j` the two equal stresses and `k` the third. By
+ * symmetry the equal ones may be replaced by their mean, with the mean of the two flows. */
 static void return_to_edge(const mpsi_law *law, double pair_drop, double third_drop, bool right,
                            double *s, int i, int j, int k) {
   const double pair = 0.5 * (s[i] + s[j]);
@@ -100,7 +100,7 @@ static int64_t return_to_pyramid(const mpsi_law *law, double *s) {
     for (int i = 0; i < 3; i++) s[i] = plane[i];
     return MPS_MATERIAL_FLAG_PLASTIC;
   }
-  /* Past which edge did the plane's return go? Right: the two smaller stresses, compression. */
+  /* The edge that the plane's return has passed. Right: the two smaller stresses, compression. */
   if (plane[1] < plane[2])
     return_to_edge(law, 0.5 * (d.middle + d.smallest), d.largest, true, s, 1, 2, 0);
   else
@@ -111,7 +111,7 @@ static int64_t return_to_pyramid(const mpsi_law *law, double *s) {
 }
 
 /* To the cut-off alone: s1 = T, or s1 = s2 = T, or all three. A unit of its flow along a stress
- * takes `along` from that one and `across` from the other two. */
+ * decreases that one by `along` and the other two by `across`. */
 static void return_to_cut(const mpsi_law *law, double *s) {
   const double T = law->cut, across = law->lambda, along = across + 2.0 * law->shear;
   const double middle = s[1] - across / along * (s[0] - T);
@@ -125,8 +125,8 @@ static void return_to_cut(const mpsi_law *law, double *s) {
   s[2] = smallest <= T ? smallest : T;
 }
 
-/* To the line where the pyramid's plane meets the cut-off, s1 = T and s3 = low, or to its ends on
- * the edges s2 = s3 and s1 = s2. */
+/* To the intersection of the pyramid's plane and the cut-off, s1 = T and s3 = low, or to its ends
+ * on the edges s2 = s3 and s1 = s2. */
 static void return_to_brim(const mpsi_law *law, double *s) {
   const double T = law->cut, across = law->lambda, along = across + 2.0 * law->shear;
   const double low =
@@ -141,7 +141,7 @@ static void return_to_brim(const mpsi_law *law, double *s) {
   s[2] = low;
 }
 
-/* A return to one of the two surfaces alone that the other one allows is the answer; else both are
+/* A return to one of the two surfaces that satisfies the other one is the solution; else both are
  * active. With normal flow that is the closest point. */
 static int64_t return_principal(const mpsi_law *law, double *s) {
   double pyramid[3] = {s[0], s[1], s[2]};
@@ -180,8 +180,8 @@ static void order(const double *value, int *rank) {
 
 /* ---- gaps ------------------------------------------------------------------------------------ */
 
-/* Largest share of the deviator of s that the pyramid and the cut-off allow at the mean stress p.
- */
+/* Largest fraction of the deviator of s that the pyramid and the cut-off allow at the mean stress
+ * p. */
 static double share_at(const mpsi_law *law, const double *s, double mean, double p) {
   const double d1 = s[0] - mean, d3 = s[2] - mean;
   const double need = (d1 - d3) + (d1 + d3) * law->sin_phi;
@@ -191,17 +191,17 @@ static double share_at(const mpsi_law *law, const double *s, double mean, double
   return share;
 }
 
-/* While there is a gap between the grains the mean stress is what an elastic unloading leaves, at
- * least 0, and the deviator shrinks to what is allowed there: no dilation. */
+/* With a gap between the grains the mean stress is that of elastic unloading, at least 0, and the
+ * deviator is scaled to the yield surface there: no dilation. */
 static void hold_open(const mpsi_law *law, double mean, double *s) {
   const double p = fmax(0.0, fmin(mean, fmin(law->apex, law->cut)));
   const double share = share_at(law, s, mean, p);
   for (int i = 0; i < 3; i++) s[i] = p + share * (s[i] - mean);
 }
 
-/* The return with the gap: compression closes it before the mean stress falls below 0; what the
- * return to the apex, or to the cut-off along all axes, takes from the volume opens it. Of a crack
- * along one or two axes no gap is kept. *opened: volume strain that is none of the grains'. */
+/* The return with the gap: compression closes it before the mean stress falls below 0; the volume
+ * strain of a return to the apex, or to the cut-off along all axes, opens it. A crack along one or
+ * two axes has no gap. *opened: volume strain that is not that of the grains. */
 static int64_t return_with_gap(const mpsi_law *law, double *s, double *gap, double *opened) {
   const double mean = (s[0] + s[1] + s[2]) / 3.0, closed = mean + law->bulk * *gap;
   const bool open = *gap > 0.0 && closed > 0.0;

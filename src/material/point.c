@@ -1,4 +1,4 @@
-/* point.c - one particle with all its state: a law along a path of strain, without a solver.
+/* point.c - one particle with its state: a law along a strain path, without a solver.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
@@ -51,7 +51,7 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
   const mps_status status =
       check_drive(context, __func__, material, point, gradient, duration, steps);
   if (status != MPS_OK) return status;
-  mps_material_point now = *point; /* the caller's changes only when every step succeeds */
+  mps_material_point now = *point; /* the caller's point changes only when every step succeeds */
   double *history[MPS_MATERIAL_POINT_HISTORY];
   char message[MPSI_MATERIAL_MESSAGE] = "";
   int64_t refused = -1;

@@ -73,9 +73,9 @@ MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_law_columns *c, 
   }
 }
 
-/* Turns a stress by the spin: Q s Q^T with Q = (1 - w/2)^-1 (1 + w/2), a proper rotation that
- * agrees with (45) to first order. The bare sum s + w.s - s.w lets the deviator of a body that
- * turns once in n steps grow by the factor exp(8 pi^2/n). */
+/* Rotates a stress by the spin increment: Q s Q^T with Q = (1 - w/2)^-1 (1 + w/2), a proper
+ * rotation that agrees with (45) to first order. With the sum s + w.s - s.w the deviator of a body
+ * that rotates once in n steps would grow by the factor exp(8 pi^2/n). */
 MPSI_INLINE mpsi_sym mpsi_turn(const int geometry, mpsi_sym s, mpsi_spin w) {
   if (geometry != MPSI_SPACE) {
     const double q = 0.25 * w.xy * w.xy, r = 1.0 / (1.0 + q);

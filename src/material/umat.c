@@ -1,5 +1,5 @@
 /* umat.c - a law written as an Abaqus UMAT: its arguments particle by particle from a block's
- * columns, and what is kept of them between steps. It is a user's law (user.c) that owns itself.
+ * columns, and the values kept between steps. It is a user's law (user.c) that owns its data.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 #include "tensor.h"
@@ -12,7 +12,7 @@ static const char *const kept_names[KEPT] = {"umat_time",      "umat_steps",    
                                              "umat_strain_22", "umat_strain_33", "umat_strain_12",
                                              "umat_strain_13", "umat_strain_23"};
 
-enum { STATEV_MOST = 1000 }; /* with what is kept, within the columns that a law may have */
+enum { STATEV_MOST = 1000 }; /* with the values kept, within the most columns of a law */
 _Static_assert(STATEV_MOST + KEPT <= MPSI_MATERIAL_COLUMNS, "columns of a law");
 
 #define CMNAME_LENGTH 80
@@ -37,7 +37,7 @@ mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size) {
  * Matrices are Fortran's: element (i, j) at i + 3 j. Symmetric tensors are 11, 22, 33, 12, 13, 23,
  * which is the order of our columns; strains have engineering shear. */
 
-/* What differs from particle to particle. */
+/* Arguments that differ between particles. */
 typedef struct umat_point {
   double stress[6], statev[STATEV_MOST], strain[6], increment[6];
   double rotation[9], before[9], after[9]; /* DROT, DFGRD0, DFGRD1 */
@@ -84,7 +84,7 @@ static void deformations(const mps_material_block *block, int64_t k, umat_point 
     }
 }
 
-/* STRAN: the sum of the steps before, turned with the particle. */
+/* STRAN: the sum of the previous steps, rotated with the particle. */
 static void turned_strain(int geometry, double *const *column, int64_t k, mpsi_spin w,
                           double *strain) {
   mpsi_sym e = {.xx = column[0][k], .yy = column[1][k], .zz = column[2][k]};
@@ -127,8 +127,8 @@ static void scatter(const umat_law *law, const mps_material_block *block, int64_
 
 /* ---- the call -------------------------------------------------------------------------------- */
 
-/* One particle. The arguments that a mechanical step does not have are zero. Returns what is wrong,
- * or NULL. */
+/* One particle. Arguments that do not apply to a mechanical step are zero. Returns the text of an
+ * error, or NULL. */
 static const char *call_umat(const umat_law *law, const mps_material_block *block,
                              umat_point *point) {
   const int32_t ndi = 3, nshr = block->dim == 3 ? 3 : 1, ntens = ndi + nshr, one = 1;

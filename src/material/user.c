@@ -1,4 +1,4 @@
-/* user.c - a law of the caller's own: checks of its definition, and of what it writes.
+/* user.c - a user's law: checks of its definition, and of its output.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 
@@ -55,7 +55,8 @@ static mps_status check_user_law(mps_context *context, const char *function,
   return status == MPS_OK ? check_history(context, function, def) : status;
 }
 
-/* K and G, where the definition states them, and K + 4G/3, which it need not state then. */
+/* K and G, where the definition states them, and K + 4G/3, which may then be left to the default.
+ */
 static mps_status check_moduli(mps_context *context, const char *function,
                                const mps_material_user_def *def) {
   const double least = def->bulk_modulus + 4.0 / 3.0 * def->shear_modulus;
