@@ -1,4 +1,4 @@
-/* body.c - life of a rigid body: definition, checks, owners.
+/* body.c - creation and release of a rigid body: definition, checks, owners.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body_internal.h"
 
@@ -89,7 +89,7 @@ static mps_status check_free(mps_context *context, const char *function, const m
   return MPS_OK;
 }
 
-/* A prescribed body has no use for what only a free one needs: most likely a slip. */
+/* A value of free bodies only, given for a prescribed one, is most likely a mistake. */
 static mps_status check_motion(mps_context *context, const char *function, const mps_body_def *d,
                                int32_t dim) {
   if (d->motion == MPS_BODY_MOTION_FREE) return check_free(context, function, d, dim);

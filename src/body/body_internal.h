@@ -1,4 +1,4 @@
-/* body_internal.h - what the solvers use of a rigid body besides the public functions.
+/* body_internal.h - the interface of a rigid body for solvers, besides the public functions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_BODY_H
 #define MPSI_BODY_H
@@ -19,8 +19,8 @@ typedef enum mpsi_shape {
 typedef struct mpsi_mesh mpsi_mesh;
 
 enum { MPSI_MOTIONS = 6 };
-/* Ranges of what a body may be: beyond them squares and quotients lose their digits. */
-#define MPSI_BODY_FAR 1e9     /* m, m/s, rad, rad/s, m/s2: places, lengths, rates */
+/* Allowed ranges of a body: beyond them squares and quotients lose their digits. */
+#define MPSI_BODY_FAR 1e9     /* m, m/s, rad, rad/s, m/s2: positions, lengths, rates */
 #define MPSI_BODY_SMALL 1e-9  /* m: radii and sides */
 #define MPSI_BODY_LIGHT 1e-30 /* kg, kg m2 */
 #define MPSI_BODY_HEAVY 1e30
@@ -55,15 +55,15 @@ typedef struct mpsi_pose {
   double v[3], spin[3]; /* m/s, rad/s in space */
 } mpsi_pose;
 
-/* A solver's forces on a body: one of its contacts, or its water. All sources together are what the
- * body feels. */
+/* A solver's forces on a body: one of its contacts, or its water. The force on the body is the sum
+ * of all sources. */
 typedef struct mpsi_body_source {
   mps_reaction reaction[MPS_BODY_MAX_PARTS]; /* by this solver */
   bool moves;                                /* the body, at the end of each of its steps */
   struct mpsi_body_source *next;
 } mpsi_body_source;
 
-/* Where the signals of a prescribed body are: position (m) and rotation vector (rad), and their
+/* Values of the signals of a prescribed body: position (m) and rotation vector (rad), and their
  * rates. */
 typedef struct mpsi_course {
   double at[MPSI_MOTIONS], rate[MPSI_MOTIONS];
@@ -92,7 +92,7 @@ struct mps_body {
   double rotation[3]; /* rad: as of mps_body_state, but of a free body in 3D unused */
   double angular[3];  /* kg m2/s, angular momentum in space: free bodies in 3D */
   mpsi_course ahead;  /* prescribed: at the end of the step being made */
-  bool outside;       /* prescribed: moves as mps_body_set_motion said, not by the signals */
+  bool outside;       /* prescribed: moves by mps_body_set_motion, not by the signals */
   mpsi_pose pose;
   /* m/s, rad/s: those of the last advance by which forces do their work; of a free body the means
    * of before it and after it, without damping */
@@ -103,25 +103,25 @@ struct mps_body {
   mpsi_body_source *sources;
 };
 
-/* Lists what changes of the body as it moves, and what it is. */
+/* Lists the state of the body as it moves, and its definition. */
 void mpsi_body_list_state(mpsi_state *state, mps_body *body);
-/* Of that only what solvers add to: reactions, and impulses since it last moved. */
+/* The part of it to which solvers add: reactions, and impulses since its last step. */
 void mpsi_body_list_account(mpsi_state *state, mps_body *body);
 /* The reactions by one source. */
 void mpsi_body_list_source(mpsi_state *state, const mps_body *body, mpsi_body_source *source);
 
-/* Adds what the body is, and where; the latter alone. */
+/* Adds the body's definition and pose; the latter alone. */
 void mpsi_body_give(mpsi_given *list, const mps_body *body);
 void mpsi_body_give_state(mpsi_given *list, const mps_body *body);
-/* Adds where the body's signals put it at the end of the step being made. */
+/* Adds the pose by the body's signals at the end of the step being made. */
 void mpsi_body_give_ahead(mpsi_given *list, const mps_body *body);
 
 /* Nearest surface point to x (dim values, finite). Reads only: any number of threads. */
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);
 /* Whether the body or its inside is within `reach` (m, >= 0) of x; cheap far from a mesh. */
 bool mpsi_body_reaches(const mps_body *body, const double *x, double reach);
-/* The same on a walk over places: a distance changes no faster than the place, so that the last one
- * found leaves out what lies near it and well beyond the reach. Begins with {.distance = 0}. */
+/* The same along a sequence of points: a distance changes no faster than the position, so that the
+ * last one found excludes points near it and well beyond the reach. Starts with {.distance = 0}. */
 typedef struct mpsi_last_distance {
   double x[3], distance;
 } mpsi_last_distance;
@@ -137,16 +137,16 @@ static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, do
   v[2] = pose->v[2] + w[0] * r[1] - w[1] * r[0];
 }
 
-/* Whether two bodies of one dimension overlap by more than `depth` (m, > 0): bodies that touch do
+/* Whether two bodies of one dimension overlap by more than `depth` (m, > 0): bodies in contact do
  * not. Two solids without a half space or sphere between them cost up to (size / depth)^2 distances
  * where faces lie on each other; the round surface of a solid of revolution then counts 0.2 % of
  * its radius too small. */
 bool mpsi_body_overlap(const mps_body *a, const mps_body *b, double depth);
 /* Two faces are a wall's two sides where their normals are opposite within 20 degrees: a plate's.
- * Those of a wedge or cone of more than that meet in a tip, past which the ground flows. */
+ * Those of a wedge or cone of more than that join in a tip, around which the ground flows. */
 #define MPSI_BODY_OPPOSITE -0.94
-/* Smallest wall (m): way through the body from samples of its surface, straight inwards, to its
- * other side. INFINITY of a half space. */
+/* Smallest wall thickness (m): from samples of the surface, straight inwards, to the other side.
+ * INFINITY of a half space. */
 double mpsi_body_thickness(const mps_body *body);
 /* Whether it is known to be convex: balls, half spaces, polygons and solids of revolution that are.
  */
@@ -156,7 +156,7 @@ bool mpsi_body_is_convex(const mps_body *body);
  * the defaults. */
 mps_status mpsi_body_new(mps_context *context, const char *function, const mps_body_def *def,
                          int32_t dim, mpsi_shape shape, int64_t faces, mps_body **out);
-/* Gives up one share; the last frees. */
+/* Releases one reference; the last frees. */
 void mpsi_body_release(mps_body *body);
 
 /* MPS_ERROR_ARGUMENT where the length `name` of a shape is not between MPSI_BODY_SMALL and
@@ -164,16 +164,16 @@ void mpsi_body_release(mps_body *body);
 mps_status mpsi_body_check_length(mps_context *context, const char *function, const char *name,
                                   double value);
 
-/* Puts a new body where its definition says. */
+/* Sets a new body to the pose of its definition. */
 void mpsi_body_begin(mps_body *body);
 
 /* Distance (m) of the furthest point of the surface from the reference point; 0 of half spaces. */
 double mpsi_body_extent(const mps_body *body);
 
-/* Puts the force on one part in a step of dt into its account: `count` particles touch it. */
+/* Adds the force on one part in a step of dt to its reaction, with `count` particles in contact. */
 void mpsi_body_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
                        mps_reaction *r);
-/* From now on, or no more, one of the body's sources. */
+/* Adds or removes one of the body's sources. */
 void mpsi_body_join(mps_body *body, mpsi_body_source *source);
 void mpsi_body_leave(mps_body *body, const mpsi_body_source *source);
 /* The source whose solver moves the body, or NULL. */
@@ -186,8 +186,8 @@ static inline const mpsi_body_source *mpsi_body_mover(const mps_body *body) {
  * particles per part; the body's present forces become the sum over its sources. */
 void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const mpsi_load *load,
                      const int64_t *count);
-/* Adds impulses (N s, N m s) per part that are no forces of a step: the body moves by them when it
- * moves next. */
+/* Adds impulses (N s, N m s) per part that are no forces of a step: the body moves by them in its
+ * next step. */
 void mpsi_body_strike(mps_body *body, mpsi_body_source *source, const mpsi_load *impulse);
 /* The sum of the reactions of all `parts` (part -1), or that of one. */
 mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
@@ -198,7 +198,7 @@ mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
  * none.
  */
 mps_status mpsi_body_look_ahead(mps_body *body, const char *function, int32_t number, double dt);
-/* Moves the body on by dt: see mps_body_advance. Its signals have been evaluated. */
+/* Advances the body by dt: see mps_body_advance. Its signals have been evaluated. */
 void mpsi_body_advance(mps_body *body, double dt);
 
 #endif

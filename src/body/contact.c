@@ -1,5 +1,5 @@
-/* contact.c - life of a contact: definition, the shares of solver and caller, what it tells the
- * body. SPDX-License-Identifier: BSD-3-Clause */
+/* contact.c - creation and release of a contact: definition, references of solver and caller,
+ * forces on the body. SPDX-License-Identifier: BSD-3-Clause */
 #include "contact_internal.h"
 
 #include "rotation.h"
@@ -9,7 +9,7 @@
 #define ROUGHEST 1e3 /* friction */
 #define MOST_SWEEPS 1000
 #define SWEEPS 10         /* usual */
-#define SWEEPS_AT_MOST 30 /* where a tolerance may end them before */
+#define SWEEPS_AT_MOST 30 /* where a tolerance may end them earlier */
 
 static const mps_contact_def contact_defaults = {.struct_size = sizeof(mps_contact_def),
                                                  .penalty = NAN,

@@ -1,15 +1,15 @@
-/* contact_internal.h - the contact of one solver with one body: what the caller's handle is, and
- * what the solvers use of it. SPDX-License-Identifier: BSD-3-Clause */
+/* contact_internal.h - the contact of one solver with one body: the caller's handle, and its
+ * interface for solvers. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_BODY_CONTACT_H
 #define MPSI_BODY_CONTACT_H
 
 #include "body_internal.h"
 
-/* What a kind of solver does for the handles of its contacts. */
+/* Functions of a kind of solver for the handles of its contacts. */
 typedef struct mpsi_contact_owner {
   /* MPS_ERROR_STATE where the contact cannot end now. */
   mps_status (*check)(void *owner, const char *function);
-  /* The solver forgets the contact, and gives up its share by mpsi_contact_leave. */
+  /* The solver removes the contact, and releases its reference by mpsi_contact_leave. */
   void (*end)(void *owner, mps_contact *contact);
   mps_status (*particles)(void *owner, mps_contact *contact, int64_t capacity, int64_t *count,
                           int64_t *ids, double *gap, double *normal, double *force, double *foot);
@@ -21,27 +21,27 @@ struct mps_contact {
   mps_contact_def def;
   mps_body *body;
   double extent; /* m: see mpsi_body_extent */
-  bool thin;     /* the solver keeps what is on both sides of a thin wall apart */
+  bool thin;     /* the solver separates both sides of a thin wall */
   bool convex;   /* whether the body is known to be */
   const mpsi_contact_owner *kind;
   void *owner; /* the solver; NULL: the contact has ended */
   mpsi_body_source source;
 };
 
-/* A contact of two shares (the solver's and the caller's), not yet one of the body's; checks `def`,
- * NULL means the defaults. */
+/* A contact of two references (the solver's and the caller's), not yet a source of the body; checks
+ * `def`, NULL means the defaults. */
 mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body *body,
                             const mps_contact_def *def, const mpsi_contact_owner *kind, void *owner,
                             mps_contact **out);
-/* From now on it is one of the body's. */
+/* Makes it a source of the body. */
 void mpsi_contact_join(mps_contact *contact);
-/* The solver's share; the contact ends. */
+/* Releases the solver's reference; the contact ends. */
 void mpsi_contact_leave(mps_contact *contact);
-/* Gives up one share; the last frees. */
+/* Releases one reference; the last frees. */
 void mpsi_contact_release(mps_contact *contact);
 
-/* Tells the body the forces of a step of dt, `count` particles and load[] per part; the body moves
- * where this solver moves it and `moves` is true. */
+/* Adds the forces of a step of dt to the body, `count` particles and load[] per part; advances the
+ * body where this solver moves it and `moves` is true. */
 void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
                         const int64_t *count, bool moves);
 

@@ -4,21 +4,21 @@
  * The sign at a corner is that of (x - corner) . (n1 + n2), with the normals of its two edges: in
  * 2D that side is right for convex and for concave corners, so no crossings need to be counted, and
  * sign, normal and foot always belong to the same feature. A solid of revolution is its profile, a
- * polygon in the half plane r >= 0, seen in the plane through the axis and the point.
+ * polygon in the half plane r >= 0, in the plane through the axis and the point.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body_internal.h"
 
 #include "mesh.h"
 #include "rotation.h"
 
-/* What the search knows of the nearest feature so far. */
+/* The nearest feature found so far. */
 typedef struct nearest {
   double square; /* of the distance, m2 */
   int64_t edge;
   int where; /* 0: inner point of the edge, -1: its start, 1: its end */
 } nearest;
 
-/* Unit normal of edge k of the anticlockwise corners: the direction turned right. */
+/* Unit normal of edge k of the anticlockwise corners: the direction rotated clockwise. */
 static void edge_normal(const mps_body *body, int64_t k, double *n) {
   const double *a = body->xy + 2 * k, *b = a + 2;
   const double dx = b[0] - a[0], dy = b[1] - a[1], length = sqrt(dx * dx + dy * dy);
@@ -48,7 +48,7 @@ MPSI_INLINE nearest search(const mps_body *body, const double *x, bool revolved)
       const double across = px * ey - py * ex;
       square = across * across / length2;
     }
-    /* An inner point wins over a corner that rounding makes as near. */
+    /* An inner point prevails over a corner at the same distance by rounding. */
     if (square < best.square || (square == best.square && where == 0 && best.where != 0))
       best = (nearest){square, k, where};
   }

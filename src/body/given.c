@@ -1,4 +1,4 @@
-/* given.c - what a body is and where it is, as named numbers.
+/* given.c - definition and pose of a body, as named numbers.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh.h"
 #include "signal/signal_internal.h"

@@ -1,4 +1,4 @@
-/* mesh.c - what makes triangles a closed surface: joined points, two triangles at every edge, one
+/* mesh.c - checks of a closed surface of triangles: joined points, two triangles at every edge, one
  * fan of triangles at every vertex, outward normals.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh.h"
@@ -49,7 +49,7 @@ static uint64_t point_hash(const double *x) {
   return hash;
 }
 
-/* Copies the points, each place once, and the corners with their new numbers. */
+/* Copies the points, without duplicates, and the corners with their new numbers. */
 static mps_status join_points(mps_context *context, const char *function, mpsi_mesh *mesh,
                               int64_t count, const double *xyz, const int32_t *corner) {
   table known;
@@ -222,8 +222,7 @@ static mps_status match_edges(mps_context *context, const char *function, mpsi_m
 
 /* ---- vertices -------------------------------------------------------------------------------- */
 
-/* The triangles at a vertex must be one fan: where two fans meet, inside and outside are not told
- * apart. */
+/* The triangles at a vertex must be one fan: with two fans inside and outside are ambiguous. */
 static mps_status check_fans(mps_context *context, const char *function, const mpsi_mesh *mesh) {
   int32_t *count = mpsi_alloc(context, mesh->vertices, sizeof *count);
   if (!count) return mpsi_fail_memory(context, function, (size_t)mesh->vertices * sizeof *count);

@@ -1,12 +1,11 @@
-/* mesh_foot.c - the nearest point of a mesh, by a tree of Embree. Nothing else of the library knows
- * of Embree.
+/* mesh_foot.c - the nearest point of a mesh, by a tree of Embree. Only this file uses Embree.
  *
- * Embree works in single precision, so it only discards triangles that are surely too far: what
- * remains is measured here in double precision, in the radius found so far and a little more.
- * Of equally near triangles the lowest number wins, so that the answer does not depend on the order
- * of the search. Sign and normal are those of the feature the foot lies on: a triangle's normal,
- * the sum of the two normals at an edge, or that at a vertex weighted with the triangles' angles,
- * whose side is right for every closed surface (Baerentzen and Aanaes 2005).
+ * Embree works in single precision, so it only discards triangles that are surely too far: the
+ * others are measured here in double precision, in the radius found so far and a little more. Of
+ * equally near triangles the lowest number prevails, so that the result does not depend on the
+ * order of the search. Sign and normal are those of the feature the foot lies on: a triangle's
+ * normal, the sum of the two normals at an edge, or that at a vertex weighted with the triangles'
+ * angles, whose sign is right for every closed surface (Baerentzen and Aanaes 2005).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh.h"
 #include "rotation.h"
@@ -18,7 +17,7 @@
 /* In units of the mesh's size: far above the round-off of Embree's single precision. */
 #define SLACK 4e-6
 #define SLACK_RELATIVE 1e-5
-#define TOO_FAR 1e5 /* beyond, single precision tells the triangles no more apart */
+#define TOO_FAR 1e5 /* beyond, single precision does not distinguish the triangles */
 
 typedef struct search {
   const mpsi_mesh *mesh;
@@ -38,7 +37,7 @@ static void fill_vertices(const mpsi_mesh *mesh, float *to) {
 }
 
 mps_status mpsi_mesh_index(mps_context *context, const char *function, mpsi_mesh *mesh) {
-  /* One thread builds: no pool of threads stays behind, whatever program we are part of. */
+  /* One thread builds: no pool of threads remains in the host program. */
   RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
   mesh->device = device;
   if (!device) return mpsi_fail(context, function, MPS_ERROR_MEMORY, "Embree made no device");
@@ -93,7 +92,7 @@ static void keep(search *s, double square, int64_t t, int where, const double *a
   memcpy(s->at, at, sizeof s->at);
 }
 
-/* A point that is seen beyond some sides of the triangle has its foot on one of these. */
+/* A point beyond some sides of the triangle has its foot on one of these. */
 static void measure(search *s, int64_t t) {
   const mpsi_mesh *mesh = s->mesh;
   const int32_t *corner = mesh->corner + 3 * t;
@@ -183,7 +182,7 @@ mpsi_foot mpsi_mesh_foot(const mpsi_mesh *mesh, const double *x) {
     memcpy(f.normal, n, sizeof f.normal);
     return f;
   }
-  /* On an edge the direction to x is round-off: there the feature's own normal serves. */
+  /* On an edge the direction to x is round-off: there the feature's own normal is used. */
   const bool on = d <= 1e-14 * mesh->size;
   const double *along = on ? n : from, length = sqrt(mpsi_dot3(along, along));
   for (int c = 0; c < 3; c++) f.normal[c] = (on ? 1.0 : sign) * along[c] / length;

@@ -1,4 +1,4 @@
-/* motion.c - how a rigid body moves: by signals, from outside, or by forces; its energies.
+/* motion.c - motion of a rigid body: by signals, set by the caller, or by forces; its energies.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body_internal.h"
 
@@ -47,7 +47,7 @@ static mpsi_signal_use used_by(const mps_body *body, const char *function) {
   return (mpsi_signal_use){body->context, function, "body", -1, 0};
 }
 
-/* Puts the body where its signals are. */
+/* Sets the body to the pose of its signals. */
 static void follow(mps_body *body, const mpsi_course *course) {
   const double *at = course->at, *rate = course->rate;
   mpsi_pose *pose = &body->pose;
@@ -98,11 +98,12 @@ void mpsi_body_begin(mps_body *body) {
   find_angular(body);
 }
 
-/* Turns a free body in 3D for dt under its angular momentum L, which stays: the energy of rotation,
- * sum (L . e_i)^2/(2 I_i) over the body's axes e_i, is split into L^2/(2 I_m), whose motion is a
- * rotation about L, and two rests (L . e_i)^2 (1/I_i - 1/I_m)/2, whose motions are rotations about
- * e_i, in a symmetric order. Each is exact, so that the step is symplectic, explicit and of second
- * order; with I_m the middle one, a body with two equal inertias moves exactly. */
+/* Rotates a free body in 3D for dt under its angular momentum L, which is constant: the energy of
+ * rotation, sum (L . e_i)^2/(2 I_i) over the body's axes e_i, is split into L^2/(2 I_m), whose
+ * motion is a rotation about L, and two rests (L . e_i)^2 (1/I_i - 1/I_m)/2, whose motions are
+ * rotations about e_i, in a symmetric order. Each is exact, so that the step is symplectic,
+ * explicit and of second order; with I_m the middle one, a body with two equal inertias moves
+ * exactly. */
 static void turn(mps_body *body, double dt) {
   const double *I = body->def.inertia, *L = body->angular;
   double *R = body->pose.R;
@@ -122,7 +123,7 @@ static void turn(mps_body *body, double dt) {
   find_spin(body, body->pose.spin);
 }
 
-/* A prescribed body that is moved from outside goes on with its velocity and spin. */
+/* A prescribed body whose motion was set continues with its velocity and spin. */
 static void coast(mps_body *body, double dt) {
   mpsi_pose *pose = &body->pose;
   for (int c = 0; c < 3; c++) pose->x[c] += dt * pose->v[c];

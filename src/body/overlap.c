@@ -1,16 +1,16 @@
-/* overlap.c - what a solver wants to know of its bodies before it starts: whether two of them
- * overlap, and how thin a body's walls are.
+/* overlap.c - checks of bodies before a solver starts: overlap of two bodies, and thickness of a
+ * body's walls.
  *
  * Two surfaces are compared piece by piece (edges, triangles): the distance to the other body
- * changes no faster than one goes, so a piece of radius r around a point at distance d >= r is
- * outside; else it is divided, down to the depth asked for. SPDX-License-Identifier: BSD-3-Clause
- */
+ * changes no faster than the position, so a piece of radius r around a point at distance d >= r is
+ * outside; else it is divided, down to the given depth. SPDX-License-Identifier: BSD-3-Clause
+ * */
 #include "mesh.h"
 #include "rotation.h"
 
 #include <string.h>
 
-#define SECTORS 48 /* of a solid of revolution, seen as triangles */
+#define SECTORS 48 /* of a solid of revolution, approximated by triangles */
 #define END 1e-6   /* the samples nearest to an edge's ends, in its length */
 
 /* ---- overlap --------------------------------------------------------------------------------- */
@@ -46,7 +46,7 @@ static bool piece_inside(const mps_body *body, int n, const double p[3][3], doub
   return n == 3 && piece_inside(body, 3, (const double(*)[3])middle, depth);
 }
 
-/* The surface that edge k of a profile makes, in triangles. */
+/* The surface of edge k of a profile, in triangles. */
 static bool ring_inside(const mps_body *a, int64_t k, const mps_body *b, double depth) {
   const double *from = a->xy + 2 * k, *to = from + 2, step = 8.0 * atan(1.0) / SECTORS;
   for (int s = 0; s < SECTORS; s++) {
@@ -99,7 +99,7 @@ static double lowest(const mps_body *a, const mps_body *b) {
                           a->pose.x[2] - b->pose.x[2]};
   const double middle = mpsi_dot3(from, n), across = hypot(own[0], own[1]);
   if (a->shape == MPSI_BALL) return middle - a->radius;
-  if (a->shape == MPSI_HALF) /* bounded by parallels only where they face each other */
+  if (a->shape == MPSI_HALF) /* bounded by parallel edges only where they face each other */
     return mpsi_dot3(a->normal, own) < -1.0 + 1e-12 ? middle : -INFINITY;
   if (a->shape == MPSI_MESH)
     for (int64_t s = 0; s < 3 * a->mesh->triangles; s++)
@@ -140,7 +140,7 @@ static void normal_of(const double *a, const double *b, double *n) {
   n[0] = y / length, n[1] = -x / length;
 }
 
-/* The way from x on edge k straight inwards to the next edge, INFINITY where that is not a wall's
+/* Distance from x on edge k straight inwards to the next edge, INFINITY where that is not a wall's
  * other side. */
 static double wall_at(const mps_body *body, int64_t k, const double *x, const double *n) {
   const int64_t all = body->shape == MPSI_REVOLUTION ? 2 * body->edges : body->edges;
@@ -192,8 +192,8 @@ double mpsi_body_thickness(const mps_body *body) {
   }
 }
 
-/* Whether a convex polygon (r, z) stays so with its image beyond the axis: it has an edge there,
- * from whose ends it does not lead beyond them. */
+/* Whether a convex polygon (r, z) is convex with its image beyond the axis: it has an edge there,
+ * and does not extend beyond the ends of that edge. */
 static bool is_convex_about_axis(const mps_body *body) {
   bool closed = false;
   for (int64_t k = 0; k < body->edges; k++) {

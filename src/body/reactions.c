@@ -1,4 +1,4 @@
-/* reactions.c - what particles do to a rigid body, by the parts of its surface.
+/* reactions.c - forces of particles on a rigid body, by parts of its surface.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body_internal.h"
 

@@ -81,7 +81,8 @@ void mpsi_rotation_turn_own(int axis, double angle, double *R) {
 }
 
 void mpsi_rotation_clean(double *R) {
-  const double ab = mpsi_dot3(R, R + 3); /* Gram-Schmidt, the error shared by the first two rows */
+  const double ab =
+      mpsi_dot3(R, R + 3); /* Gram-Schmidt, the error divided between the first two rows */
   for (int c = 0; c < 3; c++) {
     const double a = R[c], b = R[3 + c];
     R[c] = a - 0.5 * ab * b, R[3 + c] = b - 0.5 * ab * a;

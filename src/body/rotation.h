@@ -29,11 +29,11 @@ void mpsi_rotation_exp(const double *v, double *R);
 void mpsi_rotation_log(const double *R, double *v);
 /* Spin in space (rad/s) of exp(v(t)), v changing at `rate`: the exponential's Jacobian. */
 void mpsi_rotation_spin(const double *v, const double *rate, double *spin);
-/* Turns R by the rotation vector v in space: R <- exp(v) R. */
+/* Rotates R by the rotation vector v in space: R <- exp(v) R. */
 void mpsi_rotation_turn(const double *v, double *R);
-/* Turns R by `angle` (rad) about the body's own axis `axis`: R <- R exp(angle e). */
+/* Rotates R by `angle` (rad) about the body's own axis `axis`: R <- R exp(angle e). */
 void mpsi_rotation_turn_own(int axis, double angle, double *R);
-/* Takes the round-off of many products out of R: its rows become orthonormal again. */
+/* Removes the round-off of many products from R: its rows become orthonormal again. */
 void mpsi_rotation_clean(double *R);
 
 #endif

@@ -1,4 +1,4 @@
-/* shapes.c - creation of the bodies that are given by a few numbers or by a polygon.
+/* shapes.c - creation of bodies by a few numbers or by a polygon.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body_internal.h"
 
@@ -40,7 +40,7 @@ static mps_status make_polygon(mps_context *context, const char *function, const
     return mpsi_fail_memory(context, function, (size_t)(n + 1) * 2 * sizeof *body->xy);
   }
   const bool reversed = area2(n, xy) < 0.0;
-  /* Reversed, edge k of ours is edge n - 1 - k of the caller: our corner k is their n - k. */
+  /* Reversed, edge k is the caller's edge n - 1 - k, and corner k the caller's n - k. */
   for (int64_t k = 0; k <= n; k++) {
     const double *corner = xy + 2 * ((reversed ? n - k : k) % n);
     body->xy[2 * k] = corner[0], body->xy[2 * k + 1] = corner[1];
@@ -142,8 +142,8 @@ mps_status mps_body_create_half_space(mps_context *context, const mps_body_def *
   return make_half(context, __func__, def, 3, normal, out);
 }
 
-/* The profile must not cross the axis, and touch it with whole edges only: a solid that is a point
- * thick has no inside there. */
+/* The profile must not cross the axis, and may have whole edges on it, not single points: a solid
+ * of no thickness at a point has no inside there. */
 static mps_status check_profile(mps_context *context, const char *function, int64_t n,
                                 const double *rz) {
   for (int64_t k = 0; k < n; k++) {
@@ -183,7 +183,7 @@ mps_status mps_body_create_cylinder(mps_context *context, const mps_body_def *de
   const double rz[8] = {0.0, -z, radius, -z, radius, z, 0.0, z};
   status = make_polygon(context, __func__, def, 3, 4, rz, out);
   if (status != MPS_OK) return status;
-  (*out)->faces = 3; /* the edge on the axis is none, and the side comes last */
+  (*out)->faces = 3; /* the edge on the axis has no face, and the side is the last */
   (*out)->face_of[1] = 2, (*out)->face_of[2] = 1;
   return MPS_OK;
 }

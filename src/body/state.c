@@ -1,4 +1,4 @@
-/* state.c - what changes of a body as it moves: see core/state.h.
+/* state.c - the state of a moving body: see core/state.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "contact_internal.h"
 

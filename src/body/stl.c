@@ -1,5 +1,5 @@
-/* stl.c - triangles from an STL file, binary or ASCII. The format has no version and no check sum:
- * so the size must fit the count to the byte, and the text must be the grammar to the word.
+/* stl.c - triangles from an STL file, binary or ASCII. The format has no version and no checksum:
+ * so the size must match the count to the byte, and the text the grammar to the word.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh.h"
 
@@ -165,8 +165,8 @@ static mps_status read_ascii(mps_context *context, const char *function, const c
   return status;
 }
 
-/* Binary files may begin with "solid" too: the size tells them. One that also has a wrong size is
- * told by the zero bytes that a text has not. */
+/* Binary files may begin with "solid" too: the size distinguishes them. One with a wrong size is
+ * recognised by zero bytes, which a text does not have. */
 static bool looks_ascii(const char *data, int64_t size) {
   if (size >= HEADER && size == HEADER + FACET * (int64_t)read_u32(data + HEADER - 4)) return false;
   mpsi_slice text = {data, data + size};
