@@ -1,10 +1,10 @@
-/* curve.c - Hilbert's curve through the blocks of a grid, and its cut into intervals that weigh the
- * same.
+/* curve.c - Hilbert's curve through the blocks of a grid, and its cut into intervals of equal
+ * weight.
  *
- * A cube of 2^n blocks a side is halved in each direction n times. At each halving the curve goes
+ * A cube of 2^n blocks a side is halved in each direction n times. At each halving the curve passes
  * through the 2^dim parts in the order of Gray's code, in which neighbours differ in one bit, so
- * that it leaves a part at a corner beside the next one. In which corner it enters, and along which
- * axis it leaves, turns the code of the parts inside.
+ * that it leaves a part at a corner beside the next one. The corner of entry and the axis of exit
+ * determine the orientation of the code within a part.
  *
  * With W(k) the weight of all keys below k, over all ranks, the first key of rank r is the least k
  * with (W(k) + W(k + 1))/2 >= r W/ranks: the middle of the block k lies in the part of rank r or
@@ -15,10 +15,10 @@
 
 /* ---- the curve ------------------------------------------------------------------------------- */
 
-/* How the curve goes through the present cube. */
+/* Orientation of the curve in the present cube. */
 typedef struct turn {
   int32_t dim;
-  uint32_t corner; /* in which it enters: a bit for each axis */
+  uint32_t corner; /* of entry: a bit for each axis */
   int32_t axis;    /* along which it leaves */
 } turn;
 
@@ -27,7 +27,7 @@ static uint32_t rotate_left(const turn *t, uint32_t bits, int32_t by) {
   return (bits << by | bits >> (t->dim - by)) & ((1u << t->dim) - 1);
 }
 
-/* How it goes through its part number `part`: the corner is that of Gray's code of the even number
+/* Its orientation in part number `part`: the corner is that of Gray's code of the even number
  * before, the axis that in which the code changes next. */
 static void enter_part(turn *t, uint32_t part) {
   const uint32_t even = part > 0 ? (part - 1) & ~1u : 0;

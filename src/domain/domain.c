@@ -1,4 +1,4 @@
-/* domain.c - the domain object: ranks that compute one model, and what a program asks of it.
+/* domain.c - the domain object: ranks that compute one model, and its public functions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 

@@ -1,8 +1,8 @@
-/* domain_internal.h - what solvers use of a domain. Every function takes NULL for a domain of one
- * rank, and is collective unless it says otherwise. The first collective call of every public
- * function is a vote (settle, settle_max, settle_same, settle_given), so that ranks in different
- * functions find that out: vote.c. A failure that ranks have agreed upon has the
- * same record on all of them, and may be agreed upon again without harm.
+/* domain_internal.h - the interface of a domain for solvers. Every function takes NULL for a domain
+ * of one rank, and is collective unless it says otherwise. The first collective call of every
+ * public function is a vote (settle, settle_max, settle_same, settle_given), so that ranks in
+ * different functions detect that: vote.c. A failure that ranks have agreed upon has the same
+ * record on all of them, and may be agreed upon again without harm.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DOMAIN_INTERNAL_H
 #define MPSI_DOMAIN_INTERNAL_H
@@ -18,27 +18,27 @@ mps_domain *mpsi_domain_retain(mps_domain *domain); /* not collective */
 /* MPS_ERROR_ARGUMENT for a domain of another context. Not collective. */
 mps_status mpsi_domain_check(mps_context *context, const char *function, const mps_domain *domain);
 mps_context *mpsi_domain_context(const mps_domain *domain); /* not collective */
-/* Whether there is anybody to agree with. Not collective. */
+/* Whether there are other ranks to agree with. Not collective. */
 static inline bool mpsi_domain_many(const mps_domain *domain) {
   return mps_domain_size(domain) > 1;
 }
 
-/* Status of all ranks: MPS_OK where all are well, else the worst status, with the record
- * of the lowest rank that has it. `status` is this rank's, its record the last of the context. */
+/* Status of all ranks: MPS_OK where all have that, else the worst status, with the record of the
+ * lowest rank that has it. `status` is this rank's, its record the last of the context. */
 mps_status mpsi_domain_agree(mps_domain *domain, const char *function, mps_status status);
-/* The same, and in the same message the greatest of each value: at most MPSI_DOMAIN_ALONG. Where
- * ranks are not well the values are not to be used. */
+/* The same, and in the same message the greatest of each value: at most MPSI_DOMAIN_ALONG. On an
+ * error the values are not to be used. */
 #define MPSI_DOMAIN_ALONG 8
 mps_status mpsi_domain_agree_max(mps_domain *domain, const char *function, mps_status status,
                                  int32_t count, double *values);
-/* mpsi_domain_agree_max in two parts, between which ranks may compute and bring halos, but neither
- * agree nor reduce: no rank waits for one that is a little behind. One is under way at a time. The
+/* mpsi_domain_agree_max in two parts, between which ranks may compute and exchange halos, but
+ * neither agree nor reduce: no rank waits for one slightly behind. One is under way at a time. The
  * first part returns `status` in one process, and of several an error where the transport fails. */
 mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_status status,
                                   int32_t count, const double *values);
 mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_t count,
                                 double *values);
-/* The same, and MPS_ERROR_ARGUMENT where ranks give different values of `name`. */
+/* The same, and MPS_ERROR_ARGUMENT where ranks have different values of `name`. */
 mps_status mpsi_domain_agree_same(mps_domain *domain, const char *function, mps_status status,
                                   const char *name, double value);
 
@@ -69,8 +69,8 @@ mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t cou
 mps_status mpsi_domain_sum_exact(mps_domain *domain, const char *function, int32_t count,
                                  mpsi_exact *sums);
 
-/* Messages to whom it may concern, and from whom they come: those that come are the context's
- * memory, freed with mpsi_domain_free_mail. */
+/* Sparse exchange of messages: received ones are the context's memory, freed with
+ * mpsi_domain_free_mail. */
 typedef struct mpsi_mail {
   int32_t rank;
   int64_t bytes;
@@ -83,7 +83,7 @@ typedef struct mpsi_mailbox {
 } mpsi_mailbox;
 mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
                                 const mps_domain_message *messages, mpsi_mailbox *box);
-/* The same where the caller settles what has become of it, which is to be told by all. */
+/* The same where the caller agrees on its status afterwards. */
 mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t count,
                             const mps_domain_message *messages, mpsi_mailbox *box);
 void mpsi_domain_free_mail(mpsi_mailbox *box); /* not collective */

@@ -11,11 +11,11 @@
 struct mps_domain {
   mps_context *context;
   mps_domain_def def;
-  mps_status lost;               /* what the transport failed with: it is used no more */
-  int64_t settled;               /* number of the record that the ranks have agreed upon last */
+  mps_status lost;               /* error of the transport, which is then not used any more */
+  int64_t settled;               /* number of the last record that the ranks have agreed upon */
   int64_t calls;                 /* collective ones so far: reductions, rendezvous, copies */
   int64_t voted;                 /* number of the vote under way, or of the last one */
-  bool apart;                    /* the last vote has found ranks in different functions */
+  bool apart;                    /* the last vote found ranks in different functions */
   double vote[MPSI_DOMAIN_VOTE]; /* under way */
   int32_t references;            /* one thread at a time: no atomics */
 };
@@ -25,7 +25,7 @@ mps_status mpsi_domain_note(mps_domain *domain, const char *function, const char
                             mps_status status);
 /* The transport's failure so far. Not collective. */
 mps_status mpsi_domain_alive(mps_domain *domain, const char *function);
-/* vote.c: this rank takes no part from now on, which the others learn from their next vote. */
+/* vote.c: this rank leaves, which the others learn from their next vote. */
 void mpsi_domain_leave(mps_domain *domain);
 
 #endif

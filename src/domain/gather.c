@@ -20,7 +20,7 @@ typedef struct field_head {
   int64_t columns, integer;
 } field_head;
 
-/* Which fields go: those of the list, and what every set has; NULL: all. */
+/* Fields to send: those of the list, id and position; NULL: all. */
 typedef struct choice {
   int32_t count;
   const char *const *names;
@@ -88,7 +88,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
 
 /* ---- rank 0 ---------------------------------------------------------------------------------- */
 
-/* Where a message has the columns of each field. */
+/* Offsets of the columns of each field in a message. */
 typedef struct share {
   head h;
   const mpsi_row_run *run;
@@ -96,14 +96,14 @@ typedef struct share {
   const char *field; /* the next field's head */
 } share;
 
-/* Rows of a rank, as they come in the whole. */
+/* Rows of a rank, in the order of the whole. */
 typedef struct piece {
   mpsi_row_run run;
   int32_t rank, number; /* of a piece in the order of ranks */
   int64_t first;        /* its first row there */
 } piece;
 
-/* What rank 0 puts together. */
+/* Data of rank 0 to assemble the whole. */
 typedef struct assembly {
   mps_domain *domain;
   const char *function;
@@ -111,7 +111,7 @@ typedef struct assembly {
   share *share;
   piece *piece;
   int64_t pieces;
-  int32_t *owner; /* by id: the rank whose copy counts, -1: nobody has it */
+  int32_t *owner; /* by id: the rank whose copy counts, -1: none has it */
   int64_t ids, count;
   mps_snapshot whole;
 } assembly;
@@ -183,7 +183,7 @@ static int64_t put_piece(const assembly *a, const piece *p, mpsi_value *to, int6
   return kept;
 }
 
-/* Puts the columns of field `f` of all ranks together. */
+/* Assembles the columns of field `f` of all ranks. */
 static mps_status assemble_field(assembly *a, int32_t f) {
   mps_context *context = a->domain->context;
   mpsi_value *to = &a->whole.fields.item[f];

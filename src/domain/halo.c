@@ -9,7 +9,7 @@
 struct mpsi_halo {
   mps_domain *domain;
   void *star;
-  int64_t items, guests; /* own items that others have copies of; copies here */
+  int64_t items, guests; /* own items with copies on other ranks; copies here */
   int64_t *item;         /* index of each of these items */
   int64_t first;         /* index of the first guest */
   double *out, *in;      /* [item][column] */
@@ -39,7 +39,7 @@ static mps_status ask_owners(mpsi_halo *halo, const char *function, const int32_
   return status;
 }
 
-/* The items that others ask for, each once. */
+/* The items requested by other ranks, each once. */
 static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_mailbox *asked) {
   mps_context *context = halo->domain->context;
   int64_t wanted = 0;
@@ -58,7 +58,7 @@ static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_m
   return MPS_OK;
 }
 
-/* Where in the list each of the items asked for stands: goes back to who asked. */
+/* Index in the list of each requested item: sent back to the requesting rank. */
 static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *asked,
                          mpsi_mailbox *answers) {
   mps_context *context = halo->domain->context;
@@ -80,7 +80,7 @@ static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *as
   return status;
 }
 
-/* Guests lie in order of rank, and so do the answers. */
+/* Guests are in order of rank, and so are the replies. */
 static mps_status make_star(mpsi_halo *halo, const char *function, const int32_t *rank,
                             const mpsi_mailbox *answers, int32_t columns) {
   mps_context *context = halo->domain->context;

@@ -19,16 +19,16 @@ typedef struct mpsi_halo_def {
 mps_status mpsi_halo_create(mps_domain *domain, const char *function, const mpsi_halo_def *def,
                             mpsi_halo **out);
 void mpsi_halo_destroy(mps_context *context, mpsi_halo **halo); /* accepts that *halo is NULL */
-/* Copies columns of all items to their guests, while the caller works on: what is to be sent has
+/* Copies columns of all items to their guests, while the caller continues: the data to send have
  * been read when `begin` returns. Fails with the transport only. */
 mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t columns,
                            double *const *column);
 mps_status mpsi_halo_end(mpsi_halo *halo, const char *function, double *const *column);
 
-/* How many items others have copies of, and which of this rank's they are, ascending. */
+/* Number of items with copies on other ranks, and their local indices, ascending. */
 int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index);
 /* The same with items of the caller's own form, item_bytes each, one behind the other: `own` of
- * mpsi_halo_items, `guests` in order of their owners. Neither is touched before the end. */
+ * mpsi_halo_items, `guests` in order of their owners. Neither is to be used before the end. */
 mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t item_bytes,
                                  const void *own, void *guests);
 mps_status mpsi_halo_end_bytes(mpsi_halo *halo, const char *function);

@@ -1,5 +1,5 @@
-/* messages.c - messages between pairs of ranks by the program's transport, whose lengths only the
- * sender knows. SPDX-License-Identifier: BSD-3-Clause */
+/* messages.c - messages between pairs of ranks by the program's transport, with lengths known to
+ * the sender only. SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
 #include <string.h>
@@ -34,7 +34,7 @@ mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t co
   if (status != MPS_OK) return status;
   domain->calls++;
   status = domain->def.rendezvous(domain->def.user, count, messages, make_room, box);
-  if (status == MPS_ERROR_MEMORY) /* a message had no room: the others are well */
+  if (status == MPS_ERROR_MEMORY) /* no memory for a message: the others are valid */
     return mpsi_fail(domain->context, function, MPS_ERROR_MEMORY,
                      "could not allocate what other ranks send");
   return mpsi_domain_note(domain, function, "rendezvous", status);

@@ -1,5 +1,5 @@
-/* migrate.c - rows of columns on their way to other ranks, one message to each; and the count of
- * ids that tells whether all have arrived.
+/* migrate.c - migration of rows of columns to other ranks, one message to each; and the census of
+ * ids that checks that all have arrived.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "migrate.h"
 

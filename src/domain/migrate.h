@@ -1,7 +1,7 @@
-/* migrate.h - particles that move to the ranks that own them.
+/* migrate.h - migration of particles to the ranks that own them.
  *
- * A sender gives its columns, of 8 bytes a particle, and the rows that leave; a receiver makes room
- * for `arriving` rows and puts them there:
+ * A sender passes its columns, of 8 bytes a particle, and the rows that leave; a receiver allocates
+ * memory for `arriving` rows and unpacks them:
  *
  *   mpsi_census before;
  *   status = mpsi_census_take(domain, f, count, id, &before);           in debug builds
@@ -11,9 +11,9 @@
  *   mpsi_domain_free_mail(&box);
  *   status = mpsi_census_check(domain, f, count, id, &before);          in debug builds
  *
- * Rows arrive in the order of their senders, and of each in the order in which it gave them: sort
- * them by what they are (block, id), not by when they came. SPDX-License-Identifier: BSD-3-Clause
- */
+ * Rows arrive in the order of their senders, and of each in its own order: sort them by block and
+ * id, not by arrival. SPDX-License-Identifier: BSD-3-Clause
+ * */
 #ifndef MPSI_DOMAIN_MIGRATE_H
 #define MPSI_DOMAIN_MIGRATE_H
 
@@ -22,7 +22,7 @@
 typedef struct mpsi_leaving {
   int64_t count;
   const int64_t *row; /* in the columns, of each that leaves */
-  const int32_t *to;  /* rank that it goes to: another one */
+  const int32_t *to;  /* receiving rank: another one */
   int32_t columns;    /* the same on all ranks; the first has the ids */
   const void *const *column;
 } mpsi_leaving;
@@ -33,13 +33,13 @@ typedef struct mpsi_leaving {
  */
 mps_status mpsi_migrate(mps_domain *domain, const char *function, const mpsi_leaving *leaving,
                         mpsi_mailbox *box, int64_t *arriving);
-/* Puts what has arrived into rows first, first + 1 ... of columns that have room. Not collective,
- * no errors. */
+/* Writes the received rows to rows first, first + 1 ... of columns with memory for them. Not
+ * collective, no errors. */
 void mpsi_migrate_unpack(const mpsi_mailbox *box, int32_t columns, void *const *column,
                          int64_t first);
 
-/* Of the ids on all ranks: how many, and two sums that change when one is lost, doubled or becomes
- * another. */
+/* Census of the ids on all ranks: their number, and two sums that change when one is lost, doubled
+ * or changed. */
 typedef struct mpsi_census {
   int64_t count, sum, mixed;
 } mpsi_census;

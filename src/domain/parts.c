@@ -1,5 +1,5 @@
-/* parts.c - sets of particles in parts: each rank is given the same fills and keeps its part of
- * them (core/deal.c).
+/* parts.c - sets of particles in parts: each rank makes the same fills and keeps its part of them
+ * (core/particles/deal.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "domain_private.h"

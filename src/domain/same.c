@@ -1,11 +1,11 @@
-/* same.c - whether ranks have been given the same: definitions by lists of numbers, particles by a
- * hash of theirs.
+/* same.c - comparison of arguments between ranks: definitions by lists of numbers, particles by a
+ * hash.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_internal.h"
 
 #include <string.h>
 
-/* The first number of the list that ranks do not give alike, by a hash of each. */
+/* The first number of the list that differs between ranks, by a hash of each. */
 static mps_status find_other(mps_domain *domain, const char *function, const mpsi_given *list,
                              int32_t *which) {
   double range[2 * MPSI_GIVEN_MOST];

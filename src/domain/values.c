@@ -1,4 +1,4 @@
-/* values.c - values of a few particles, on whatever rank they are, for all ranks.
+/* values.c - values of a few particles of any rank, for all ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "domain_private.h"
@@ -7,7 +7,7 @@
 
 enum { PORTION = 65536 }; /* values in a reduction */
 
-/* Ranks want the same of the same field. */
+/* Ranks request the same particles of the same field. */
 static mps_status check(mps_domain *domain, const char *function, mps_particles *particles,
                         const char *name, int64_t count, const int64_t *ids, const double *values,
                         mps_view *view) {
@@ -33,7 +33,7 @@ static mps_status check(mps_domain *domain, const char *function, mps_particles 
                                 mpsi_hash_short(hash));
 }
 
-/* The highest rank that has each particle; it alone tells of it. */
+/* The highest rank that has each particle, which sends its value. */
 static mps_status find_tellers(mps_domain *domain, const char *function,
                                const mps_particles *particles, int64_t count, const int64_t *ids,
                                double *teller) {

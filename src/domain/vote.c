@@ -1,6 +1,6 @@
-/* vote.c - agreement of ranks: whether all are well, and whether all are in the same call.
+/* vote.c - agreement of ranks on a status, and the check that all are in the same call.
  *
- * A vote is one reduction (maximum) of the same numbers whatever it is about:
+ * A vote is one reduction (maximum) of the same numbers for all purposes:
  *
  *   status    the worst status with the lowest rank that has it
  *   tag       a hash of the public function and of the number of collective calls so far
@@ -9,7 +9,8 @@
  *
  * The first collective call of every public function is a vote. Ranks that are in different
  * functions therefore take part in the same reduction, find two tags in it and return the same
- * error; nothing of either function has been done. A rank that has destroyed its domain has left a
+ * error, before either function has changed anything. A rank that has destroyed its domain has left
+ * a
  * vote behind that says so. SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
@@ -19,7 +20,7 @@
 enum { STATUS, TAG, LEAST_TAG, VALUES };
 enum { RECORD = (sizeof(mps_error) + 7) / 8 };
 
-#define GONE 255 /* in the place of a status: the rank takes no part any more */
+#define GONE 255 /* in the place of a status: the rank has left */
 
 /* ---- what is sent ---------------------------------------------------------------------------- */
 
@@ -55,7 +56,7 @@ void mpsi_domain_leave(mps_domain *domain) {
 
 /* ---- what is found --------------------------------------------------------------------------- */
 
-/* Every rank takes over the record of `winner`. */
+/* Every rank copies the record of `winner`. */
 static mps_status share_record(mps_domain *domain, const char *function, int32_t winner,
                                mps_status status) {
   int64_t words[RECORD] = {0};
@@ -89,7 +90,7 @@ static mps_status share_record(mps_domain *domain, const char *function, int32_t
   return status;
 }
 
-/* Another rank has destroyed its domain: there is nobody to agree with. */
+/* Another rank has destroyed its domain: no agreement is possible. */
 static mps_status report_gone(mps_domain *domain, const char *function, int32_t rank) {
   domain->lost = MPS_ERROR_STATE;
   (void)mpsi_fail(domain->context, function, MPS_ERROR_STATE,
@@ -100,7 +101,7 @@ static mps_status report_gone(mps_domain *domain, const char *function, int32_t 
   return MPS_ERROR_STATE;
 }
 
-/* A rank's call, as others learn of it. */
+/* A rank's call, as sent to others. */
 typedef struct call {
   char function[88];
   int64_t number;
@@ -117,7 +118,7 @@ static mps_status find_ranks(mps_domain *domain, const char *function, const dou
   return mpsi_domain_max(domain, function, 3, found);
 }
 
-/* Ranks are in different calls: names two of these, and goes on from the same number. */
+/* Ranks are in different calls: names two of these, and continues with the same number. */
 static mps_status report_calls(mps_domain *domain, const char *function, const double *vote) {
   const double own = tag_of(domain, function);
   double found[3];
@@ -164,7 +165,7 @@ mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_
   if (!mpsi_domain_many(domain)) return status;
   if (domain->lost != MPS_OK)
     return status == domain->lost ? status : mpsi_domain_alive(domain, function);
-  /* the function ends with the error that was found at its first vote: others end elsewhere */
+  /* the function ends with the error of its first vote: other ranks end elsewhere */
   if (domain->apart && status != MPS_OK && mpsi_failures(domain->context) == domain->settled)
     return status;
   domain->apart = false;
@@ -188,7 +189,7 @@ mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_
   return status == MPS_OK ? read_vote(domain, function, count, values, domain->vote) : status;
 }
 
-/* The transport has failed in a vote of a rank that was not well: its record says both. */
+/* The transport has failed in a vote of a rank with an error: its record has both. */
 static mps_status report_both(mps_domain *domain, const mps_error *own) {
   const mps_error last = *mps_context_error(domain->context);
   (void)mpsi_fail(domain->context, own->function, domain->lost, "%.300s; %.200s", own->message,
@@ -222,7 +223,7 @@ mps_status mpsi_domain_agree(mps_domain *domain, const char *function, mps_statu
 
 mps_status mpsi_domain_agree_same(mps_domain *domain, const char *function, mps_status status,
                                   const char *name, double value) {
-  const bool none = isnan(value); /* unset, which all may have */
+  const bool none = isnan(value); /* unset, equal on all */
   double range[4] = {none ? -INFINITY : value, none ? -INFINITY : -value, none, !none};
   if (!mpsi_domain_many(domain)) return status;
   status = mpsi_domain_agree_max(domain, function, status, 4, range);
