@@ -1,5 +1,5 @@
-/* attributes.c - numbers and texts of a checkpoint that are kept as attributes, and what is said of
- * a file that lacks them. SPDX-License-Identifier: BSD-3-Clause */
+/* attributes.c - numbers and texts of a checkpoint that are kept as attributes, and the errors of a
+ * file without them. SPDX-License-Identifier: BSD-3-Clause */
 #include "checkpoint_private.h"
 
 #include <string.h>

@@ -2,9 +2,8 @@
  *
  * Layout: attributes `format`, `version` and those of header_table at the root; the group `fields`
  * with a dataset [component][particle] of float64 or int64 for each field. Particles are identified
- * by `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first brings all of
- * the file into memory and looks at it; only then does it change the set. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * by `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first loads and
+ * checks the whole file; only then does it change the set. SPDX-License-Identifier: BSD-3-Clause */
 #include "checkpoint_private.h"
 #include "replace.h"
 
@@ -101,7 +100,7 @@ static bool write_user_data(hid_t root, const mps_checkpoint *info) {
   return good;
 }
 
-/* The state of a solver of the kind `solver`, if that is not NULL, goes along. */
+/* With the state of a solver of the kind `solver`, if that is not NULL. */
 static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoint *info,
                        const char *solver, const mpsi_values *state) {
   const header h = {.version = FORMAT_VERSION,
@@ -118,7 +117,7 @@ static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoin
          write_fields(root, particles) && (!solver || mpsi_h5_write_state(root, solver, state));
 }
 
-/* A checkpoint that is being written, with what the caller says of it. */
+/* A checkpoint that is being written, with the caller's `info`. */
 typedef struct writing {
   mps_context *context;
   const char *function;
@@ -126,7 +125,7 @@ typedef struct writing {
   mpsi_replacement replacement;
 } writing;
 
-/* All that can be refused before a byte is written. */
+/* All checks before a byte is written. */
 static mps_status open_checkpoint(writing *w, const char *path, const mps_checkpoint *user_info) {
   mps_context *context = w->context;
   const mps_checkpoint *info = &w->info;
@@ -190,8 +189,8 @@ mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *func
   return status == MPS_OK ? fill_checkpoint(&w, whole, of->name, state) : status;
 }
 
-/* The file is open before the solver takes in what has been edited: a path that will not do leaves
- * the solver as it is. */
+/* The file is opened before the solver reads edits: an error of the path leaves the solver
+ * unchanged. */
 mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
                                 const mps_checkpoint *info) {
   mps_snapshot state = {.context = of->context};
@@ -230,7 +229,7 @@ static mps_status read_header(reading *r) {
   return MPS_OK;
 }
 
-/* The length of the caller's bytes, and they themselves if there is `room` for them. */
+/* The length of the caller's bytes, and the bytes if `room` is large enough. */
 static mps_status stage_user_data(reading *r, const mps_checkpoint *wanted) {
   if (H5Lexists(r->file.id, "user_data", H5P_DEFAULT) <= 0) return MPS_OK;
   const hid_t dataset = H5Dopen2(r->file.id, "user_data", H5P_DEFAULT);
@@ -337,7 +336,7 @@ static mps_status stage_fields(reading *r) {
   return status;
 }
 
-/* Opens the file, and takes from it the header, and all else if it is for a set. */
+/* Opens the file, and reads the header, and the rest if it is for a set. */
 static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_state_of *of) {
   const int fd = open(r->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return mpsi_fail_io(r->context, r->function, "open", r->path, errno);
@@ -359,7 +358,7 @@ static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_sta
   return status;
 }
 
-/* ---- reading: looking at it ------------------------------------------------------------------ */
+/* ---- reading: checks ------------------------------------------------------------------------- */
 
 static mps_status match_ids(reading *r) {
   const int64_t count = r->header.count;
@@ -390,8 +389,8 @@ static bool find_info(const mps_particles *particles, const char *name,
   return false;
 }
 
-/* Has each field the shape that the set has for it, or would give it? The latter is tried on
- * `trial`, an empty set. */
+/* Has each field the shape of the set's, or that of a new one? New ones are tested on `trial`, an
+ * empty set. */
 static mps_status match_shapes(const reading *r, mps_particles *trial) {
   for (int32_t k = 0; k < r->values.fields.count; k++) {
     const mpsi_value *field = &r->values.fields.item[k];
@@ -479,7 +478,7 @@ mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_check
   return status;
 }
 
-/* Looks at everything; nothing has changed yet. */
+/* Checks everything; nothing has changed yet. */
 static mps_status look(reading *r, const mps_checkpoint *info, const mpsi_state_of *of) {
   mps_checkpoint wanted;
   mps_status status = check_path(r->context, r->function, r->path);
@@ -502,7 +501,7 @@ mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_c
   if (!particles) return MPS_ERROR_ARGUMENT;
   reading r = reading_of(particles, __func__, path);
   mps_status status = look(&r, info, NULL);
-  if (status == MPS_OK) /* a solver would go on from fields of which it knows nothing */
+  if (status == MPS_OK) /* a solver would continue from fields that it has not read */
     status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = add_missing(&r);
   if (status == MPS_OK) {

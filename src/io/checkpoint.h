@@ -16,8 +16,8 @@ mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, c
 mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
                                        const char *path, const mps_checkpoint *info,
                                        mps_particles *whole, const mpsi_values *state);
-/* Puts a solver that was built in the same way, and its set, into that state and order. `info`
- * (NULL: not wanted) is as for mps_checkpoint_info. On an error nothing has changed. */
+/* Restores a solver that was built in the same way, and its set, to that state and order. `info`
+ * (may be NULL) is as for mps_checkpoint_info. On an error nothing has changed. */
 mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,
                                    mps_checkpoint *info);
 

@@ -1,4 +1,4 @@
-/* checkpoint_private.h - what checkpoint.c, attributes.c and state_file.c share.
+/* checkpoint_private.h - declarations of checkpoint.c, attributes.c and state_file.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IO_CHECKPOINT_PRIVATE_H
 #define MPSI_IO_CHECKPOINT_PRIVATE_H
@@ -25,20 +25,20 @@ typedef struct mpsi_reading {
   char *user_data;
   int64_t user_bytes;
   mps_snapshot values; /* fields: of the file, by name; state: of its solver */
-  bool any_particles;  /* the set takes those of the file, whichever it has now */
-  int64_t *source;     /* source[i]: place in the file of the particle at index i of the set */
+  bool any_particles;  /* the set takes the particles of the file */
+  int64_t *source;     /* source[i]: index in the file of the particle at index i of the set */
 } mpsi_reading;
 
 /* ---- attributes.c ---------------------------------------------------------------------------- */
 
-/* MPS_ERROR_FORMAT. The file is sealed, so it is not one of ours, or not of this version. */
+/* MPS_ERROR_FORMAT. The file is sealed, so it is of another program, or of another version. */
 mps_status mpsi_checkpoint_malformed(const mpsi_reading *r, const char *what);
 
 static inline hid_t mpsi_h5_number_type(bool integer) {
   return integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
 }
 
-/* A number of a structure, or `count` > 1 of them, kept as an attribute. */
+/* One or `count` > 1 numbers of a structure, kept as an attribute. */
 typedef struct mpsi_h5_row {
   const char *name;
   bool integer; /* int64_t, else double */

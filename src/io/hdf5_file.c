@@ -1,10 +1,10 @@
-/* hdf5_file.c - going into HDF5 and out again, and the file driver that HDF5 writes through.
+/* hdf5_file.c - calls of HDF5, and the file driver through which HDF5 writes.
  *
- * Why a driver of our own: HDF5 1.10 does not survive a failed write. It keeps the file registered
- * after its structures are freed, and the program crashes when it exits. This driver keeps the
- * first error to itself and accepts everything that follows, so that HDF5 closes in order; the
- * caller that opened the file then asks for the error. It also makes sure of the room for all of a file before
- * it changes any of HDF5's tables in it, so that a full disk leaves the former tables whole.
+ * Why a separate driver: HDF5 1.10 does not survive a failed write. It keeps the file registered
+ * after its structures are freed, and the program crashes when it exits. This driver stores the
+ * first error and accepts all later writes, so that HDF5 closes in order; the caller that opened
+ * the file then reads the error. It also reserves the disk space of a file before it changes HDF5's
+ * tables in it, so that a full disk leaves the former tables intact.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "hdf5_file.h"
 
@@ -18,7 +18,7 @@
 
 /* ---- a stay in HDF5 -------------------------------------------------------------------------- */
 
-/* HDF5 has process-wide tables, so what keeps contexts apart must be process-wide too. */
+/* HDF5 has process-wide tables, so the lock between contexts must be process-wide too. */
 static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
 
 static herr_t note_innermost(unsigned n, const H5E_error2_t *error, void *data) {
@@ -57,7 +57,7 @@ void mpsi_h5_leave(mpsi_h5_stay *stay) {
 
 /* ---- the driver ------------------------------------------------------------------------------ */
 
-typedef struct driver_info { /* travels to driver_open in a property list */
+typedef struct driver_info { /* passed to driver_open in a property list */
   mpsi_h5_file *file;
 } driver_info;
 
@@ -67,7 +67,7 @@ static H5FD_t *driver_open(const char *name, unsigned flags, hid_t access, haddr
   return info ? &info->file->driver : NULL;
 }
 
-/* The descriptor and the structure belong to who opened the file. */
+/* The descriptor and the structure belong to the caller that opened the file. */
 static herr_t driver_close(H5FD_t *driver) {
   (void)driver;
   return 0;
@@ -117,7 +117,7 @@ static herr_t driver_read(H5FD_t *driver, H5FD_mem_t type, hid_t transfer, haddr
   return 0;
 }
 
-/* Takes the room of everything allocated so far from the disk. */
+/* Reserves disk space for everything allocated so far. */
 static int reserve(mpsi_h5_file *file) {
   if (file->end_of_allocation <= file->reserved) return 0;
   const int error = posix_fallocate(file->fd, 0, (off_t)file->end_of_allocation);

@@ -1,12 +1,12 @@
-/* hdf5_file.h - how libmps goes into HDF5: one caller at a time, silently, and with file access of
- * its own that survives a full disk.
+/* hdf5_file.h - calls of HDF5: one caller at a time, without printing, and with file access that
+ * survives a full disk.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IO_HDF5_FILE_H
 #define MPSI_IO_HDF5_FILE_H
 
 #include "io_private.h"
 
-#define H5_USE_110_API /* newer HDF5 keeps these forms of the functions */
+#define H5_USE_110_API /* newer versions of HDF5 have these forms of the functions */
 #include <hdf5.h>
 #if H5_VERSION_GE(1, 14, 0)
 #include <H5FDdevelop.h>
@@ -24,21 +24,21 @@ typedef struct mpsi_h5_stay {
   char text[200]; /* innermost text of the first HDF5 error since enter; "" none */
 } mpsi_h5_stay;
 
-/* Every call of HDF5 lies between these two. The lock holds off other contexts; errors go to
- * `text` instead of the host's standard error. */
+/* Every call of HDF5 lies between these two. The lock excludes other contexts; errors go to `text`
+ * instead of the host's standard error. */
 void mpsi_h5_enter(mpsi_h5_stay *stay);
 void mpsi_h5_leave(mpsi_h5_stay *stay);
 
 /* ---- a file ---------------------------------------------------------------------------------- */
 
 typedef struct mpsi_h5_file {
-  H5FD_t driver; /* first: what HDF5 keeps of an open file */
+  H5FD_t driver; /* first: HDF5's data of an open file */
   int fd;
   int error; /* errno of the first system call that failed; 0: none */
   haddr_t end_of_allocation, end_of_file, reserved;
   hid_t id; /* < 0: not open */
   /* 0: none; registered while the file is open, as HDF5 1.10 still reads the driver's class after
-   * it has given back its own hold on it */
+   * it has released its own reference */
   hid_t driver_id;
 } mpsi_h5_file;
 
@@ -49,18 +49,17 @@ bool mpsi_h5_open(mpsi_h5_file *file, int fd, const char *name, bool create);
 /* Closes everything in the file too. False on an error; file->error, too, has to be looked at. */
 bool mpsi_h5_close(mpsi_h5_file *file);
 
-/* Records what went wrong: the system's error if the disk refused, else `status` and HDF5's own
- * words. */
+/* Records the failure: the system's error of the disk, else `status` and HDF5's own message. */
 mps_status mpsi_h5_fail(mps_context *context, const char *function, mps_status status,
                         const mpsi_h5_stay *stay, const mpsi_h5_file *file, const char *verb,
                         const char *path);
 
 /* ---- datasets and attributes ----------------------------------------------------------------- */
 
-/* What datasets are created with: without the time at which that happens, so that files of the same
- * values are the same byte by byte. H5Pclose it; < 0: an error. */
+/* Creation properties of datasets: without time stamps, so that files of the same values are the
+ * same byte by byte. H5Pclose it; < 0: an error. */
 hid_t mpsi_h5_timeless(void);
-/* A dataset of that kind; `space` < 0 is an error, as the answer is. */
+/* A dataset of that kind; `space` < 0 is an error, as is a negative result. */
 hid_t mpsi_h5_dataset(hid_t group, const char *name, hid_t type, hid_t space);
 
 /* `count` values, or a scalar for count 0. */

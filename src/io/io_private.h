@@ -1,4 +1,4 @@
-/* io_private.h - what the files of this folder share. Besides the public headers it uses the core's
+/* io_private.h - common declarations of this folder. Besides the public headers it uses the core's
  * internal.h, and of particles_internal.h the context of a set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IO_PRIVATE_H

@@ -3,8 +3,8 @@
  *
  * The format calls a piece of the grid a part. Vertex i of every frame is particle i in the order
  * of that moment, so frames of equal numbers of particles share one part: its cells are written
- * once, and a reader that knows nothing of time (VTK before 9.3) finds a plain grid, the first
- * frame. Another number of particles begins another part.
+ * once, and a reader without time series (VTK before 9.3) finds a plain grid, the first frame.
+ * Another number of particles begins another part.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "series.h"
 
@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define MAX_CHUNK_ROWS 16384 /* also how many rows are gathered at once */
+#define MAX_CHUNK_ROWS 16384 /* also the number of rows gathered at once */
 #define MIN_CHUNK_ROWS 256
 #define VTK_VERTEX 1
 
@@ -51,7 +51,7 @@ typedef struct recorded_field {
   mpsi_series series;
 } recorded_field;
 
-/* How much is in the file. A frame is taken back by returning to the mark before it. */
+/* Present sizes in the file. A frame is undone by returning to the sizes before it. */
 typedef struct mark {
   int64_t frames, points, parts, cells;
   int64_t part_points, part_cells; /* of the last part: its points, and the cells before it */
@@ -151,7 +151,7 @@ static bool append_step(mps_recorder *recorder, mark *next, int64_t points, doub
          H5Awrite(recorder->number_of_steps, H5T_NATIVE_INT64, &next->frames) >= 0;
 }
 
-/* Hands all that was written to the operating system. */
+/* Passes all written data to the operating system. */
 static bool flush(const mps_recorder *recorder) {
   return H5Fflush(recorder->file.id, H5F_SCOPE_LOCAL) >= 0 && recorder->file.error == 0;
 }
@@ -212,7 +212,7 @@ int64_t mps_recorder_frames(const mps_recorder *recorder) {
 
 /* ---- creation: the choice of fields ---------------------------------------------------------- */
 
-/* Finds a field of the set, and how it goes to the file. */
+/* Finds a field of the set, and its form in the file. */
 static bool find_field(const mps_particles *particles, const char *name, recorded_field *out) {
   mps_particles_field_info info;
   for (int32_t k = 0; k < mps_particles_field_count(particles); k++) {

@@ -1,7 +1,7 @@
-/* replace.c - files that appear whole or not at all: written beside their place, confirmed by the
- * disk (fsync), then renamed. A seal at the end, which HDF5 takes no notice of, tells a whole file
- * from one that was cut short or changed since: 16 bytes of name, then length and checksum of what
- * is before it, little endian.
+/* replace.c - files that appear whole or not at all: written under another name, confirmed by the
+ * disk (fsync), then renamed. A seal at the end, which HDF5 ignores, distinguishes a whole file
+ * from one that was cut short or changed: 16 bytes of name, then length and checksum of what is
+ * before it, little endian.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "replace.h"
 
@@ -41,7 +41,7 @@ static int64_t read_at(int fd, void *buffer, size_t size, int64_t offset) {
 }
 
 /* Checksum of the first `size` bytes. Each step is one to one in the sum and in the word, so that a
- * change of any one word always shows. False: errno. */
+ * change of any one word is always detected. False: errno. */
 static bool checksum(int fd, int64_t size, uint64_t *out) {
   unsigned char buffer[16384];
   uint64_t sum = (uint64_t)size;
@@ -133,8 +133,8 @@ static bool is_ours(const char *path, int64_t size) {
   return holds(head, first, "\x89HDF\r\n\x1a\n") && holds(head, first, "libmps checkpoint");
 }
 
-/* A new name, an empty file or an earlier checkpoint may be replaced: a rename would also take the
- * place of a device, or of any other file of the caller's. */
+/* A new name, an empty file or an earlier checkpoint may be replaced: a rename would also replace a
+ * device, or any other file of the caller. */
 static mps_status check_place(mps_context *context, const char *function, const char *path) {
   struct stat status;
   if (stat(path, &status) != 0)
@@ -176,8 +176,8 @@ mps_status mpsi_replace_begin(mps_context *context, const char *function, const 
   return status;
 }
 
-/* Has the disk confirm the new name. Some file systems refuse; then there is no more to be done,
- * and after a crash either the former or the new file is there. */
+/* Lets the disk confirm the new name. Some file systems do not support that; then a crash may leave
+ * either the former or the new file. */
 static void confirm_name(char *part) {
   char *slash = strrchr(part, '/');
   if (slash) slash[slash == part] = '\0'; /* "/" stays */

@@ -12,14 +12,14 @@ typedef struct mpsi_replacement {
 } mpsi_replacement;
 
 /* Opens an empty "<path>.part", for reading and writing through `fd`. MPS_ERROR_IO where `path` is
- * something else than a new name, an empty file or one that was sealed. */
+ * anything but a new name, an empty file or one that was sealed. */
 mps_status mpsi_replace_begin(mps_context *context, const char *function, const char *path,
                               mpsi_replacement *out);
-/* Seals what was written, has the disk confirm it, and puts it in the place of `path`. Ends the
- * replacement; on an error `path` is what it was. */
+/* Seals the file, lets the disk confirm it, and renames it to `path`. Ends the replacement; on an
+ * error `path` is unchanged. */
 mps_status mpsi_replace_commit(mps_context *context, const char *function,
                                mpsi_replacement *replacement);
-/* Ends the replacement; `path` is what it was. */
+/* Ends the replacement; `path` is unchanged. */
 void mpsi_replace_abandon(mps_context *context, mpsi_replacement *replacement);
 
 /* MPS_ERROR_FORMAT if the open file has no seal or is not what was sealed. */

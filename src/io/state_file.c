@@ -143,8 +143,8 @@ static mps_status read_value(mpsi_reading *r, place *p, mpsi_value *value) {
   return good ? MPS_OK : mpsi_checkpoint_malformed(r, value->name);
 }
 
-/* What must agree comes first, and the first that does not ends the reading: the caller compares
- * and names it, which tells more than the values that a solver built otherwise lacks. */
+/* Values that must agree come first, and the first difference ends the reading: the caller names
+ * it, which is more useful than missing values of another kind of solver. */
 static mps_status read_values(mpsi_reading *r, place *p, const mpsi_state_of *of) {
   mps_status status = mpsi_state_get(of, r->function, &r->values);
   mpsi_values *state = &r->values.state;
