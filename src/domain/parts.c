@@ -12,7 +12,7 @@ static mps_status agree_added(void *self, const char *function, mps_status statu
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "the number of particles that are added", (double)count);
-  mpsi_give(&given, "a hash of the places of what is added", mpsi_hash_short(hash));
+  mpsi_give(&given, "a hash of the positions of the added particles", mpsi_hash_short(hash));
   return mpsi_domain_agree_given(self, function, status, &given);
 }
 

@@ -71,7 +71,7 @@ mps_status mps_material_get_moduli_sized(const mps_material *material, double de
   mps_context *context = material->context;
   if (!material->law.has_moduli)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                     "the law %s has no elastic constants that the library knows", material->name);
+                     "the law %s has no elastic constants known to the library", material->name);
   const mps_status status =
       mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
   if (status != MPS_OK) return status;

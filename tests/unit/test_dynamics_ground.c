@@ -719,7 +719,7 @@ static void removals_that_cannot_be_are_refused(void **state) {
   mps_assert_fails(context, mps_particles_remove(set, 1, of_column), MPS_ERROR_ARGUMENT,
                    "belongs to a free-field column");
   mps_assert_fails(context, mps_particles_remove(set, 19, all), MPS_ERROR_ARGUMENT,
-                   "all 19 particles of the body are to go");
+                   "all 19 particles of the body are to be removed");
   mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE,
                    "takes no more particles");
   assert_same_picture(picture_of(context, set), before);

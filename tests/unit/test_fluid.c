@@ -428,7 +428,7 @@ static void forces_on_particles_push(void **state) {
  * lost, and the next steps are short. */
 static void count_warnings(void *user, int32_t level, const char *message) {
   int *count = user;
-  *count += level == MPS_CONTEXT_LOG_WARNING && strstr(message, "pushed off walls") != NULL;
+  *count += level == MPS_CONTEXT_LOG_WARNING && strstr(message, "moved off walls") != NULL;
 }
 
 /* Its step is made, and the log told once that the guards act often. */

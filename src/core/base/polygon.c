@@ -59,7 +59,7 @@ static mps_status check_edges(mps_context *context, const char *function, int64_
       if (segments_meet(a, corner(n, xy, k + 1), c, corner(n, xy, m + 1)))
         return mpsi_fail(
             context, function, MPS_ERROR_ARGUMENT,
-            "vertices: edges %lld and %lld of the polygon cross or touch: from corner (%g, %g) "
+            "vertices: edges %lld and %lld of the polygon intersect: from corner (%g, %g) "
             "and from corner (%g, %g) m",
             (long long)k, (long long)m, a[0], a[1], c[0], c[1]);
     }

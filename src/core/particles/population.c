@@ -293,7 +293,7 @@ static mps_status ask_holders(const mps_particles *p, const char *function, int6
     if (!h->remove && h->kind != MPSI_USE_LOOK) who = h->name;
   if (who)
     return mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                     "the particle set is held by %s, which lets no particle go: destroy it first",
+                     "the particle set is held by %s, which allows no removal: destroy it first",
                      who);
   mps_status status = MPS_OK;
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)

@@ -21,7 +21,7 @@ static mps_status mark(mps_dynamics *dynamics, const char *function, int64_t cou
   }
   if (count < dynamics->body) return MPS_OK;
   return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                   "all %lld particles of the body are to go, at least one must stay",
+                   "all %lld particles of the body are to be removed, at least one must stay",
                    (long long)dynamics->body);
 }
 

@@ -269,7 +269,7 @@ static mps_status check_kept(mps_dynamics *dynamics, const char *function, const
     const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[k % n];
     status = mpsi_fail(dynamics->context, function, MPS_ERROR_DIVERGED,
                        "particle %lld would have acceleration (%g, %g) m/s2 and pressure %g Pa, "
-                       "must be finite: the state has diverged; mps_dynamics_rollback leads back",
+                       "must be finite: the state has diverged; mps_dynamics_rollback recovers it",
                        id, kept[k % n], kept[n + k % n], kept[2 * n + k % n]);
     mpsi_fail_where(dynamics->context, dynamics->steps, id);
   }

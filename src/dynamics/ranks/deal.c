@@ -195,7 +195,7 @@ static mps_status sort_own(dealing *d) {
                          mpsi_dynamics_first_of_rank(d->whole, d->rank, d->ranks);
   if (status == MPS_OK && d->count != wanted)
     status = mpsi_fail(dynamics->context, d->function, MPS_ERROR_INTERNAL,
-                       "%lld particles have come to rank %d, expected are %lld",
+                       "%lld particles have arrived on rank %d, expected are %lld",
                        (long long)d->count, (int)d->rank, (long long)wanted);
   return status;
 }

@@ -294,12 +294,12 @@ mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *functio
     status =
         mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                   "field '%s' has been written, which the solver relies on: "
-                  "mps_dynamics_rollback or mps_dynamics_restore leads back, else make a new one",
+                  "mps_dynamics_rollback or mps_dynamics_restore recovers it, else make a new one",
                   dynamics->broken);
   else if (dynamics->rewritten && !dynamics->fresh)
     status = mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                        "field '%s' has been written: mps_dynamics_restart begins a motion from "
-                       "it, mps_dynamics_rollback leads back",
+                       "it, mps_dynamics_rollback recovers it",
                        dynamics->rewritten);
   status = mpsi_domain_agree_max(dynamics->domain, function, status, 3, edited);
   if (status == MPS_OK) dynamics->cautious = edited[2] != 0.0;

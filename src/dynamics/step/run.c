@@ -30,8 +30,8 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
   if (status != MPS_OK) return status;
   if (dynamics->diverged)
     return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
-                     "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore leads "
-                     "back, mps_dynamics_restart begins a new one");
+                     "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore recovers "
+                     "it, mps_dynamics_restart begins a new one");
   status = mpsi_dynamics_take_up(dynamics, function);
   if (status != MPS_OK) return status;
   return mpsi_dynamics_settle_dt(dynamics, function);

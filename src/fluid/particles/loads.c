@@ -32,8 +32,9 @@ static mps_status check_load(mps_fluid *f, const char *function, const mps_fluid
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "kind of the load is %d, allowed are 0 (body) and 1 (pressure)", d->kind);
   if (d->kind == MPS_FLUID_LOAD_PRESSURE && f->classical.gamma > 0.0)
-    return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED,
-                     "a load presses on the surface, which the classical scheme does not know");
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_UNSUPPORTED,
+        "a pressure load acts on the surface, which the classical scheme does not have");
   if (d->id_count < 0 || (d->id_count > 0) != (d->ids != NULL))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "id_count of the load is %lld with ids %s: give both or neither",

@@ -128,7 +128,8 @@ mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, co
   if (status != MPS_OK) return status;
   if (count >= f->count)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
-                     "all %lld particles are to go, a fluid needs one", (long long)f->count);
+                     "all %lld particles are to be removed, a fluid needs one",
+                     (long long)f->count);
   expect_change(f, MPSI_FLUID_CHANGED_BY_CALLER);
   return MPS_OK;
 }

@@ -96,7 +96,7 @@ static mps_status prepare_removal(mps_elastic *e, const char *function, int64_t 
                                   const int64_t *ids) {
   if (count >= e->n)
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "all %lld particles of the solver are to go, a body must be left",
+                     "all %lld particles of the solver are to be removed, a body must remain",
                      (long long)e->n);
   mps_status status = begin(e, function, e->n - count);
   uint8_t *gone = mpsi_alloc(e->context, e->n, 1);

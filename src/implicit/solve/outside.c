@@ -212,7 +212,7 @@ mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, doub
     status = residual(e, function, shift, rhs, solution, work, &left, &rounding);
     if (status == MPS_OK && !(left <= 1.01 * e->def.tolerance + fmax(ROUNDING, rounding)))
       status = mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
-                         "the answer of the callback solve of mps_elastic_set_solver has the "
+                         "the solution of the callback solve of mps_elastic_set_solver has the "
                          "residual %g of the right side, tolerance is %g",
                          left, e->def.tolerance);
   }
