@@ -40,7 +40,7 @@ static void add_wall(mps_context *context, mps_fluid *fluid, double x, int axis,
   check(context, mps_fluid_add_boundary(fluid, &def, NULL), "wall");
 }
 
-/* s: of one thread the processor's time, which other work on the machine hardly touches. */
+/* s: of one thread the processor's time, which other work on the machine hardly affects. */
 static double now(int32_t threads) {
   struct timespec t;
   if (threads > 1) return seconds();
@@ -48,7 +48,7 @@ static double now(int32_t threads) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Times that threads of the process have gone to sleep. */
+/* Number of times that threads of the process have blocked. */
 static double sleeps(void) {
   struct rusage use;
   getrusage(RUSAGE_SELF, &use);

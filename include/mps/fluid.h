@@ -250,9 +250,9 @@ typedef enum mps_fluid_load_kind {
                                  squall, the air in a chamber. Not with the classical scheme */
 } mps_fluid_load_kind;
 
-/** A load, times factor times signal in each component, on the particles of a list, those that are
- * in a box as a step begins, or all where neither is given. Loads add up. Forces that another code
- * computes go into the field `external_force` instead. */
+/** A load, times factor times signal in each component, on the particles of a list, those in a box
+ *  at the beginning of a step, or all where neither is given. Loads add up. Forces that another
+ *  code computes go into the field `external_force` instead. */
 typedef struct mps_fluid_load_def {
   uint32_t struct_size;
   int32_t kind;       /* mps_fluid_load_kind, default BODY */

@@ -1,7 +1,7 @@
 /* mps/io.h - results and restart: a series of frames that ParaView opens (VTKHDF), and checkpoints
  * from which a run continues bit for bit. Both are HDF5 files; docs/output.md shows their layout.
  *
- * A libmps built without HDF5 has these functions too: those that return a status then return
+ * A libmps built without HDF5 has these functions too: functions with a status then return
  * MPS_ERROR_UNSUPPORTED.
  *
  * Thread rule: one thread at a time per context. Distinct contexts may write and read at once:
@@ -42,7 +42,7 @@ static inline mps_recorder_def mps_recorder_defaults(void) {
 /** Begins a series of the set `particles`, which the recorder keeps alive. The fields are those the
  *  set has now, so create the solver first. MPS_ERROR_FIELD: the set lacks a name of the list;
  *  MPS_ERROR_IO: the file cannot be written; MPS_ERROR_UNSUPPORTED: no HDF5, or one without zlib
- *  where compression is asked for. The file is opened only after all other checks. */
+ *  where `compression` is not 0. The file is opened only after all other checks. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
                                                      const mps_recorder_def *def,
                                                      mps_recorder **out);

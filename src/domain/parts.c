@@ -68,8 +68,8 @@ mps_status mps_domain_create_particles(mps_domain *domain, const mps_particles_d
   return status;
 }
 
-mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mps_status status,
-                                    const mps_particles *particles) {
+mps_status mpsi_domain_agree_parts(mps_domain *domain, const char *function, mps_status status,
+                                   const mps_particles *particles) {
   const mpsi_deal *deal = mpsi_particles_deal(particles);
   mpsi_given given;
   mpsi_given_begin(&given);

@@ -165,7 +165,7 @@ static mps_status find_extent(mps_particles *particles, mps_domain *domain, mps_
   for (int c = 0; c < 2; c++) lo[c] = INFINITY, hi[c] = -INFINITY;
   for (int c = 0; c < 2 && status == MPS_OK; c++) extent(particles, c, &lo[c], &hi[c]);
   if (!mpsi_domain_many(domain)) return status;
-  status = mpsi_domain_settle_parts(domain, "mps_dynamics_create", status, particles);
+  status = mpsi_domain_agree_parts(domain, "mps_dynamics_create", status, particles);
   if (status != MPS_OK || !mpsi_particles_deal(particles)) return status;
   double most[4] = {-lo[0], -lo[1], hi[0], hi[1]};
   status = mpsi_domain_max(domain, "mps_dynamics_create", 4, most);

@@ -285,8 +285,8 @@ static bool has_refusing_signal(const mps_dynamics *dynamics) {
   return false;
 }
 
-mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *function,
-                                     mps_status status) {
+mps_status mpsi_dynamics_reread_ground(mps_dynamics *dynamics, const char *function,
+                                       mps_status status) {
   double edited[3] = {dynamics->unread, dynamics->rewritten != NULL, has_refusing_signal(dynamics)};
   if (status != MPS_OK)
     ; /* as before the call */
@@ -310,9 +310,9 @@ mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *functio
   return MPS_OK;
 }
 
-mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
+mps_status mpsi_dynamics_read_edits(mps_dynamics *dynamics, const char *function,
                                     mps_status status) {
-  status = mpsi_dynamics_take_ground(dynamics, function, status);
+  status = mpsi_dynamics_reread_ground(dynamics, function, status);
   if (status != MPS_OK || !dynamics->begins) return status;
   return mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
 }

@@ -1,11 +1,11 @@
 /* loads.c - loads of the caller: accelerations of particles (a shaken tank), forces that another
  * code writes into the field `external_force`, pressures on the free surface.
  *
- * An acceleration b changes the velocity before the pressure is found, of a particle's images at
- * walls as of itself; q of these images then differs by rho b . (x_image - x), so that a linear
- * pressure holds water under a uniform b exactly, as it does in a tank that moves with -b. A
- * pressure adds to that of the surface point. Its work is taken with the area vector of each
- * particle, -V m/S0: sum w dx adds up to the area of a plane surface exactly, and vanishes inside.
+ * An acceleration b changes the velocity before the pressure solution, of a particle and of its
+ * images at walls; q of these images then differs by rho b . (x_image - x), so that a linear
+ * pressure balances a uniform b exactly, as in a tank that moves with -b. A pressure adds to that
+ * of the surface point. Its work is taken with the area vector of each particle, -V m/S0: sum w dx
+ * adds up to the area of a plane surface exactly, and vanishes inside.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
@@ -99,8 +99,7 @@ static mps_status make_load(mps_fluid *f, const char *function, const mps_fluid_
   return MPS_OK;
 }
 
-/* Status of all ranks, and whether all give the same load (`g`, NULL: none) this number.
- */
+/* Status of all ranks, and a check that all have the same load (`g`, NULL: none) of this number. */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          const mpsi_fluid_given *g) {
   if (!f->partition) return status;
@@ -219,7 +218,7 @@ static void add_forces(mps_fluid *f) {
   }
 }
 
-static mps_status ask_signals(mps_fluid *f, const char *function, double t, bool *any) {
+static mps_status evaluate_signals(mps_fluid *f, const char *function, double t, bool *any) {
   for (int32_t k = 0; k < f->given_room; k++) {
     mpsi_fluid_given *g = f->given[k];
     if (!g) continue;
@@ -239,7 +238,7 @@ static mps_status ask_signals(mps_fluid *f, const char *function, double t, bool
 mps_status mpsi_fluid_find_loads(mps_fluid *f, const char *function, double t) {
   bool any = mpsi_particles_column(f->particles, "external_force", 0) != NULL;
   f->push[0] = f->push[1] = f->over = NULL;
-  const mps_status status = ask_signals(f, function, t, &any);
+  const mps_status status = evaluate_signals(f, function, t, &any);
   if (status != MPS_OK || !any) return status;
   if (!mpsi_room_ensure(f->context, &f->push_room, 3 * f->count, sizeof(double)))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * 24);

@@ -161,8 +161,8 @@ static void carry_out(const mps_fluid *f, mpsi_fluid_wall *w, const double *x, c
   w->removed_mass += mass;
 }
 
-void mpsi_fluid_let_go(mps_fluid *f) {
-  uint8_t *const gone = f->company; /* free between steps; found again when it is asked for */
+void mpsi_fluid_remove_outflow(mps_fluid *f) {
+  uint8_t *const gone = f->company; /* free between steps; computed again when needed */
   uint32_t open = 0;
   int64_t count = 0;
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {

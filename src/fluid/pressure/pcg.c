@@ -1,10 +1,10 @@
 /* pcg.c - conjugate gradients for the pressure, preconditioned by a modified incomplete Cholesky
  * factorisation U^T D U of diagonal blocks of the matrix A: U^T is unit lower triangular, U^T D - D
- * is the matrix's own lower part, and what elimination would fill in goes to the pivots D, most of
- * it (Gustafsson 1978).
+ * is the matrix's own lower part, and most of the fill of the elimination is added to the pivots D
+ * (Gustafsson 1978).
  *
- * As the factors have the matrix's own entries, no product with A is needed (Eisenstat 1981): for
- * z = U^-1 v, and A = U^T D + D U + (diag A - 2 D) + C, C what A has between blocks,
+ * As the factors have the matrix's own entries, no product with A is needed (Eisenstat 1981): for z
+ * = U^-1 v, and A = U^T D + D U + (diag A - 2 D) + C, C the entries of A between blocks,
  *
  *   U^-T A z = D z + U^-T (D v + (diag A - 2 D) z + C z).
  *
@@ -12,11 +12,11 @@
  * block; blocks wait for each other twice. The sums of both are all that an iteration needs
  * (Chronopoulos and Gear 1989): r is the residual times U^-T, p the direction, s = U^-T A p.
  *
- * Of large fluids a coarse space (coarse.h) takes what is smooth out of the error, so that the
- * iterations hardly grow with the number of particles.
+ * For large fluids a coarse space (coarse.h) removes the smooth error, so that the iterations
+ * hardly grow with the number of particles.
  *
- * The factors are kept in single precision: below a tolerance of 1e-6 the residual is found anew
- * with A itself and what is left is solved for again. A is not stored: a row is the weights of the
+ * The factors are kept in single precision: below a tolerance of 1e-6 the residual is computed
+ * again with A itself and the remainder is solved for. A is not stored: a row is the weights of the
  * particle's neighbours, and vectors that it multiplies have the values of the ghosts' parents
  * appended. The start vector is extrapolated from the last two steps (pressure.c), which more than
  * halves the iterations in waves. The blocks depend on the number of particles alone, and sums are
@@ -28,19 +28,20 @@
 
 #include <string.h>
 
-#define MODIFIED 0.95    /* share of the fill that goes to the pivots */
+#define MODIFIED 0.95    /* fraction of the fill that is added to the pivots */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
-#define LOOK_FROM 4.0    /* of the rz where the residual would be small enough if both fell alike */
-#define LOOK_AGAIN 0.25  /* of rz, at the soonest */
-#define SINGLE 1e-6      /* tolerance that factors in single precision allow */
-#define DEFLATED 1e-4    /* of the residual, in one go with the coarse space: see mpsi_fluid_pcg */
+#define LOOK_FROM                                                                                  \
+  4.0 /* of the rz at which the residual would be small enough if both fell in proportion */
+#define LOOK_AGAIN 0.25 /* of rz, at the soonest */
+#define SINGLE 1e-6     /* tolerance that factors in single precision allow */
+#define DEFLATED 1e-4   /* of the residual, in one go with the coarse space: see mpsi_fluid_pcg */
 
 /* ---- preconditioner -------------------------------------------------------------------------- */
 
-/* Row i of U^T but its 1; the pivot of row i, and what is right of it; diag A - 2 D, in the place
- * of u_new[1], which has no other use before the pressure is known. A neighbour and its image are
- * two entries. What single precision takes off an entry goes to the diagonals, so that the sums of
- * rows stay exact: without a free surface little else keeps the matrix from being indefinite. */
+/* Row i of U^T but its 1; the pivot of row i, and the entries right of it; diag A - 2 D, in the
+ * place of u_new[1], which has no other use before the pressure is known. A neighbour and its image
+ * are two entries. Rounding of an entry to single precision is added to the diagonals, so that the
+ * row sums stay exact: without a free surface the matrix would become indefinite otherwise. */
 static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, uint16_t *column,
                          float *lower) {
   const mpsi_fluid_system *s = &f->system;
@@ -119,7 +120,7 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
     atomic_store(&p.full, false);
     if (status == MPS_OK) mpsi_fluid_units(f, p.blocks.size, factor_block, &p);
     double full = atomic_load(&p.full);
-    status = mpsi_fluid_settle_max(f, function, status, 1, &full);
+    status = mpsi_fluid_agree_max(f, function, status, 1, &full);
     if (status == MPS_OK && full == 0.0)
       return mpsi_fluid_coarsen(f, function, p.blocks.size, p.blocks.count);
     if (status != MPS_OK) return status;
@@ -143,7 +144,7 @@ static double total(const mps_fluid *f, int64_t count, int which) {
   return sum;
 }
 
-/* r = b - A x, and the squares of r and b; nothing of an iteration before. */
+/* r = b - A x, and the squares of r and b; resets the iteration. */
 static void first_residual(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   mpsi_fluid_system *s = &f->system;
   double rr = 0.0, bb = 0.0;
@@ -199,32 +200,31 @@ static void norm(void *data, int64_t b, int32_t worker) {
 }
 
 /* Iterates from the residual r, whose square is rr, until that is `enough`; counts in *done. The
- * norm of the preconditioner, which each iteration knows, says when to look at the residual's own.
- */
+ * preconditioner's norm, known in each iteration, decides when to compute that of the residual. */
 static bool iterate(iteration *it, double rr, double enough, int64_t *done) {
   mps_fluid *f = it->fluid;
   const int64_t number = it->blocks.count;
   it->beta = 0.0;
   mpsi_fluid_units(f, it->blocks.size, start_block, it);
-  mpsi_fluid_tell_sums(f, it->blocks.size);
+  mpsi_fluid_send_sums(f, it->blocks.size);
   double rz = total(f, number, 0), look_at = LOOK_FROM * rz * enough / rr;
   for (int64_t k = 0;; k++) {
     if (rz <= look_at) {
       mpsi_fluid_units(f, it->blocks.size, norm, it);
-      mpsi_fluid_tell_sums(f, it->blocks.size);
+      mpsi_fluid_send_sums(f, it->blocks.size);
       rr = total(f, number, 1);
       if (rr <= enough) return true;
       look_at = rz * fmax(LOOK_AGAIN, enough / rr);
     }
     if (!isfinite(rz) || *done == f->def.iterations) return false;
     if (f->coarse->used) mpsi_fluid_coarse_solve(f);
-    mpsi_fluid_tell_near(f, 1, &f->system.z);
+    mpsi_fluid_send_halo(f, 1, &f->system.z);
     mpsi_fluid_units(f, it->blocks.size, rise, it);
-    mpsi_fluid_tell_sums(f, it->blocks.size);
+    mpsi_fluid_send_sums(f, it->blocks.size);
     const double before = it->alpha, qz = total(f, number, 1);
     it->alpha = k == 0 ? rz / qz : rz / (qz - it->beta * rz / before);
     mpsi_fluid_units(f, it->blocks.size, descend, it);
-    mpsi_fluid_tell_sums(f, it->blocks.size);
+    mpsi_fluid_send_sums(f, it->blocks.size);
     (*done)++;
     const double next = total(f, number, 0);
     it->beta = next / rz;
@@ -240,17 +240,17 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
   it.room = f->most_lower * it.blocks.size;
   int64_t done = 0;
   for (double left = INFINITY;;) {
-    mpsi_fluid_tell_near(f, 1, &s->x);
+    mpsi_fluid_send_halo(f, 1, &s->x);
     for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, first_residual);
-    mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+    mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
     const double rr = total(f, chunks, 0), bb = total(f, chunks, 1);
     const double enough = tolerance * tolerance * bb;
     if (bb == 0.0) memset(s->x, 0, (size_t)(f->count + f->ghosts) * sizeof *s->x);
     if (bb == 0.0) return 0;
     if (rr <= enough || !(rr < 0.25 * left)) return isfinite(rr) ? done : -1; /* or round-off */
-    /* Round-off of the factors slowly brings back what the coarse space has taken out, which no
-     * iteration removes: some digits at a time. */
+    /* Round-off of the factors slowly restores components of the coarse space, which no iteration
+     * removes: the solution proceeds by some digits at a time. */
     const double begin = f->coarse->used ? mpsi_fluid_coarse_start(f) : rr;
     const double goal = f->coarse->used ? fmax(enough, DEFLATED * DEFLATED * begin) : enough;
     if (!iterate(&it, begin, goal, &done)) return -1;

@@ -1,17 +1,17 @@
 /* partition.h - the ranks of a domain (mps/domain.h) that compute a fluid together. Each has all of
- * it: the set, walls, bodies, images. What is found row by row, neighbours, sums over them, rows of
- * the matrix, its factor and iterations, velocities, each rank finds for its particles, whole
- * blocks of the preconditioner (pcg.c), and tells the others what they need:
+ * it: the set, walls, bodies, images. Quantities by rows (neighbours, sums over them, rows of the
+ * matrix, its factor and iterations, velocities) each rank computes for its own particles, whole
+ * blocks of the preconditioner (pcg.c), and sends to the others:
  *
- *   of the particles that are near others' ones  x, z (at each iteration), m, velocities
- *   of all particles                             state, q, places, velocities, pressures
+ *   of particles near those of other ranks  x, z (at each iteration), m, velocities
+ *   of all particles                        state, q, positions, velocities, pressures
  *
  * and the sums of chunks and blocks, which every rank then adds in the same order: the bits of one.
- * Loops of a step return no status. What the transport has failed with is kept, and
- * mpsi_fluid_lost has it.
+ * Loops of a step return no status. An error of the transport is kept, and returned by
+ * mpsi_fluid_lost.
  *
- * Without a domain of several ranks nothing of this does anything, and a fluid's own particles are
- * all. SPDX-License-Identifier: BSD-3-Clause */
+ * Without a domain of several ranks these functions do nothing, and all particles are own ones.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_FLUID_PARTITION_H
 #define MPSI_FLUID_PARTITION_H
 
@@ -24,12 +24,12 @@ mps_status mpsi_fluid_partition_create(mps_fluid *fluid, const char *function);
 void mpsi_fluid_partition_destroy(mps_fluid *fluid);
 
 /* Status of all ranks, as mpsi_domain_agree. Collective, as what follows. */
-mps_status mpsi_fluid_settle(mps_fluid *fluid, const char *function, mps_status status);
-mps_status mpsi_fluid_settle_max(mps_fluid *fluid, const char *function, mps_status status,
-                                 int32_t count, double *values);
-/* Do walls, bodies and loads of all ranks move alike, and have all the same particles where the
- * caller has edited them? `status` is this one's so far. */
-mps_status mpsi_fluid_settle_alike(mps_fluid *fluid, const char *function, mps_status status);
+mps_status mpsi_fluid_agree(mps_fluid *fluid, const char *function, mps_status status);
+mps_status mpsi_fluid_agree_max(mps_fluid *fluid, const char *function, mps_status status,
+                                int32_t count, double *values);
+/* Checks that motions of walls and bodies, loads, and edited particles are the same on all ranks.
+ * `status` is this rank's so far. */
+mps_status mpsi_fluid_agree_same(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_lost(mps_fluid *fluid, const char *function);
 
 /* Blocks of the preconditioner (pcg.c), whole chunks of particles (mpsi_fluid_units), by the number
@@ -47,18 +47,18 @@ mps_status mpsi_fluid_find_halo(mps_fluid *fluid, const char *function);
 /* Halo exchange of per-particle columns: from their owners to the ranks that have them as
  * neighbours. */
 #define MPSI_FLUID_SHARED 7 /* columns at most */
-void mpsi_fluid_tell_near(mps_fluid *fluid, int32_t columns, double *const *column);
-/* The same to all. */
-void mpsi_fluid_tell_all(mps_fluid *fluid, int32_t columns, double *const *column);
+void mpsi_fluid_send_halo(mps_fluid *fluid, int32_t columns, double *const *column);
+/* The same, to all ranks. */
+void mpsi_fluid_send_all(mps_fluid *fluid, int32_t columns, double *const *column);
 /* system.sums of units of so many particles, two of each, to all. */
-void mpsi_fluid_tell_sums(mps_fluid *fluid, int64_t unit);
+void mpsi_fluid_send_sums(mps_fluid *fluid, int64_t unit);
 /* The greatest of each value over the ranks, and 0 where the transport has failed. */
-void mpsi_fluid_tell_most(mps_fluid *fluid, int64_t count, double *values);
-/* Sums over all ranks; what they have where the transport has failed is of no use. */
-void mpsi_fluid_tell_exact(mps_fluid *fluid, int32_t count, mpsi_exact *sums);
-/* States, numbers of neighbours and moments m, and who may be in whose zone (moments.c). */
-void mpsi_fluid_tell_looks(mps_fluid *fluid);
-/* fluid->local of all particles, as far as levels and loads use it, for who asks. */
-void mpsi_fluid_tell_local(mps_fluid *fluid);
+void mpsi_fluid_reduce_max(mps_fluid *fluid, int64_t count, double *values);
+/* Sums over all ranks; invalid where the transport has failed. */
+void mpsi_fluid_reduce_exact(mps_fluid *fluid, int32_t count, mpsi_exact *sums);
+/* States, numbers of neighbours and moments m, and marks of the surface zone (moments.c). */
+void mpsi_fluid_send_moments(mps_fluid *fluid);
+/* fluid->local of all particles, as far as levels and loads use it. */
+void mpsi_fluid_send_local(mps_fluid *fluid);
 
 #endif

@@ -4,7 +4,7 @@
  *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
  *
  * the first part of a .12 dt s0 near the surface but in breakers and the second times 10 dt s0 <= 1
- * where walls meet it, where v is what a linear velocity field leaves over (moments.c) and s0 =
+ * where walls join it, where v is what a linear velocity field leaves over (moments.c) and s0 =
  * sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu takes the share nu dt n/S of v, and a
  * only what that leaves. Guards: pairs that approach within l0/2 collide, a particle that strikes a
  * wall is stopped .35 l0 before it, |u| <= 1.1 of the neighbours' largest plus that of free fall,
@@ -63,7 +63,7 @@ static double near_surface(const mps_fluid *f, int64_t i, double least) {
 
 /* Part of v that is taken over: of a rough velocity field more, but not where the flow turns around
  * a corner, which is no linear field however smooth it is. Near the surface less: among neighbours
- * on one side v is not 0 for the curved field of a wave, which it would damp. Where a wall meets
+ * on one side v is not 0 for the curved field of a wave, which it would damp. Where a wall crosses
  * the surface the water rises by ln r beside it: v is no roughness there either, and what is taken
  * of it in a step must not grow as the steps get shorter. */
 static double smoothing(const mps_fluid *f, int64_t i) {
@@ -211,9 +211,9 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
   for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_accelerate : accelerate);
-  mpsi_fluid_tell_near(f, 2, f->u_new);
+  mpsi_fluid_send_halo(f, 2, f->u_new);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
   swap(&f->u_new[0], &f->system.r);
   swap(&f->u_new[1], &f->system.z);
   for (int64_t k = 0; k < chunks; k++) {
@@ -328,8 +328,8 @@ static double wall_travel(const mps_fluid *f) {
 
 int64_t mpsi_fluid_advance(mps_fluid *f) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
-  mpsi_fluid_tell_all(
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_all(
       f, 6,
       (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure, mpsi_fluid_rises(f)});
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;

@@ -122,7 +122,7 @@ mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count,
 void mpsi_elastic_renew(void *self) {
   mps_elastic *e = self;
   if (!e->change) return;
-  if (mps_particles_count(e->particles) == e->change->next.n) { /* nobody refused */
+  if (mps_particles_count(e->particles) == e->change->next.n) { /* no holder has refused */
     mpsi_elastic_suspend_motion(e);
     use(e);
   }

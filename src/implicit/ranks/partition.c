@@ -95,7 +95,7 @@ mps_status mpsi_elastic_open_window(mps_elastic *e, const char *function) {
 
 mps_status mpsi_elastic_join(mps_elastic *e, const char *function, mps_status status, int64_t count,
                              double *values) {
-  status = mpsi_elastic_settle(e, function, status);
+  status = mpsi_elastic_agree(e, function, status);
   for (int64_t k = 0; status == MPS_OK && k < count; k += MOST_AT_ONCE)
     status =
         mpsi_domain_max(e->def.domain, function,

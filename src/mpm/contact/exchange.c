@@ -346,7 +346,7 @@ static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
   return to;
 }
 
-/* For this rank's entries, of which those that go lie first, and for whom they go to. */
+/* For this rank's entries, of which the ones to send are first, with their receivers. */
 static mps_status make_room_for_message(exchange *m, mps_domain_message **list) {
   mps_mpm *mpm = m->mpm;
   mps_domain *domain = mpm->partition->domain;

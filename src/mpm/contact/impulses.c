@@ -53,7 +53,7 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
 
 /* ---- when sweeps end ------------------------------------------------------------------------- */
 
-/* The most sweeps and the least tolerance that a contact asks for. */
+/* The most sweeps and the least tolerance of all contacts. */
 static int32_t most_sweeps(const mps_mpm *mpm, double *tolerance) {
   int32_t most = 0;
   *tolerance = INFINITY;

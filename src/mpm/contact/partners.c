@@ -1,8 +1,8 @@
 /* partners.c - see partners.h. Ranks reduce the counts of failures and of constraints, then a
  * matrix of bits, of which each rank sets its own part: a row of the ranks whose constraints its
  * own ones reach, and a row of the ranks whose constraints change nodes under its own blocks that
- * have none there; of more than MPSI_MOST_PARTNERS ranks or with free bodies, one row of those that
- * have constraints. SPDX-License-Identifier: BSD-3-Clause */
+ * have none there; of more than MPSI_MOST_PARTNERS ranks or with free bodies, one row of the ranks
+ * with constraints. SPDX-License-Identifier: BSD-3-Clause */
 #include "partners.h"
 
 #include "mpm/base/mpm_solver.h"

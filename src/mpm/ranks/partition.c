@@ -230,7 +230,7 @@ static void mark_blocks(mps_mpm *mpm) {
     grid->nodes[g].foreign = !mpsi_mpm_node_block_complete(mpm, g);
 }
 
-/* Which own blocks others have asked for; room for parcels. */
+/* Own blocks requested by other ranks; memory for parcels. */
 static mps_status find_border(mps_mpm *mpm, const char *function) {
   mpsi_partition *partition = mpm->partition;
   const int64_t *item;
@@ -286,7 +286,7 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
   void *parts[] = {s.own, s.range, s.sent, s.message, s.ghost, s.rank, s.index};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
   partition->outdated = status != MPS_OK;
-  if (partition->outdated) mpm->run.stale = true; /* the lists may be gone */
+  if (partition->outdated) mpm->run.stale = true; /* the lists may have been freed */
   return status;
 }
 
@@ -362,7 +362,7 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   if (status == MPS_OK) mpsi_material_give(&given, mpm->laws.law[0].material);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
   if (status != MPS_OK || mpsi_particles_deal(mpm->particles)) return status;
-  return mpsi_domain_settle_particles(d->domain, function, status, mpm->particles);
+  return mpsi_domain_agree_particles(d->domain, function, status, mpm->particles);
 }
 
 mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
@@ -370,7 +370,7 @@ mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status s
   if (status == MPS_OK) mpm->partition = mpsi_alloc(mpm->context, 1, sizeof *mpm->partition);
   if (status == MPS_OK && !mpm->partition)
     status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->partition);
-  status = mpsi_domain_settle_parts(domain, function, status, mpm->particles);
+  status = mpsi_domain_agree_parts(domain, function, status, mpm->particles);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, mpm->partition);
     mpm->partition = NULL;

@@ -63,8 +63,8 @@ static void former_place(const mps_mpm *mpm, int64_t k, double *x) {
     x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
 }
 
-/* The sums of tile node (i, j, k): those that a block gives, in the tile of a worker, or (NULL)
- * those of all blocks, at the node. */
+/* The sums of tile node (i, j, k): those of a block, in the tile of a worker, or (NULL) those of
+ * all blocks, at the node. */
 static double *sums_at(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                        bool across, int i, int j, int k) {
   if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];

@@ -173,9 +173,9 @@ MPSI_INLINE void store_some(double *to, mpsi_quad v, int n) {
   for (int i = 0; i < n; i++) to[i] = v[i];
 }
 
-/* Velocities and gradients to the particles' columns; the particles move. Tells whether one is then
- * `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils would
- * leave the tile. */
+/* Velocities and gradients to the particles' columns; the particles move. Returns whether one is
+ * then `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils
+ * would leave the tile. */
 typedef struct moved {
   bool outside, left;
 } moved;
