@@ -17,7 +17,7 @@
  * "An experimental study of the collapse of liquid columns on a rigid horizontal plane", Phil.
  * Trans. R. Soc. A 244 (1952) 312-324: columns of rectangular section, a = 2.25 in. Front Z = x/a
  * against T = t sqrt(n^2 g/a); height at the wall H = y/(n^2 a) against tau = t sqrt(g/a). The
- * numbers are those that later authors print, for n^2 = 2 as tables 2 and 6. When the gate let go
+ * numbers are those of later authors, for n^2 = 2 as tables 2 and 6. When the gate was released
  * could not be timed well: it is usual to set the clocks at Z = 1.44. */
 
 typedef struct series {
@@ -61,9 +61,10 @@ static double speed_of_sound(const settings *s) {
   return isnan(s->sound) ? 10.0 * sqrt(2.0 * G * column_height(s)) : s->sound;
 }
 
-/* Pressure at the start: rho g depth behind the gate; once it is gone, that of the first moment of
- * an incompressible column, whose free sides have none. It is harmonic plus rho g depth, a series
- * in cos(b y) cosh(b x). From rho g depth instead, sound would run to and fro all the while. */
+/* Pressure at the start: rho g depth behind the gate; once it is removed, that of the first moment
+ * of an incompressible column, whose free sides have none. It is harmonic plus rho g depth, a
+ * series in cos(b y) cosh(b x). From rho g depth instead, sound would run to and fro all the while.
+ */
 static double pressure_at(const settings *s, double x, double y) {
   const double H = column_height(s);
   double p = H - y;

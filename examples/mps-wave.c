@@ -124,8 +124,8 @@ static mps_status record(void *user, mps_dynamics *dynamics) {
   return status == MPS_OK ? files_record(&sim->files, field_record(&sim->peaks)) : status;
 }
 
-/* A run that goes on records at the steps of the first: to the next of them. The last row of one
- * that was whole may lie between them, and goes. */
+/* A restarted run records at the steps of the first: to the next of them. The last row of one that
+ * was whole may lie between them, and goes. */
 static bool align_rows(app *a, simulation *sim) {
   const int64_t every = sim->so_far.every, past = mps_dynamics_steps(sim->dynamics) % every;
   receivers *r = &sim->record;

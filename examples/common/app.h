@@ -37,7 +37,7 @@ typedef struct app {
   mps_domain *domain; /* NULL: one process */
   int32_t rank;       /* rank 0 speaks and writes; 0 of one process */
   void *equations;    /* ranks_solve_elastic, ranks_solve_fluid */
-  bool agreed;        /* what has gone wrong is known to all ranks */
+  bool agreed;        /* an error is known to all ranks */
   char line[700];     /* what this rank would have said */
 } app;
 
@@ -46,9 +46,9 @@ typedef struct app {
  * has started several ranks, with the domain that the solvers are given, and `threads` of each rank
  * (0: its part of the node); Ctrl-C, or SIGTERM or SIGUSR1 to any rank, then stops all. */
 bool app_start(app *a, const char *program, int64_t threads);
-/* Where ranks go different ways: true where all ranks say `ok`. Else one rank tells what has gone
- * wrong, and all return false. Collective; what the library does on all ranks is agreed upon by
- * itself, but a rank that fails alone must come here before the next collective call. */
+/* Where ranks go different ways: true where `ok` on all ranks. Else one rank reports the error, and
+ * all return false. Collective; what the library does on all ranks is agreed upon by itself, but a
+ * rank that fails alone must come here before the next collective call. */
 bool app_agree(app *a, bool ok);
 /* `values` of the one rank where they are `mine` become those of all, bit for bit but for the kind
  * of a NaN. Nothing to do in one process. Collective. */
@@ -72,20 +72,20 @@ bool app_no_memory(app *a);
 /* True for MPS_OK; otherwise prints the record of the context. */
 bool app_check(app *a, mps_status status);
 
-/* Tells how a run ended that got to `time` (s), and sets `outcome`. Prints nothing for MPS_OK; else
- * one line, which for Ctrl-C (MPS_ERROR_CANCELLED) says whether there are results to write (`any`).
+/* Reports how a run ended at `time` (s), and sets `outcome`. Prints nothing for MPS_OK; else one
+ * line, which for Ctrl-C (MPS_ERROR_CANCELLED) says whether there are results to write (`any`).
  * Returns the exit code. */
 int app_end_run(app *a, mps_status status, double time, bool any);
 
 /* Around a computation that nothing can stop, such as the factorisation of a matrix: while `on`,
- * Ctrl-C ends the program at once, with a line that tells the files written so far and exit code
+ * Ctrl-C ends the program at once, with a line that names the files written so far and exit code
  * 130. None may be open. The file that output_reserve has kept takes its name then; once this is
- * off, it is gone. */
+ * off, it is removed. */
 void app_leave_at_once(app *a, bool on);
 
 /* Notes a result file that is complete. */
 void app_wrote(app *a, const char *path);
-/* "Results: DIR/ (files)" on stdout: those that were written. */
+/* "Results: DIR/ (files)" on stdout: the files written. */
 void app_tell_results(const app *a, const char *directory);
 
 #endif

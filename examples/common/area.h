@@ -25,7 +25,7 @@ typedef struct area_def {
   double spacing;            /* m */
   double slit;               /* spacings */
   double lower[2], upper[2]; /* m, what is shown */
-  bool walled;               /* beyond it all is solid: walls, or the body goes on */
+  bool walled;               /* beyond it all is solid: walls, or the body continues */
   int side;                  /* pixels along a side, at most */
   /* a body or a wall at x, y (m), which the picture draws over the image; NULL: none */
   bool (*solid)(const void *user, double x, double y);

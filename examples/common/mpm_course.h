@@ -34,12 +34,13 @@ typedef struct mpm_course {
   void *user;
   /* made here */
   mps_recorder *series; /* rank 0; made with the first frame: a series without one is none */
-  double from;          /* s, time of the checkpoint that the run goes on from; NaN: the start */
+  double from;          /* s, time of the checkpoint that the run continues from; NaN: the start */
   bool opened;
   resume_schedule saves;
 } mpm_course;
 
-/* The options of the checkpoint that the run goes on from are these; nothing to do without one. */
+/* The options of the checkpoint that the run continues from are these; nothing to do without one.
+ */
 mps_status mpm_course_peek(mpm_course *c, mps_context *context);
 /* What the run had seen, before the model is built: where that is needed to build it. */
 mps_status mpm_course_load(mpm_course *c, mps_context *context);

@@ -148,7 +148,7 @@ static mps_status count_all(mpm_model *m) {
 
 mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_fn callback,
                              void *user) {
-  /* a run of one step, as between close samples, asks nobody */
+  /* a run of one step, as between close samples, calls no hook */
   double stop = progress_interrupted();
   mps_status status = m->a->domain ? mps_domain_max(m->a->domain, 1, &stop) : MPS_OK;
   if (status == MPS_OK && stop != 0.0) status = MPS_ERROR_CANCELLED;

@@ -21,7 +21,7 @@ typedef struct mpm_model {
   mps_fluid *fluid;                 /* in its place where a program has the choice */
   mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
   int64_t samples;                  /* rows of results so far, which `march` counts */
-  bool failed;   /* `march` sets it where something is missing that was asked for: exit code 1 */
+  bool failed;   /* `march` sets it where something is missing that was requested: exit code 1 */
   char why[400]; /* reason of an error of `build` or `march` that the library does not know; "" */
   app *a;        /* of the run */
   int64_t count; /* particles of all ranks, when `march` begins and when `finish` does */
@@ -63,8 +63,7 @@ mps_status mpm_model_whole(mpm_model *m, mps_particles **whole);
 /* *value becomes the sum of those of all ranks, which are below 2^53. Collective. */
 mps_status mpm_model_sum(mpm_model *m, int64_t *value);
 /* Of a number that each rank counts among its own particles after every step, the greatest sum of
- * all ranks. They tell one another the numbers of many steps at once, and only where there are any.
- */
+ * all ranks. They exchange the numbers of many steps at once, and only where there are any. */
 typedef struct mpm_counts {
   int64_t *untold, steps, room;
 } mpm_counts;

@@ -60,7 +60,7 @@ typedef struct option {
   option_range range; /* of numbers and integers */
   int count;          /* of numbers separated by commas; 0 and 1: one number */
   bool *flag;
-  double *number; /* NaN: there is no default, or help tells it */
+  double *number; /* NaN: there is no default, or it is in the help */
   int64_t *integer;
   const char **text;
   int *choice; /* index into `unit` */
@@ -106,12 +106,12 @@ typedef struct options_program {
   option *table;       /* ends with an empty row */
 } options_program;
 
-/* Parses the arguments. Returns -1 to go on, or the exit code: 0 after --help and --version, 2
+/* Parses the arguments. Returns -1 to continue, or the exit code: 0 after --help and --version, 2
  * after one error line to stderr, 1 when help could not be written. */
 int options_parse(const options_program *program, int argc, char **argv);
 /* True when the option was on the command line. */
 bool options_given(const option *table, const char *name);
-/* Of where and how a run is done, such as --out: a run may go on with others of these. */
+/* Of where and how a run is done, such as --out: a run may continue with others of these. */
 bool options_free(const char *name);
 /* "name=value" lines of all other options, to be kept with a checkpoint. False when `size` is too
  * small. */

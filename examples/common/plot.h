@@ -10,8 +10,8 @@
 bool plot_open(output *script, app *a, const char *directory, const char *name, int width,
                int height);
 /* Ends the script and draws it. Only a complete picture takes the name NAME.png; otherwise one
- * error line gives gnuplot's reason. Without gnuplot on this machine one line on stdout tells how
- * to draw it later, which is no error. */
+ * error line gives gnuplot's reason. Without gnuplot on this machine one line on stdout says how to
+ * draw it later, which is no error. */
 bool plot_close(output *script, const char *directory, const char *name);
 
 /* Colours from `least` to `most`, taken to round numbers; `lowest` and `highest` are those of what

@@ -183,8 +183,8 @@ void ranks_drop_solver(void **solver) {
 
 /* ---- threads --------------------------------------------------------------------------------- */
 
-/* A number that tells sets of processors apart: those that the system lets this process use. 0
- * where it does not say; sets are then taken to be the same. */
+/* A number that identifies the set of processors available to this process. 0 where it does not
+ * say; sets are then taken to be the same. */
 static double bound_to(void) {
   char line[1024];
   uint32_t hash = 0;

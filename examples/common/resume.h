@@ -1,4 +1,4 @@
-/* resume.h - a run in a file to go on from: the checkpoint of a solver, and in its user_data the
+/* resume.h - a run in a file to restart from: the checkpoint of a solver, and in its user_data the
  * options of the program and what the run has seen so far. What is written after a restart is what
  * would have been written without a stop.
  *
@@ -8,7 +8,7 @@
  *     if (resume_wrong(b, rows < 0 || rows > capacity)) return;
  *     resume_pass(b, row, rows * sizeof *row);
  *   }
- * and saves between steps by resume_save, to go on by resume_peek and resume_restore.
+ * and saves between steps by resume_save, to continue by resume_peek and resume_restore.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_RESUME_H
 #define EXAMPLES_RESUME_H
@@ -46,7 +46,7 @@ typedef struct resume {
 } resume;
 
 mps_status resume_save(const resume *r, const char *path);
-/* Compares the options of the file with these, but for those that a run may go on with others of
+/* Compares the options of the file with these, but for those that a run may continue with others of
  * (--out, --threads and those of checkpoints): before a model is built. MPS_ERROR_ARGUMENT: in
  * `why` the first that differs; `why` is "" where the library says what is wrong. */
 mps_status resume_peek(mps_context *context, const resume *r, const char *path, char *why,
@@ -61,14 +61,14 @@ mps_status resume_restore(mps_context *context, const resume *r, const char *pat
   COMMON_TEXT("checkpoint", checkpoint, NULL), COMMON_NUMBER("every-checkpoint", every, note),     \
       COMMON_TEXT("restart", restart, NULL)
 
-/* The files of a run, before it begins, by one rule for all programs. A run that goes on replaces
- * no results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the
- * checkpoint, and a line says so; that one must be new. *checkpoint becomes OUT/checkpoint.h5 where
- * it is NULL; a place that the library would not write to is refused now. Strings that change are
- * kept here. False after an error line. */
+/* The files of a run, before it begins, by one rule for all programs. A restarted run replaces no
+ * results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the checkpoint,
+ * and a line says so; that one must be new. *checkpoint becomes OUT/checkpoint.h5 where it is NULL;
+ * a place that the library would not write to is refused now. Strings that change are kept here.
+ * False after an error line. */
 bool resume_places(app *a, const char *restart, const char **checkpoint, const char **out);
 
-/* Checkpoints on the way. One that fails is told, once, and does not end the run. */
+/* Checkpoints on the way. A failure is reported, once, and does not end the run. */
 typedef struct resume_schedule {
   const char *path;               /* NULL: none are written */
   double every;                   /* s, or m of path */
@@ -79,7 +79,7 @@ typedef struct resume_schedule {
   bool saved;    /* the last one was written */
 } resume_schedule;
 
-/* Where a run begins or goes on (`now` as `every`): what was due until then is not due again. */
+/* Where a run begins or continues (`now` as `every`): what was due until then is not due again. */
 void resume_schedule_at(resume_schedule *s, double now);
 bool resume_is_due(const resume_schedule *s, double now);
 void resume_save_when_due(app *a, resume_schedule *s, double now);

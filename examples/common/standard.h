@@ -1,6 +1,6 @@
 /* standard.h - the one table of the options that mean the same in several programs: name, unit,
- * range and help. A program lists those that it has, with its own default, and where it must its
- * own range; see COMMON_... in options.h.
+ * range and help. A program lists its own, with its own default, and where it must its own range;
+ * see COMMON_... in options.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_STANDARD_H
 #define EXAMPLES_STANDARD_H

@@ -32,8 +32,8 @@ mps_status waves_disturb(mps_particles *water, double by, uint64_t seed);
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number);
 
-/* Who solves the pressure equation, and how exactly: rows of a table of options, and what the first
- * asks for. False: in `why` what is in the way. Collective. */
+/* Solver of the pressure equation, and its tolerance: rows of a table of options, and what the
+ * first requires. False: in `why` what is in the way. Collective. */
 #define WAVES_SOLVER(solver, tolerance)                                                            \
   COMMON_CHOICE("solver", solver, NULL), COMMON_NUMBER("tolerance", tolerance, NULL)
 #define WAVES_TOLERANCE 1e-5 /* default, as mps_fluid_def */
@@ -43,8 +43,8 @@ bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t
 double waves_number(double period, double depth);
 /* Wave height over stroke of a piston (Havelock): 2 (cosh 2kd - 1)/(sinh 2kd + 2kd). */
 double waves_havelock(double k, double depth);
-/* A warning where the waves of a piston are lower than 2 spacings, and one where they are
- * higher than .8 of those that break, .142 L tanh(kd) (Miche). */
+/* A warning where the waves of a piston are lower than 2 spacings, and one where they are higher
+ * than .8 of breaking waves, .142 L tanh(kd) (Miche). */
 void waves_warn(app *a, double period, double depth, double amplitude, double spacing);
 /* A warning where omega dt > .3, omega (rad/s) that of a structure in the water: the coupled motion
  * then has a wrong period and is damped by the scheme. */

@@ -158,7 +158,7 @@ static mps_status take_sample(simulation *sim) {
   return MPS_OK;
 }
 
-/* Brings the ground to rest, or goes on doing so where Ctrl-C has cut it short. */
+/* Brings the ground to rest, or continues doing so where Ctrl-C has cut it short. */
 static mps_status come_to_rest(simulation *sim) {
   mps_mpm_settle_def rest = mps_mpm_settle_defaults();
   rest.tolerance = 2e-3;
@@ -166,7 +166,7 @@ static mps_status come_to_rest(simulation *sim) {
 }
 
 /* The path in equal parts. After each of them the ground comes to rest under the footing where a
- * quasi-static run is asked for: what inertia has carried too far then no longer counts. */
+ * quasi-static run is requested: what inertia has carried too far then no longer counts. */
 mps_status footing_march(void *user) {
   simulation *sim = user;
   mps_particles *whole;

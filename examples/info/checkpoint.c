@@ -1,4 +1,4 @@
-/* checkpoint.c - what is in a checkpoint of libmps, and what it takes to go on from it.
+/* checkpoint.c - what is in a checkpoint of libmps, and what it takes to restart from it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "info.h"
 

@@ -83,7 +83,7 @@ typedef struct penetrometer {
 
 /* ---- model.c --------------------------------------------------------------------------------- */
 
-/* Reads `soil`, fills in what depends on others, and tells why the settings cannot be run; NULL
+/* Reads `soil`, fills in what depends on others, and returns why the settings cannot be run; NULL
  * where they can. */
 const char *pen_check(penetrometer *p);
 mps_status pen_build(mps_context *context, void *user);
@@ -94,7 +94,7 @@ double pen_radius(const penetrometer *p);   /* m */
 double pen_shoulder(const penetrometer *p); /* m: height of the cone */
 double pen_gap(const penetrometer *p);      /* m: between tip and ground at the start */
 
-/* restart.c: what a run that goes on needs of what it has seen; `user` is the penetrometer. */
+/* restart.c: what a restarted run needs of its history; `user` is the penetrometer. */
 void pen_pass(void *user, resume_bytes *b);
 
 /* ---- push.c ---------------------------------------------------------------------------------- */

@@ -36,8 +36,8 @@ static mps_status look_at_volumes(const penetrometer *p, pen_run *r) {
   return status;
 }
 
-/* The body is asked about those only that are above its lowest point, and within the radius of a
- * cone or sphere. */
+/* The body is queried for particles above its lowest point, and within the radius of a cone or
+ * sphere. */
 static mps_status look_for_intruders(const penetrometer *p, pen_run *r) {
   mps_view x;
   mps_status status = mps_particles_view(r->m.particles, "position", &x);

@@ -1,4 +1,4 @@
-/* restart.c - what the run in space has seen so far, in a file to go on from (common/resume.h). The
+/* restart.c - the history of the run in space, in a file to restart from (common/resume.h). The
  * axisymmetric one that may follow is short, and is begun again.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"

@@ -1,4 +1,4 @@
-/* results.c - force.csv, section.csv, summary.json, and what is told of them on the terminal.
+/* results.c - force.csv, section.csv, summary.json, and their report on the terminal.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 

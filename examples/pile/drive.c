@@ -57,7 +57,7 @@ static mps_status join_looks(pile *p, mps_status status) {
   return mpm_counts_join(&p->m, &p->inside, &s->inside);
 }
 
-/* The body is asked about those only that lie in its bounds. */
+/* The body is queried only for particles in its bounds. */
 static mps_status look_for_intruders(pile *p) {
   mps_view x;
   mps_status status = mps_particles_view(p->m.particles, "position", &x);

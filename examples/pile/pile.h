@@ -70,14 +70,14 @@ typedef struct pile {
   int64_t rows, capacity;
   double stride;                                                   /* m of path between rows */
   double last_time, last_impulse[PILE_FORCES], last_step, squares; /* since the last row */
-  pile_seen seen; /* of all ranks where they have told one another */
+  pile_seen seen; /* of all ranks, after an exchange */
   mpm_counts inside;
   pile_frame frame[PILE_PICTURES];
   int64_t frames, frames_kept;
   mps_recorder *recorder; /* NULL in a libmps without HDF5, and on all ranks but the first */
   char vtk[40];           /* its file, "": there has been none */
   bool opened;            /* with the first frame: a series without one is none */
-  double restarted;       /* s: time of the checkpoint that the run goes on from */
+  double restarted;       /* s: time of the checkpoint that the run continues from */
   resume_schedule saves;
 } pile;
 
@@ -85,7 +85,7 @@ typedef struct pile {
 
 mps_material_cone pile_cone(const pile_settings *s);
 const char *pile_cone_name(const pile_settings *s);
-/* Reads `soil`, and tells why the settings cannot be run; NULL where they can. */
+/* Reads `soil`, and returns why the settings cannot be run; NULL where they can. */
 const char *pile_check(pile_settings *s);
 mps_status pile_build(mps_context *context, void *user);
 void pile_free(pile *p); /* what the model does not own */

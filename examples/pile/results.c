@@ -1,4 +1,4 @@
-/* results.c - load.csv and summary.json, and what is told of them on the terminal.
+/* results.c - load.csv and summary.json, and their report on the terminal.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 

@@ -1,5 +1,6 @@
 /* coupled.c - the wall and the water move together: in every step the accelerations of the wall's
- * facets are found at which the structure answers to the pressures as the water was told.
+ * facets are found at which the response of the structure to the pressures is that given to the
+ * water.
  *
  * The water keeps its step open and solves again for each guess; the structure goes back to where
  * the step began. The pressures are those of the middle of the step; the generalised-alpha method

@@ -12,7 +12,7 @@ typedef struct sainflou {
   double harmonic; /* twice the incident amplitude: the level's first harmonic at the wall, in the
                       period before */
   double level;    /* of a wave whose crest is where the level is: a breaking wave's jet counts */
-  double paddle;   /* of an endless flume behind this piston (Havelock) */
+  double paddle;   /* of an infinite flume behind this piston (Havelock) */
 } sainflou;
 
 static sainflou find_heights(const seawall *w) {

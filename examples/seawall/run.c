@@ -131,7 +131,7 @@ static mps_status advance(app *a, seawall *w, double t) {
 }
 
 /* Samples are taken after the first step that reaches their time: no step is shortened for them, so
- * that a run goes on from a checkpoint as if it had never ended. */
+ * that a run continues from a checkpoint as if it had never ended. */
 mps_status seawall_run(app *a, seawall *w) {
   const seawall_settings *s = &w->s;
   mps_status status = isnan(w->restarted) && is_due(w, 0) ? take_frame(w) : MPS_OK;

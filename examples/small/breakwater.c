@@ -1,7 +1,7 @@
 /* breakwater.c - a caisson on sand under waves: water (mps_fluid), sand (mps_mpm, Drucker-Prager)
  * and a free rigid body between them that both push. The caisson's front is the tank's right wall.
  * In every step of the water the sand and the body go back and run again, until the accelerations
- * that the water was told are those that body and sand have under its pressures (mps/couple.h).
+ * given to the water are those of body and sand under its pressures (mps/couple.h).
  *
  * Ends with 0 where they agreed in every step, the caisson slid by less than a hundredth of a
  * spacing of the water, and the sand held by friction what the water pushed.
@@ -123,8 +123,8 @@ static mps_status read_front(sea *s, double *displacement, double *velocity) {
   return status;
 }
 
-/* The force (N) of the water in x, and its moment (N m) about the caisson's middle, act until told
- * otherwise. */
+/* The force (N) of the water in x, and its moment (N m) about the caisson's middle, act until
+ * changed. */
 static mps_status load(sea *s, double push, double moment) {
   const double force[3] = {push, 0.0, 0.0}, turn[3] = {0.0, 0.0, moment};
   return mps_body_set_load(s->caisson, force, turn);
@@ -142,7 +142,7 @@ static mps_status settle(sea *s) {
   return status == MPS_OK ? mps_body_get_state(s->caisson, &s->rest) : status;
 }
 
-/* Accelerations of the front's nodes if the water is told `mean`; `push` on the way. */
+/* Accelerations of the front's nodes if the water is given `mean`; `push` on the way. */
 static mps_status answer(sea *s, const double *d, const double *v, const double *mean, double *push,
                          double *out) {
   double moved[2], speed[2], unused[2];

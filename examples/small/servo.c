@@ -1,9 +1,9 @@
-/* servo.c - a plate that keeps its load: a rigid body whose velocity answers, before each step, to
- * the force that it feels. It presses a column of soil between smooth walls, with friction nowhere;
- * the settlement is that of an oedometer, F H / (M W), M = K + 4G/3.
+/* servo.c - a plate that keeps its load: a rigid body whose velocity is set, before each step, by
+ * the force on it. It presses a column of soil between smooth walls, with friction nowhere; the
+ * settlement is that of an oedometer, F H / (M W), M = K + 4G/3.
  *
- * The plate moves by v = gain (F - R) with the wanted force F and the reaction R, so that it rests
- * when they agree. A stiff soil answers with a frequency of its own; the gain lets the plate go
+ * The plate moves by v = gain (F - R) with the desired force F and the reaction R, so that it rests
+ * when they agree. A stiff soil responds with a frequency of its own; the gain lets the plate go
  * about one settlement in ten travel times of the wave through the column.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/mpm.h>
@@ -38,7 +38,7 @@ static mps_status make(mps_context *context, test *t) {
   if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, poisson, &sand);
   if (status == MPS_OK) status = mps_mpm_create(context, t->soil, sand, &def, &t->mpm);
   mps_material_destroy(&sand);
-  /* wider than the column, so that its corners touch nothing */
+  /* wider than the column, so that its corners are free */
   mps_body_def place = mps_body_defaults();
   place.position[0] = 0.5 * width, place.position[1] = height + 0.2;
   if (status == MPS_OK) status = mps_body_create_box(context, &place, 2.0 * width, 0.4, &t->plate);
@@ -86,7 +86,7 @@ int main(void) {
   for (int part = 1; part <= 10 && status == MPS_OK; part++) {
     status = mps_mpm_run(t.mpm, 10.0 * travel * part, 1, steer, &t);
     if (status == MPS_OK) status = mps_contact_get_reaction(t.contact, -1, &r);
-    /* in uniform strain the mean of all particles has gone half as far as the surface */
+    /* in uniform strain the mean of all particles has moved half as far as the surface */
     if (status == MPS_OK)
       printf("%7.4f  %9.1f  %8.4f\n", mps_mpm_time(t.mpm), r.force[1],
              2e3 * (start - mean_height(&t)));

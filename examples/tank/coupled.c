@@ -2,11 +2,11 @@
  * structure stands for another code's: shapes with a mass and a stiffness each (a wall on a spring
  * has one, a plate six), moved by the generalised-alpha method.
  *
- * In a step the water is asked for its pressures under a guess of the accelerations, and the
+ * In a step the water is requested its pressures under a guess of the accelerations, and the
  * structure for the accelerations under these pressures; mps/couple.h finds where both agree. The
  * pressures are those of the middle of the step; the structure's balance is that of alpha_f before
  * its end, and its forces are taken there in a straight line. SPDX-License-Identifier: BSD-3-Clause
- */
+ * */
 #include "tank.h"
 
 #include <math.h>

@@ -83,7 +83,7 @@ typedef struct tank_model {
   mps_recorder *series;
   tank_sample *sample;
   int64_t samples, capacity;
-  double roll; /* rad: of the box, the largest since the start or restart */
+  double roll;         /* rad: of the box, the largest since the start or restart */
   tank_sample *linear; /* tank_linear at the samples, NULL where there is no piston */
   mps_fluid_report report;
   const option *table;
@@ -132,8 +132,8 @@ double tank_plate_deflection(const tank_settings *s);
  * potential flow. */
 double tank_spring_omega(const tank_settings *s);
 double tank_plate_omega(const tank_settings *s);
-/* Added mass (kg) of the end wall of a tank (length INFINITY: of an endless flume) that swings with
- * w (rad/s), without the part of the travelling wave. */
+/* Added mass (kg) of the end wall of a tank (length INFINITY: of an infinite flume) that oscillates
+ * with w (rad/s), without the part of the travelling wave. */
 double tank_added_mass(double w, double length, double depth);
 /* Semi-axes (m) and pressure in the middle (Pa) of the drop of radius R at time t. */
 void tank_drop(double radius, double t, double *a, double *b, double *centre);
@@ -151,7 +151,7 @@ typedef struct tank_response {
   double amplitude, lag;      /* m; rad, behind the force of the waves on a wall at rest */
   double ratio;               /* of the waves' frequency to the wall's in water */
 } tank_response;
-/* What lasts in an endless flume. */
+/* The steady part in an infinite flume. */
 void tank_flume(const tank_settings *s, tank_response *r);
 /* Stiffness (N/m) of the wall whose frequency is the waves' over `ratio`. */
 double tank_resonant_stiffness(const tank_settings *s, double ratio);

@@ -101,7 +101,7 @@ static mps_status record_energy(receivers *r, mps_dynamics *dynamics) {
 
 mps_status receivers_record(receivers *r, mps_dynamics *dynamics, mps_domain *domain) {
   mps_view acceleration;
-  /* The accelerations are those that the last step began with. */
+  /* The accelerations are those of the beginning of the last step. */
   if (mps_dynamics_steps(dynamics) == 0) return MPS_OK;
   const double t = mps_dynamics_time(dynamics) - mps_dynamics_dt(dynamics);
   if (r->rows > 0 && receivers_time(r, r->rows - 1) == t) return MPS_OK; /* the end of the run */

@@ -253,7 +253,7 @@ static void bad_boxes_are_refused(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* A chequerboard; counts how often it is asked. */
+/* A chequerboard; counts its calls. */
 static mps_status dark_field(void *user, const double *x, int32_t *inside) {
   ++*(int *)user;
   *inside = ((int)floor(x[0]) + (int)floor(x[1])) % 2 == 0;

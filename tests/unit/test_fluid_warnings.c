@@ -142,7 +142,7 @@ static void a_body_that_rolls_onto_the_bed(void **state) {
   mps_context_destroy(&own);
 }
 
-/* A particle of 1e6 m/s would ask for steps of 5 ns; without gravity for as many. */
+/* A particle of 1e6 m/s would need steps of 5 ns; without gravity for as many. */
 static void a_run_does_not_choose_endless_steps(void **state) {
   (void)state;
   for (int weightless = 0; weightless < 2; weightless++) {

@@ -399,8 +399,8 @@ static void put_at(mpm_scene *s, int64_t name, double y) {
 }
 
 /* Particles too deep in a plate over many blocks of the grid: the step is refused as often as it is
- * tried, names the same particle, and one that is taken out is forgotten at once: errors tell of
- * the present state alone, whichever blocks the next step comes to. */
+ * tried, names the same particle, and one that is taken out is forgotten at once: errors report the
+ * present state alone, whichever blocks the next step comes to. */
 static void depth_is_found_anew(void **state) {
   (void)state;
   for (int32_t threads = 1; threads <= 2; threads++) {
@@ -412,7 +412,7 @@ static void depth_is_found_anew(void **state) {
     def.cell = 0.02;
     mpm_scene_box(&s, 0.0, 0.0, 1.2, 0.1); /* 60 cells, 8 blocks of them */
     mpm_scene_solve(&s, &def);
-    at.position[0] = 0.6, at.position[1] = 0.22; /* nothing else touches it */
+    at.position[0] = 0.6, at.position[1] = 0.22; /* no other contact */
     mps_assert_ok(own, mps_body_create_box(own, &at, 1.4, 0.2, &plate));
     mpm_scene_contact(&s, plate, 0.3);
     mps_assert_ok(own, mps_mpm_step(s.mpm, 3));
