@@ -29,7 +29,7 @@ typedef struct team_member {
   bool left;       /* takes part in nothing more but by what it has left behind */
   double *last;    /* that */
   /* what the others may read in a meeting */
-  int32_t kind, count; /* of the reduction, MEET_... */
+  int32_t kind, count; /* of the reduction */
   int32_t messages;
   const mps_domain_message *message;
   const double *max;

@@ -31,7 +31,7 @@ typedef struct app {
   const char *outcome;         /* of the run: "finished", "interrupted", "failed" or "diverged" */
   char *warning[APP_WARNINGS]; /* the first ones, for summary.json */
   int warnings;
-  char results[1024]; /* names of the files written, for app_tell_results */
+  char results[1024]; /* names of the files written */
   char *reserved[2];  /* output_reserve: what the file is called now, and will be; NULL: none */
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */

@@ -270,7 +270,7 @@ static inline mps_status mps_mpm_get_reaction(const mps_mpm *mpm, int32_t number
                                               mps_reaction *out) {
   return mps_mpm_get_reaction_sized(mpm, number, out, sizeof *out);
 }
-/** Shorthand: the side `side` of the domain becomes of `kind`, at rest, with `friction`. */
+/** Shorthand: the side `side` of the domain gets `kind`, at rest, with `friction`. */
 static inline mps_status mps_mpm_set_side(mps_mpm *mpm, int32_t side, int32_t kind,
                                           double friction) {
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();

@@ -21,7 +21,7 @@
  *
  * In space smoothed aggregates reach so far beyond themselves that the product of matrix and
  * prolongation, which several processes make as a whole, has three times the matrix's entries.
- * Aggregates as they are, visited twice on each coarser level (a W cycle), take half the memory and
+ * Plain aggregates with two cycles on each coarser level (a W cycle) take half the memory and
  * less time for 1.5 times the iterations.
  * PETSc's options -mps_pc_gamg_agg_nsmooths 1 -mps_pc_mg_cycle_type v smooth them. */
 #define WEAK 0.05

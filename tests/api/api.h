@@ -73,7 +73,7 @@ typedef struct api_object {
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
   double contrast; /* of an elastic body, the highest so far (state.c); 0: none */
   bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
-  bool rewritten;  /* explicit dynamics: its set's motion has been written, and begins anew */
+  bool rewritten;  /* explicit dynamics: its set's motion has been edited, and restarts */
   bool drags;      /* nor need its momentum: it is damped, or driven by displacements */
   int part_count;
   api_part parts[API_PARTS];
@@ -113,7 +113,7 @@ typedef struct api {
   int32_t threads;
   int32_t dim;          /* of the scene */
   bool verbose, steady; /* steady: no refused allocations, whose number depends on the threads */
-  bool pushed;          /* loads or contacts have been given, whose impulses no boundary tells */
+  bool pushed;          /* loads or contacts have been given, whose impulses are in no reaction */
   bool lost;            /* a callback has returned MPS_ERROR_INTERNAL, which domains keep */
   uint64_t digest;      /* of all statuses and states so far */
   jmp_buf failed;
@@ -270,7 +270,7 @@ void api_print_counts(void);
     if (status == MPS_OK && u.def.struct_size != size) api_broken(a, "sets no size");              \
     (void)api_end(a, status);                                                                      \
   }
-/* A function that tells a number of one object. */
+/* A query of a number of one object. */
 #define API_QUERY(function, kind)                                                                  \
   static void query_##function(api *a) {                                                           \
     api_begin(a, "mps_" #function);                                                                \

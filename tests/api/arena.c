@@ -93,7 +93,7 @@ void api_destroy(api_kind kind, void **handle) {
   }
 }
 
-/* Objects of a context that has been destroyed live on, but nobody can ask for their records. */
+/* Objects of a context that has been destroyed stay usable, but their records cannot be queried. */
 void api_forget(api *a, api_object *object) {
   const ptrdiff_t slot = object - a->objects[API_CONTEXT];
   for (int k = 0; slot >= 0 && slot < API_SLOTS && k < API_KINDS * API_SLOTS; k++) {

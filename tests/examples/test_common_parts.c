@@ -315,7 +315,7 @@ typedef struct moment {
 } moment;
 
 /* A standing wave of amplitude exp(-c t): a force with a second harmonic that oscillates with the
- * second mode, whose crests tell another decay, and the kinetic energy. */
+ * second mode, whose crests have another decay, and the kinetic energy. */
 static void a_decay_is_that_of_the_energy(void **state) {
   (void)state;
   const double c = 0.0067, w = 6.2, other = 9.9;

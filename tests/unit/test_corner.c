@@ -69,7 +69,7 @@ static void boxes_are_rounded(void **state) {
   mps_body_destroy(&body);
 }
 
-/* A cube of twelve triangles: edges and corners where three faces meet. */
+/* A cube of twelve triangles: edges and corners of three faces. */
 static void edges_in_space_are_rounded(void **state) {
   (void)state;
   static const int32_t corner[36] = {0, 3, 1, 0, 2, 3, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,

@@ -153,8 +153,8 @@ static void drive(mps_body *body, double vx, double vy) {
 }
 
 /* A plate strikes a block that nothing else holds: momentum and moment of momentum of the block,
- * with the spin of the velocity gradients, are what the plate gave; the touching particles' forces
- * sum up to the reaction, within the cone; the energies balance. */
+ * with the spin of the velocity gradients, are what the plate gave; the forces of particles in
+ * contact sum up to the reaction, within the cone; the energies balance. */
 static void gives_force_and_moment(void **state) {
   (void)state;
   mps_body *plate = NULL;

@@ -12,7 +12,7 @@
 #include <stdatomic.h>
 
 #define SMALL_SET 2048 /* particles: below, sharing the work costs more than it gains */
-#define VISITS 4       /* of a thread of a caller's executor: it may leave and come back so often */
+#define ROUNDS 4       /* of a thread of a caller's executor: it may leave and come back so often */
 #define MOST_CLAIMED 8
 
 /* Which coordinates of a block of nodes are odd, bit by bit. */
@@ -250,7 +250,7 @@ static void receive(flow *f) {
 }
 
 /* Worker 0 of the context's own executors is the caller's thread. */
-static void visit(void *data, int64_t unit, int32_t worker) {
+static void run_worker(void *data, int64_t unit, int32_t worker) {
   flow *f = data;
   const bool own = mpsi_executor_is_own(f->mpm->context), receives = own && worker == 0;
   (void)unit;
@@ -312,12 +312,12 @@ void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
             .scatter_waits = room,
             .gather_waits = room + grid->cell_count,
             .queue = room + 2 * grid->cell_count};
-  const int64_t visits = mpsi_executor_is_own(mpm->context) ? 1 : VISITS;
+  const int64_t rounds = mpsi_executor_is_own(mpm->context) ? 1 : ROUNDS;
   fill(&f);
-  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+  mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
   if (atomic_load_explicit(&f.arrived, memory_order_relaxed)) return;
   receive(&f); /* the caller's executor has done what needs no ghosts */
-  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+  mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
 }
 
 bool mpsi_mpm_ensure_pass(mps_mpm *mpm) {

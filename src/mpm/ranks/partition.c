@@ -89,7 +89,7 @@ static bool near_range(const int64_t *range, const int32_t *at) {
   return true;
 }
 
-static mps_status tell(search *s) {
+static mps_status exchange_search(search *s) {
   mps_context *context = s->mpm->context;
   mps_domain *domain = s->mpm->partition->domain;
   const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
@@ -280,7 +280,7 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK)
     status = mpsi_domain_sum(partition->domain, function,
                              RANGE * mps_domain_size(partition->domain), s.range);
-  if (status == MPS_OK) status = tell(&s);
+  if (status == MPS_OK) status = exchange_search(&s);
   if (status == MPS_OK) status = join(&s);
   mpsi_domain_free_mail(&s.box);
   void *parts[] = {s.own, s.range, s.sent, s.message, s.ghost, s.rank, s.index};
