@@ -46,9 +46,9 @@ typedef struct app {
  * has started several ranks, with the domain that the solvers are given, and `threads` of each rank
  * (0: its part of the node); Ctrl-C, or SIGTERM or SIGUSR1 to any rank, then stops all. */
 bool app_start(app *a, const char *program, int64_t threads);
-/* Where ranks go different ways: true where `ok` on all ranks. Else one rank reports the error, and
- * all return false. Collective; what the library does on all ranks is agreed upon by itself, but a
- * rank that fails alone must come here before the next collective call. */
+/* After work that differs between ranks: true where `ok` on all ranks. Else one rank reports the
+ * error, and all return false. Collective; what the library does on all ranks is agreed upon by
+ * itself, but a rank that fails alone must come here before the next collective call. */
 bool app_agree(app *a, bool ok);
 /* `values` of the one rank where they are `mine` become those of all, bit for bit but for the kind
  * of a NaN. Nothing to do in one process. Collective. */

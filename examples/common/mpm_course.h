@@ -42,7 +42,7 @@ typedef struct mpm_course {
 /* The options of the checkpoint that the run continues from are these; nothing to do without one.
  */
 mps_status mpm_course_peek(mpm_course *c, mps_context *context);
-/* What the run had seen, before the model is built: where that is needed to build it. */
+/* History of the run, read before the model is built, where needed to build it. */
 mps_status mpm_course_load(mpm_course *c, mps_context *context);
 /* Once the model is built: puts the checkpoint back, if any, where it is of this model (`restores`)
  * and not of one of several that the run has before. */

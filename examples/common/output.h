@@ -41,7 +41,7 @@ void output_text(output *file, const char *format, ...) APP_PRINTF(2, 3);
 void csv_header(output *file, const char *columns);
 /* One line of `count` numbers. */
 void csv_row(output *file, int64_t count, const double *values);
-/* The same after `text`, one or more columns separated by commas. */
+/* Writes the same after `text`, one or more columns separated by commas. */
 void csv_named_row(output *file, const char *text, int64_t count, const double *values);
 
 /* A JSON object, a member a line. */
@@ -60,7 +60,7 @@ void json_integer_if(output *file, bool known, const char *key, int64_t value);
 bool summary_open(output *file, app *a, const char *directory);
 /* A summary.json with nothing else, of a run that ended without results. */
 bool summary_bare(app *a, const char *directory);
-/* The same, of a run that Ctrl-C may end at once, by output_reserve. */
+/* The same by output_reserve, for a run that Ctrl-C may end at once. */
 bool summary_reserve(app *a, const char *directory);
 
 /* Shortest decimal text that reads back as `value`. */

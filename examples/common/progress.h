@@ -33,10 +33,10 @@ enum { PROGRESS_LAST_LINE = 1400, PROGRESS_PATH = 1400 };
 void progress_start(progress *bar);
 /* From now on SIGTERM and SIGUSR1 are requests to stop too: mpirun and srun send them to ranks. */
 void progress_heed_launcher(void);
-/* What the hook draws from now on: a part `share` of the whole, with `done` before it, in which the
- * solver's time goes from `from` to `to` (s). There is one bar, of all that a program does: without
- * parts the one call of the solver is the whole. A part of several calls sets `call` before each:
- * the solver passes the hook the time since then. */
+/* The part `share` of the whole that the hook draws from now on, with `done` before it, in which
+ * the solver's time goes from `from` to `to` (s). There is one bar, of all that a program does:
+ * without parts the one call of the solver is the whole. A part of several calls sets `call` before
+ * each: the solver passes the hook the time since then. */
 void progress_part(progress *bar, double done, double share, double from, double to);
 /* Draws the bar: `fraction` of the whole in 0..1, at least that drawn last; `text` a few words. */
 void progress_draw(progress *bar, double fraction, const char *text);

@@ -15,7 +15,7 @@ bool standard_complete(option *table, const char **name);
  * usual values of the quantity in SI units, and the program's default is not; NULL: none. */
 const char *standard_likelier_unit(const option *o, double value);
 
-/* What an option was called in earlier versions. */
+/* Former name of an option. */
 typedef struct standard_former {
   const char *name;  /* "nu" */
   const char *now;   /* "poisson" */

@@ -69,7 +69,7 @@ MPS_API void mps_recorder_destroy(mps_recorder **recorder);
  * Of a set alone. The state of a solver is more than the fields: mps_S_save and mps_S_restore of
  * its own header, which take a mps_checkpoint too, save and restore it with its set. */
 
-/** What a checkpoint keeps besides the fields. */
+/** Data of a checkpoint besides the fields. */
 typedef struct mps_checkpoint {
   uint32_t struct_size;
   int32_t reserved;
@@ -109,7 +109,7 @@ MPS_API MPS_NODISCARD mps_status mps_checkpoint_write(mps_particles *particles, 
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const char *path,
                                                      mps_checkpoint *info);
 
-/** Puts the fields of a checkpoint back, bit for bit, into a set that has the same particles
+/** Restores the fields of a checkpoint, bit for bit, in a set that has the same particles
  *  (dimension, spacing, number, ids; their order may differ), adding fields that the set lacks;
  *  fields that the file lacks keep their values. `info` is as for mps_checkpoint_info. Order and
  *  epoch of the set stay. Needs memory for a second copy of all fields. On an error nothing has

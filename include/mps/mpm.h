@@ -411,7 +411,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapsh
 MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
                                               const mps_checkpoint *info);
 
-/** Puts the state of mps_mpm_save into a solver that was built in the same way; its set takes the
+/** Restores a file of mps_mpm_save in a solver that was built in the same way; its set takes the
  *  particles of the file. These must agree: spacing, geometry, scheme, spline, cell, origin, places
  *  and kinds of walls and boxes, number of loads, whether there are body accelerations, names and
  *  order of materials, and the shapes, motions and numbers of parts of the bodies in their order.

@@ -18,7 +18,7 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_signal mps_signal;
 
-/** What the samples of a table or record are. */
+/** Quantity of the samples of a table or record. */
 typedef enum mps_signal_quantity {
   MPS_SIGNAL_QUANTITY_DISPLACEMENT = 2, /* m */
   MPS_SIGNAL_QUANTITY_VELOCITY = 1,     /* m/s */
@@ -98,8 +98,8 @@ typedef enum mps_signal_record_format {
     '#' comments; one optional header line; uneven steps allowed */
 } mps_signal_record_format;
 
-/** How to read a record; always start from mps_signal_record_def_init or
- * mps_signal_record_defaults. */
+/** Reading of a record; always start from mps_signal_record_def_init or mps_signal_record_defaults.
+ *  */
 typedef struct mps_signal_record_def {
   uint32_t struct_size;
   int32_t format;   /* mps_signal_record_format, default AUTO */

@@ -105,7 +105,7 @@ static void look_set(look *l, mps_particles *set) {
   }
 }
 
-/* The set of a solver, where the caller has given up its own share. */
+/* The set of a solver, where the caller has released its own reference. */
 static void look_lent(look *l, mps_particles *set) {
   for (int k = 0; k < API_SLOTS; k++)
     if (l->a->objects[API_SET][k].handle == set) return;
