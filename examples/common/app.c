@@ -46,8 +46,8 @@ static bool make_context(app *a, int64_t threads) {
   return true;
 }
 
-/* The number of threads belongs to the context and the ranks agree upon it: by a domain of its own,
- * which goes again. */
+/* The number of threads belongs to the context and the ranks agree upon it by a temporary domain.
+ */
 static bool join(app *a, int64_t threads) {
   mps_context_def def = mps_context_defaults();
   mps_context *early = NULL;
@@ -122,7 +122,7 @@ mps_status app_share(app *a, bool mine, int count, double *values) {
 int app_finish(app *a, int code) {
   progress_clear(&a->bar);
   if (a->domain && code == APP_FAILED && !a->agreed) {
-    /* the other ranks may wait for this one: leaving without a farewell ends them all */
+    /* the other ranks may wait for this one: an exit without MPI_Finalize ends them all */
     if (a->rank > 0) fprintf(stderr, "%s: rank %d: %s\n", a->program, (int)a->rank, a->line);
     fflush(NULL);
     _exit(code);

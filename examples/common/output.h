@@ -25,10 +25,10 @@ typedef struct output {
 /* Opens DIR/NAME for writing. False, with an error line, when that fails: `file` is then closed. */
 bool output_open(output *file, app *a, const char *directory, const char *name);
 /* Ends the file. False, with an error line, when anything could not be written: then DIR/NAME is
- * what it was before. Does nothing (false) for a file that is not open. */
+ * unchanged. Does nothing (false) for a file that is not open. */
 bool output_close(output *file);
 
-/* Ends the file as output_close does, but leaves it under its temporary name: for what is to be
+/* Ends the file as output_close does, but leaves it under its temporary name: for results that are
  * written where Ctrl-C ends the program at once, see app_leave_at_once. */
 bool output_reserve(output *file);
 
@@ -36,8 +36,8 @@ bool output_reserve(output *file);
  * number that does not exist is an empty cell, or null. */
 void output_text(output *file, const char *format, ...) APP_PRINTF(2, 3);
 
-/* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may have
- * no numbers here and there. An empty cell of the others is a warning, which names the column. */
+/* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may lack
+ * numbers in some rows. An empty cell of the others is a warning, which names the column. */
 void csv_header(output *file, const char *columns);
 /* One line of `count` numbers. */
 void csv_row(output *file, int64_t count, const double *values);

@@ -26,8 +26,8 @@ bool resume_wrong(resume_bytes *b, bool wrong) {
   return b->status != MPS_OK;
 }
 
-/* The warnings so far; those of the file replace what this process has warned of before. Of several
- * ranks only the first has them, and all must write the same: none. */
+/* The warnings so far; those of the file replace the present ones of this process. Of several ranks
+ * only the first has them, and all must write the same: none. */
 static void pass_warnings(const resume *r, resume_bytes *b) {
   app *a = r->a;
   int count = a && !r->domain ? a->warnings : 0;
@@ -158,7 +158,7 @@ static bool name_results(app *a, const char *restart, const char **out) {
   return true;
 }
 
-/* What the library finds when it saves, before hours of computing. */
+/* The library's checks of a save, before hours of computing. */
 static bool check_place(app *a, const char *path) {
   mps_checkpoint info = mps_checkpoint_defaults();
   struct stat file;

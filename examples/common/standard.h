@@ -17,11 +17,12 @@ const char *standard_likelier_unit(const option *o, double value);
 
 /* Former name of an option. */
 typedef struct standard_former {
-  const char *name;  /* "nu" */
-  const char *now;   /* "poisson" */
-  const char *value; /* what the value is now, where that is another: " N, ..."; NULL: the same */
+  const char *name; /* "nu" */
+  const char *now;  /* "poisson" */
+  const char
+      *value; /* present meaning of the value, where that has changed: " N, ..."; NULL: the same */
 } standard_former;
-/* The row of a name that the program does not have, and that it has under another; NULL: none. */
+/* The row of a former name of an option; NULL: none. */
 const standard_former *standard_find_former(const option *table, const char *name);
 
 #endif

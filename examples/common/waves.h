@@ -1,5 +1,5 @@
-/* waves.h - what programs with waves share: the water's constants, a piston that makes waves, and
- * what theory says of them; docs/references.md has the sources.
+/* waves.h - common parts of programs with waves: the water's constants, a piston wave maker, and
+ * wave theory; docs/references.md has the sources.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_WAVES_H
 #define EXAMPLES_WAVES_H
@@ -33,7 +33,7 @@ mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, doub
                           mps_signal *signal, int32_t *number);
 
 /* Solver of the pressure equation, and its tolerance: rows of a table of options, and what the
- * first requires. False: in `why` what is in the way. Collective. */
+ * first requires. False: the reason in `why`. Collective. */
 #define WAVES_SOLVER(solver, tolerance)                                                            \
   COMMON_CHOICE("solver", solver, NULL), COMMON_NUMBER("tolerance", tolerance, NULL)
 #define WAVES_TOLERANCE 1e-5 /* default, as mps_fluid_def */
@@ -50,7 +50,7 @@ void waves_warn(app *a, double period, double depth, double amplitude, double sp
  * then has a wrong period and is damped by the scheme. */
 void waves_warn_of_step(app *a, double omega, double dt);
 /* Sainflou's standing wave at a vertical wall, the incident height H: rise of the mean level (m),
- * swing of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
+ * amplitude of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
  * (-1). The pressure is linear from the crest to the bed. */
 double waves_sainflou_rise(double k, double depth, double H);
 double waves_sainflou_bed(double k, double depth, double H);

@@ -30,7 +30,7 @@ static mps_status make(mps_context *context, test *t) {
   mps_material *sand = NULL;
   of_soil.spacing = spacing;
   def.cell = 2.0 * spacing;
-  def.upper[0] = width, def.upper[1] = 2.0; /* sides are smooth walls, as they are born */
+  def.upper[0] = width, def.upper[1] = 2.0; /* sides are smooth walls by default */
   def.lower[0] = def.lower[1] = 0.0;
   mps_status status = mps_particles_create(context, &of_soil, &t->soil);
   if (status == MPS_OK) status = mps_particles_fill_box(t->soil, lo, hi, NULL);
@@ -50,7 +50,7 @@ static mps_status make(mps_context *context, test *t) {
 static mps_status steer(void *user, mps_mpm *mpm) {
   test *t = user;
   mps_reaction r;
-  mps_body_motion motion = mps_body_motion_defaults(); /* the place stays as it is */
+  mps_body_motion motion = mps_body_motion_defaults(); /* the position is unchanged */
   (void)mpm;
   mps_status status = mps_contact_get_reaction(t->contact, -1, &r);
   motion.velocity[1] = -t->gain * (force - r.force[1]);
