@@ -27,7 +27,7 @@ typedef struct settings {
   const char *out;
 } settings;
 
-/* One column and what became of it. */
+/* One column and its results. */
 typedef struct column_case {
   const char *name;
   double aspect, phi, cohesion; /* -, degrees, Pa */
@@ -77,7 +77,7 @@ static double final_height(const settings *s, const column_case *c) {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
-/* At rest under its own weight, without motion sideways. */
+/* At rest under its own weight, without lateral strain. */
 static mps_status fill(mps_context *context, const settings *s, const column_case *c,
                        mpm_model *m) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, c->aspect * s->width};
@@ -155,7 +155,7 @@ static void pass_case(resume_bytes *b, column_case *c) {
   for (int k = 0; k < FRAMES; k++) resume_pass_snapshot(b, &c->shot[k]);
 }
 
-/* What a restarted run needs of its history. */
+/* History of the run for a restart. */
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   int64_t samples = sim->m.samples;

@@ -153,7 +153,7 @@ static misfit compare(const simulation *sim, const series *data, const double *v
   return m;
 }
 
-/* What must be added to T so that the front is where the experiment set its clock. */
+/* Shift of T such that the front is at the position where the experiment set its clock. */
 static double clock_shift(const simulation *sim, const series *data, double scale) {
   for (int k = 1; k < sim->rows; k++)
     if (sim->Z[k] >= data->value[CLOCK_AT] && sim->Z[k - 1] < data->value[CLOCK_AT])
@@ -162,8 +162,8 @@ static double clock_shift(const simulation *sim, const series *data, double scal
   return NAN;
 }
 
-/* The shift with which the front is nearest to all points: one point alone, and the tongue's tip of
- * that moment, says less. */
+/* The shift with which the front is nearest to all points: a single point, the tip of the tongue at
+ * that moment, is less reliable. */
 static double best_shift(const simulation *sim, const series *data, double scale) {
   double best = NAN, least = INFINITY;
   for (int k = 0; k <= 400; k++) {

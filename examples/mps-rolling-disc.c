@@ -118,7 +118,7 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
-/* What a restarted run needs of its history. */
+/* History of the run for a restart. */
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   resume_pass(b, &sim->rows, sizeof sim->rows);

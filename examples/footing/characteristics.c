@@ -31,8 +31,8 @@ typedef struct point {
   double x, z, s, theta;
 } point;
 
-/* What is looked for: the parts of the surface from which beta lines come, the ones that end on the
- * base first, and the angle where the fan, or the base, ends. */
+/* Unknowns: the parts of the surface from which beta lines come, the ones that end on the base
+ * first, and the angle where the fan, or the base, ends. */
 typedef struct net {
   const strip_footing *f;
   double adhesion, sine, tangent, secant; /* c cos(phi), and of phi */
@@ -184,8 +184,8 @@ static double wedge_end(net *n, double length) {
   return n->end.x;
 }
 
-/* Brings the wedge's side to the middle line and gives theta there, NaN where it does not get
- * there. The previous wedge gives the start of the search. */
+/* Continues the wedge's side to the middle line and returns theta there, NaN where it does not
+ * arrive. The previous wedge gives the start of the search. */
 static double close_wedge(net *n) {
   const double guess = 0.5 * n->wedge;
   const bool good = guess > 0.0 && wedge_end(n, guess) > 0.0;

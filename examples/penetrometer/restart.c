@@ -1,5 +1,5 @@
 /* restart.c - the history of the run in space, in a file to restart from (common/resume.h). The
- * axisymmetric one that may follow is short, and is begun again.
+ * axisymmetric run that may follow is short, and is repeated.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What comes first; then the rows, then of each frame its depth and values. */
+/* Header; then the rows, then of each frame its depth and values. */
 typedef struct notes {
   int64_t rows, frames, frames_kept;
   double last_time, last_step, squares, last_impulse[PILE_FORCES];

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- what an engineer would reckon ----------------------------------------------------------- */
+/* ---- engineering estimates ------------------------------------------------------------------- */
 
 double pile_beta_shaft(const pile *p, double depth) {
   return PILE_PI * p->outer * p->k0 * p->s.friction * p->s.density * PILE_GRAVITY * depth * depth;

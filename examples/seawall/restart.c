@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What comes first; then the samples, the look, and of each frame its header and values. */
+/* Header; then the samples, the settings of the pictures, and of each frame its header and values.
+ */
 typedef struct notes {
   int64_t samples, frames, points, forces, learnt;
   seawall_sample at;

@@ -168,7 +168,7 @@ static bool close_series(app *a, seawall *w) {
 #define SMALL                                                                                      \
   0.05 /* of the wall's height: displacements for which its theory is one of small ones */
 
-/* What the run's own assumptions do not cover. */
+/* Violations of the model's assumptions. */
 static void warn_of_limits(app *a, const seawall *w) {
   const double height = w->s.wall_height;
   const seawall_sample *bent = w->sample, *high = w->sample;

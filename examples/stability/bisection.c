@@ -20,7 +20,7 @@ typedef struct search {
 
 /* ---- the initial state ----------------------------------------------------------------------- */
 
-/* What a rank does by itself fails on all where it fails on one. */
+/* Work of a single rank fails on all where it fails on one. */
 static mps_status agree(const search *s, mps_status status) {
   return s->def->domain ? mps_domain_agree(s->def->domain, status) : status;
 }

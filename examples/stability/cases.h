@@ -9,7 +9,7 @@
 
 enum { METHOD_LINEAR = 0, METHOD_STEPPING = 1, METHOD_BOTH = 2 };
 
-/* What all cases of a study share. */
+/* Common settings of all cases of a study. */
 typedef struct method {
   int kind; /* METHOD_... */
   int rotation, torque;

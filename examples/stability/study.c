@@ -98,7 +98,7 @@ static bool deal(work *w, int32_t *owner) {
   return true;
 }
 
-/* What each rank has found becomes known to all. */
+/* Sends the results of each rank to all. */
 static bool share_cases(app *a, study *s, const int32_t *owner) {
   bool ok = true;
   for (int64_t i = 0; i < STUDY_CASES && ok; i++) {

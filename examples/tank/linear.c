@@ -1,7 +1,6 @@
-/* linear.c - linear potential flow for the waves of a piston before a wall that stands, or
- * oscillates on a spring: in an infinite flume, where the wall's own waves carry its energy away,
- * and in the closed tank of the run, from the first moment on. Displacements of both walls are into
- * the water.
+/* linear.c - linear potential flow for the waves of a piston before a fixed wall, or one that
+ * oscillates on a spring: in an infinite flume, where the wall's own waves radiate its energy, and
+ * in the closed tank of the run, from the start. Displacements of both walls are into the water.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
@@ -34,10 +33,9 @@ double tank_resonant_stiffness(const tank_settings *s, double ratio) {
 /* ---- the closed tank ------------------------------------------------------------------------- */
 
 /* With the piston at X and the wall at Y the surface is (X + Y) d/L + sum b_j cos(k_j x), k_j = j
- * pi/L, and
- *   b_j'' + g k_j T_j b_j = 2 T_j (X'' + (-1)^j Y'')/(k_j L),  T_j = tanh(k_j d).
- * The water presses on the wall with rho g (X + Y) d^2/L + rho g sum (-1)^j b_j T_j/k_j + m_x X'' +
- * m_y Y'' above the rest. */
+ * pi/L, and b_j'' + g k_j T_j b_j = 2 T_j (X'' + (-1)^j Y'')/(k_j L),  T_j = tanh(k_j d). The force
+ * of the water on the wall is rho g (X + Y) d^2/L + rho g sum (-1)^j b_j T_j/k_j + m_x X'' + m_y
+ * Y'' above the rest. */
 enum { MODES = 120, TAIL = 20000 };
 
 typedef struct closed {

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* What comes first; then the samples and what the coupling has learnt. */
+/* Header; then the samples and the memory of the coupling. */
 typedef struct notes {
   int64_t samples, learnt;
   mps_fluid_report report;

@@ -1,4 +1,4 @@
-/* results.c - tables, summary and pictures of mps-tank, and what theory says beside them.
+/* results.c - tables, summary and pictures of mps-tank, with theory.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
@@ -17,7 +17,7 @@ static bool in_window(const tank_model *m, int64_t k) {
   return m->sample[k].t >= m->s.window[0] - 1e-9 && m->sample[k].t <= m->s.window[1] + 1e-9;
 }
 
-/* What a harmonic is taken of, besides the gauges. */
+/* Quantities with a harmonic, besides the gauges. */
 enum { FORCE = -1, WALL = -2 };
 
 static series series_of(const tank_model *m, const tank_sample *sample, int what) {
@@ -87,7 +87,8 @@ static void find_swing(const tank_model *m, double mean, figures *f) {
 }
 
 /* The structure oscillates about a mean that is known only over whole periods. Between rising zeros
- * a decaying oscillation adds to the mean what it takes from it between falling ones. */
+ * a decaying oscillation shifts the mean by as much as between falling ones, with the opposite
+ * sign. */
 static void find_motion(const tank_model *m, figures *f) {
   f->deflection = mean_between(m, m->s.window[0], m->s.window[1]);
   for (int n = 0; n < 3; n++) {
@@ -503,7 +504,7 @@ static void summarise_drop(output *f, const tank_model *m) {
 }
 
 /* 1/s. Crests of the force also hold its second harmonic, which oscillates with another mode: two
- * of them may differ by ten times what a few periods take off. */
+ * of them may differ by ten times the decay of a few periods. */
 static double sloshing_decay(const tank_model *m, double period) {
   const series kinetic = {m->samples, sizeof *m->sample, &m->sample->t, &m->sample->kinetic};
   const double from = fmax(m->s.window[0], m->sample[0].t);

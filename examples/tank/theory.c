@@ -131,7 +131,7 @@ double tank_plate_omega(const tank_settings *s) {
 
 #define UPRIGHT 0.05 /* rad */
 
-/* The heave and its theory are those of a box that stays upright. */
+/* The heave and its theory assume a box that stays upright. */
 static void warn_of_roll(app *a, const tank_model *m) {
   if (m->roll > UPRIGHT)
     app_warn(a,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a checkpoint of this program says it is of. */
+/* Identification of a checkpoint of this program. */
 static mps_checkpoint own_checkpoint(void) {
   mps_checkpoint info = mps_checkpoint_defaults();
   snprintf(info.user_key, sizeof info.user_key, "mps-wave 1");
@@ -75,7 +75,7 @@ static bool open_recorder(app *a, const settings *s, double now, files *f) {
   return app_agree(a, ok);
 }
 
-/* Saves what the files `user` are of. */
+/* Saves the solver of the files `user`. */
 static mps_status write_checkpoint(void *user) {
   const files *f = user;
   mps_checkpoint info = own_checkpoint();

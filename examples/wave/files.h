@@ -20,16 +20,16 @@ typedef struct files {
   mps_dynamics *dynamics;         /* borrowed */
   app *a;                         /* borrowed */
   bool failed;                    /* files_record, which ended the run */
-  results_so_far *so_far;         /* borrowed: what a checkpoint keeps of the results */
+  results_so_far *so_far;         /* borrowed: results in a checkpoint */
 } files;
 
 /* Reads the time step of the checkpoint that the options name, before the solver is made. */
 bool files_peek(app *a, settings *s);
-/* Puts the checkpoint back, if any, and opens what the options request. */
+/* Restores the checkpoint, if any, and opens the files of the options. */
 bool files_open(app *a, const settings *s, double duration, results_so_far *so_far,
                 mps_dynamics *dynamics, files *out);
-/* Writes what is due; call it with fields up to date. `status` is that of this rank so far. As the
- * others with a solver: on all ranks, of which rank 0 writes. */
+/* Writes the files that are due; call it with fields up to date. `status` is that of this rank so
+ * far. As the others with a solver: on all ranks, of which rank 0 writes. */
 mps_status files_record(files *f, mps_status status);
 /* The particles of all ranks, brought up to date on rank 0; NULL on the others, or on an error. */
 mps_status files_gather(files *f, mps_particles **whole);

@@ -12,7 +12,7 @@
 /* ---- choice of the particles ----------------------------------------------------------------- */
 
 /* Adds component `component` of the particle nearest to (x, depth below the surface there), whose
- * place is put into the list. */
+ * position is added to the list. */
 static void add(receivers *r, const column *c, double x, double depth, int32_t component,
                 double *places) {
   places[2 * r->count] = x, places[2 * r->count + 1] = column_surface(c, x) - depth;
