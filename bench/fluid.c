@@ -8,9 +8,8 @@
  * bench-fluid [PARTICLES [STEPS [SMALLEST [THREADS [MULTIGRID]]]]]: the largest and the smallest
  * size, default 1e5 and 1e3, the steps timed at each, default 40, the threads compared with one,
  * default 2, and the particles from which on PETSc's multigrid solves for the pressure (where it is
- * built; default 0: never), then without the classical scheme. SPDX-License-Identifier:
- * BSD-3-Clause
- */
+ * built; default 0: never), then without the classical scheme.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
 #include <mps/experimental.h>

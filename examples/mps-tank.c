@@ -1,6 +1,6 @@
 /* mps-tank - water in a tank by moving particles against theory: at rest, sloshing, waves of a
- * piston, against structures that move with it, and a drop without walls. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * piston, against structures that move with it, and a drop without walls.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/options.h"
 #include "common/units.h"
 #include "tank/tank.h"

@@ -2,8 +2,8 @@
  *
  * In space z is upwards and the axis is x = y = 0; in axisymmetry x is the radius and y upwards.
  * The floor is at height 0. Forces are those of the whole tip: 4 times those of a quarter. Depths
- * are measured from the initial surface, downwards, to the lowest point. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * are measured from the initial surface, downwards, to the lowest point.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_PENETROMETER_H
 #define EXAMPLES_PENETROMETER_H
 

@@ -1,6 +1,6 @@
 /* push.c - penetration of the tip: forces by part along the path, after every step a check for
- * particles inside the tip, and at the end the section through the axis. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * particles inside the tip, and at the end the section through the axis.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 
 #include <math.h>

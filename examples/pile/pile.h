@@ -1,8 +1,8 @@
 /* pile.h - an open-ended pile pushed into sand (Nakamura 8): settings, the run, and its parts.
  *
  * Axisymmetric: x is the radius r, y the height above the bottom of the soil. Forces are those of
- * the whole pile. Depths are measured from the initial surface, downwards. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * the whole pile. Depths are measured from the initial surface, downwards.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_PILE_H
 #define EXAMPLES_PILE_H
 

@@ -1,6 +1,6 @@
 /* restart.c - the history of the run, in a file to restart from (common/resume.h); the
- * structure of a coupled run has a file of its own beside it. SPDX-License-Identifier: BSD-3-Clause
- * */
+ * structure of a coupled run has a file of its own beside it.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
 #include <math.h>

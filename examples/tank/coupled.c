@@ -5,8 +5,8 @@
  * In a step the pressures of the water are computed under a guess of the accelerations, and the
  * accelerations of the structure under these pressures; mps/couple.h finds the common solution. The
  * pressures are those of the middle of the step; the structure's balance is that of alpha_f before
- * its end, and its forces are interpolated linearly there. SPDX-License-Identifier: BSD-3-Clause
- * */
+ * its end, and its forces are interpolated linearly there.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
 #include <math.h>

@@ -3,8 +3,8 @@
  *
  * Two surfaces are compared piece by piece (edges, triangles): the distance to the other body
  * changes no faster than the position, so a piece of radius r around a point at distance d >= r is
- * outside; else it is divided, down to the given depth. SPDX-License-Identifier: BSD-3-Clause
- * */
+ * outside; else it is divided, down to the given depth.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh.h"
 #include "rotation.h"
 

@@ -12,8 +12,8 @@
  *   status = mpsi_census_check(domain, f, count, id, &before);          in debug builds
  *
  * Rows arrive in the order of their senders, and of each in its own order: sort them by block and
- * id, not by arrival. SPDX-License-Identifier: BSD-3-Clause
- * */
+ * id, not by arrival.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DOMAIN_MIGRATE_H
 #define MPSI_DOMAIN_MIGRATE_H
 

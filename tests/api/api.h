@@ -14,7 +14,6 @@
  *   calls_*.c   one function for each function of the interface, in tables
  *   table.c     all tables; names that are deliberately in none
  *   main.c      seeds, shrinking, the command line
- *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef TESTS_API_API_H
 #define TESTS_API_API_H

@@ -2,7 +2,6 @@
  *
  *   API_SOLVER(mpm, API_MPM)    defines them
  *   API_SOLVER_CALLS(mpm, API_MPM)    their lines of the table
- *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef TESTS_API_CALLS_SOLVER_H
 #define TESTS_API_CALLS_SOLVER_H

@@ -7,7 +7,6 @@
  *   a call that failed has changed nothing, nor has one that only reads;
  *   after one that succeeded all is finite;
  *   a callback's status is returned, and calls that a callback may not make are refused.
- *
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 

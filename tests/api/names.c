@@ -1,6 +1,6 @@
 /* names.c - whether the message of an error names an argument: a parameter of the function as its
- * header declares it, or a member of a struct that it takes. SPDX-License-Identifier: BSD-3-Clause
- */
+ * header declares it, or a member of a struct that it takes.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 
 #include <ctype.h>

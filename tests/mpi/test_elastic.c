@@ -1,6 +1,6 @@
 /* test_elastic.c - implicit elasticity on the ranks that mpirun starts: each rank solves alone by
- * CHOLMOD, then all of them together by PETSc, and compares. SPDX-License-Identifier: BSD-3-Clause
- */
+ * CHOLMOD, then all of them together by PETSc, and compares.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
 #include "world.h"
 

@@ -1,6 +1,6 @@
 /* test_fluid_closed.c - fluid that fills a closed box: what keeps its volume works, with pressures
- * up to a constant; what changes it is refused and changes nothing. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * up to a constant; what changes it is refused and changes nothing.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include "fluid_tank.h"

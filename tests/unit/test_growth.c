@@ -700,7 +700,7 @@ static void results_stay_within_the_callers_struct(void **state) {
 }
 
 /* Field by field: the struct of a caller with only its first members. */
-/* A program built against an older libmps requires a definition and creates another solver by it:
+/* A program built against an older libmps queries a definition and creates another solver by it:
  * the size that comes with it is the program's. */
 static void definitions_come_back_with_the_callers_size(void **state) {
   (void)state;

@@ -1,8 +1,8 @@
 /* particles.c - the particle set: life, growth, order, selection.
  *
  * Ids are given in order of insertion and never twice, so the map from id to index is one array:
- * the identity until the set is sorted or particles are removed. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * the identity until the set is sorted or particles are removed.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
 #include "core/base/ranges.h"

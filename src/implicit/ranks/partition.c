@@ -6,8 +6,8 @@
  * interval too: the window. Vectors, moduli and volumes of all particles are on all ranks;
  * `mpsi_elastic_complete` sends the results of a rank's own particles to the others. A solver that
  * is
- * not shared has the whole body as its window, in ascending order of ids. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * not shared has the whole body as its window, in ascending order of ids.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
 #define MOST_AT_ONCE (1 << 20) /* numbers of one reduction */

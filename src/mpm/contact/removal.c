@@ -1,6 +1,6 @@
 /* removal.c - bodies that take away the particles which they find inside: when the contact is made,
- * and before each step those that lie deeper than its depth. SPDX-License-Identifier: BSD-3-Clause
- */
+ * and before each step those that lie deeper than its depth.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>

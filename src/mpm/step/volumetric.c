@@ -28,8 +28,8 @@
  * below 0 they are closed. With the operator S of the means, r = e - S e and e' = e - a (r - S r),
  * so that sum V e is kept, a smooth field to the fourth order too, and what S does not see decays.
  * p' is e' where that is closed, else what is left of p, the gap the rest; then the law's own
- * return, without strain. V follows the elastic volume strain of p' - p. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * return, without strain. V follows the elastic volume strain of p' - p.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/ranks/parcels.h"
 
