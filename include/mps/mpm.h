@@ -326,10 +326,10 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t numbe
  *  with a particle too deep in a body (MPS_ERROR_DIVERGED), without memory (MPS_ERROR_MEMORY), or
  *  with a user's law that fails is undone, except perhaps for the order of the particles. A step in
  *  which a particle leaves the domain (MPS_ERROR_DIVERGED) is complete and counted; no other is
- *  made until the particle is put back (mps_particles_edit of `position`) or removed, or the solver
- *  is rolled back. A step with a velocity or volume that is not finite (MPS_ERROR_DIVERGED) leaves
- *  that state for inspection: only mps_mpm_rollback or mps_mpm_restore continue from there, others
- *  return MPS_ERROR_STATE. The record names step and particle. */
+ *  made until the particle is moved back (mps_particles_edit of `position`) or removed, or the
+ *  solver is rolled back. A step with a velocity or volume that is not finite (MPS_ERROR_DIVERGED)
+ *  leaves that state for inspection: only mps_mpm_rollback or mps_mpm_restore continue from there,
+ *  others return MPS_ERROR_STATE. The record names step and particle. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end. A status other than

@@ -17,7 +17,7 @@
  *   loads.c       loads: definitions, the forces of a step
  *   budget.c      energies and momenta, works of a step
  *   run.c         step and run as the caller sees them, hooks, callbacks
- *   limit.c       the stability limit; tangent.c, lattice.c what it is made from
+ *   limit.c       the stability limit; tangent.c, lattice.c its operators
  *   state.c       snapshots and checkpoints; files.c checkpoints of several ranks
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DYNAMICS_PRIVATE_H
@@ -295,7 +295,7 @@ typedef struct mpsi_dynamics_window {
 } mpsi_dynamics_window;
 mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
                               mpsi_dynamics_window *out);
-/* Displacement and rotation of ghosts as they are now; nothing to do on one rank. */
+/* Present displacement and rotation of ghosts; nothing to do on one rank. */
 mps_status mpsi_dynamics_bring_motion(mps_dynamics *dynamics, const char *function);
 /* After mpsi_dynamics_set_coefficients: those of ghosts, extremes, kind of damping. */
 mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *function,

@@ -336,7 +336,7 @@ mps_status mps_particles_remove(mps_particles *particles, int64_t count, const i
   return status;
 }
 
-/* ---- going back ------------------------------------------------------------------------------ */
+/* ---- rollback -------------------------------------------------------------------------------- */
 
 /* Copies all columns to the backup, or back. */
 static void copy_columns(const mps_particles *p, char *memory, bool back) {

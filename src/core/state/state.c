@@ -149,7 +149,7 @@ mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
   return mpsi_state_prepare(of, function, snapshot, "the snapshot", MPS_ERROR_STATE, out);
 }
 
-/* ---- going back ---------------------------------------------------------------------------- */
+/* ---- rollback -------------------------------------------------------------------------------- */
 
 /* One call. */
 typedef struct way_back {

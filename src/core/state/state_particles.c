@@ -92,7 +92,7 @@ void mpsi_particles_take_next_id(mps_particles *p, const mps_snapshot *from) {
   memcpy(&p->next_id, mpsi_values_find(&from->state, NEXT_ID)->data, sizeof p->next_id);
 }
 
-/* ---- going back ---------------------------------------------------------------------------- */
+/* ---- rollback -------------------------------------------------------------------------------- */
 
 /* Data of the first phase for the second, where order or number change. */
 typedef struct move {

@@ -219,7 +219,7 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
   if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
   return status;
 }
-/* Holds the set, which may be held, and takes over the definition. */
+/* Holds the set, which may be held, and copies the definition. */
 static void describe(mps_dynamics *dynamics, const mps_dynamics_def *def) {
   dynamics->holder = (mpsi_holder){.name = "a solver of elastodynamics (mps_dynamics)",
                                    .self = dynamics,

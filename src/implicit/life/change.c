@@ -129,7 +129,7 @@ void mpsi_elastic_renew(void *self) {
   mpsi_elastic_drop_change(e);
 }
 
-/* ---- a state to go back to ------------------------------------------------------------------- */
+/* ---- restoration of a state ------------------------------------------------------------------ */
 
 static const mpsi_value *find_value(const mpsi_values *values, const char *name, int64_t rows) {
   const mpsi_value *value = mpsi_values_find(values, name);

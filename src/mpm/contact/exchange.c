@@ -333,7 +333,7 @@ static int64_t message_bytes(const mps_mpm *mpm) {
   return bytes;
 }
 
-/* Those that are sent to partners, or the others. */
+/* Constraints that are sent to partners, or the others. */
 static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
   const mpsi_grid *grid = &mpm->grid;
   const mpsi_impulses *all = &mpm->contact.impulses;

@@ -88,8 +88,8 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
 mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);
 /* area.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
 bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
-/* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies
- * feel, and their motion, for which there is room. */
+/* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; forces on the
+ * bodies, and their motion, for which there is memory. */
 bool mpsi_mpm_load_room(mps_mpm *mpm);
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);

@@ -60,7 +60,7 @@ static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *con
   return status;
 }
 
-/* Marks of what lies in bodies: the number of the contact and 1. */
+/* Marks of particles in bodies: the number of the contact and 1. */
 static int64_t mark_inside(mps_mpm *mpm) {
   uint8_t *gone = mpm->rooms.gone.item;
   int64_t count = 0;

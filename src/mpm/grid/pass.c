@@ -3,9 +3,9 @@
  * precede blocks that were ready from the start: their particles and nodes are still in the cache.
  * A thread that finds nothing ready spins for some microseconds and then sleeps for a moment; under
  * a caller's executor, which may run the units one after the other, it leaves. All is done when all
- * have left, since the thread that makes a block ready looks at the queue after that. One thread
- * alone goes over the blocks in their order and does for each what it depends on. On several ranks
- * the caller's thread, which alone may call the transport, receives the ghosts' tiles when it finds
+ * have left, since the thread that makes a block ready polls the queue after that. One thread alone
+ * goes over the blocks in their order and does for each what it depends on. On several ranks the
+ * caller's thread, which alone may call the transport, receives the ghosts' tiles when it finds
  * nothing else to do, while the others work on. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 

@@ -17,7 +17,7 @@ typedef struct notice {
   int32_t at[3], low[3], high[3];
 } notice;
 
-/* While ghosts are looked for. */
+/* Search for ghosts. */
 typedef struct search {
   mps_mpm *mpm;
   const char *function;

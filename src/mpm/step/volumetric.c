@@ -115,7 +115,7 @@ typedef struct support {
   uint64_t across; /* see thin_bodies.h */
 } support;
 
-/* The particle has moved by dt v since G2P found its stencil, or was put back on a wall. */
+/* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
 static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
   const double least = mpm->def.spline == 3 ? 1.0 : 0.5;
   support out = {.w = {{1.0}, {1.0}, {1.0}}};

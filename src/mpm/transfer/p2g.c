@@ -306,8 +306,8 @@ MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t en
   }
 }
 
-/* What lies across thin bodies. Particles whose supports these do not cut write nothing of it, but
- * need it in the transfer back where some node keeps momentum (give_back of least_squares.c). */
+/* Nodes across thin bodies. Particles whose supports these do not cut write nothing of it, but need
+ * it in the transfer back where some node keeps momentum (give_back of least_squares.c). */
 static void begin_across(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
   const size_t count = (size_t)(cells->end - cells->begin);
   clear(cells, worker->across_tile);
