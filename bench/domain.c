@@ -256,7 +256,7 @@ int main(int argc, char **argv) {
   body beside = make(context, NULL, each, kind, steps);
   while (together.turns * TURN < steps) {
     take_turn(&together);
-    take_turn(&beside); /* all ranks at once: they have met in the last step */
+    take_turn(&beside); /* all ranks at once: the last step has synchronised them */
   }
   if (mps_domain_rank(domain) == 0)
     printf("%s, %d ranks of %lld particles\n", title[kind], (int)ranks, (long long)each);

@@ -1,5 +1,5 @@
 /* domain_counts.h - what a program waits for and sends on MPI, counted by functions of MPI's names
- * that take the place of those that libmps-petsc and PETSc call (MPI's profiling interface).
+ * that replace the ones called by libmps-petsc and PETSc (MPI's profiling interface).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef BENCH_DOMAIN_COUNTS_H
 #define BENCH_DOMAIN_COUNTS_H

@@ -8,9 +8,8 @@
  * bench-fluid [PARTICLES [STEPS [SMALLEST [THREADS [MULTIGRID]]]]]: the largest and the smallest
  * size, default 1e5 and 1e3, the steps timed at each, default 40, the threads compared with one,
  * default 2, and the particles from which on PETSc's multigrid solves for the pressure (where it is
- * built; default 0: never), then without the classical scheme. SPDX-License-Identifier:
- * BSD-3-Clause
- */
+ * built; default 0: never), then without the classical scheme.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
 #include <mps/experimental.h>
@@ -40,7 +39,7 @@ static void add_wall(mps_context *context, mps_fluid *fluid, double x, int axis,
   check(context, mps_fluid_add_boundary(fluid, &def, NULL), "wall");
 }
 
-/* s: of one thread the processor's time, which other work on the machine hardly touches. */
+/* s: of one thread the processor's time, which other work on the machine hardly affects. */
 static double now(int32_t threads) {
   struct timespec t;
   if (threads > 1) return seconds();
@@ -48,7 +47,7 @@ static double now(int32_t threads) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Times that threads of the process have gone to sleep. */
+/* Number of times that threads of the process have blocked. */
 static double sleeps(void) {
   struct rusage use;
   getrusage(RUSAGE_SELF, &use);

@@ -2,7 +2,7 @@
  * library's own curve and cut (src/domain/curve.c) on a model of any size, ghosts and neighbours
  * counted one by one, and from them what a step would take: bench-partition PARTICLES RANKS
  * [THREADS [NS [GB/S]]] threads a rank (1), ns that one thread takes for a particle and step (85:
- * bench-mpm tells those of a machine), GB/s that a rank sends (10). The model is ground with 8
+ * bench-mpm measures those of a machine), GB/s that a rank sends (10). The model is ground with 8
  * particles a cell under a slope of 1 in 4: two thirds as deep as long and wide, at its middle.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
@@ -168,8 +168,8 @@ static int32_t others(const model *m, int64_t k, int32_t found[26]) {
   return count;
 }
 
-/* Blocks lie rank after rank along the curve, so a neighbour is new where it was not met in this
- * rank's turn. */
+/* Blocks lie rank after rank along the curve, so a neighbour is new where it was not counted in
+ * this rank's turn. */
 static void count_shares(const model *m, share *s) {
   int32_t found[26];
   for (int64_t k = 0; k < m->blocks; k++) {

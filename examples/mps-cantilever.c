@@ -20,7 +20,7 @@ static const char purpose[] =
     "Deflection and stress of a cantilever of particles (implicit elasticity, CHOLMOD), against\n"
     "the analytic solution. The defaults are the paper's case of 153 particles.";
 
-/* The length that was asked for, in whole particles: -1, or an exit code. */
+/* The length that was requested, in whole particles: -1, or an exit code. */
 static int find_size(const options_program *program, settings *s) {
   const double spacing = s->problem.height / (double)s->ny;
   char text[200];

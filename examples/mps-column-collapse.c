@@ -2,7 +2,7 @@
  * the run-out that Lube, Huppert, Sparks and Freundt measured.
  *
  * The column stands on the bed y = 0, L0 wide from the wall x = 0 (a line of symmetry), a L0 high,
- * and is let go at once. Drucker-Prager in plane strain.
+ * and is released at once. Drucker-Prager in plane strain.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
@@ -27,7 +27,7 @@ typedef struct settings {
   const char *out;
 } settings;
 
-/* One column and what became of it. */
+/* One column and its results. */
 typedef struct column_case {
   const char *name;
   double aspect, phi, cohesion; /* -, degrees, Pa */
@@ -45,7 +45,7 @@ typedef struct simulation {
   settings s;
   mpm_model m;
   mps_context *context;
-  int count; /* of the columns asked for; in the results, of those that were begun */
+  int count; /* of the columns requested; in the results, of those that were begun */
   int now;   /* the one that collapses */
   column_case column[CASES_MAX];
   mpm_course course;
@@ -77,7 +77,7 @@ static double final_height(const settings *s, const column_case *c) {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
-/* At rest under its own weight, without motion sideways. */
+/* At rest under its own weight, without lateral strain. */
 static mps_status fill(mps_context *context, const settings *s, const column_case *c,
                        mpm_model *m) {
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, c->aspect * s->width};
@@ -155,7 +155,7 @@ static void pass_case(resume_bytes *b, column_case *c) {
   for (int k = 0; k < FRAMES; k++) resume_pass_snapshot(b, &c->shot[k]);
 }
 
-/* What a run that goes on needs of what it has seen. */
+/* History of the run for a restart. */
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   int64_t samples = sim->m.samples;
@@ -396,7 +396,7 @@ static bool draw_law(app *a, const simulation *sim) {
   return plot_close(&f, s->out, "runout");
 }
 
-/* Keys of the column asked for; of a sweep, the last one and the worst misfit of all. */
+/* Keys of the column requested; of a sweep, the last one and the worst misfit of all. */
 static void summarise(output *f, const simulation *sim) {
   const settings *s = &sim->s;
   const column_case *c = &sim->column[sim->count - 1];

@@ -17,7 +17,7 @@
  * "An experimental study of the collapse of liquid columns on a rigid horizontal plane", Phil.
  * Trans. R. Soc. A 244 (1952) 312-324: columns of rectangular section, a = 2.25 in. Front Z = x/a
  * against T = t sqrt(n^2 g/a); height at the wall H = y/(n^2 a) against tau = t sqrt(g/a). The
- * numbers are those that later authors print, for n^2 = 2 as tables 2 and 6. When the gate let go
+ * numbers are those of later authors, for n^2 = 2 as tables 2 and 6. When the gate was released
  * could not be timed well: it is usual to set the clocks at Z = 1.44. */
 
 typedef struct series {
@@ -61,9 +61,10 @@ static double speed_of_sound(const settings *s) {
   return isnan(s->sound) ? 10.0 * sqrt(2.0 * G * column_height(s)) : s->sound;
 }
 
-/* Pressure at the start: rho g depth behind the gate; once it is gone, that of the first moment of
- * an incompressible column, whose free sides have none. It is harmonic plus rho g depth, a series
- * in cos(b y) cosh(b x). From rho g depth instead, sound would run to and fro all the while. */
+/* Pressure at the start: rho g depth behind the gate; once it is removed, that of the first moment
+ * of an incompressible column, whose free sides have none. It is harmonic plus rho g depth, a
+ * series in cos(b y) cosh(b x). From rho g depth instead, sound would run to and fro all the while.
+ */
 static double pressure_at(const settings *s, double x, double y) {
   const double H = column_height(s);
   double p = H - y;
@@ -152,7 +153,7 @@ static misfit compare(const simulation *sim, const series *data, const double *v
   return m;
 }
 
-/* What must be added to T so that the front is where the experiment set its clock. */
+/* Shift of T such that the front is at the position where the experiment set its clock. */
 static double clock_shift(const simulation *sim, const series *data, double scale) {
   for (int k = 1; k < sim->rows; k++)
     if (sim->Z[k] >= data->value[CLOCK_AT] && sim->Z[k - 1] < data->value[CLOCK_AT])
@@ -161,8 +162,8 @@ static double clock_shift(const simulation *sim, const series *data, double scal
   return NAN;
 }
 
-/* The shift with which the front is nearest to all points: one point alone, and the tongue's tip of
- * that moment, says less. */
+/* The shift with which the front is nearest to all points: a single point, the tip of the tongue at
+ * that moment, is less reliable. */
 static double best_shift(const simulation *sim, const series *data, double scale) {
   double best = NAN, least = INFINITY;
   for (int k = 0; k <= 400; k++) {

@@ -1,5 +1,5 @@
-/* mps-info - what is in a result file of libmps: the fields with their units, frames and times of a
- * series, and of a checkpoint what it takes to go on from it.
+/* mps-info - contents of a result file of libmps: the fields with their units, frames and times of
+ * a series, and how to restart from a checkpoint.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "info/info.h"
 
@@ -60,7 +60,7 @@ static int show(report *r, mps_context *context, const char *path) {
   return good ? OK : complain(path, why);
 }
 
-/* The options; `argv` keeps the files, whose number is returned in *files. -1: go on. */
+/* The options; `argv` keeps the files, whose number is returned in *files. -1: continue. */
 static int parse(int argc, char **argv, bool *json, int *files) {
   *files = 0;
   for (int k = 1; k < argc; k++) {
@@ -90,7 +90,7 @@ int main(int argc, char **argv) {
   mps_context *context = NULL;
   char why[INFO_WHY];
   if (mps_context_create(NULL, &context, why, sizeof why) != MPS_OK) return complain("libmps", why);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* what is wrong is said in one line here */
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* the error in one line */
   code = OK;
   report_open(&r);
   for (int k = 1; k <= files; k++)

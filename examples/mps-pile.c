@@ -1,7 +1,7 @@
 /* mps-pile - an open-ended pile pushed into sand, axisymmetric: Nakamura 8, Figures 22 to 25.
  *
- * The pile is rigid and goes down at constant speed; its resistance is told apart by tip, inner and
- * outer shaft, and the soil inside is watched for plugging.
+ * The pile is rigid and moves down at constant speed; its resistance is reported by tip, inner and
+ * outer shaft, and the level of the soil inside shows plugging.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile/pile.h"
 

@@ -118,7 +118,7 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
-/* What a run that goes on needs of what it has seen. */
+/* History of the run for a restart. */
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   resume_pass(b, &sim->rows, sizeof sim->rows);

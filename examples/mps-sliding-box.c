@@ -122,7 +122,7 @@ static mps_status fill(mps_context *context, const settings *s, mps_particles **
   return status;
 }
 
-/* What a run that goes on needs of what it has seen. */
+/* History of the run for a restart. */
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   resume_pass(b, &sim->rows, sizeof sim->rows);

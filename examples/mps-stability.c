@@ -111,7 +111,7 @@ static int parse(settings *s, int argc, char **argv) {
 
 /* ---- one case -------------------------------------------------------------------------------- */
 
-/* `known`: else what was to be found is null. */
+/* `known`: otherwise the result is null. */
 static bool open_case(output *out, app *a, const settings *s, const stability_case *x, bool known) {
   static const char *const integrators[] = {"verlet", "leapfrog", "euler"};
   const char wave[2] = {x->wave, '\0'};
@@ -174,7 +174,7 @@ static int run_case(app *a, const settings *s) {
                       .damping = s->damping};
   /* Two first bounds some 20 % apart, then each run halves the logarithm of their ratio. */
   bisection_bar b = {&a->bar, 2.0 + ceil(fmax(0.0, log2(log(1.25) / log(s->m.accuracy))))};
-  a->no_warnings = true; /* of steps beyond the limit, which is what is looked for */
+  a->no_warnings = true; /* of steps beyond the limit, which is sought */
   if (!app_agree(a, a->rank > 0 || reserve_case(a, s, &x))) return APP_FAILED;
   app_leave_at_once(a, !a->domain); /* a single case has no partial result */
   case_find_together(a, &s->m, &x, draw_bisection, &b);

@@ -1,6 +1,6 @@
 /* mps-tank - water in a tank by moving particles against theory: at rest, sloshing, waves of a
- * piston, against structures that move with it, and a drop without walls. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * piston, against structures that move with it, and a drop without walls.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/options.h"
 #include "common/units.h"
 #include "tank/tank.h"
@@ -45,7 +45,7 @@ static int complete(const options_program *program, tank_settings *s) {
   if (isnan(s->amplitude)) s->amplitude = usual[kind].amplitude;
   if (isnan(s->disturb)) /* a drop's lattice would be stretched until it buckles */
     s->disturb = kind == TANK_DROP ? 0.1 : 0.0;
-  if (kind == TANK_SPRING && !given_amplitude) /* else the water would have to pull */
+  if (kind == TANK_SPRING && !given_amplitude) /* otherwise the water would need tension */
     s->amplitude = fmin(s->amplitude, 0.4 * WAVES_G / pow(tank_spring_omega(s), 2.0));
   if (isnan(s->window[0])) s->window[0] = fmax(s->duration - last, 0.0);
   if (s->scheme == 1 && (tank_is_coupled(s) || s->viscosity > 0.0))

@@ -43,8 +43,8 @@ static mps_status build_boundaries(const settings *s, simulation *sim) {
   return status;
 }
 
-/* The ground, in parts unless its free-field columns need all of it on each rank, and what is to be
- * seen of it. */
+/* The ground, in parts unless its free-field columns need all of it on each rank, and its outputs.
+ */
 static bool build_ground(app *a, const settings *s, simulation *sim) {
   const column_def def = {.width = s->width,
                           .height = s->height,
@@ -88,7 +88,7 @@ static void destroy(simulation *sim) {
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/* The paper's 2.5 s, or the record and the time for its wave to rise and come back. */
+/* The paper's 2.5 s, or the record and the time for its wave to rise and return. */
 static double find_duration(const settings *s, const simulation *sim) {
   if (!isnan(s->duration)) return s->duration;
   if (s->ricker) return 2.5;
@@ -97,7 +97,7 @@ static double find_duration(const settings *s, const simulation *sim) {
   return end + 2.0 * layers_travel_time(&s->ground, settings_wave(s), sim->ground.height, 0.0);
 }
 
-/* Energy is kept when nothing takes any and the input has ended. */
+/* Energy is constant without dissipation once the input has ended. */
 static void watch_energy(const settings *s, simulation *sim) {
   bool damped = s->base == BASE_VISCOUS || s->sides == SIDES_FREEFIELD;
   for (int64_t i = 0; i < s->ground.count; i++) damped = damped || s->ground.layer[i].damping > 0.0;
@@ -105,7 +105,7 @@ static void watch_energy(const settings *s, simulation *sim) {
   mps_signal_span(sim->signal, NULL, &sim->record.energy_from);
 }
 
-/* The library says where and why it diverged; this adds what to do. */
+/* The library reports where and why it diverged; this adds the remedy. */
 static void explain_divergence(app *a, const results *x) {
   const char *why = mps_context_error(a->context)->message;
   if (x->dt > x->dt_limit)
@@ -124,8 +124,8 @@ static mps_status record(void *user, mps_dynamics *dynamics) {
   return status == MPS_OK ? files_record(&sim->files, field_record(&sim->peaks)) : status;
 }
 
-/* A run that goes on records at the steps of the first: to the next of them. The last row of one
- * that was whole may lie between them, and goes. */
+/* A restarted run records at the steps of the first: to the next of them. The last row of a
+ * complete run may lie between them, and is removed. */
 static bool align_rows(app *a, simulation *sim) {
   const int64_t every = sim->so_far.every, past = mps_dynamics_steps(sim->dynamics) % every;
   receivers *r = &sim->record;
@@ -177,7 +177,7 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   return app_check(a, status) ? APP_OK : APP_FAILED;
 }
 
-/* Writes what was recorded, also of a run that ended early: rank 0 does. */
+/* Writes the records, also of a run that ended early, on rank 0. */
 static bool write_results(app *a, const settings *s, simulation *sim, results *x,
                           mps_particles *whole) {
   if (!results_find(a, s, &sim->ground, &sim->record, sim->signal, x) ||

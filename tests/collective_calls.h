@@ -36,7 +36,7 @@ static const char nowhere[] = "/dev/null/checkpoint.h5";
 
 /* ---- calls ----------------------------------------------------------------------------------- */
 
-/* Where a call puts a new snapshot; that of an earlier one is gone. */
+/* Where a call puts a new snapshot; that of an earlier one has been freed. */
 static inline mps_snapshot **fresh(subject *s) {
   mps_snapshot_destroy(&s->fresh);
   return &s->fresh;
@@ -323,8 +323,8 @@ static inline bool are_same(int a, int b) {
   return a == b;
 }
 
-/* Rank 0 calls function a and the others b: MPS_OK where all have the error that says so and go on
- * together. `why` receives what this rank has got. */
+/* Rank 0 calls function a and the others b: MPS_OK where all have the error that says so and
+ * continue together. `why` receives what this rank has got. */
 static inline mps_status call_beside(subject *s, int a, int b, char why[512]) {
   const bool first = mps_domain_rank(s->domain) == 0;
   const mps_status own = table[first ? a : b].call(s);

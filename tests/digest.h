@@ -1,4 +1,4 @@
-/* digest.h - a number that tells whether two runs ended in the same bits.
+/* digest.h - a number that shows whether two runs ended in the same bits.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_TEST_DIGEST_H
 #define MPS_TEST_DIGEST_H

@@ -1,8 +1,8 @@
 /* domain_threads.h - a transport for domains whose ranks are threads of one process, each with a
- * context of its own: for tests with sanitizers, allocations that are refused and partners that
- * are lost. Where every rank waits for another, or has ended, all waits end with an error on all
- * ranks: that is found without a clock, however slow the machine. Ranks read one another's memory;
- * one that goes away early waits until nobody reads. SPDX-License-Identifier: BSD-3-Clause */
+ * context of its own: for tests with sanitizers, allocations that are refused and partners that are
+ * lost. Where every rank waits for another, or has ended, all waits end with an error on all ranks:
+ * that is found without a clock, however slow the machine. Ranks read one another's memory;
+ * one that ends early waits until no rank reads. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_TEST_DOMAIN_THREADS_H
 #define MPS_TEST_DOMAIN_THREADS_H
 
@@ -29,7 +29,7 @@ typedef struct team_member {
   bool left;       /* takes part in nothing more but by what it has left behind */
   double *last;    /* that */
   /* what the others may read in a meeting */
-  int32_t kind, count; /* of the reduction, MEET_... */
+  int32_t kind, count; /* of the reduction */
   int32_t messages;
   const mps_domain_message *message;
   const double *max;
@@ -136,7 +136,7 @@ static inline void team_read_end(team *t) {
   pthread_mutex_unlock(&t->lock);
 }
 
-/* This rank goes away, and its memory with it: once nobody reads. */
+/* This rank ends, and frees its memory once no rank reads it. */
 static inline mps_status team_leave(team *t) {
   pthread_mutex_lock(&t->lock);
   t->silent = true;
@@ -151,7 +151,7 @@ static inline void team_arrive(team *t) {
     t->arrived = t->left;
     t->turn++;
   }
-  team_changed(t); /* also for those who wait for a star */
+  team_changed(t); /* also for ranks that wait for a star */
 }
 
 /* All ranks are here. */
@@ -302,7 +302,7 @@ static inline mps_status team_star_begin(void *user, void *handle, int32_t item_
   return MPS_OK;
 }
 
-/* Takes the items of those who have posted theirs, and waits until all have taken this one's. */
+/* Takes the items of ranks that have posted theirs, and waits until all have taken this one's. */
 static inline mps_status team_star_end(void *user, void *handle) {
   team_member *m = user;
   team *t = m->team;
@@ -378,7 +378,7 @@ static inline void *team_thread_main(void *argument) {
   self->run(self->user, t, self->rank);
   pthread_mutex_lock(&t->lock);
   t->ended[self->rank] = true;
-  team_changed(t); /* those that wait see whether they wait for this one */
+  team_changed(t); /* waiting ranks see whether they wait for this one */
   pthread_mutex_unlock(&t->lock);
   return NULL;
 }

@@ -115,7 +115,7 @@ static inline void cantilever_make(mps_context *c, cantilever *w, double dt, dou
   w->top = mps_particles_nearest(w->wall, (double[2]){CANTILEVER_LENGTH, CANTILEVER_HEIGHT});
 }
 
-/* The face's velocity at the end of a step under its mean accelerations `a`; its answer to the
+/* The face's velocity at the end of a step under its mean accelerations `a`; its response to the
  * water's pressures then to `a`. The pressures are those of the middle of the step; the elastic
  * solver takes its loads at alpha_f before the end, in a straight line. */
 static inline void cantilever_try(mps_context *c, cantilever *w, double dt, double alpha,

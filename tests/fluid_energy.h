@@ -276,8 +276,8 @@ typedef struct spring_result {
   double early, late; /* m: amplitudes in the second and in the last eighth of the run */
 } spring_result;
 
-/* The end wall of a tank on a spring of `stiffness` N/m (midpoint rule), let go 0.5 mm or less off
- * its rest, for `periods`. */
+/* The end wall of a tank on a spring of `stiffness` N/m (midpoint rule), released 0.5 mm or less
+ * off its rest, for `periods`. */
 static inline spring_result spring_run(mps_context *c, double l0, double dt, double stiffness,
                                        double periods) {
   const double omega = sqrt(stiffness / (SPRING_MASS + SPRING_ADDED));

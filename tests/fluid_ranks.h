@@ -39,7 +39,7 @@ static inline mps_status wall(scene *s, int32_t kind, double x, double y, double
   return mps_fluid_add_boundary(s->fluid, &def, NULL);
 }
 
-/* What fails on one rank while it makes what the fluid is made of is told to all. */
+/* An error on one rank in the creation of the fluid's parts is sent to all. */
 static inline mps_domain *def_domain(const scene *s) {
   mps_fluid_def def = {0};
   return mps_fluid_get_def(s->fluid, &def) == MPS_OK ? def.domain : NULL;

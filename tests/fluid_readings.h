@@ -1,4 +1,4 @@
-/* fluid_readings.h - all that a fluid tells without a step, as numbers: levels, pressures along
+/* fluid_readings.h - all readings of a fluid without a step, as numbers: levels, pressures along
  * walls and at points, reactions, totals, the report (but for memory), the next step's size.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_FLUID_READINGS_H

@@ -333,7 +333,7 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
 
 /* ---- the caller puts particles in and takes some out ----------------------------------------- */
 
-/* Those that have come here have their values by their places. */
+/* Received particles have their values by their positions. */
 static inline mps_status give_values(mps_particles *set, int64_t first) {
   mps_view x;
   mps_edit density, velocity;
@@ -349,7 +349,7 @@ static inline mps_status give_values(mps_particles *set, int64_t first) {
   return status;
 }
 
-/* Soil for those that have come here, of which each rank lists its own. */
+/* Soil for received particles, of which each rank lists its own. */
 static inline mps_status make_soil(scene *s, int64_t first) {
   enum { MOST = 4096 };
   int64_t ids[MOST], count = 0;

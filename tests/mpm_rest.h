@@ -62,7 +62,7 @@ static inline bool rest_is_plate(const rest_case *c) {
   return c->edge == REST_PLATE || c->edge == REST_FINE_PLATE || c->edge == REST_WIDE_PLATE;
 }
 
-/* Whether the floor is a side of the domain, a mirror through which plates go on. */
+/* Whether the floor is a side of the domain, a mirror through which plates continue. */
 static inline bool rest_on_side(const rest_case *c) {
   return rest_at_sides(c) || (rest_is_plate(c) && c->angle == 0.0);
 }
@@ -272,7 +272,7 @@ static inline rest_result rest_run(mps_context *context, const rest_case *c, int
                                              : 0.0;
   const double all = weight * (r.width * H - r.removed);
   for (int k = 0; k < 2; k++) out.wall[k] = to[k] / across - 1.0;
-  /* A tip is borne by who holds the plate; a box stands beside the floor. */
+  /* A tip is supported by the holder of the plate; a box stands beside the floor. */
   const double on_floor = c->edge == REST_TIP ? all + borne : all - borne;
   out.floor = to[2] / on_floor - 1.0;
   out.body = borne > 0.0 ? fabs(to[3]) / borne - 1.0 : to[3] / across;

@@ -59,7 +59,7 @@ static inline void mpm_scene_contact(mpm_scene *s, mps_body *body, double fricti
   mps_assert_ok(s->context, mpm_scene_try_contact(s->mpm, body, friction));
 }
 
-/* A side of the domain becomes of `kind`, at rest. */
+/* A side of the domain gets `kind`, at rest. */
 static inline void mpm_scene_side(mpm_scene *s, int32_t side, int32_t kind, double friction) {
   mps_assert_ok(s->context, mps_mpm_set_side(s->mpm, side, kind, friction));
 }

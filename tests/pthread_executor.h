@@ -16,7 +16,7 @@ typedef struct pthread_executor_job {
   mps_context_task_fn task;
   void *data;
   int64_t count;
-  _Atomic int64_t next;    /* the next unit nobody has taken */
+  _Atomic int64_t next;    /* the next unclaimed unit */
   _Atomic int32_t workers; /* numbers given out */
 } pthread_executor_job;
 

@@ -31,7 +31,7 @@ typedef struct result {
 typedef mps_status result_fn(mps_context *own, mps_domain *domain, int what, int64_t length,
                              result *r);
 
-/* In functions that must go on to what all ranks do together. */
+/* In functions that must continue to what all ranks do together. */
 #define TRY(call)                                                                                  \
   do {                                                                                             \
     if (status == MPS_OK) status = (call);                                                         \
@@ -112,7 +112,7 @@ static inline void compare(const result *alone, const result *rank, int64_t *see
 }
 
 /* On the ranks of mpirun: each computes the body alone, then all of them together, and compares; no
- * particle is lost, and totals tell two of one. */
+ * particle is lost, and totals distinguish two from one. */
 static inline void compare_shares(mps_context *own, mps_domain *domain, result_fn *run, int what,
                                   int64_t length) {
   result alone = {0}, share = {0};

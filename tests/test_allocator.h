@@ -8,7 +8,7 @@
 
 typedef struct test_allocator {
   int64_t live;      /* allocations not yet released */
-  int64_t calls;     /* allocations asked for */
+  int64_t calls;     /* allocations requested */
   int64_t refuse_at; /* the call that gets NULL, from 1; 0 none */
 } test_allocator;
 
@@ -56,7 +56,7 @@ static inline void test_allocator_sweep(test_make_fn make, int what) {
     if (status != MPS_OK) {
       assert_int_equal(status, MPS_ERROR_MEMORY);
       assert_int_equal(mps_context_error(own)->status, MPS_ERROR_MEMORY);
-      assert_int_equal(allocator.calls, refuse); /* it does not go on after a failure */
+      assert_int_equal(allocator.calls, refuse); /* it does not continue after a failure */
     }
     mps_context_destroy(&own);
     assert_int_equal(allocator.live, 0);

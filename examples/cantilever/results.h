@@ -12,7 +12,7 @@ bool results_write(const model *m, const elastic_method *method, const char *dir
 /* The summary that is written where Ctrl-C ends the program at once (app_leave_at_once). */
 bool results_reserve(const model *m, const elastic_method *method, const char *directory);
 
-/* What the comparison takes, in seconds of one processor. */
+/* Time of the comparison, in seconds of one processor. */
 double convergence_seconds(int64_t nx, int64_t ny);
 /* The comparison of the paper's Figure 6: tip errors of both methods and of bilinear finite
  * elements at four sizes, each with twice the particles a side of the one before. convergence.csv

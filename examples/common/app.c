@@ -15,7 +15,8 @@
 
 static void note_warning(app *a, const char *message) {
   if (a->rank > 0) return;
-  for (int k = 0; k < a->warnings; k++) /* that of the run which this one goes on from, or again */
+  for (int k = 0; k < a->warnings;
+       k++) /* that of the run which this one continues from, or again */
     if (strcmp(a->warning[k], message) == 0) return;
   if (a->warnings < 2) {
     progress_clear(&a->bar);
@@ -45,8 +46,8 @@ static bool make_context(app *a, int64_t threads) {
   return true;
 }
 
-/* The number of threads belongs to the context and the ranks agree upon it: by a domain of its own,
- * which goes again. */
+/* The number of threads belongs to the context and the ranks agree upon it by a temporary domain.
+ */
 static bool join(app *a, int64_t threads) {
   mps_context_def def = mps_context_defaults();
   mps_context *early = NULL;
@@ -58,7 +59,7 @@ static bool join(app *a, int64_t threads) {
   if (!ok) app_error(a, "%s", why);
   int64_t share = 1;
   if (ok) ok = ranks_threads(first, &share) == MPS_OK;
-  if (ok) { /* all are here: from now on what fails on one is told to all */
+  if (ok) { /* all are here: from now on an error on one is an error on all */
     double failed = !make_context(a, threads > 0 ? threads : share);
     const bool own = failed == 0.0;
     ok = mps_domain_max(first, 1, &failed) == MPS_OK && failed == 0.0 && own;
@@ -85,7 +86,7 @@ bool app_start(app *a, const char *program, int64_t threads) {
 bool app_agree(app *a, bool ok) {
   if (!a->domain) return ok;
   const int32_t ranks = mps_domain_size(a->domain);
-  double worst = ok ? 0.0 : ranks - a->rank; /* the lowest rank that has failed tells */
+  double worst = ok ? 0.0 : ranks - a->rank; /* the lowest failed rank reports */
   const mps_status status = mps_domain_max(a->domain, 1, &worst);
   if (status != MPS_OK) return app_check(a, status);
   if (worst == 0.0) return true;
@@ -121,7 +122,7 @@ mps_status app_share(app *a, bool mine, int count, double *values) {
 int app_finish(app *a, int code) {
   progress_clear(&a->bar);
   if (a->domain && code == APP_FAILED && !a->agreed) {
-    /* the other ranks may wait for this one: leaving without a farewell ends them all */
+    /* the other ranks may wait for this one: an exit without MPI_Finalize ends them all */
     if (a->rank > 0) fprintf(stderr, "%s: rank %d: %s\n", a->program, (int)a->rank, a->line);
     fflush(NULL);
     _exit(code);

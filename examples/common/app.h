@@ -1,5 +1,5 @@
-/* app.h - what every example program carries through a run: its name for error lines, the library
- * context with its hooks, and its exit codes.
+/* app.h - common parts of the example programs: the name for error lines, the library context with
+ * its hooks, and exit codes.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_APP_H
 #define EXAMPLES_APP_H
@@ -32,27 +32,27 @@ typedef struct app {
   const char *outcome;         /* of the run: "finished", "interrupted", "failed" or "diverged" */
   char *warning[APP_WARNINGS]; /* the first ones, for summary.json */
   int warnings;
-  char results[1024]; /* names of the files written, for app_tell_results */
-  char *reserved[2];  /* output_reserve: what the file is called now, and will be; NULL: none */
+  char results[1024]; /* names of the files written */
+  char *reserved[2];  /* output_reserve: present and final name of the file; NULL: none */
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */
-  int32_t rank;       /* rank 0 speaks and writes; 0 of one process */
+  int32_t rank;       /* rank 0 prints and writes; 0 of one process */
   void *equations;    /* ranks_solve_elastic, ranks_solve_fluid */
-  bool agreed;        /* what has gone wrong is known to all ranks */
-  char line[700];     /* what this rank would have said */
+  bool agreed;        /* an error is known to all ranks */
+  char line[700];     /* the error line of this rank */
 } app;
 
 /* Creates the context on `threads` threads (0: all processors), its warnings and progress going to
  * stderr and Ctrl-C to its cancel hook. False, with an error line, when that fails. Where mpirun
- * has started several ranks, with the domain that the solvers are given, and `threads` of each rank
- * (0: its part of the node); Ctrl-C, or SIGTERM or SIGUSR1 to any rank, then stops all. */
+ * has started several ranks, with the domain for the solvers, and `threads` of each rank (0: its
+ * part of the node); Ctrl-C, or SIGTERM or SIGUSR1 to any rank, then stops all. */
 bool app_start(app *a, const char *program, int64_t threads);
-/* Where ranks go different ways: true where all ranks say `ok`. Else one rank tells what has gone
- * wrong, and all return false. Collective; what the library does on all ranks is agreed upon by
+/* After work that differs between ranks: true where `ok` on all ranks. Else one rank reports the
+ * error, and all return false. Collective; what the library does on all ranks is agreed upon by
  * itself, but a rank that fails alone must come here before the next collective call. */
 bool app_agree(app *a, bool ok);
-/* `values` of the one rank where they are `mine` become those of all, bit for bit but for the kind
- * of a NaN. Nothing to do in one process. Collective. */
+/* Sends `values` of the one rank where they are `mine` to all, bit for bit except for the kind of a
+ * NaN. Nothing to do in one process. Collective. */
 mps_status app_share(app *a, bool mine, int count, double *values);
 /* mps_domain_agree of the ranks; `status` in one process. */
 mps_status app_settle(app *a, mps_status status);
@@ -77,20 +77,20 @@ bool app_no_memory(app *a);
 /* True for MPS_OK; otherwise prints the record of the context. */
 bool app_check(app *a, mps_status status);
 
-/* Tells how a run ended that got to `time` (s), and sets `outcome`. Prints nothing for MPS_OK; else
- * one line, which for Ctrl-C (MPS_ERROR_CANCELLED) says whether there are results to write (`any`).
+/* Reports how a run ended at `time` (s), and sets `outcome`. Prints nothing for MPS_OK; else one
+ * line, which for Ctrl-C (MPS_ERROR_CANCELLED) says whether there are results to write (`any`).
  * Returns the exit code. */
 int app_end_run(app *a, mps_status status, double time, bool any);
 
-/* Around a computation that nothing can stop, such as the factorisation of a matrix: while `on`,
- * Ctrl-C ends the program at once, with a line that tells the files written so far and exit code
- * 130. None may be open. The file that output_reserve has kept takes its name then; once this is
- * off, it is gone. */
+/* Around an uninterruptible computation, such as the factorisation of a matrix: while `on`, Ctrl-C
+ * ends the program at once, with a line that names the files written so far and exit code 130. None
+ * may be open. The file of output_reserve gets its final name then; once this is off, it is
+ * removed. */
 void app_leave_at_once(app *a, bool on);
 
 /* Notes a result file that is complete. */
 void app_wrote(app *a, const char *path);
-/* "Results: DIR/ (files)" on stdout: those that were written. */
+/* "Results: DIR/ (files)" on stdout: the files written. */
 void app_tell_results(const app *a, const char *directory);
 
 #endif

@@ -1,8 +1,8 @@
 /* area.c - see area.h. Discs around the particles, of half a spacing and half the width of a slit,
- * cover the slits; what lies within half that width of uncovered pixels is taken off again (a
- * closing by a disc), which leaves free surfaces where they are. Solid pixels take nothing off: the
- * gap between a body and the nearest particles is closed too. That leaves shallow notches between
- * the particles of an outline, which are filled along rows and columns: a wall of a lattice is
+ * cover the slits; pixels within half that width of uncovered ones are removed again (a closing by
+ * a disc), which keeps free surfaces in place. Solid pixels remove nothing: the gap between a body
+ * and the nearest particles is closed too. That leaves shallow notches between the particles of an
+ * outline, which are filled along rows and columns: a wall of a lattice is
  * straight. SPDX-License-Identifier: BSD-3-Clause */
 #include "area.h"
 
@@ -54,7 +54,7 @@ static bool on_edge(const canvas *c, int64_t i, int64_t j) {
          (j + 1 < c->rows && !isinf(c->distance[k + c->columns]));
 }
 
-/* Takes off what is within `depth` pixels of the uncovered, but for the particles' own discs. */
+/* Removes pixels within `depth` of uncovered ones, except the particles' own discs. */
 static void take_off(canvas *c, double depth, double alone) {
   const int64_t n = (int64_t)depth;
   for (int64_t j = 0; j < c->rows; j++)
@@ -69,10 +69,10 @@ static void take_off(canvas *c, double depth, double alone) {
     }
 }
 
-/* Of a row or a column of `count` pixels, `step` apart from k on: what was taken off between two
- * that are covered is filled where it is at most `most` pixels long. */
+/* Of a row or a column of `count` pixels, `step` apart from k on: removed pixels between two
+ * covered ones are filled where they are at most `most` long. */
 static void fill_line(canvas *c, int64_t k, int64_t count, int64_t step, int64_t most) {
-  int64_t last = -1; /* the covered one with nothing bare since */
+  int64_t last = -1; /* the last covered one */
   for (int64_t i = 0; i < count; i++) {
     const char state = c->state[k + i * step];
     if (state == BARE) last = -1;
@@ -96,8 +96,8 @@ static bool is_solid(const area_def *def, double x, double y) {
   return beyond || (def->solid && def->solid(def->user, x, y));
 }
 
-/* Beside solid pixels nothing is taken off. They are empty, but for a seam of a pixel, so that no
- * light comes through between the image and what is drawn over it. */
+/* Beside solid pixels nothing is removed. They are empty, except for a seam of a pixel, so that no
+ * gap is visible between the image and the shapes drawn over it. */
 static void mark_solid(canvas *c, const area_def *def) {
   const double p = c->pixel;
   for (int64_t j = 0; j < c->rows; j++)

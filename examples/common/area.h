@@ -1,13 +1,13 @@
-/* area.h - the area that particles have, as an image: a continuum looks like one. A pixel belongs
- * to the nearest particle; narrow slits between particles, and between them and what is solid, are
- * closed, the outline runs half a spacing beyond the outermost particles.
+/* area.h - the area of the particles as an image of a continuum. A pixel belongs to the nearest
+ * particle; narrow slits between particles, and between them and solids, are closed, the outline
+ * runs half a spacing beyond the outermost particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_AREA_H
 #define EXAMPLES_AREA_H
 
 #include "output.h"
 
-enum { AREA_SIDE = 1500 }; /* pixels that a picture of its own may have along a side */
+enum { AREA_SIDE = 1500 }; /* most pixels along a side of a separate picture */
 
 typedef struct area {
   int64_t offset; /* bytes of its file in front of it */
@@ -16,8 +16,8 @@ typedef struct area {
   double least, most;     /* of the values shown; 0 and 0 without any */
 } area;
 
-/* Width of the slits that are closed, in spacings: of particles that keep their distances, and of
- * a lattice that shear draws out in one direction and presses together in the other. */
+/* Width of the slits that are closed, in spacings: of particles at regular distances, and of a
+ * lattice stretched by shear in one direction and compressed in the other. */
 #define AREA_SLIT 2.0
 #define AREA_SLIT_SHEARED 4.0
 
@@ -25,7 +25,7 @@ typedef struct area_def {
   double spacing;            /* m */
   double slit;               /* spacings */
   double lower[2], upper[2]; /* m, what is shown */
-  bool walled;               /* beyond it all is solid: walls, or the body goes on */
+  bool walled;               /* beyond it all is solid: walls, or the body continues */
   int side;                  /* pixels along a side, at most */
   /* a body or a wall at x, y (m), which the picture draws over the image; NULL: none */
   bool (*solid)(const void *user, double x, double y);

@@ -70,7 +70,7 @@ double column_surface(const column *c, double x) {
 
 int32_t column_component(char wave) { return wave == 'S' ? 0 : 1; }
 
-/* The degree of freedom across the wave, which rollers hold. */
+/* The degree of freedom across the wave, which rollers constrain. */
 static uint32_t across(char wave) { return wave == 'S' ? MPS_DOF_Y : MPS_DOF_X; }
 
 /* Adds a boundary on the particles between x0 and x1 and below y1. */

@@ -45,7 +45,7 @@ mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores) 
     c->from = mps_mpm_time(c->m->mpm);
   }
   const double every = isnan(o->every_checkpoint) ? 0.1 * c->duration : o->every_checkpoint;
-  const bool lost = c->saves.lost; /* of the model before: one warning */
+  const bool lost = c->saves.lost; /* of the previous model: one warning */
   c->saves = (resume_schedule){
       .path = o->checkpoint, .every = every, .save = save, .user = c, .lost = lost};
   resume_schedule_at(&c->saves, mps_mpm_time(c->m->mpm));

@@ -1,5 +1,5 @@
-/* mpm_heap.h - what collapsing heaps on a bed y = 0 beside a wall x = 0 are measured by: the front,
- * the height at the wall, how fast they still move, and pictures of their particles.
+/* mpm_heap.h - measures of collapsing heaps on a bed y = 0 beside a wall x = 0: the front, the
+ * height at the wall, the velocity, and pictures of their particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_MPM_HEAP_H
 #define EXAMPLES_MPM_HEAP_H
@@ -13,7 +13,7 @@ typedef struct mpm_heap {
   double reach;        /* m: 98 % of the particles are nearer to the wall */
   double top;          /* m: highest y of the heap beside the wall, likewise */
   double height;       /* m: volume beside the wall over the width of the band */
-  double mass;         /* kg, of all particles; per unit thickness as what follows */
+  double mass;         /* kg, of all particles; per unit thickness, as the following */
   double potential;    /* J above the bed, gravity g given */
   double kinetic;      /* J */
   double volume;       /* m3 */
@@ -21,7 +21,7 @@ typedef struct mpm_heap {
   double detached;     /* share of the mass ahead of the front */
 } mpm_heap;
 
-/* Drops do not count: particles ahead of a gap of 2 spacings (for `top`: above it) that are less
+/* Drops are left out: particles ahead of a gap of 2 spacings (for `top`: above it) that are less
  * than 1 % of all. Beside the wall is x < `band` (m). Collective: all ranks receive it. */
 mps_status mpm_heap_measure(mpm_model *m, double g, double band, mpm_heap *out);
 
@@ -33,8 +33,8 @@ typedef struct mpm_snapshot {
 } mpm_snapshot;
 
 /* The value is the pressure (Pa) for `field` "stress", else the first component of the field.
- * Replaces what `shot` had; free with mpm_snapshot_free. Collective: of several ranks rank 0
- * receives it. */
+ * Replaces the former contents of `shot`; free with mpm_snapshot_free. Collective: of several ranks
+ * rank 0 receives it. */
 mps_status mpm_snapshot_take(mpm_model *m, double time, const char *field, mpm_snapshot *shot);
 void mpm_snapshot_free(mpm_snapshot *shot);
 /* DIR/NAME: a line frame,t_s,x_m,y_m,VALUE for each particle of each shot. */

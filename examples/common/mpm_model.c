@@ -148,7 +148,7 @@ static mps_status count_all(mpm_model *m) {
 
 mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_fn callback,
                              void *user) {
-  /* a run of one step, as between close samples, asks nobody */
+  /* a run of one step, as between close samples, calls no hook */
   double stop = progress_interrupted();
   mps_status status = m->a->domain ? mps_domain_max(m->a->domain, 1, &stop) : MPS_OK;
   if (status == MPS_OK && stop != 0.0) status = MPS_ERROR_CANCELLED;
@@ -176,7 +176,7 @@ static int build_and_march(app *a, const mpm_model_places *places, mpm_model *mo
   if (!app_agree(a, places_found && (a->rank > 0 || output_directory(a, *places->out))))
     return APP_FAILED;
   if (!app_agree(a, a->rank > 0 || summary_reserve(a, *places->out))) return APP_FAILED;
-  app_leave_at_once(a, !a->domain); /* no hook reaches into building */
+  app_leave_at_once(a, !a->domain); /* hooks do not interrupt the building of a model */
   mps_status built = agree(model, parts->build(a->context, user));
   app_leave_at_once(a, false);
   if (built == MPS_OK) built = count_all(model);
@@ -204,7 +204,7 @@ int mpm_model_run(const options_program *program, int64_t threads, const mpm_mod
   if (!app_start(&a, program->name, threads)) return app_finish(&a, APP_FAILED);
   model->a = &a;
   const int code = build_and_march(&a, places, model, parts, user);
-  if (code == APP_FAILED) app_agree(&a, false); /* all ranks know: what fails here is agreed upon */
+  if (code == APP_FAILED) app_agree(&a, false); /* all ranks know: the status is agreed upon */
   mpm_model_destroy(model);
   return app_finish(&a, code);
 }

@@ -1,5 +1,5 @@
-/* mpm_model.h - what the programs on the WLS-MPM solver share: their objects, and the course of a
- * run from the options to the exit code.
+/* mpm_model.h - common parts of the programs on the WLS-MPM solver: their objects, and the course
+ * of a run from the options to the exit code.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_MPM_MODEL_H
 #define EXAMPLES_MPM_MODEL_H
@@ -21,11 +21,11 @@ typedef struct mpm_model {
   mps_fluid *fluid;                 /* in its place where a program has the choice */
   mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
   int64_t samples;                  /* rows of results so far, which `march` counts */
-  bool failed;   /* `march` sets it where something is missing that was asked for: exit code 1 */
+  bool failed;   /* `march` sets it where something is missing that was requested: exit code 1 */
   char why[400]; /* reason of an error of `build` or `march` that the library does not know; "" */
   app *a;        /* of the run */
   int64_t count; /* particles of all ranks, when `march` begins and when `finish` does */
-  mps_particles *whole; /* of several ranks, on rank 0: what mpm_model_whole has filled last */
+  mps_particles *whole; /* of several ranks, on rank 0: the last set of mpm_model_whole */
 } mpm_model;
 
 /* The parts of a run; `user` is that of mpm_model_run. */
@@ -48,33 +48,32 @@ int mpm_model_run(const options_program *program, int64_t threads, const mpm_mod
 
 /* ---- several ranks ---------------------------------------------------------------------------
  * Each builds its part of the particles, and all else of the model. `build` and `march` are called
- * on all of them; what they return must be the same on all. */
+ * on all of them; their results must be the same on all. */
 
 /* Makes the set m->particles, which lies in parts on the ranks. Collective, as its fills are. */
 mps_status mpm_model_particles(mpm_model *m, mps_context *context, const mps_particles_def *def);
 
-/* mps_mpm_create with m->particles and m->material, after `status`, which is that of what a rank
- * makes for itself, such as the particles and bodies: a failure on one rank is one on all, and the
- * solver is not made. Sets `domain` of the definition. */
+/* mps_mpm_create with m->particles and m->material, after `status`, which is that of the rank's own
+ * objects, such as particles and bodies: a failure on one rank is one on all, and the solver is not
+ * made. Sets `domain` of the definition. */
 mps_status mpm_model_create(mpm_model *m, mps_context *context, mps_status status,
                             mps_mpm_def *def);
-/* The particles of all ranks, to be looked at: *whole is NULL on all but rank 0. Collective. */
+/* The particles of all ranks, for reading: *whole is NULL on all but rank 0. Collective. */
 mps_status mpm_model_whole(mpm_model *m, mps_particles **whole);
 /* *value becomes the sum of those of all ranks, which are below 2^53. Collective. */
 mps_status mpm_model_sum(mpm_model *m, int64_t *value);
 /* Of a number that each rank counts among its own particles after every step, the greatest sum of
- * all ranks. They tell one another the numbers of many steps at once, and only where there are any.
- */
+ * all ranks. They exchange the numbers of many steps at once, and only where there are any. */
 typedef struct mpm_counts {
   int64_t *untold, steps, room;
 } mpm_counts;
 mps_status mpm_counts_note(mpm_model *m, mpm_counts *c, int64_t count, int64_t *most);
 mps_status mpm_counts_join(mpm_model *m, mpm_counts *c, int64_t *most); /* collective */
-/* The rows of a set in ascending order of their ids, to be freed: what is summed up or written in
- * this order does not depend on the order that particles have. NULL: no memory. */
+/* The rows of a set in ascending order of their ids, to be freed: sums and files in this order do
+ * not depend on the order of the particles. NULL: no memory. */
 int64_t *mpm_rows_by_id(mps_particles *particles);
-/* After rank 0 has looked: a failure of one rank becomes that of all, and else `values`, which rank
- * 0 has found, those of all. Collective. */
+/* After work on rank 0: a failure of one rank becomes that of all, and else `values` of rank 0 are
+ * sent to all. Collective. */
 mps_status mpm_model_tell(mpm_model *m, mps_status status, int count, double *values);
 
 /* A series for ParaView, as frame_series, and a frame of it at the present time. Collective: rank 0
@@ -83,22 +82,22 @@ mps_status mpm_model_series(mpm_model *m, const char *directory, const char *wha
                             mps_recorder **out);
 mps_status mpm_model_frame(mpm_model *m, mps_recorder *series);
 
-/* mps_mpm_run, with the progress bar going on from where it is. */
+/* mps_mpm_run, with the progress bar continued. */
 mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_fn callback,
                              void *user);
 
 /* The row of a program's table that chooses the contact's method, an mps_contact_method. */
 #define MPM_MODEL_CONTACT(value) COMMON_CHOICE("contact", value, NULL)
-/* Why an option of the springs alone, --k or --xi, cannot be given; NULL where it can. */
+/* Why an option of penalty contact alone, --k or --xi, cannot be given; NULL where it can. */
 const char *mpm_model_refuse_stiffness(const option *table, int contact);
 
 /* Why a model of so many particles is not begun; NULL where it is. */
 const char *mpm_model_too_large(double particles);
 
-/* Gives all objects back and nulls them: before `march` builds the next of several models. */
+/* Destroys all objects and nulls them: before `march` builds the next of several models. */
 void mpm_model_destroy(mpm_model *model);
 
-/* Opens DIR/summary.json and writes what every summary begins with. */
+/* Opens DIR/summary.json and writes the common part of all summaries. */
 bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, output *file);
 
 #endif

@@ -20,7 +20,7 @@ enum { USAGE = 2, HELP_COLUMN = 34, HELP_END = 98, MAX_NAME = 40, MAX_ROWS = 64 
 /* Of options_parse, for options_read. A program reads its arguments once. */
 static option rows_read[MAX_ROWS];
 
-/* To stderr, from the first of several ranks alone: all were given the same options. */
+/* To stderr, from the first of several ranks alone: all have the same options. */
 static void complain(const char *format, ...) APP_PRINTF(1, 2);
 static void complain(const char *format, ...) {
   va_list args;
@@ -147,7 +147,7 @@ static int print_help(const options_program *program) {
   return 0;
 }
 
-/* What was printed must have arrived: a full disk is an error. */
+/* Checks that the output was written: a full disk is an error. */
 static int close_output(const options_program *program) {
   if (fflush(stdout) == 0 && !ferror(stdout)) return 0;
   complain("%s: standard output could not be written", program->name);
@@ -175,7 +175,7 @@ static int distance(const char *a, const char *b) {
   return row[n];
 }
 
-/* How far an option may be from what was typed to be worth a question: a third of its letters. */
+/* Largest distance of an option from the typed word for a suggestion: a third of its letters. */
 static int farthest(const char *name) { return (int)strlen(name) / 3; }
 
 static int refuse_unknown(const options_program *program, const char *name) {
@@ -234,7 +234,7 @@ static bool in_range(const option_range *r, double value) {
   return (r->open ? value > r->lower : value >= r->lower) && value <= r->upper;
 }
 
-/* Numbers separated by commas; nothing is changed where one of them is refused. */
+/* Numbers separated by commas; nothing is changed on an error of one of them. */
 static int read_numbers(const options_program *program, option *o, const char *value) {
   enum { MOST = 8 };
   const int count = o->count > 1 ? o->count : 1;
@@ -439,7 +439,8 @@ static bool show_value(const option *o, char *out, size_t size) {
   return value[0] != '\0';
 }
 
-/* The options that `text` names, each once, with their values; "" where all of them were given. */
+/* The options that `text` names, each once, with their values; "" where all of them are on the
+ * command line. */
 static void show_defaults(const option *table, const char *text, char *out, size_t size) {
   bool any = false;
   size_t used = 0;

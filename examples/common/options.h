@@ -7,9 +7,9 @@
  *     OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &tank, "to the far wall"),
  *     {0}};
  * Rows COMMON_... take unit, range and help from the table of the options that mean the same in all
- * programs (standard.c). --name VALUE and --name=VALUE both work; of an option that is given twice
- * the last one counts. Numbers are read strictly, and always with a point; they are in the unit
- * that --help shows or have one of their own (units.h).
+ * programs (standard.c). --name VALUE and --name=VALUE both work; of an option given twice the last
+ * value counts. Numbers are read strictly, and always with a point; they are in the unit that
+ * --help shows or have one of their own (units.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_OPTIONS_H
 #define EXAMPLES_OPTIONS_H
@@ -53,14 +53,14 @@ typedef struct option_range {
 /* One row; exactly one of the pointers is set, none for a heading. */
 typedef struct option {
   const char *name; /* without the dashes */
-  const char *unit; /* unit, or what the value is: FILE; of a choice: "S|P" */
+  const char *unit; /* unit, or kind of the value: FILE; of a choice: "S|P" */
   const char *help;
   const char *note;   /* of the program, after the help; NULL: none */
   bool common;        /* unit, help and range are those of standard.c where they are not given */
   option_range range; /* of numbers and integers */
   int count;          /* of numbers separated by commas; 0 and 1: one number */
   bool *flag;
-  double *number; /* NaN: there is no default, or help tells it */
+  double *number; /* NaN: there is no default, or it is in the help */
   int64_t *integer;
   const char **text;
   int *choice; /* index into `unit` */
@@ -106,12 +106,12 @@ typedef struct options_program {
   option *table;       /* ends with an empty row */
 } options_program;
 
-/* Parses the arguments. Returns -1 to go on, or the exit code: 0 after --help and --version, 2
+/* Parses the arguments. Returns -1 to continue, or the exit code: 0 after --help and --version, 2
  * after one error line to stderr, 1 when help could not be written. */
 int options_parse(const options_program *program, int argc, char **argv);
 /* True when the option was on the command line. */
 bool options_given(const option *table, const char *name);
-/* Of where and how a run is done, such as --out: a run may go on with others of these. */
+/* Options of the output and execution of a run, such as --out, which a restarted run may change. */
 bool options_free(const char *name);
 /* "name=value" lines of all other options, to be kept with a checkpoint. False when `size` is too
  * small. */
@@ -132,7 +132,7 @@ int options_refuse(const options_program *program, const char *reason);
 /* The value of an option as JSON, in the unit of the table: a number, text, true or false,
  * [numbers]; null where there is none. */
 void options_json(const option *o, char *out, size_t size);
-/* The rows that options_parse has read last, with their values as they are now; NULL: none yet. */
+/* The rows that options_parse has read last, with their present values; NULL: none yet. */
 const option *options_read(void);
 
 /* Reads a finite decimal number that takes up the whole text. */

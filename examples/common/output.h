@@ -25,10 +25,10 @@ typedef struct output {
 /* Opens DIR/NAME for writing. False, with an error line, when that fails: `file` is then closed. */
 bool output_open(output *file, app *a, const char *directory, const char *name);
 /* Ends the file. False, with an error line, when anything could not be written: then DIR/NAME is
- * what it was before. Does nothing (false) for a file that is not open. */
+ * unchanged. Does nothing (false) for a file that is not open. */
 bool output_close(output *file);
 
-/* Ends the file as output_close does, but leaves it under its temporary name: for what is to be
+/* Ends the file as output_close does, but leaves it under its temporary name: for results that are
  * written where Ctrl-C ends the program at once, see app_leave_at_once. */
 bool output_reserve(output *file);
 
@@ -36,12 +36,12 @@ bool output_reserve(output *file);
  * number that does not exist is an empty cell, or null. */
 void output_text(output *file, const char *format, ...) APP_PRINTF(2, 3);
 
-/* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may have
- * no numbers here and there. An empty cell of the others is a warning, which names the column. */
+/* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may lack
+ * numbers in some rows. An empty cell of the others is a warning, which names the column. */
 void csv_header(output *file, const char *columns);
 /* One line of `count` numbers. */
 void csv_row(output *file, int64_t count, const double *values);
-/* The same after `text`, one or more columns separated by commas. */
+/* Writes the same after `text`, one or more columns separated by commas. */
 void csv_named_row(output *file, const char *text, int64_t count, const double *values);
 
 /* A JSON object, a member a line. */
@@ -60,7 +60,7 @@ void json_integer_if(output *file, bool known, const char *key, int64_t value);
 bool summary_open(output *file, app *a, const char *directory);
 /* A summary.json with nothing else, of a run that ended without results. */
 bool summary_bare(app *a, const char *directory);
-/* The same, of a run that Ctrl-C may end at once, by output_reserve. */
+/* The same by output_reserve, for a run that Ctrl-C may end at once. */
 bool summary_reserve(app *a, const char *directory);
 
 /* Shortest decimal text that reads back as `value`. */

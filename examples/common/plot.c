@@ -97,7 +97,7 @@ static void become_gnuplot(const char *directory, const char *picture, const cha
   _exit(errno == ENOENT || errno == ENOTDIR ? NOT_FOUND : NO_DIRECTORY);
 }
 
-/* The exit status of gnuplot, or -1; `said` is the beginning of what it printed. */
+/* The exit status of gnuplot, or -1; `said` is the beginning of its output. */
 static int run(const char *directory, const char *picture, const char *file, char *said,
                size_t size) {
   int ends[2], status;

@@ -9,8 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* A signal handler can reach nothing but static variables. The library has none and installs no
- * handler: both are the program's. */
+/* A signal handler can use static variables only. The library has none and installs no handler:
+ * both belong to the program. */
 static volatile sig_atomic_t interrupted;
 static volatile sig_atomic_t presses; /* of Ctrl-C */
 static char third[120];               /* the line upon the third */

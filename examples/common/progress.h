@@ -15,8 +15,8 @@ typedef struct progress {
   double started;      /* s, monotonic clock: when the fraction was `first` */
   double first, shown; /* of the whole: when it began to be drawn; last drawn */
   double done, share;  /* of the whole: before the present part, and of it */
-  double from, to;     /* s, time of the solver in the present part; equal: what the solver says */
-  double call;         /* s, time of the solver when the present call of it began */
+  double from, to; /* s, time of the solver in the present part; equal: as reported by the solver */
+  double call;     /* s, time of the solver when the present call of it began */
   /* progress_by_clock */
   pthread_t clock;
   bool ticks;          /* there is such a thread */
@@ -35,20 +35,20 @@ enum { PROGRESS_LAST_LINE = 1400, PROGRESS_PATH = 1400 };
 void progress_start(progress *bar, const char *program);
 /* From now on SIGTERM and SIGUSR1 are requests to stop too: mpirun and srun send them to ranks. */
 void progress_heed_launcher(void);
-/* What the hook draws from now on: a part `share` of the whole, with `done` before it, in which the
- * solver's time goes from `from` to `to` (s). There is one bar, of all that a program does: without
- * parts the one call of the solver is the whole. A part of several calls sets `call` before each:
- * the solver tells the hook the time since then. */
+/* The part `share` of the whole that the hook draws from now on, with `done` before it, in which
+ * the solver's time goes from `from` to `to` (s). There is one bar, of all that a program does:
+ * without parts the one call of the solver is the whole. A part of several calls sets `call` before
+ * each: the solver passes the hook the time since then. */
 void progress_part(progress *bar, double done, double share, double from, double to);
 /* Draws the bar: `fraction` of the whole in 0..1, at least that drawn last; `text` a few words. */
 void progress_draw(progress *bar, double fraction, const char *text);
-/* Takes the bar off the terminal, before a line is printed. */
+/* Erases the bar from the terminal, before a line is printed. */
 void progress_clear(progress *bar);
 /* Ctrl-C was pressed. */
 bool progress_interrupted(void);
-/* For a computation that nothing can stop, such as the factorisation of a matrix: until the next
- * call with NULL, Ctrl-C gives the file `part` the name `whole` (NULL: there is none), prints
- * `line` and ends the program at once with exit code 130. Meanwhile no file may be open. */
+/* For an uninterruptible computation, such as the factorisation of a matrix: until the next call
+ * with NULL, Ctrl-C gives the file `part` the name `whole` (NULL: there is none), prints `line` and
+ * ends the program at once with exit code 130. Meanwhile no file may be open. */
 void progress_leave_at_once(const char *line, const char *part, const char *whole);
 /* For a computation without a hook: until the next call a thread draws the bar by the clock, as a
  * part (progress_part) that takes some `seconds`; 0: no longer. A longer one slows down at the

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- what the launcher says ------------------------------------------------------------------ */
+/* ---- variables of the launcher --------------------------------------------------------------- */
 
-/* Open MPI, MPICH and its kin, Slurm with PMIx: the first that is there. */
+/* Open MPI, MPICH and its derivatives, Slurm with PMIx: the first that is set. */
 static int32_t ask(const char *const names[], int32_t otherwise) {
   for (; *names; names++) {
     const char *value = getenv(*names);
@@ -49,7 +49,7 @@ typedef mps_status (*join_fn)(mps_context *context, mps_domain **out);
 
 /* Puts the function of that name into *function. */
 static bool load(const char *name, void *function, char *why, size_t size) {
-  /* MPI loads parts of itself, which look for its symbols among those of all */
+  /* MPI loads parts of itself, which need its symbols to be global */
   void *library = dlopen(RANKS_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
   void *symbol = library ? dlsym(library, name) : NULL;
   if (!symbol) {
@@ -137,7 +137,7 @@ typedef mps_status (*create_fn)(mps_context *context, int32_t method, void **sol
 typedef mps_status (*solve_fn)(void *solver, mps_elastic *elastic);
 typedef void (*destroy_fn)(void **solver);
 
-/* What has been recorded, where it is of this status. */
+/* The recorded message, where it is of this status. */
 static const char *reason(const mps_context *context, mps_status status) {
   const mps_error *error = mps_context_error(context);
   return error && error->status == status ? error->message : mps_status_text(status);
@@ -183,8 +183,8 @@ void ranks_drop_solver(void **solver) {
 
 /* ---- threads --------------------------------------------------------------------------------- */
 
-/* A number that tells sets of processors apart: those that the system lets this process use. 0
- * where it does not say; sets are then taken to be the same. */
+/* A number that identifies the set of processors available to this process. 0 where it does not
+ * say; sets are then taken to be the same. */
 static double bound_to(void) {
   char line[1024];
   uint32_t hash = 0;

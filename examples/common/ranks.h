@@ -1,6 +1,6 @@
 /* ranks.h - a program that mpirun or srun has started as several processes, the ranks of one model:
- * how many there are, what joins them, and threads for each. The library that joins them,
- * libmps-petsc, is loaded only then: without mpirun a program knows neither MPI nor PETSc.
+ * their number, their domain, and threads for each. The library of the domain, libmps-petsc, is
+ * loaded only then: without mpirun a program uses neither MPI nor PETSc.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_RANKS_H
 #define EXAMPLES_RANKS_H
@@ -11,31 +11,31 @@
 
 #include <stdbool.h>
 
-/* As the launcher says in the environment; 1 and 0 without one. */
+/* From the launcher's environment; 1 and 0 without one. */
 int32_t ranks_launched(void);
 int32_t ranks_number(void);
-/* On all ranks but the first, stdout goes nowhere: rank 0 speaks. */
+/* On all ranks but the first, stdout is discarded: rank 0 prints. */
 void ranks_hush(void);
 
-/* Makes the domain of all ranks in `context`. False: in `why` what is in the way. */
+/* Makes the domain of all ranks in `context`. False: the reason in `why`. */
 bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size);
 /* Keeps the command line for ranks_same_options. */
 void ranks_keep_options(int argc, char **argv);
-/* Whether this rank was started with the options of rank 0, but for --threads; else what is not the
- * same in `why`. Collective. */
+/* Whether this rank was started with the options of rank 0, but for --threads; else the difference
+ * in `why`. Collective. */
 bool ranks_same_options(mps_domain *domain, char *why, size_t size);
-/* Has `elastic` solved by all ranks of its domain, by PETSc's multigrid; *solver is made at the
- * first call, and goes with ranks_drop_solver after all that it solves for. False as above.
+/* Lets all ranks of its domain solve `elastic`, by PETSc's multigrid; *solver is made at the first
+ * call, and destroyed by ranks_drop_solver after the objects that it solves for. False as above.
  * Collective. */
 bool ranks_solve_elastic(mps_context *context, mps_elastic *elastic, void **solver, char *why,
                          size_t size);
-/* Has the pressure of `fluid` solved by PETSc, `method` of mps_petsc_method, of one process too.
- * False as above. Collective. */
+/* Lets PETSc solve the pressure of `fluid`, `method` of mps_petsc_method, of one process too. False
+ * as above. Collective. */
 bool ranks_solve_fluid(mps_context *context, mps_fluid *fluid, int32_t method, void **solver,
                        char *why, size_t size);
 void ranks_drop_solver(void **solver);
-/* Threads for this rank: the processors that it may use, where others of its node may use the same
- * ones over their number. Collective. */
+/* Threads for this rank: the processors that it may use, divided by the number of ranks of its node
+ * that may use the same ones. Collective. */
 mps_status ranks_threads(mps_domain *domain, int64_t *threads);
 
 #endif

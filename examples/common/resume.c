@@ -28,8 +28,8 @@ bool resume_wrong(resume_bytes *b, bool wrong) {
   return b->status != MPS_OK;
 }
 
-/* The warnings so far; those of the file replace what this process has warned of before. Of several
- * ranks only the first has them, and all must write the same: none. */
+/* The warnings so far; those of the file replace the present ones of this process. Of several ranks
+ * only the first has them, and all must write the same: none. */
 static void pass_warnings(const resume *r, resume_bytes *b) {
   app *a = r->a;
   int count = a && !r->domain ? a->warnings : 0;

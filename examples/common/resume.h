@@ -1,14 +1,14 @@
-/* resume.h - a run in a file to go on from: the checkpoint of a solver, and in its user_data the
- * options of the program and what the run has seen so far. What is written after a restart is what
- * would have been written without a stop.
+/* resume.h - a run in a file to restart from: the checkpoint of a solver, and in its user_data the
+ * options of the program and the history of the run. Results after a restart are those of an
+ * uninterrupted run.
  *
- * A program lists what it keeps in one function, which serves both ways:
+ * A program lists its data in one function, for writing and reading:
  *   static void pass(void *user, resume_bytes *b) {
  *     resume_pass(b, &rows, sizeof rows);
  *     if (resume_wrong(b, rows < 0 || rows > capacity)) return;
  *     resume_pass(b, row, rows * sizeof *row);
  *   }
- * and saves between steps by resume_save, to go on by resume_peek and resume_restore.
+ * and saves between steps by resume_save, to continue by resume_peek and resume_restore.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_RESUME_H
 #define EXAMPLES_RESUME_H
@@ -21,7 +21,7 @@
 #include <mps/io.h>
 #include <mps/mpm.h>
 
-/* Goes along bytes, copying to or from them; only counting where there are none. */
+/* Copies to or from bytes in turn; only counts where there are none. */
 typedef struct resume_bytes {
   char *at;
   int64_t bytes, size; /* passed so far; there are, when reading */
@@ -31,7 +31,7 @@ typedef struct resume_bytes {
 
 /* Does nothing after an error. */
 void resume_pass(resume_bytes *b, void *value, size_t size);
-/* While reading, notes that what was read cannot be (`wrong`). True after any error. */
+/* While reading, records that the data are invalid (`wrong`). True after any error. */
 bool resume_wrong(resume_bytes *b, bool wrong);
 
 typedef struct resume {
@@ -46,14 +46,14 @@ typedef struct resume {
 } resume;
 
 mps_status resume_save(const resume *r, const char *path);
-/* Compares the options of the file with these, but for those that a run may go on with others of
+/* Compares the options of the file with these, but for those that a run may continue with others of
  * (--out, --threads and those of checkpoints): before a model is built. MPS_ERROR_ARGUMENT: in
- * `why` the first that differs; `why` is "" where the library says what is wrong. */
+ * `why` the first that differs; `why` is "" where the library has recorded the error. */
 mps_status resume_peek(mps_context *context, const resume *r, const char *path, char *why,
                        size_t size);
-/* After resume_peek: what the run had seen, without the solver. */
+/* After resume_peek: the history of the run, without the solver. */
 mps_status resume_load(mps_context *context, const resume *r, const char *path);
-/* After resume_peek, once the model is built: the solver and what the run had seen. */
+/* After resume_peek, once the model is built: the solver and the history of the run. */
 mps_status resume_restore(mps_context *context, const resume *r, const char *path);
 
 /* Rows of a program's table of options. */
@@ -61,25 +61,25 @@ mps_status resume_restore(mps_context *context, const resume *r, const char *pat
   COMMON_TEXT("checkpoint", checkpoint, NULL), COMMON_NUMBER("every-checkpoint", every, note),     \
       COMMON_TEXT("restart", restart, NULL)
 
-/* The files of a run, before it begins, by one rule for all programs. A run that goes on replaces
- * no results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the
- * checkpoint, and a line says so; that one must be new. *checkpoint becomes OUT/checkpoint.h5 where
- * it is NULL; a place that the library would not write to is refused now. Strings that change are
- * kept here. False after an error line. */
+/* The files of a run, before it begins, by one rule for all programs. A restarted run replaces no
+ * results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the checkpoint,
+ * and a line says so; that one must be new. *checkpoint becomes OUT/checkpoint.h5 where it is NULL;
+ * a path that the library could not write is an error now. Strings that change are kept here. False
+ * after an error line. */
 bool resume_places(app *a, const char *restart, const char **checkpoint, const char **out);
 
-/* Checkpoints on the way. One that fails is told, once, and does not end the run. */
+/* Checkpoints on the way. A failure is reported, once, and does not end the run. */
 typedef struct resume_schedule {
   const char *path;               /* NULL: none are written */
   double every;                   /* s, or m of path */
   mps_status (*save)(void *user); /* writes `path` */
   void *user;
-  int64_t count; /* times `every` that the run has gone: resume_schedule_at */
+  int64_t count; /* multiples of `every` that have passed: resume_schedule_at */
   bool lost;     /* the last one could not be written */
   bool saved;    /* the last one was written */
 } resume_schedule;
 
-/* Where a run begins or goes on (`now` as `every`): what was due until then is not due again. */
+/* Where a run begins or continues (`now` as `every`): what was due until then is not due again. */
 void resume_schedule_at(resume_schedule *s, double now);
 bool resume_is_due(const resume_schedule *s, double now);
 void resume_save_when_due(app *a, resume_schedule *s, double now);

@@ -1,5 +1,5 @@
-/* series.c - integrals over samples by the trapezium rule, cut between samples: what is left out at
- * an end would count the mean, which may be many times an amplitude.
+/* series.c - integrals over samples by the trapezium rule, cut between samples: an omitted end
+ * would include the mean, which may be many times an amplitude.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "series.h"
 

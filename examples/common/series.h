@@ -1,4 +1,4 @@
-/* series.h - what programs find in their tables of samples: harmonics, means, decay.
+/* series.h - evaluation of tables of samples: harmonics, means, decay.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_SERIES_H
 #define EXAMPLES_SERIES_H
@@ -19,9 +19,9 @@ typedef struct series {
 double series_harmonic(const series *s, double period, double from, double to, double *phase);
 /* Mean between two times, NaN where the samples do not reach as far. */
 double series_mean(const series *s, double from, double to);
-/* Rate (1/s) at which the amplitude of a standing wave of `period` falls between two times, from
- * its kinetic energy: half the rate at which that falls, of whose means over a period a straight
- * line is put through the logarithms. NaN where there are less than two periods. */
+/* Decay rate (1/s) of the amplitude of a standing wave of `period` between two times, from its
+ * kinetic energy: half the decay rate of that, by a linear fit of the logarithms of its means over
+ * a period. NaN where there are less than two periods. */
 double series_wave_decay(const series *kinetic, double period, double from, double to);
 
 #endif

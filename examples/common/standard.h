@@ -1,6 +1,6 @@
 /* standard.h - the one table of the options that mean the same in several programs: name, unit,
- * range and help. A program lists those that it has, with its own default, and where it must its
- * own range; see COMMON_... in options.h.
+ * range and help. A program lists its own, with its own default, and where it must its own range;
+ * see COMMON_... in options.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_STANDARD_H
 #define EXAMPLES_STANDARD_H
@@ -15,13 +15,14 @@ bool standard_complete(option *table, const char **name);
  * usual values of the quantity in SI units, and the program's default is not; NULL: none. */
 const char *standard_likelier_unit(const option *o, double value);
 
-/* What an option was called in earlier versions. */
+/* Former name of an option. */
 typedef struct standard_former {
-  const char *name;  /* "nu" */
-  const char *now;   /* "poisson" */
-  const char *value; /* what the value is now, where that is another: " N, ..."; NULL: the same */
+  const char *name; /* "nu" */
+  const char *now;  /* "poisson" */
+  const char
+      *value; /* present meaning of the value, where that has changed: " N, ..."; NULL: the same */
 } standard_former;
-/* The row of a name that the program does not have, and that it has under another; NULL: none. */
+/* The row of a former name of an option; NULL: none. */
 const standard_former *standard_find_former(const option *table, const char *name);
 
 #endif

@@ -13,9 +13,9 @@ typedef struct strip_def {
   double lower[2], upper[2];      /* m: the rectangle, whole spacings along both axes */
   double spacing;                 /* m */
   double young, poisson, density; /* Pa, -, kg/m3 */
-  int clamped; /* STRIP_...: particles stand on these edges, half of their cells cut off, and hold
+  int clamped; /* STRIP_...: particles lie on these edges, half of their cells cut off, and are held
                 */
-  int level;   /* STRIP_...: particles stand on these edges and are cut, but free */
+  int level;   /* STRIP_...: particles lie on these edges and are cut, but free */
   int wet;     /* STRIP_...: one */
   mps_domain *domain; /* ranks that all make it, borrowed; NULL: one process */
 } strip_def;

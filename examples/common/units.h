@@ -1,5 +1,5 @@
-/* units.h - numbers with a unit, as a person writes them: 10MPa, 5mm/s, 18kN/m3. Values are in SI
- * units, angles in degrees. An option's unit, such as "Pa", says which quantity it is.
+/* units.h - numbers with a unit, in usual notation: 10MPa, 5mm/s, 18kN/m3. Values are in SI units,
+ * angles in degrees. An option's unit, such as "Pa", says which quantity it is.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_UNITS_H
 #define EXAMPLES_UNITS_H

@@ -1,5 +1,5 @@
-/* waves.h - what programs with waves share: the water's constants, a piston that makes waves, and
- * what theory says of them; docs/references.md has the sources.
+/* waves.h - common parts of programs with waves: the water's constants, a piston wave maker, and
+ * wave theory; docs/references.md has the sources.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_WAVES_H
 #define EXAMPLES_WAVES_H
@@ -32,8 +32,8 @@ mps_status waves_disturb(mps_particles *water, double by, uint64_t seed);
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number);
 
-/* Who solves the pressure equation, and how exactly: rows of a table of options, and what the first
- * asks for. False: in `why` what is in the way. Collective. */
+/* Solver of the pressure equation, and its tolerance: rows of a table of options, and what the
+ * first requires. False: the reason in `why`. Collective. */
 #define WAVES_SOLVER(solver, tolerance)                                                            \
   COMMON_CHOICE("solver", solver, NULL), COMMON_NUMBER("tolerance", tolerance, NULL)
 #define WAVES_TOLERANCE 1e-5 /* default, as mps_fluid_def */
@@ -43,14 +43,14 @@ bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t
 double waves_number(double period, double depth);
 /* Wave height over stroke of a piston (Havelock): 2 (cosh 2kd - 1)/(sinh 2kd + 2kd). */
 double waves_havelock(double k, double depth);
-/* A warning where the waves of a piston are lower than 2 spacings, and one where they are
- * higher than .8 of those that break, .142 L tanh(kd) (Miche). */
+/* A warning where the waves of a piston are lower than 2 spacings, and one where they are higher
+ * than .8 of breaking waves, .142 L tanh(kd) (Miche). */
 void waves_warn(app *a, double period, double depth, double amplitude, double spacing);
 /* A warning where omega dt > .3, omega (rad/s) that of a structure in the water: the coupled motion
  * then has a wrong period and is damped by the scheme. */
 void waves_warn_of_step(app *a, double omega, double dt);
 /* Sainflou's standing wave at a vertical wall, the incident height H: rise of the mean level (m),
- * swing of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
+ * amplitude of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
  * (-1). The pressure is linear from the crest to the bed. */
 double waves_sainflou_rise(double k, double depth, double H);
 double waves_sainflou_bed(double k, double depth, double H);

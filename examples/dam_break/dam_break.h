@@ -1,4 +1,4 @@
-/* dam_break.h - what the parts of mps-dam-break share: settings, records, and the water by moving
+/* dam_break.h - common declarations of mps-dam-break: settings, records, and the water by moving
  * particles (mps_fluid) in place of the grid.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_DAM_BREAK_H

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #define GAUGE 0.2 /* H: height of the gauge, where Greco (2001) puts Buchner's */
-#define MEAN 0.05 /* (H/g)^1/2: means are taken from so long before to so long after */
+#define MEAN 0.05 /* (H/g)^1/2: half the interval of means */
 #define RISE 0.05 /* rho g H: the pressure that the water arrives with */
 
 enum { BED = 0, LEFT, FAR_WALL };
@@ -27,7 +27,7 @@ static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny) {
   return mps_fluid_add_boundary(fluid, &def, NULL);
 }
 
-/* Mass and volume stay what they are: the heap is measured by them. */
+/* Mass and volume are constant: the heap is measured by them. */
 mps_status dam_mps_build(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->base, column_height(s)};
@@ -41,7 +41,7 @@ mps_status dam_mps_build(mps_context *context, simulation *sim) {
   mps_particles *water = sim->m.particles;
   if (status == MPS_OK) status = mps_particles_fill_box(water, lo, hi, NULL);
   /* A lattice stays one when it is stretched along the bed: particles in columns ever closer, and
-   * none is pushed aside, as all is symmetric. */
+   * none is displaced sideways, by symmetry. */
   if (status == MPS_OK) status = waves_disturb(water, s->disturb * s->h, 1);
   if (status == MPS_OK) status = mps_particles_set(water, "mass", 0, DENSITY * s->h * s->h);
   if (status == MPS_OK) status = mps_particles_set(water, "volume", 0, s->h * s->h);
@@ -118,7 +118,7 @@ static int64_t first_from(const simulation *sim, double from) {
   return low;
 }
 
-/* Mean of the pressure over the times from..to; each value stands for the step before it. */
+/* Mean of the pressure over the times from..to; each value is that of the step before it. */
 static double mean_between(const simulation *sim, double from, double to) {
   double sum = 0.0, span = 0.0;
   const int64_t first = first_from(sim, from);

@@ -1,4 +1,5 @@
-/* run.c - the run of mps-dam-break by either method: samples, frames, and checkpoints to go on from
+/* run.c - the run of mps-dam-break by either method: samples, frames, and checkpoints to restart
+ * from
  * (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "dam_break.h"
 

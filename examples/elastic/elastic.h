@@ -1,5 +1,5 @@
-/* elastic.h - what the programs of implicit elasticity share: the options of the method, and the
- * results at a particle.
+/* elastic.h - common parts of the programs of implicit elasticity: the options of the method, and
+ * the results at a particle.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_ELASTIC_H
 #define EXAMPLES_ELASTIC_H
@@ -26,15 +26,15 @@ elastic_method elastic_settings_method(const elastic_settings *s);
 /* The functions below are false after an error line. */
 bool elastic_make(app *a, mps_particles *particles, const elastic_method *method,
                   mps_elastic **out);
-/* What a solution by CHOLMOD takes, roughly, in seconds of one processor: for the bar. */
+/* Rough time of a solution by CHOLMOD, in seconds of one processor, for the progress bar. */
 double elastic_seconds(double particles);
-/* Draws the bar by the clock from `done` of the whole on, a part `share`, for what takes `seconds`
- * of one processor; 0: that is over. */
+/* Draws the bar by the clock from `done` of the whole on, a part `share`, for a computation of
+ * `seconds` of one processor; 0: ended. */
 void elastic_bar(app *a, double done, double share, double seconds);
 /* Warns of displacements that are not small, of a model given in its own units: with an option
  * `of` it. Those of the defaults, where E is 1 Pa, are numbers of the paper and no lengths. */
 void elastic_warn(app *a, const option *table, const char *of, double displacement, double length);
-/* Ends a line on what was solved with how. */
+/* Ends a line with the solver used. */
 void elastic_tell(const app *a, const mps_elastic_report *report);
 /* Prescribes component `component` of `count` particles: values[i], m, or 0 (values NULL). */
 bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count,

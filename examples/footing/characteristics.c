@@ -31,8 +31,8 @@ typedef struct point {
   double x, z, s, theta;
 } point;
 
-/* What is looked for: the parts of the surface from which beta lines come, those that end on the
- * base first, and the angle where the fan, or the base, ends. */
+/* Unknowns: the parts of the surface from which beta lines come, the ones that end on the base
+ * first, and the angle where the fan, or the base, ends. */
 typedef struct net {
   const strip_footing *f;
   double adhesion, sine, tangent, secant; /* c cos(phi), and of phi */
@@ -64,7 +64,7 @@ static point edge_point(const net *n, double theta) {
   return p;
 }
 
-/* Where the alpha line through a meets the beta line through b: trapezoidal rule. */
+/* Intersection of the alpha line through a and the beta line through b: trapezoidal rule. */
 static point inner_point(const net *n, const point *a, const point *b) {
   const double w = n->f->weight;
   point p = {0.0, 0.0, 0.5 * (a->s + b->s), 0.5 * (a->theta + b->theta)};
@@ -87,7 +87,7 @@ static point inner_point(const net *n, const point *a, const point *b) {
   return p;
 }
 
-/* Where the beta line through b meets the base. */
+/* Intersection of the beta line through b and the base. */
 static point base_point(const net *n, const point *b) {
   const double beta = 0.5 * (b->theta + n->theta) + n->e;
   const double x = b->x - b->z * tan(beta);
@@ -184,8 +184,8 @@ static double wedge_end(net *n, double length) {
   return n->end.x;
 }
 
-/* Brings the wedge's side to the middle line and gives theta there, NaN where it does not get
- * there. The wedge before tells about where to look. */
+/* Continues the wedge's side to the middle line and returns theta there, NaN where it does not
+ * arrive. The previous wedge gives the start of the search. */
 static double close_wedge(net *n) {
   const double guess = 0.5 * n->wedge;
   const bool good = guess > 0.0 && wedge_end(n, guess) > 0.0;

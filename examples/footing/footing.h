@@ -1,5 +1,5 @@
-/* footing.h - the parts of mps-footing: model and run (model.c), a run that goes on (restart.c),
- * results (results.c), the exact capacity (characteristics.c).
+/* footing.h - the parts of mps-footing: model and run (model.c), a restart (restart.c), results
+ * (results.c), the exact capacity (characteristics.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_FOOTING_H
 #define EXAMPLES_FOOTING_H
@@ -36,13 +36,13 @@ typedef struct simulation {
   mpm_course course;
 } simulation;
 
-/* Fills in what depends on the model. A text tells why settings do not go together; NULL: good. */
+/* Fills in what depends on the model. Returns why settings are not consistent; NULL: good. */
 const char *footing_settle(settings *s, const option *table);
 mps_status footing_build(mps_context *context, void *user);
 mps_status footing_march(void *user);
 bool footing_finish(app *a, void *user);
 
-/* restart.c: what a run that goes on needs of what it has seen; `user` is the simulation. */
+/* restart.c: what a restarted run needs of its history; `user` is the simulation. */
 void footing_pass(void *user, resume_bytes *b);
 
 #endif

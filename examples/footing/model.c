@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180.0)
-#define RAMP 0.1 /* s to full speed at the paper's rate; as much path at others */
+#define RAMP 0.1 /* s to full speed at the paper's rate; the same path at others */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
@@ -137,8 +137,8 @@ mps_status footing_build(mps_context *context, void *user) {
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/* A sample of the path: where the footing is, and the pressure on it, from the impulse since the
- * last sample or, at rest, from the force. */
+/* A sample of the path: the position of the footing, and the pressure on it, from the impulse since
+ * the last sample or, at rest, from the force. */
 static mps_status take_sample(simulation *sim) {
   const settings *s = &sim->s;
   mps_reaction reaction;
@@ -158,7 +158,7 @@ static mps_status take_sample(simulation *sim) {
   return MPS_OK;
 }
 
-/* Brings the ground to rest, or goes on doing so where Ctrl-C has cut it short. */
+/* Brings the ground to rest, or continues doing so where Ctrl-C has cut it short. */
 static mps_status come_to_rest(simulation *sim) {
   mps_mpm_settle_def rest = mps_mpm_settle_defaults();
   rest.tolerance = 2e-3;
@@ -166,7 +166,7 @@ static mps_status come_to_rest(simulation *sim) {
 }
 
 /* The path in equal parts. After each of them the ground comes to rest under the footing where a
- * quasi-static run is asked for: what inertia has carried too far then no longer counts. */
+ * quasi-static run is requested: overshoot by inertia is removed. */
 mps_status footing_march(void *user) {
   simulation *sim = user;
   mps_particles *whole;

@@ -1,4 +1,4 @@
-/* restart.c - what the run has seen so far, in a file to go on from (common/resume.h).
+/* restart.c - the history of the run, in a file to restart from (common/resume.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "footing.h"
 

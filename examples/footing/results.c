@@ -12,7 +12,7 @@
 
 enum { LINES = 40 };
 
-/* q/c of the run, and what it is compared with. */
+/* q/c of the run, and the reference values. */
 typedef struct capacity {
   double last;                 /* mean over the last fifth of the path; NaN: it has not ended */
   double undeformed, slope;    /* of the line through the path's second half: at no settlement, and

@@ -1,4 +1,4 @@
-/* checkpoint.c - what is in a checkpoint of libmps, and what it takes to go on from it.
+/* checkpoint.c - contents of a checkpoint of libmps, and how to restart from it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "info.h"
 
@@ -37,7 +37,8 @@ static void print_options(report *r, const char *options) {
   report_list_end(r);
 }
 
-/* What mps_S_restore compares, and the numbers of the run: attributes of the group `solver`. */
+/* Values that mps_S_restore compares, and the numbers of the run: attributes of the group `solver`.
+ */
 typedef struct printing {
   report *r;
   bool any;
@@ -70,7 +71,7 @@ static void print_solver(report *r, hid_t solver) {
   if (p.any) report_list_end(r);
 }
 
-/* The function that puts a solver back, by the name in the file; "" for one that is not known. */
+/* The function that restores a solver, by the name in the file; "" for an unknown one. */
 static const char *restore_of(const char *solver) {
   static const char *const known[][2] = {{"WLS-MPM", "mps_mpm_restore"},
                                          {"fluid", "mps_fluid_restore"},

@@ -1,4 +1,4 @@
-/* hdf5.c - attributes, sizes and names in an HDF5 file, of which nothing is taken for granted.
+/* hdf5.c - attributes, sizes and names in an HDF5 file, all of them checked.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "info.h"
 

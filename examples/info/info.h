@@ -1,5 +1,5 @@
-/* info.h - what mps-info finds in a file. Both functions print only once all is read, and say in
- * `why` what is wrong.
+/* info.h - the contents of a file for mps-info. Both functions print only once all is read; `why`
+ * receives the error.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_INFO_H
 #define EXAMPLES_INFO_H

@@ -7,7 +7,7 @@
 
 enum { TITLE = 12, ROW = 24 }; /* columns of text */
 
-/* A string of JSON: what a terminal must not get is escaped, and so in text is it replaced. */
+/* A string of JSON: control characters are escaped, and replaced in text. */
 static void print_quoted(const char *text) {
   putchar('"');
   for (; *text; text++) {

@@ -1,4 +1,4 @@
-/* report.h - what mps-info prints of a file: lines for a person, or members of a JSON object.
+/* report.h - output of mps-info: lines of text, or members of a JSON object.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_INFO_REPORT_H
 #define EXAMPLES_INFO_REPORT_H
@@ -15,7 +15,7 @@ typedef struct report {
 /* The list of all files, around everything else. */
 void report_open(report *r);
 void report_close(report *r);
-/* A file, with one sentence on what it is ("checkpoint of mps-pile"). */
+/* A file, with its kind ("checkpoint of mps-pile"). */
 void report_begin(report *r, const char *path, const char *kind, const char *sentence);
 void report_end(report *r);
 

@@ -20,7 +20,7 @@ double pen_shoulder(const penetrometer *p) {
 
 double pen_gap(const penetrometer *p) { return fmin(0.5 * p->s.h, 0.2 * p->s.depth); }
 
-/* m: radius of what is in the ground at the end. */
+/* m: radius of the tip's part below the surface at the end. */
 static double radius_below(const pen_settings *s) {
   const double R = 0.5 * s->diameter, d = fmin(s->depth, R);
   return s->tip == PEN_SPHERE ? sqrt(d * (2.0 * R - d)) : R;
@@ -148,7 +148,7 @@ static mps_status make_soil(penetrometer *p, pen_run *r) {
   return status == MPS_OK ? make_law(p->context, s, &r->m.material) : status;
 }
 
-/* After `status`, that of what a rank makes for itself. */
+/* After `status`, that of the rank's own objects. */
 static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   const pen_settings *s = &p->s;
   const int up = dim_of(r) - 1;
@@ -193,7 +193,7 @@ static mps_status make_sphere(penetrometer *p, const pen_run *r, mps_body_def *d
   return status == MPS_OK ? mps_body_name_part(*out, "tip", 0, 1, NULL) : status;
 }
 
-/* How far the mesh goes from its origin along an axis (m): seen from afar, where the error is of
+/* Extent of the mesh from its origin along an axis (m): from a distance L, where the error is of
  * (extent/L)^2. */
 static mps_status find_extent(const pen_run *r, int axis, double sign, double *extent) {
   const double L = 1e3 * (r->size[0] + r->size[1] + r->size[2]);
@@ -273,7 +273,7 @@ static mps_status add_contact(const penetrometer *p, pen_run *r) {
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
-/* A rank may come to have any number of the particles. */
+/* A rank may have any number of the particles. */
 static mps_status make_room(const penetrometer *p, pen_run *r) {
   r->capacity = (int64_t)((p->s.depth + pen_gap(p)) / p->stride) + 2;
   r->row = calloc((size_t)r->capacity, sizeof *r->row);

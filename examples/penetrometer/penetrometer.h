@@ -1,9 +1,9 @@
 /* penetrometer.h - a rigid tip pushed into a box of soil: settings, the runs, and their parts.
  *
  * In space z is upwards and the axis is x = y = 0; in axisymmetry x is the radius and y upwards.
- * The floor is at height 0. Forces are those of the whole tip: 4 times what a quarter feels. Depths
- * count from the ground as it was, downwards, to the lowest point. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * The floor is at height 0. Forces are those of the whole tip: 4 times those of a quarter. Depths
+ * are measured from the initial surface, downwards, to the lowest point.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_PENETROMETER_H
 #define EXAMPLES_PENETROMETER_H
 
@@ -74,7 +74,7 @@ typedef struct pen_run {
 typedef struct penetrometer {
   pen_settings s;
   pen_run run[2]; /* the second one, if there are two, is the axisymmetric one */
-  int runs, now;  /* how many, and the one that is at work */
+  int runs, now;  /* number of runs, and the present one */
   mpm_course course;
   double stride; /* m of path between rows */
   double t_end;  /* s */
@@ -83,18 +83,18 @@ typedef struct penetrometer {
 
 /* ---- model.c --------------------------------------------------------------------------------- */
 
-/* Reads `soil`, fills in what depends on others, and tells why the settings cannot be run; NULL
+/* Reads `soil`, fills in what depends on others, and returns why the settings cannot be run; NULL
  * where they can. */
 const char *pen_check(penetrometer *p);
 mps_status pen_build(mps_context *context, void *user);
 /* The run p->now. */
 mps_status pen_build_run(penetrometer *p, bool restores);
-void pen_free(penetrometer *p);             /* what the model does not own */
+void pen_free(penetrometer *p);             /* objects that the model does not own */
 double pen_radius(const penetrometer *p);   /* m */
 double pen_shoulder(const penetrometer *p); /* m: height of the cone */
 double pen_gap(const penetrometer *p);      /* m: between tip and ground at the start */
 
-/* restart.c: what a run that goes on needs of what it has seen; `user` is the penetrometer. */
+/* restart.c: what a restarted run needs of its history; `user` is the penetrometer. */
 void pen_pass(void *user, resume_bytes *b);
 
 /* ---- push.c ---------------------------------------------------------------------------------- */

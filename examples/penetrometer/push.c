@@ -1,6 +1,6 @@
-/* push.c - pushes the tip: forces by part along the path, after every step a look whether a
- * particle is inside the tip, and at the end the section through the axis. SPDX-License-Identifier:
- * BSD-3-Clause */
+/* push.c - penetration of the tip: forces by part along the path, after every step a check for
+ * particles inside the tip, and at the end the section through the axis.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 
 #include <math.h>
@@ -36,8 +36,8 @@ static mps_status look_at_volumes(const penetrometer *p, pen_run *r) {
   return status;
 }
 
-/* The body is asked about those only that are above its lowest point, and within the radius of a
- * cone or sphere. */
+/* The body is queried for particles above its lowest point, and within the radius of a cone or
+ * sphere. */
 static mps_status look_for_intruders(const penetrometer *p, pen_run *r) {
   mps_view x;
   mps_status status = mps_particles_view(r->m.particles, "position", &x);
@@ -62,7 +62,7 @@ static mps_status look_for_intruders(const penetrometer *p, pen_run *r) {
   return status == MPS_OK ? mpm_counts_note(&r->m, &r->counts, inside, &r->inside) : status;
 }
 
-/* Every rank has looked at its own particles: what all have seen. Collective. */
+/* Maximum over all ranks of the checks of their own particles. Collective. */
 static mps_status join_looks(pen_run *r, mps_status status) {
   double most[] = {r->ratio_max, -r->ratio_min, r->deepest};
   mps_domain *domain = r->m.a->domain;
@@ -127,9 +127,9 @@ static void smooth(const penetrometer *p, pen_run *r) {
 
 /* ---- the end --------------------------------------------------------------------------------- */
 
-/* What lies in the section: within a spacing of y = 0. Where all is the same around the axis also a
- * wedge of 20 degrees, drawn by its distance from the axis: next to the tip soil is stretched
- * around it, and few particles are left in the thin slice. */
+/* Particles of the section: within a spacing of y = 0. In axial symmetry also a wedge of 20
+ * degrees, drawn by its distance from the axis: next to the tip the soil is stretched, and few
+ * particles are in the thin slice. */
 static bool in_section(const penetrometer *p, double thick, double x, double y) {
   return fabs(y) < thick || (p->s.tip != PEN_STL && fabs(y) < 0.364 * fabs(x));
 }

@@ -1,5 +1,5 @@
-/* restart.c - what the run in space has seen so far, in a file to go on from (common/resume.h). The
- * axisymmetric one that may follow is short, and is begun again.
+/* restart.c - the history of the run in space, in a file to restart from (common/resume.h). The
+ * axisymmetric run that may follow is short, and is repeated.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 

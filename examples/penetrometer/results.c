@@ -1,4 +1,4 @@
-/* results.c - force.csv, section.csv, summary.json, and what is told of them on the terminal.
+/* results.c - force.csv, section.csv, summary.json, and their report on the terminal.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 
@@ -93,7 +93,7 @@ static void write_settings(output *f, const penetrometer *p) {
   json_number(f, "dt", p->run[0].dt);
 }
 
-/* Of the first run; of both where it is about what must never happen. */
+/* Of the first run; of both for conditions that must never occur. */
 static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   const pen_run *r = &p->run[0], *other = &p->run[p->runs - 1];
   output f;

@@ -1,5 +1,5 @@
-/* drive.c - pushes the pile: forces by part and the level of the plug along the path, and a look at
- * every particle: after every step whether it is inside the wall.
+/* drive.c - penetration of the pile: forces by part and the level of the plug along the path, and
+ * after every step a check for particles inside the wall.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
@@ -44,7 +44,7 @@ static mps_status look_at_speeds(pile *p) {
   return status;
 }
 
-/* Every rank has looked at its own particles: what all have seen. Collective. */
+/* Maximum over all ranks of the checks of their own particles. Collective. */
 static mps_status join_looks(pile *p, mps_status status) {
   pile_seen *s = &p->seen;
   double most[] = {s->ratio_max, -s->ratio_min, s->deepest, s->rest_speed};
@@ -57,7 +57,7 @@ static mps_status join_looks(pile *p, mps_status status) {
   return mpm_counts_join(&p->m, &p->inside, &s->inside);
 }
 
-/* The body is asked about those only that lie in its bounds. */
+/* The body is queried only for particles in its bounds. */
 static mps_status look_for_intruders(pile *p) {
   mps_view x;
   mps_status status = mps_particles_view(p->m.particles, "position", &x);
@@ -179,7 +179,7 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   if (row || frame || resume_is_due(&p->saves, t)) status = join_looks(p, status);
   if (status == MPS_OK && row) status = end_row(p, t);
   if (status == MPS_OK && frame) status = pile_take_frame(p);
-  /* last of what follows a step: what the file holds is then all of that step */
+  /* last after a step: the file then has everything of that step */
   if (status == MPS_OK) resume_save_when_due(p->m.a, &p->saves, t);
   return status;
 }

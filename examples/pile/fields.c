@@ -14,7 +14,7 @@ static mps_status open_series(mps_context *context, pile *p) {
   char name[sizeof p->vtk] = "pile.vtkhdf"; /* after a restart the former one stays */
   if (p->s.restart) snprintf(name, sizeof name, "pile-from-%g.vtkhdf", p->restarted);
   if (snprintf(path, sizeof path, "%s/%s", p->s.out, name) >= (int)sizeof path)
-    return MPS_OK; /* the CSV files will tell */
+    return MPS_OK; /* the CSV files report it */
   def.path = path;
   def.fields = fields;
   def.field_count = sizeof fields / sizeof *fields;
@@ -62,7 +62,7 @@ static mps_status keep(pile *p, mps_particles *set) {
   return MPS_OK;
 }
 
-/* A series that cannot go on is told, and does not end the run. */
+/* A series that cannot continue is reported, and does not end the run. */
 static void write_frame(pile *p) {
   if (app_check(p->m.a, mps_recorder_write(p->recorder, mps_mpm_time(p->m.mpm)))) return;
   mps_recorder_destroy(&p->recorder);

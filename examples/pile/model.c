@@ -90,8 +90,7 @@ static mps_status make_soil(mps_context *context, pile *p) {
 
 /* The section of the wall, its tip at the body's own z = 0; driven at constant speed. The tip's
  * part goes up both faces by FOOT of the wall, at least a cell: particles on either side of a
- * corner share their nodes, so that tip and face may push there against one another by any force.
- */
+ * corner share their nodes, so that tip and face may exert opposite forces of any size there. */
 static mps_status make_pile(mps_context *context, pile *p) {
   const pile_settings *s = &p->s;
   const double length = 2.0 * s->depth + 2.0 * p->outer; /* beyond all soil that it may lift */
@@ -118,7 +117,7 @@ static mps_status make_pile(mps_context *context, pile *p) {
 
 /* Contact stiffness (N/m per unit thickness). Nakamura (58) with the particle's mass and the step
  * as they are at the start gives k = (1 - xi) 2 m/dt^2, 0.8 of K + 4G/3 with the paper's xi: the
- * offset d0 is used up, and sand enters the wall, where the pressure below the tip is half of k. */
+ * overlap reaches d0, and sand enters the wall, where the pressure below the tip is half of k. */
 static double penalty_of(const pile *p) {
   const pile_settings *s = &p->s;
   const double spacing = mps_particles_spacing(p->m.particles);

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A value that all but a few of the soil's particles stay below: colours for the rest, not for the
- * one particle under a corner. */
+/* Upper bound of all but a few of the soil's particles: the colour scale ignores single particles
+ * under a corner. */
 static int ascending(const void *a, const void *b) {
   const float x = *(const float *)a, y = *(const float *)b;
   return (x > y) - (x < y);
@@ -99,7 +99,7 @@ static double section_bottom(const pile *p) {
   return -fmin(p->s.height, p->s.depth + 3.0 * p->s.inner_diameter);
 }
 
-/* What is drawn of a quantity: NAME.bin has the soil of all frames. */
+/* Picture of a quantity: NAME.bin has the soil of all frames. */
 typedef struct section {
   const quantity *q;
   char file[40];

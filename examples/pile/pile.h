@@ -1,8 +1,8 @@
 /* pile.h - an open-ended pile pushed into sand (Nakamura 8): settings, the run, and its parts.
  *
  * Axisymmetric: x is the radius r, y the height above the bottom of the soil. Forces are those of
- * the whole pile. Depths count from the ground as it was, downwards. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * the whole pile. Depths are measured from the initial surface, downwards.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_PILE_H
 #define EXAMPLES_PILE_H
 
@@ -50,7 +50,7 @@ typedef struct pile_frame {
 } pile_frame;
 enum { PILE_PICTURES = 4 }; /* frames shown in a picture */
 
-/* What the run has seen after every step. */
+/* History of the run after every step. */
 typedef struct pile_seen {
   double ratio_max, ratio_min; /* of V/V0 */
   int64_t inside;              /* most particles inside the wall at once */
@@ -70,14 +70,14 @@ typedef struct pile {
   int64_t rows, capacity;
   double stride;                                                   /* m of path between rows */
   double last_time, last_impulse[PILE_FORCES], last_step, squares; /* since the last row */
-  pile_seen seen; /* of all ranks where they have told one another */
+  pile_seen seen; /* of all ranks, after an exchange */
   mpm_counts inside;
   pile_frame frame[PILE_PICTURES];
   int64_t frames, frames_kept;
   mps_recorder *recorder; /* NULL in a libmps without HDF5, and on all ranks but the first */
   char vtk[40];           /* its file, "": there has been none */
   bool opened;            /* with the first frame: a series without one is none */
-  double restarted;       /* s: time of the checkpoint that the run goes on from */
+  double restarted;       /* s: time of the checkpoint that the run continues from */
   resume_schedule saves;
 } pile;
 
@@ -85,14 +85,14 @@ typedef struct pile {
 
 mps_material_cone pile_cone(const pile_settings *s);
 const char *pile_cone_name(const pile_settings *s);
-/* Reads `soil`, and tells why the settings cannot be run; NULL where they can. */
+/* Reads `soil`, and returns why the settings cannot be run; NULL where they can. */
 const char *pile_check(pile_settings *s);
 mps_status pile_build(mps_context *context, void *user);
-void pile_free(pile *p); /* what the model does not own */
+void pile_free(pile *p); /* objects that the model does not own */
 
 /* ---- drive.c --------------------------------------------------------------------------------- */
 
-/* Makes room for what a run from the beginning has seen: nothing. */
+/* Allocates the empty history of a run from the beginning. */
 mps_status pile_begin(pile *p);
 mps_status pile_drive(void *user);
 /* Depth of the tip (m). */
@@ -109,18 +109,18 @@ int64_t pile_pictures(const pile *p, int64_t frames);
 
 /* ---- restart.c ------------------------------------------------------------------------------- */
 
-/* Refuses a file `restart` that was made with other options, and says which. */
+/* An error for a file `restart` that was made with other options, which it names. */
 mps_status pile_peek(mps_context *context, pile *p);
-/* Writes `checkpoint`: the solver, and all that the run of the pile `user` has seen. */
+/* Writes `checkpoint`: the solver, and the history of the run of the pile `user`. */
 mps_status pile_save(void *user);
-/* Goes back to where the file `restart` was written. */
+/* Restores the state of the file `restart`. */
 mps_status pile_restore(mps_context *context, pile *p);
 
 /* ---- results.c, pictures.c ------------------------------------------------------------------- */
 
 bool pile_finish(app *a, void *user);
-/* What an engineer would reckon (N; 1): friction of the outer shaft at K0 stress at `depth`, and
- * the bearing capacity factor of the tip after Prandtl and Reissner. */
+/* Engineering estimates (N; 1): friction of the outer shaft at K0 stress at `depth`, and the
+ * bearing capacity factor of the tip after Prandtl and Reissner. */
 double pile_beta_shaft(const pile *p, double depth);
 double pile_nq(const pile *p);
 bool pile_draw(app *a, const pile *p);

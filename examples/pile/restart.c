@@ -1,11 +1,11 @@
-/* restart.c - what the run has seen so far, in a file to go on from (common/resume.h).
+/* restart.c - the history of the run, in a file to restart from (common/resume.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* What comes first; then the rows, then of each frame its depth and values. */
+/* Header; then the rows, then of each frame its depth and values. */
 typedef struct notes {
   int64_t rows, frames, frames_kept;
   double last_time, last_step, squares, last_impulse[PILE_FORCES];

@@ -1,4 +1,4 @@
-/* results.c - load.csv and summary.json, and what is told of them on the terminal.
+/* results.c - load.csv and summary.json, and their report on the terminal.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- what an engineer would reckon ----------------------------------------------------------- */
+/* ---- engineering estimates ------------------------------------------------------------------- */
 
 double pile_beta_shaft(const pile *p, double depth) {
   return PILE_PI * p->outer * p->k0 * p->s.friction * p->s.density * PILE_GRAVITY * depth * depth;

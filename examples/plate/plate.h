@@ -1,6 +1,6 @@
 /* plate.h - the two plates of mps-plate: a square in tension (Chikazawa, Figures 2 and 3), and a
- * quarter of a plate with a hole under tension in x (Kirsch). SPDX-License-Identifier: BSD-3-Clause
- */
+ * quarter of a plate with a hole under tension in x (Kirsch).
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_PLATE_H
 #define EXAMPLES_PLATE_H
 

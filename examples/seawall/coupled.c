@@ -1,10 +1,12 @@
-/* coupled.c - the wall and the water move together: in every step the accelerations of the wall's
- * facets are found at which the structure answers to the pressures as the water was told.
+/* coupled.c - two-way coupling of wall and water: in every step the accelerations of the wall's
+ * facets are found at which the response of the structure to the pressures is that given to the
+ * water.
  *
- * The water keeps its step open and solves again for each guess; the structure goes back to where
- * the step began. The pressures are those of the middle of the step; the generalised-alpha method
- * of the structure balances (1 - alpha) of the load at the end and alpha of that before, which is
- * the load 1/2 - alpha later, so the pressures are taken there in a straight line.
+ * The water keeps its step open and solves again for each guess; the structure is rolled back to
+ * the beginning of the step. The pressures are those of the middle of the step; the
+ * generalised-alpha method of the structure balances (1 - alpha) of the load at the end and alpha
+ * of that before, which is the load 1/2 - alpha later, so the pressures are interpolated linearly
+ * there.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
@@ -41,7 +43,7 @@ static bool allocate(seawall_both *b, size_t n) {
   return b->block != NULL;
 }
 
-/* At rest under still water: that is where the water's wall stands. */
+/* At rest under still water: the position of the water's wall. */
 static mps_status rest(seawall *w) {
   strip *wall = &w->wall;
   seawall_both *b = &w->both;
@@ -61,7 +63,7 @@ mps_status seawall_couple(mps_context *context, seawall *w) {
   seawall_both *b = &w->both;
   mps_coupling_def def = mps_coupling_defaults();
   def.size = w->wall.count;
-  def.floor = 1e-4 * WAVES_G; /* what the solution of the pressures leaves open */
+  def.floor = 1e-4 * WAVES_G; /* accuracy of the pressure solution */
   b->room = (def.columns + 4) * (1 + 2 * def.size);
   b->memory = calloc((size_t)b->room, sizeof *b->memory);
   const bool room = b->memory && allocate(b, (size_t)w->wall.count);

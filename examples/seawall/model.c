@@ -41,8 +41,8 @@ static mps_status make_fluid(app *a, seawall *w) {
   return mps_fluid_add_boundary(w->fluid, &wall, NULL);
 }
 
-/* Its face is the plane of the fluid's wall; its particles begin half a spacing behind. It holds in
- * the layer at the bed. */
+/* Its face is the plane of the fluid's wall; its particles begin half a spacing behind. The layer
+ * at the bed is held. */
 static mps_status make_wall(app *a, seawall *w) {
   const seawall_settings *s = &w->s;
   const strip_def def = {.lower = {s->length, 0.0},

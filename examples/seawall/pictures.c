@@ -71,7 +71,7 @@ static bool image_frames(app *a, const seawall *w, view *v) {
   return good && output_close(&f);
 }
 
-/* What every picture of the water shares: axes, colours, the wall's outline. */
+/* Common parts of the pictures of the water: axes, colours, the wall's outline. */
 static void begin_water(output *f, const seawall_settings *s, const view *v) {
   const double left = v->lower[0];
   output_text(f,

@@ -1,6 +1,6 @@
-/* restart.c - what the run has seen so far, in a file to go on from (common/resume.h); the
- * structure of a coupled run has a file of its own beside it. SPDX-License-Identifier: BSD-3-Clause
- */
+/* restart.c - the history of the run, in a file to restart from (common/resume.h); the
+ * structure of a coupled run has a file of its own beside it.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
 #include <math.h>
@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What comes first; then the samples, the look, and of each frame its header and values. */
+/* Header; then the samples, the settings of the pictures, and of each frame its header and values.
+ */
 typedef struct notes {
   int64_t samples, frames, points, forces, learnt;
   seawall_sample at;

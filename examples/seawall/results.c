@@ -12,7 +12,7 @@ typedef struct sainflou {
   double harmonic; /* twice the incident amplitude: the level's first harmonic at the wall, in the
                       period before */
   double level;    /* of a wave whose crest is where the level is: a breaking wave's jet counts */
-  double paddle;   /* of an endless flume behind this piston (Havelock) */
+  double paddle;   /* of an infinite flume behind this piston (Havelock) */
 } sainflou;
 
 static sainflou find_heights(const seawall *w) {
@@ -168,7 +168,7 @@ static bool close_series(app *a, seawall *w) {
 #define SMALL                                                                                      \
   0.05 /* of the wall's height: displacements for which its theory is one of small ones */
 
-/* What the run's own assumptions do not cover. */
+/* Violations of the model's assumptions. */
 static void warn_of_limits(app *a, const seawall *w) {
   const double height = w->s.wall_height;
   const seawall_sample *bent = w->sample, *high = w->sample;

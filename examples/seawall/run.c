@@ -1,5 +1,5 @@
-/* run.c - waves against the wall: at every sample the pressures of the water are put on the facets
- * of the structure, which is solved with the factor that it keeps; or both move together.
+/* run.c - waves against the wall: at every sample the pressures of the water are applied to the
+ * facets of the structure, which is solved with the kept factor; or both are coupled.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
@@ -51,7 +51,7 @@ static mps_status take_sample(seawall *w) {
   if (status == MPS_OK) status = waves_move_piston(&w->motion, sample.t, motion);
   if (status == MPS_OK) status = bend_wall(w, &sample.deflection);
   if (status != MPS_OK) return status;
-  sample.force = -r.force[0]; /* the wall pushes the water, the water the wall */
+  sample.force = -r.force[0]; /* opposite forces on wall and water */
   sample.moment = r.moment[2];
   sample.level -= w->s.depth;
   sample.piston = motion[0];
@@ -130,8 +130,8 @@ static mps_status advance(app *a, seawall *w, double t) {
   return status;
 }
 
-/* Samples are taken after the first step that reaches their time: no step is shortened for them, so
- * that a run goes on from a checkpoint as if it had never ended. */
+/* Samples are those after the first step that reaches their time: no step is shortened for them, so
+ * that a restarted run is the same as an uninterrupted one. */
 mps_status seawall_run(app *a, seawall *w) {
   const seawall_settings *s = &w->s;
   mps_status status = isnan(w->restarted) && is_due(w, 0) ? take_frame(w) : MPS_OK;

@@ -1,4 +1,4 @@
-/* seawall.h - what the parts of mps-seawall share: settings, model, records of the run.
+/* seawall.h - common declarations of mps-seawall: settings, model, records of the run.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_SEAWALL_H
 #define EXAMPLES_SEAWALL_H
@@ -84,7 +84,7 @@ typedef struct seawall {
   seawall_look look;
   double restarted; /* s, NaN: from the start */
   app *a;           /* borrowed */
-  char why[400];    /* why a restart is refused; "": the library says it */
+  char why[400];    /* reason against a restart; "": recorded by the library */
 } seawall;
 
 /* The particles that the method of the paper has for this tank: the water, three layers under it

@@ -1,10 +1,10 @@
 /* breakwater.c - a caisson on sand under waves: water (mps_fluid), sand (mps_mpm, Drucker-Prager)
- * and a free rigid body between them that both push. The caisson's front is the tank's right wall.
- * In every step of the water the sand and the body go back and run again, until the accelerations
- * that the water was told are those that body and sand have under its pressures (mps/couple.h).
+ * and a free rigid body between them, loaded by both. The caisson's front is the tank's right wall.
+ * In every step of the water the steps of sand and body are rolled back and repeated, until the
+ * accelerations given to the water are those of body and sand under its pressures (mps/couple.h).
  *
  * Ends with 0 where they agreed in every step, the caisson slid by less than a hundredth of a
- * spacing of the water, and the sand held by friction what the water pushed.
+ * spacing of the water, and the friction of the sand balanced the force of the water.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/couple.h>
 #include <mps/fluid.h>
@@ -110,7 +110,7 @@ static mps_status make_water(mps_context *context, sea *s) {
 
 /* ---- the caisson between both ---------------------------------------------------------------- */
 
-/* How the front's nodes move along the water's normal, which points to smaller x. */
+/* Motion of the front's nodes along the water's normal, which points to smaller x. */
 static mps_status read_front(sea *s, double *displacement, double *velocity) {
   mps_body_state now;
   const mps_status status = mps_body_get_state(s->caisson, &now);
@@ -123,8 +123,8 @@ static mps_status read_front(sea *s, double *displacement, double *velocity) {
   return status;
 }
 
-/* The force (N) of the water in x, and its moment (N m) about the caisson's middle, act until told
- * otherwise. */
+/* The force (N) of the water in x, and its moment (N m) about the caisson's middle, act until
+ * changed. */
 static mps_status load(sea *s, double push, double moment) {
   const double force[3] = {push, 0.0, 0.0}, turn[3] = {0.0, 0.0, moment};
   return mps_body_set_load(s->caisson, force, turn);
@@ -134,7 +134,7 @@ static mps_status run_sand(sea *s, double span) {
   return mps_mpm_run(s->mpm, mps_mpm_time(s->mpm) + span, INT64_MAX, NULL, NULL);
 }
 
-/* Under still water, until the sand has taken the caisson's weight. */
+/* Under still water, until the caisson's weight is borne by the sand. */
 static mps_status settle(sea *s) {
   const double push = 0.5 * DENSITY * G * DEPTH * DEPTH;
   mps_status status = load(s, push, push * (MIDDLE - DEPTH / 3.0));
@@ -142,7 +142,7 @@ static mps_status settle(sea *s) {
   return status == MPS_OK ? mps_body_get_state(s->caisson, &s->rest) : status;
 }
 
-/* Accelerations of the front's nodes if the water is told `mean`; `push` on the way. */
+/* Accelerations of the front's nodes if the water is given `mean`; `push` on the way. */
 static mps_status answer(sea *s, const double *d, const double *v, const double *mean, double *push,
                          double *out) {
   double moved[2], speed[2], unused[2];
@@ -179,7 +179,7 @@ static mps_status step(sea *s, double *push) {
   return status == MPS_OK ? mps_fluid_end_step(s->fluid) : status;
 }
 
-/* Impulses (N s) of the water and of the sand on the caisson, and how far it is from its rest. */
+/* Impulses (N s) of the water and of the sand on the caisson, and its displacement. */
 static mps_status run(sea *s, double *water, double *slid, double *most) {
   mps_status status = settle(s);
   const int steps = (int)(WAVES / DT + 0.5);
@@ -211,7 +211,7 @@ int main(void) {
   if (status == MPS_OK) status = mps_body_get_reaction(s.caisson, -1, &after);
   if (status == MPS_OK) status = mps_coupling_get_report(s.coupling, &report);
   if (status != MPS_OK) fprintf(stderr, "%s\n", mps_context_error(context)->message);
-  /* the sand held still water's push while the caisson settled */
+  /* the sand bore the force of still water while the caisson settled */
   water += SETTLE * 0.5 * DENSITY * G * DEPTH * DEPTH;
   const double sand = -(after.impulse[0] - before.impulse[0]);
   printf("%.2f solutions a step; water %.2f N s, sand %.2f N s, at most %.1f N; moved by %.4f mm\n",

@@ -1,8 +1,9 @@
 /* coupling.c - an implicit coupling by snapshot and rollback: an elastic bar, and a heavy mass at
- * its end that belongs to another code. The bar is told a force and answers with an acceleration;
- * the mass is told the acceleration and answers with a force. Each step is repeated, by Aitken's
+ * its end that belongs to another code. The bar receives a force and returns an acceleration; the
+ * mass receives the acceleration and returns a force. Each step is repeated, by Aitken's
  * relaxation, until both agree. Plain repetition would diverge, the mass being heavier than the
- * bar's end. The bar with the mass as density of its last particles (monolithic) must move alike.
+ * bar's end. The bar with the mass as density of its last particles (monolithic) must have the same
+ * motion.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/elastic.h>
 #include <mps/material.h>

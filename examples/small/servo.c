@@ -1,9 +1,9 @@
-/* servo.c - a plate that keeps its load: a rigid body whose velocity answers, before each step, to
- * the force that it feels. It presses a column of soil between smooth walls, with friction nowhere;
- * the settlement is that of an oedometer, F H / (M W), M = K + 4G/3.
+/* servo.c - a plate that keeps its load: a rigid body whose velocity is set, before each step, by
+ * the force on it. It presses a column of soil between smooth walls, with friction nowhere; the
+ * settlement is that of an oedometer, F H / (M W), M = K + 4G/3.
  *
- * The plate moves by v = gain (F - R) with the wanted force F and the reaction R, so that it rests
- * when they agree. A stiff soil answers with a frequency of its own; the gain lets the plate go
+ * The plate moves by v = gain (F - R) with the desired force F and the reaction R, so that it rests
+ * when they agree. A stiff soil responds with a frequency of its own; the gain lets the plate go
  * about one settlement in ten travel times of the wave through the column.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/mpm.h>
@@ -30,7 +30,7 @@ static mps_status make(mps_context *context, test *t) {
   mps_material *sand = NULL;
   of_soil.spacing = spacing;
   def.cell = 2.0 * spacing;
-  def.upper[0] = width, def.upper[1] = 2.0; /* sides are smooth walls, as they are born */
+  def.upper[0] = width, def.upper[1] = 2.0; /* sides are smooth walls by default */
   def.lower[0] = def.lower[1] = 0.0;
   mps_status status = mps_particles_create(context, &of_soil, &t->soil);
   if (status == MPS_OK) status = mps_particles_fill_box(t->soil, lo, hi, NULL);
@@ -38,7 +38,7 @@ static mps_status make(mps_context *context, test *t) {
   if (status == MPS_OK) status = mps_material_create_linear_elastic(context, young, poisson, &sand);
   if (status == MPS_OK) status = mps_mpm_create(context, t->soil, sand, &def, &t->mpm);
   mps_material_destroy(&sand);
-  /* wider than the column, so that its corners touch nothing */
+  /* wider than the column, so that its corners are free */
   mps_body_def place = mps_body_defaults();
   place.position[0] = 0.5 * width, place.position[1] = height + 0.2;
   if (status == MPS_OK) status = mps_body_create_box(context, &place, 2.0 * width, 0.4, &t->plate);
@@ -50,7 +50,7 @@ static mps_status make(mps_context *context, test *t) {
 static mps_status steer(void *user, mps_mpm *mpm) {
   test *t = user;
   mps_reaction r;
-  mps_body_motion motion = mps_body_motion_defaults(); /* the place stays as it is */
+  mps_body_motion motion = mps_body_motion_defaults(); /* the position is unchanged */
   (void)mpm;
   mps_status status = mps_contact_get_reaction(t->contact, -1, &r);
   motion.velocity[1] = -t->gain * (force - r.force[1]);
@@ -86,7 +86,7 @@ int main(void) {
   for (int part = 1; part <= 10 && status == MPS_OK; part++) {
     status = mps_mpm_run(t.mpm, 10.0 * travel * part, 1, steer, &t);
     if (status == MPS_OK) status = mps_contact_get_reaction(t.contact, -1, &r);
-    /* in uniform strain the mean of all particles has gone half as far as the surface */
+    /* in uniform strain the mean of all particles has moved half as far as the surface */
     if (status == MPS_OK)
       printf("%7.4f  %9.1f  %8.4f\n", mps_mpm_time(t.mpm), r.force[1],
              2e3 * (start - mean_height(&t)));

@@ -1,5 +1,5 @@
-/* user_law.c - a constitutive law of one's own: elasticity with power-law creep (Norton), tried in
- * one particle against the closed form of relaxation in pure shear.
+/* user_law.c - a user's constitutive law: elasticity with power-law creep (Norton), compared in one
+ * particle with the closed form of relaxation in pure shear.
  *
  * The shear stress tau at a constant shear strain obeys dtau/dt = -G B tau^n, so that
  *   tau(t) = (tau0^(1 - n) + (n - 1) G B t)^(-1/(n - 1)).
@@ -47,7 +47,7 @@ static mps_status update(void *user, const mps_material_block *b) {
     }
     const double trial = sqrt(square);
     const mps_status status = relax(c, b->dt, trial, &q);
-    if (status != MPS_OK) { /* the words and the particle reach the error record */
+    if (status != MPS_OK) { /* the message and the particle go to the error record */
       snprintf(b->message, (size_t)b->message_size, "Newton fails at sqrt(J2) = %g Pa", trial);
       *b->refused = k;
       return status;
@@ -96,7 +96,7 @@ int main(void) {
     worst = fmax(worst, fabs(point.stress[3] / exact - 1.0));
     printf("%6.3f  %8.2f  %11.2f  %12.6g\n", t, point.stress[3], exact, point.history[0]);
   }
-  /* what the stress has lost has become creep strain */
+  /* the relaxed stress has become creep strain */
   const double lost = fabs((tau0 - point.stress[3]) / c.shear - point.history[0]);
   mps_material_destroy(&salt);
   mps_context_destroy(&context);

@@ -20,7 +20,7 @@ typedef struct search {
 
 /* ---- the initial state ----------------------------------------------------------------------- */
 
-/* What a rank does by itself fails on all where it fails on one. */
+/* Work of a single rank fails on all where it fails on one. */
 static mps_status agree(const search *s, mps_status status) {
   return s->def->domain ? mps_domain_agree(s->def->domain, status) : status;
 }
@@ -52,8 +52,7 @@ static mps_status go_back(const search *s) {
 
 /* ---- the search ------------------------------------------------------------------------------ */
 
-/* Runs from the initial state with `dt`; `stable` tells whether no acceleration passed the
- * criterion. */
+/* Runs from the initial state with `dt`; `stable`: no acceleration passed the criterion. */
 static mps_status try_dt(search *s, double dt, bool *stable) {
   mps_context *context = mps_dynamics_context(s->dynamics);
   mps_status status = go_back(s);
@@ -69,7 +68,7 @@ static mps_status try_dt(search *s, double dt, bool *stable) {
   status = mps_dynamics_step(s->dynamics, (int64_t)steps);
   s->result->steps += mps_dynamics_steps(s->dynamics);
   *stable = status == MPS_OK;
-  if (status == MPS_ERROR_DIVERGED) { /* that is an answer */
+  if (status == MPS_ERROR_DIVERGED) { /* that is a result */
     mps_context_clear_error(context);
     status = MPS_OK;
   }

@@ -33,7 +33,7 @@ double case_vp(const stability_case *x) {
   return x->other > 0.0 ? x->other : 2.0 * x->velocity;
 }
 
-/* What computes a case; the domain NULL: one process. */
+/* Context and domain that compute a case; the domain NULL: one process. */
 typedef struct machine {
   mps_context *context;
   mps_domain *domain;

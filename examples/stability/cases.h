@@ -9,7 +9,7 @@
 
 enum { METHOD_LINEAR = 0, METHOD_STEPPING = 1, METHOD_BOTH = 2 };
 
-/* What all cases of a study share. */
+/* Common settings of all cases of a study. */
 typedef struct method {
   int kind; /* METHOD_... */
   int rotation, torque;
@@ -23,7 +23,7 @@ typedef struct stability_case {
   int integrator;
   double radius, velocity, damping; /* R m, V m/s (of the wave), h */
   double other; /* m/s: the other wave's velocity; 0: Vp = 2 Vs as in the paper */
-  /* found; NaN: not asked for or not defined */
+  /* found; NaN: not requested or not defined */
   double linear;            /* s */
   double stepping;          /* s: the largest step that ran stably */
   double unstable;          /* s: the smallest that did not, at most accuracy times above */
@@ -41,10 +41,10 @@ double method_duration(const method *m, double velocity);
 int64_t case_particles(double radius);
 double case_vs(const stability_case *x);
 double case_vp(const stability_case *x);
-/* Finds what `m` asks for, on a serial context of its own: may run in parallel with others. */
+/* Finds the quantities of `m`, on a serial context of its own: may run in parallel with others. */
 void case_find(const method *m, stability_case *out);
 /* The same with the threads and ranks of the program, which compute the case together. `hook` is
- * told of each run of the bisection. */
+ * called for each run of the bisection. */
 void case_find_together(app *a, const method *m, stability_case *out, mps_context_progress_fn hook,
                         void *user);
 

@@ -78,8 +78,8 @@ static void sort_by_cost(work *w) {
   }
 }
 
-/* Of several ranks each takes whole cases: the largest that is left goes to who has least. Keeps
- * those of this rank in `order`; `owner` tells the rank of each case. */
+/* Of several ranks each takes whole cases: the largest remaining one goes to the rank with the
+ * least work. Keeps those of this rank in `order`; `owner` has the rank of each case. */
 static bool deal(work *w, int32_t *owner) {
   const int32_t ranks = w->a->domain ? mps_domain_size(w->a->domain) : 1;
   int64_t *load = calloc((size_t)ranks, sizeof *load);
@@ -98,7 +98,7 @@ static bool deal(work *w, int32_t *owner) {
   return true;
 }
 
-/* What each rank has found becomes known to all. */
+/* Sends the results of each rank to all. */
 static bool share_cases(app *a, study *s, const int32_t *owner) {
   bool ok = true;
   for (int64_t i = 0; i < STUDY_CASES && ok; i++) {

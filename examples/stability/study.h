@@ -42,7 +42,7 @@ typedef struct study {
 
 /* Finds all cases, in parallel, until Ctrl-C. False with an error line at the first failure. */
 bool study_run(app *a, const method *m, study *s);
-/* Regressions of what was found. */
+/* Regressions of the results. */
 bool study_fit(app *a, study *s);
 /* limits.csv and integrators.csv; of an interrupted study the cells of the other cases are empty.
  */

@@ -53,7 +53,7 @@ static bool write_regression(app *a, const study *s, const char *directory) {
     const limit_fit *fit = &r->fit, *printed = &s->printed[wave];
     for (int32_t i = 0; i < fit->dampings; i++) {
       const double h = fit->h[i];
-      const bool inside = h <= 0.2201; /* the quadratics hold up to there */
+      const bool inside = h <= 0.2201; /* the quadratics are valid up to there */
       const double row[] = {h,
                             fit->a1[i],
                             fit->a2[i],

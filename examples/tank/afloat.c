@@ -10,7 +10,7 @@
  *
  * At x = a both agree below the box, and beside it the normal velocity is 0. The pressure of the
  * slit upon the box gives the added mass, w^2 (M + M_a(w)) = rho g (half its width) the frequency.
- * d and s are those of the rest that the box heaves about.
+ * d and s are those of the mean position of the heave.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
@@ -48,7 +48,7 @@ bool tank_in_box(const tank_settings *s, double x, double y) {
 
 enum { TERMS = 40 };
 
-/* Where the box goes down the water beside it goes up. */
+/* Where the box moves down the water beside it rises. */
 double tank_float_stiffness(const tank_settings *s) {
   return WAVES_DENSITY * WAVES_G * s->width / (1.0 - s->width / s->length);
 }
@@ -141,9 +141,9 @@ static double imbalance(const tank_settings *t, double mass, double w) {
   return w * w * (mass + half_added_mass(t, w)) - WAVES_DENSITY * WAVES_G * 0.5 * t->width;
 }
 
-/* The slowest: below it buoyancy is the larger force. The box heaves about its rest under the
- * weight, where it lies lower and the water beside it higher than at the start: more water moves.
- */
+/* The lowest frequency: below it buoyancy is the larger force. The box heaves about its rest under
+ * the weight, where it lies lower and the water beside it higher than at the start: more water
+ * moves. */
 double tank_float_period(const tank_settings *t) {
   const double mass = WAVES_DENSITY * 0.5 * t->width * t->draft;
   const double fall = sqrt(WAVES_G / t->draft), rise = t->width / (t->length - t->width);

@@ -1,12 +1,12 @@
 /* coupled.c - water and a structure that move together, step by step until both agree. The
- * structure stands for another code's: shapes with a mass and a stiffness each (a wall on a spring
- * has one, a plate six), moved by the generalised-alpha method.
+ * structure represents that of another code: shapes with a mass and a stiffness each (a wall on a
+ * spring has one, a plate six), moved by the generalised-alpha method.
  *
- * In a step the water is asked for its pressures under a guess of the accelerations, and the
- * structure for the accelerations under these pressures; mps/couple.h finds where both agree. The
+ * In a step the pressures of the water are computed under a guess of the accelerations, and the
+ * accelerations of the structure under these pressures; mps/couple.h finds the common solution. The
  * pressures are those of the middle of the step; the structure's balance is that of alpha_f before
- * its end, and its forces are taken there in a straight line. SPDX-License-Identifier: BSD-3-Clause
- */
+ * its end, and its forces are interpolated linearly there.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
 #include <math.h>
@@ -93,7 +93,7 @@ mps_status tank_make_structure(mps_context *context, tank_model *m) {
   if (status != MPS_OK) return status;
   def.size = m->structure.shapes;
   def.method = def.size > 1 ? MPS_COUPLING_METHOD_QUASI_NEWTON : MPS_COUPLING_METHOD_AITKEN;
-  def.floor = 1e-4 * WAVES_G; /* what the solution of the pressures leaves open */
+  def.floor = 1e-4 * WAVES_G; /* accuracy of the pressure solution */
   m->structure.room = (def.columns + 4) * (1 + 2 * def.size);
   m->structure.memory = calloc((size_t)m->structure.room, sizeof(double));
   if (!m->structure.memory) return MPS_ERROR_MEMORY;
@@ -156,7 +156,7 @@ static mps_status find_forces(tank_model *m, double *force) {
   return status;
 }
 
-/* `force` receives what acts in the middle of the step. */
+/* `force` receives the force in the middle of the step. */
 static mps_status agree(tank_model *m, double dt, double *mean, double *force) {
   tank_structure *p = &m->structure;
   double answer[TANK_SHAPES];

@@ -1,17 +1,17 @@
-/* linear.c - linear potential flow for the waves of a piston before a wall that stands, or swings
- * on a spring: in an endless flume, where the wall's own waves carry its energy away, and in the
- * closed tank of the run, from the first moment on. Displacements of both walls are into the water.
+/* linear.c - linear potential flow for the waves of a piston before a fixed wall, or one that
+ * oscillates on a spring: in an infinite flume, where the wall's own waves radiate its energy, and
+ * in the closed tank of the run, from the start. Displacements of both walls are into the water.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
 #include <math.h>
 
-/* ---- an endless flume ------------------------------------------------------------------------ */
+/* ---- an infinite flume ----------------------------------------------------------------------- */
 
-/* A wall that swings as a whole with V e^{iwt} sends out
- *   phi = sum A cosh(k y) e^{-i k s} + sum A_n cos(k_n y) e^{-k_n s},  w^2 = g k tanh(k d) = -g k_n
- * tan(k_n d), which press upon it with -(m_a dV/dt + B V): m_a = rho sum I_n^2/(k_n N_n), B = rho w
- * I^2/(k N), where I is the integral of the shape over the depth and N that of its square. */
+/* A wall that oscillates as a whole with V e^{iwt} sends out phi = sum A cosh(k y) e^{-i k s} + sum
+ * A_n cos(k_n y) e^{-k_n s},  w^2 = g k tanh(k d) = -g k_n tan(k_n d), which press upon it with
+ * -(m_a dV/dt + B V): m_a = rho sum I_n^2/(k_n N_n), B = rho w I^2/(k N), where I is the integral
+ * of the shape over the depth and N that of its square. */
 void tank_flume(const tank_settings *s, tank_response *r) {
   const double w = 2.0 * WAVES_PI / s->period, d = s->depth, k = waves_number(s->period, d);
   const double I = sinh(k * d) / k, N = 0.5 * (d + sinh(2.0 * k * d) / (2.0 * k));
@@ -33,10 +33,9 @@ double tank_resonant_stiffness(const tank_settings *s, double ratio) {
 /* ---- the closed tank ------------------------------------------------------------------------- */
 
 /* With the piston at X and the wall at Y the surface is (X + Y) d/L + sum b_j cos(k_j x), k_j = j
- * pi/L, and
- *   b_j'' + g k_j T_j b_j = 2 T_j (X'' + (-1)^j Y'')/(k_j L),  T_j = tanh(k_j d).
- * The water presses on the wall with rho g (X + Y) d^2/L + rho g sum (-1)^j b_j T_j/k_j + m_x X'' +
- * m_y Y'' above the rest. */
+ * pi/L, and b_j'' + g k_j T_j b_j = 2 T_j (X'' + (-1)^j Y'')/(k_j L),  T_j = tanh(k_j d). The force
+ * of the water on the wall is rho g (X + Y) d^2/L + rho g sum (-1)^j b_j T_j/k_j + m_x X'' + m_y
+ * Y'' above the rest. */
 enum { MODES = 120, TAIL = 20000 };
 
 typedef struct closed {

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define CLASSICAL_SHARE 0.2 /* of the density error, taken back in each step */
+#define CLASSICAL_SHARE 0.2 /* of the density error, corrected in each step */
 
 /* ---- water ----------------------------------------------------------------------------------- */
 
@@ -161,7 +161,7 @@ static mps_status measure_tank(tank_model *m, tank_sample *sample) {
     sample->deflection = box.position[1] - s->depth;
     m->roll = fmax(m->roll, fabs(box.rotation[2]));
   }
-  sample->left = left.force[0]; /* the walls push inwards, the water outwards */
+  sample->left = left.force[0]; /* opposite forces on walls and water */
   sample->right = -right.force[0];
   return MPS_OK;
 }

@@ -1,10 +1,10 @@
-/* restart.c - what the run has seen so far, in a file to go on from (common/resume.h).
+/* restart.c - the history of the run, in a file to restart from (common/resume.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
 #include <string.h>
 
-/* What comes first; then the samples and what the coupling has learnt. */
+/* Header; then the samples and the memory of the coupling. */
 typedef struct notes {
   int64_t samples, learnt;
   mps_fluid_report report;

@@ -1,4 +1,4 @@
-/* results.c - tables, summary and pictures of mps-tank, and what theory says beside them.
+/* results.c - tables, summary and pictures of mps-tank, with theory.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
@@ -17,7 +17,7 @@ static bool in_window(const tank_model *m, int64_t k) {
   return m->sample[k].t >= m->s.window[0] - 1e-9 && m->sample[k].t <= m->s.window[1] + 1e-9;
 }
 
-/* What a harmonic is taken of, besides the gauges. */
+/* Quantities with a harmonic, besides the gauges. */
 enum { FORCE = -1, WALL = -2 };
 
 static series series_of(const tank_model *m, const tank_sample *sample, int what) {
@@ -40,7 +40,7 @@ typedef struct figures {
       deflection;
 } figures;
 
-/* What swings: the force on the right wall, or the structure. */
+/* The oscillating quantity: the force on the right wall, or the structure. */
 static double swings(const tank_model *m, int64_t k) {
   return tank_swings(&m->s) ? m->sample[k].deflection : m->sample[k].right;
 }
@@ -56,7 +56,7 @@ static double mean_between(const tank_model *m, double first, double last) {
   return span > 0.0 ? sum / span : NAN;
 }
 
-/* Mean period and decay (1/s) of what swings about `mean`, from its rising zeros and from the
+/* Mean period and decay (1/s) of what oscillates about `mean`, from its rising zeros and from the
  * largest value between them. */
 static void find_swing(const tank_model *m, double mean, figures *f) {
   double first = NAN, last = NAN, peak = 0.0, early = NAN, early_at = 0.0, late = NAN,
@@ -86,8 +86,9 @@ static void find_swing(const tank_model *m, double mean, figures *f) {
   f->decay = late_at > early_at ? log(early / late) / (late_at - early_at) : NAN;
 }
 
-/* The structure swings about a mean that is known only over whole periods. Between rising zeros a
- * decaying swing adds to the mean what it takes from it between falling ones. */
+/* The structure oscillates about a mean that is known only over whole periods. Between rising zeros
+ * a decaying oscillation shifts the mean by as much as between falling ones, with the opposite
+ * sign. */
 static void find_motion(const tank_model *m, figures *f) {
   f->deflection = mean_between(m, m->s.window[0], m->s.window[1]);
   for (int n = 0; n < 3; n++) {
@@ -502,8 +503,8 @@ static void summarise_drop(output *f, const tank_model *m) {
       last->a, last->b, a, b, 100.0 * drop_error(m));
 }
 
-/* 1/s. Crests of the force also hold its second harmonic, which swings with another mode: two of
- * them may differ by ten times what a few periods take off. */
+/* 1/s. Crests of the force also hold its second harmonic, which oscillates with another mode: two
+ * of them may differ by ten times the decay of a few periods. */
 static double sloshing_decay(const tank_model *m, double period) {
   const series kinetic = {m->samples, sizeof *m->sample, &m->sample->t, &m->sample->kinetic};
   const double from = fmax(m->s.window[0], m->sample[0].t);

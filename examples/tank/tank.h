@@ -1,4 +1,4 @@
-/* tank.h - what the parts of mps-tank share: the settings, the model, the records of a run.
+/* tank.h - common declarations of mps-tank: the settings, the model, the records of a run.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_TANK_H
 #define EXAMPLES_TANK_H
@@ -44,10 +44,11 @@ typedef struct tank_settings {
 
 /* A moment of the run; of a drop only the last three. */
 typedef struct tank_sample {
-  double t, left, right, level[TANK_GAUGES + 1]; /* s, N, N, m above the water at rest; the last
-                                                    gauge stands at the right wall */
-  double a, b, centre;                           /* m, m, Pa */
-  double kinetic, potential;                     /* J */
+  double t, left, right,
+      level[TANK_GAUGES +
+            1];        /* s, N, N, m above the water at rest; the last gauge is at the right wall */
+  double a, b, centre; /* m, m, Pa */
+  double kinetic, potential; /* J */
   double deflection; /* m: of the wall into the water, of the plate downwards, of the box upwards */
 } tank_sample;
 
@@ -55,8 +56,8 @@ typedef struct tank_motion {
   double d, v, a; /* m, m/s, m/s2 */
 } tank_motion;
 
-/* What moves with the water: shapes, each with its mass, stiffness and motion along the normal of a
- * wall, into the water. */
+/* A structure coupled with the water: shapes, each with its mass, stiffness and motion along the
+ * normal of a wall, into the water. */
 typedef struct tank_structure {
   int shapes, wall;
   double mass[TANK_SHAPES], stiffness[TANK_SHAPES], load[TANK_SHAPES]; /* kg, N/m, N */
@@ -83,14 +84,14 @@ typedef struct tank_model {
   mps_recorder *series;
   tank_sample *sample;
   int64_t samples, capacity;
-  double roll; /* rad: of the box, the largest since the start or restart */
+  double roll;         /* rad: of the box, the largest since the start or restart */
   tank_sample *linear; /* tank_linear at the samples, NULL where there is no piston */
   mps_fluid_report report;
   const option *table;
   resume_schedule saves;
   double restarted; /* s, NaN: from the start */
   app *a;           /* borrowed */
-  char why[400];    /* why a restart is refused; "": the library says it */
+  char why[400];    /* reason against a restart; "": recorded by the library */
 } tank_model;
 
 static inline bool tank_is_coupled(const tank_settings *s) {
@@ -116,7 +117,7 @@ mps_status tank_restore(mps_context *context, tank_model *m);
 mps_status tank_make_structure(mps_context *context, tank_model *m);
 void tank_free_structure(tank_structure *p);
 mps_status tank_coupled_step(tank_model *m);
-/* Notes what the coupling has learnt, and gives it that; nothing where there is no structure. */
+/* Saves and restores the memory of the coupling; nothing without a structure. */
 mps_status tank_remember(tank_structure *p);
 mps_status tank_recall(tank_structure *p);
 double tank_deflection(const tank_model *m); /* m: of the wall, of the plate's middle */
@@ -132,8 +133,8 @@ double tank_plate_deflection(const tank_settings *s);
  * potential flow. */
 double tank_spring_omega(const tank_settings *s);
 double tank_plate_omega(const tank_settings *s);
-/* Added mass (kg) of the end wall of a tank (length INFINITY: of an endless flume) that swings with
- * w (rad/s), without the part of the travelling wave. */
+/* Added mass (kg) of the end wall of a tank (length INFINITY: of an infinite flume) that oscillates
+ * with w (rad/s), without the part of the travelling wave. */
 double tank_added_mass(double w, double length, double depth);
 /* Semi-axes (m) and pressure in the middle (Pa) of the drop of radius R at time t. */
 void tank_drop(double radius, double t, double *a, double *b, double *centre);
@@ -151,7 +152,7 @@ typedef struct tank_response {
   double amplitude, lag;      /* m; rad, behind the force of the waves on a wall at rest */
   double ratio;               /* of the waves' frequency to the wall's in water */
 } tank_response;
-/* What lasts in an endless flume. */
+/* The steady part in an infinite flume. */
 void tank_flume(const tank_settings *s, tank_response *r);
 /* Stiffness (N/m) of the wall whose frequency is the waves' over `ratio`. */
 double tank_resonant_stiffness(const tank_settings *s, double ratio);
@@ -162,7 +163,7 @@ mps_status tank_linear(const tank_settings *s, int64_t count, const tank_sample 
 
 /* results.c: tables, summary, pictures, the last lines on stdout. */
 bool tank_write(app *a, tank_model *m);
-/* theory.c: warns where motions are beyond what model and theory cover. */
+/* theory.c: warns of motions beyond the range of model and theory. */
 void tank_warn(app *a, const tank_model *m);
 
 #endif

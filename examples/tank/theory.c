@@ -22,7 +22,7 @@ void tank_drop(double radius, double t, double *a, double *b, double *centre) {
 
 /* ---- wall on a spring ------------------------------------------------------------------------ */
 
-/* Added mass (kg) of the end wall of a closed tank that swings with w: the sum over the k with
+/* Added mass (kg) of the end wall of a closed tank that oscillates with w: the sum over the k with
  * k tan(k d) = -w^2/g of rho I^2 coth(k L)/(k N), I the integral of cos(k y) over the depth, N that
  * of its square. The travelling wave carries next to nothing at the frequencies of a stiff spring.
  */
@@ -131,7 +131,7 @@ double tank_plate_omega(const tank_settings *s) {
 
 #define UPRIGHT 0.05 /* rad */
 
-/* The heave and its theory are those of a box that stays upright. */
+/* The heave and its theory assume a box that stays upright. */
 static void warn_of_roll(app *a, const tank_model *m) {
   if (m->roll > UPRIGHT)
     app_warn(a,
@@ -140,8 +140,9 @@ static void warn_of_roll(app *a, const tank_model *m) {
              180.0 / WAVES_PI * m->roll);
 }
 
-#define THIN 0.3 /* of the thickness: where a plate held at both ends begins to act as a membrane  \
-                  */
+#define THIN                                                                                       \
+  0.3 /* of the thickness: where a plate held at both ends begins to act as a membrane             \
+       */
 
 static void warn_of_bending(app *a, const tank_model *m) {
   const tank_sample *bent = m->sample;

@@ -7,7 +7,7 @@
 
 typedef struct field {
   mps_particles *particles; /* borrowed; of several ranks this one's share */
-  int64_t count;            /* of all ranks; 0: no map wanted */
+  int64_t count;            /* of all ranks; 0: no map */
   double *peak;             /* |acceleration|, m/s2, by particle id; of others' particles 0 */
 } field;
 

@@ -1,4 +1,4 @@
-/* files.c - frames for ParaView and checkpoints, written at the instants that the options ask for.
+/* files.c - frames for ParaView and checkpoints, written at the instants that the options request.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "files.h"
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a checkpoint of this program says it is of. */
+/* Identification of a checkpoint of this program. */
 static mps_checkpoint own_checkpoint(void) {
   mps_checkpoint info = mps_checkpoint_defaults();
   snprintf(info.user_key, sizeof info.user_key, "mps-wave 1");
@@ -25,7 +25,7 @@ bool files_peek(app *a, settings *s) {
   if (!s->restart) return true;
   mps_checkpoint info = own_checkpoint();
   if (!app_check(a, mps_checkpoint_info(a->context, s->restart, &info))) return false;
-  s->dt = info.dt; /* a run goes on with its own time step */
+  s->dt = info.dt; /* a run continues with its own time step */
   return true;
 }
 
@@ -48,7 +48,7 @@ static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const fi
   return app_agree(a, ok) && app_check(a, mps_dynamics_restore(dynamics, s->restart, NULL));
 }
 
-/* Of a run that goes on, a name that leaves the frames of the first half alone. */
+/* For a restarted run, a name that leaves the frames of the first half alone. */
 static void name_series(const settings *s, double now, char name[48]) {
   if (s->restart)
     snprintf(name, 48, "wave-from-%g.vtkhdf", now);
@@ -75,7 +75,7 @@ static bool open_recorder(app *a, const settings *s, double now, files *f) {
   return app_agree(a, ok);
 }
 
-/* Saves what the files `user` are of. */
+/* Saves the solver of the files `user`. */
 static mps_status write_checkpoint(void *user) {
   const files *f = user;
   mps_checkpoint info = own_checkpoint();
@@ -109,7 +109,7 @@ bool files_open(app *a, const settings *s, double duration, results_so_far *so_f
   return s->frames > 0 ? open_recorder(a, s, now, out) : true;
 }
 
-/* The present frame, by rank 0; what becomes of it is known to all. */
+/* The present frame, by rank 0; its status is known to all. */
 static mps_status write_frame(files *f, double now) {
   mps_particles *whole;
   mps_status status = files_gather(f, &whole);
@@ -138,8 +138,9 @@ mps_status files_record(files *f, mps_status status) {
 }
 
 bool files_close(app *a, files *f, bool diverged, bool interrupted) {
-  bool ok = !f->failed; /* the run ended by that, and has told it */
-  /* an interrupted run can go on from where it stopped; a diverged one from the last good state */
+  bool ok = !f->failed; /* the run ended by that, and has reported it */
+  /* an interrupted run can continue from where it stopped; a diverged one from the last good state
+   */
   if (!diverged && ok) resume_save_now(a, &f->saves);
   if (f->saves.saved) app_wrote(a, f->saves.path);
   if (interrupted) resume_tell(&f->saves);

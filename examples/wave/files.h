@@ -13,22 +13,22 @@ typedef struct files {
   mps_particles *particles;       /* borrowed; of several ranks this one's share */
   mps_domain *domain;             /* borrowed; NULL: one process */
   mps_particles *whole;           /* rank 0 of several: all ranks' particles, to write */
-  mps_recorder *recorder;         /* NULL: no frames wanted */
+  mps_recorder *recorder;         /* NULL: no frames */
   char *series;                   /* its file */
-  double frame_every, next_frame; /* s; 0: no frames wanted */
+  double frame_every, next_frame; /* s; 0: no frames */
   resume_schedule saves;          /* checkpoints */
   mps_dynamics *dynamics;         /* borrowed */
   app *a;                         /* borrowed */
   bool failed;                    /* files_record, which ended the run */
-  results_so_far *so_far;         /* borrowed: what a checkpoint keeps of the results */
+  results_so_far *so_far;         /* borrowed: results in a checkpoint */
 } files;
 
 /* Reads the time step of the checkpoint that the options name, before the solver is made. */
 bool files_peek(app *a, settings *s);
-/* Puts the checkpoint back, if any, and opens what the options ask for. */
+/* Restores the checkpoint, if any, and opens the files of the options. */
 bool files_open(app *a, const settings *s, double duration, results_so_far *so_far,
                 mps_dynamics *dynamics, files *out);
-/* Writes what is due; call it with fields up to date. `status` is what has become of this rank so
+/* Writes the files that are due; call it with fields up to date. `status` is that of this rank so
  * far. As the others with a solver: on all ranks, of which rank 0 writes. */
 mps_status files_record(files *f, mps_status status);
 /* The particles of all ranks, brought up to date on rank 0; NULL on the others, or on an error. */

@@ -12,7 +12,7 @@
 /* ---- choice of the particles ----------------------------------------------------------------- */
 
 /* Adds component `component` of the particle nearest to (x, depth below the surface there), whose
- * place is put into the list. */
+ * position is added to the list. */
 static void add(receivers *r, const column *c, double x, double depth, int32_t component,
                 double *places) {
   places[2 * r->count] = x, places[2 * r->count + 1] = column_surface(c, x) - depth;
@@ -101,7 +101,7 @@ static mps_status record_energy(receivers *r, mps_dynamics *dynamics) {
 
 mps_status receivers_record(receivers *r, mps_dynamics *dynamics, mps_domain *domain) {
   mps_view acceleration;
-  /* The accelerations are those that the last step began with. */
+  /* The accelerations are those of the beginning of the last step. */
   if (mps_dynamics_steps(dynamics) == 0) return MPS_OK;
   const double t = mps_dynamics_time(dynamics) - mps_dynamics_dt(dynamics);
   if (r->rows > 0 && receivers_time(r, r->rows - 1) == t) return MPS_OK; /* the end of the run */

@@ -16,7 +16,7 @@ static void add(char *text, const char *name, double value) {
   snprintf(text + at, TEXT - at, "%s %.17g\n", name, value);
 }
 
-/* What must be the same when a run goes on. */
+/* Values that must be the same at a restart. */
 static void describe(const settings *s, char *text) {
   text[0] = '\0';
   const struct {

@@ -1,5 +1,5 @@
-/* restart.h - what a checkpoint of mps-wave keeps besides the solver: the options that make the
- * model, and the results so far.
+/* restart.h - data of a checkpoint of mps-wave besides the solver: the options of the model, and
+ * the results so far.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_WAVE_RESTART_H
 #define EXAMPLES_WAVE_RESTART_H
@@ -16,7 +16,7 @@ typedef struct results_so_far {
 
 /* Options and results as one block, to be freed by the caller; NULL: out of memory. */
 void *restart_pack(const results_so_far *r, int64_t *size);
-/* Puts the results back. False with an error line that names the first option that differs. */
+/* Restores the results. False with an error line that names the first option that differs. */
 bool restart_unpack(app *a, results_so_far *r, const void *block, int64_t size);
 
 #endif

@@ -31,7 +31,7 @@ static double best_lag(int64_t n, const double *x, const double *y, double dt, d
       best = lag;
     }
   }
-  /* A maximum at the end of what was recorded is no maximum. */
+  /* A maximum at the end of the records does not count. */
   if (best <= from || best >= to || best + 2 >= n) return NAN;
   const double before = correlation(n, x, y, best - 1), after = correlation(n, x, y, best + 1);
   const double bend = before - 2.0 * most + after;

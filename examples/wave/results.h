@@ -1,4 +1,4 @@
-/* results.h - what a run of mps-wave found, against theory: summary.json, the picture, last line.
+/* results.h - results of a run of mps-wave, against theory: summary.json, the picture, last line.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_WAVE_RESULTS_H
 #define EXAMPLES_WAVE_RESULTS_H

@@ -179,7 +179,7 @@ int settings_parse(settings *s, int argc, char **argv) {
   return code;
 }
 
-/* ---- what follows from the options ----------------------------------------------------------- */
+/* ---- derived from the options ---------------------------------------------------------------- */
 
 /* The height is known now. */
 static bool check_size(app *a, const settings *s) {

@@ -34,7 +34,7 @@ typedef struct settings {
   layers ground;
 } settings;
 
-/* Fills `s` from the command line. Returns -1 to go on, or the exit code. */
+/* Fills `s` from the command line. Returns -1 to continue, or the exit code. */
 int settings_parse(settings *s, int argc, char **argv);
 /* Reads the layers file, or makes the one layer that the options describe, and checks it against
  * the height of the model. */

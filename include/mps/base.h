@@ -68,7 +68,7 @@ MPS_API const char *mps_status_text(mps_status status);
 
 /** Version of the library that is linked, "MAJOR.MINOR.PATCH". Thread safe. */
 MPS_API const char *mps_version(void);
-/** The same as a number, to compare with MPS_VERSION_NUMBER. Thread safe. */
+/** Version of the library as a number, to compare with MPS_VERSION_NUMBER. Thread safe. */
 MPS_API int32_t mps_version_number(void);
 
 /* The one table of optional parts: X(name, value, text). */

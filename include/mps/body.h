@@ -126,11 +126,11 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_mesh(mps_context *context, cons
                                                       int64_t vertices, const double *xyz,
                                                       int64_t triangles, const int32_t *corner,
                                                       mps_body **out);
-/** The same from an STL file, binary or ASCII, one solid; its coordinates times `scale` (> 0; 0.001
- *  for a file in mm) are m. Corners are joined where they are the same numbers; the normals in the
- *  file are not used. MPS_ERROR_IO when it cannot be read, MPS_ERROR_FORMAT when it is not a whole
- *  STL file: the message has path and line (ASCII) or byte (binary, as `path:@byte`). Other errors
- *  as mps_body_create_mesh. */
+/** As mps_body_create_mesh from an STL file, binary or ASCII, one solid; its coordinates times
+ *  `scale` (> 0; 0.001 for a file in mm) are m. Corners are joined where they are the same numbers;
+ *  the normals in the file are not used. MPS_ERROR_IO when it cannot be read, MPS_ERROR_FORMAT when
+ *  it is not a whole STL file: the message has path and line (ASCII) or byte (binary, as
+ *  `path:@byte`). Other errors as mps_body_create_mesh. */
 MPS_API MPS_NODISCARD mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def,
                                                      const char *path, double scale,
                                                      mps_body **out);

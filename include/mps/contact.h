@@ -94,7 +94,7 @@ static inline mps_contact_def mps_contact_defaults(void) {
   return def;
 }
 
-/** Ends the contact, gives up the handle and nulls it; accepts NULL. In a callback of the solver it
+/** Ends the contact, releases the handle and nulls it; accepts NULL. In a callback of the solver it
  *  only records MPS_ERROR_STATE. */
 MPS_API void mps_contact_destroy(mps_contact **contact);
 

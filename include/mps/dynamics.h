@@ -19,7 +19,7 @@
  * `reaction` (N).
  *
  * After a step to time t = mps_dynamics_time the positions, displacements and rotations are those
- * of t; accelerations, pressures and reactions those that the step began with, of t - dt
+ * of t; accelerations, pressures and reactions are those of the beginning of the step, t - dt
  * (mps_dynamics_refresh brings accelerations and pressures to t); velocity and spin those of t -
  * dt/2 (Verlet, leapfrog) or of t (Euler).
  *
@@ -333,10 +333,10 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_rollback(mps_dynamics *dynamics,
  *  */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path,
                                                    const mps_checkpoint *info);
-/** Puts the state of mps_dynamics_save into a solver that was built in the same way: set,
- *  definition (but dt), boundaries. Particles are removed or restored as in the file. Coefficients
- *  follow the fields in the file. MPS_ERROR_FORMAT, changing nothing: a file of another model, the
- *  message says in what. `info` (NULL: not wanted) as for mps_checkpoint_info. */
+/** Restores a file of mps_dynamics_save in a solver that was built in the same way: set, definition
+ *  (but dt), boundaries. Particles are removed or restored as in the file. Coefficients follow the
+ *  fields in the file. MPS_ERROR_FORMAT, changing nothing: a file of another model, the message
+ *  says in what. `info` (may be NULL) as for mps_checkpoint_info. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path,
                                                       mps_checkpoint *info);
 

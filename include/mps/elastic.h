@@ -12,8 +12,9 @@
  * The solver reads the fields `young` (Pa, 1e-30 to 1e30), `poisson` (-0.99 <= nu < 0.5), for
  * motions `density` (kg/m3, 1e-30 to 1e30), and at every solution and step `external_force` (N)
  * where the set has it; it writes `displacement`, `reaction`, in motions `velocity` and
- * `acceleration`, and when asked the stresses. Vectors have three components in 2D too; the third
- * is not read, and written as 0. In 2D all forces, masses and energies are those of the `measure`.
+ * `acceleration`, and by mps_elastic_update_stress the stresses. Vectors have three components in
+ * 2D too; the third is not read, and written as 0. In 2D all forces, masses and energies are those
+ * of the `measure`.
  *
  *
  *

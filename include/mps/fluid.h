@@ -173,7 +173,7 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary(mps_fluid *fluid, int32_
  *  MPS_ERROR_STATE: a step is open, or a callback of the solver is running. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_boundary(mps_fluid *fluid, int32_t number);
 
-/** How a wall without a signal moves: `velocity` (m/s) at the end of the next step, or of the open
+/** Motion of a wall without a signal: `velocity` (m/s) at the end of the next step, or of the open
  *  one, and `displacement` (m) there from where the wall was added, both along the normal (into the
  *  fluid), one value a node (mps_fluid_boundary_def.nodes; else one). `displacement` NULL: the mean
  *  of the velocities before and after takes it there. It is used for one step; afterwards the wall
@@ -221,7 +221,7 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, in
 
 /* ---- bodies ---------------------------------------------------------------------------------- */
 
-/** Puts a rigid body into the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
+/** Adds a rigid body to the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
  *  together may have 16 edges. `kind` is that of its surface, HELD (no slip) or ROLLER (slip). The
  *  caller moves it (mps_body_advance, mps_body_set_motion), or another solver does: its position
@@ -266,9 +266,9 @@ typedef enum mps_fluid_load_kind {
                                  squall, the air in a chamber. Not with the classical scheme */
 } mps_fluid_load_kind;
 
-/** A load, times factor times signal in each component, on the particles of a list, those that are
- * in a box as a step begins, or all where neither is given. Loads add up. Forces that another code
- * computes go into the field `external_force` instead. */
+/** A load, times factor times signal in each component, on the particles of a list, those in a box
+ *  at the beginning of a step, or all where neither is given. Loads add up. Forces that another
+ *  code computes go into the field `external_force` instead. */
 typedef struct mps_fluid_load_def {
   uint32_t struct_size;
   int32_t kind;       /* mps_fluid_load_kind, default BODY */

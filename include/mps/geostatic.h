@@ -58,7 +58,7 @@ static inline mps_geostatic_def mps_geostatic_defaults(void) {
 }
 
 /** Sets the stress at rest of every particle, adding the field where the set lacks it: vertically
- *  the weight of what lies above the particle's centre, summed layer by layer without an error of
+ *  the weight of the ground above the particle's centre, summed layer by layer without an error of
  *  integration, horizontally K0 times that, no shear. In 2D the direction out of the plane, or the
  *  hoop, is horizontal. Under a level surface this is in balance; under a slope it is a start.
  *  MPS_ERROR_ARGUMENT: a value out of range, a particle above the surface or below the lowest

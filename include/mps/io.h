@@ -1,7 +1,7 @@
 /* mps/io.h - results and restart: a series of frames that ParaView opens (VTKHDF), and checkpoints
  * from which a run continues bit for bit. Both are HDF5 files; docs/output.md shows their layout.
  *
- * A libmps built without HDF5 has these functions too: those that return a status then return
+ * A libmps built without HDF5 has these functions too: functions with a status then return
  * MPS_ERROR_UNSUPPORTED.
  *
  * Thread rule: one thread at a time per context. Distinct contexts may write and read at once:
@@ -42,7 +42,7 @@ static inline mps_recorder_def mps_recorder_defaults(void) {
 /** Begins a series of the set `particles`, which the recorder keeps alive. The fields are those the
  *  set has now, so create the solver first. MPS_ERROR_FIELD: the set lacks a name of the list;
  *  MPS_ERROR_IO: the file cannot be written; MPS_ERROR_UNSUPPORTED: no HDF5, or one without zlib
- *  where compression is asked for. The file is opened only after all other checks. */
+ *  where `compression` is not 0. The file is opened only after all other checks. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
                                                      const mps_recorder_def *def,
                                                      mps_recorder **out);
@@ -69,7 +69,7 @@ MPS_API void mps_recorder_destroy(mps_recorder **recorder);
  * Of a set alone. The state of a solver is more than the fields: mps_S_save and mps_S_restore of
  * its own header, which take a mps_checkpoint too, save and restore it with its set. */
 
-/** What a checkpoint keeps besides the fields. */
+/** Data of a checkpoint besides the fields. */
 typedef struct mps_checkpoint {
   uint32_t struct_size;
   int32_t reserved;
@@ -109,7 +109,7 @@ MPS_API MPS_NODISCARD mps_status mps_checkpoint_write(mps_particles *particles, 
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const char *path,
                                                      mps_checkpoint *info);
 
-/** Puts the fields of a checkpoint back, bit for bit, into a set that has the same particles
+/** Restores the fields of a checkpoint, bit for bit, in a set that has the same particles
  *  (dimension, spacing, number, ids; their order may differ), adding fields that the set lacks;
  *  fields that the file lacks keep their values. `info` is as for mps_checkpoint_info. Order and
  *  epoch of the set stay. Needs memory for a second copy of all fields. On an error nothing has

@@ -8,7 +8,7 @@
  * 64 near bodies and walls.
  *
  * The solver works in the fields of the particle set itself (zero copy), and sorts the set when a
- * particle has gone a cell beyond its block: views taken before are then stale (their epoch). It
+ * particle has moved a cell beyond its block: views taken before are then stale (their epoch). It
  * reads `density` (kg/m3, > 0) at creation, and `volume` (of the measure; where 0, the spacing to
  * the power of the dimension times the measure, in axisymmetry times the radius), `velocity`,
  * `velocity_gradient` and `stress` where the set has them; it writes these and `mass` and
@@ -141,9 +141,9 @@ MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 
 /** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the
  *  first step or between steps; at most 16 different materials in a solver, including that of
- *  creation. The material is kept alive. Its history begins anew in these particles, by the law's
- *  initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0:
- *  1, and all 0: no deformation). Fields that only this law needs are added to the set; the field
+ *  creation. The material is kept alive. Its history in these particles is set to the law's initial
+ *  values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0: 1, and
+ *  all 0: no deformation). Fields that only this law needs are added to the set; the field
  *  `material` has each particle's law. The Courant limit, and the stiffness of penalty contacts
  *  without a `penalty` of their own, follow at once. MPS_ERROR_ARGUMENT: an unknown id, a volume
  *  ratio below 0, or too many materials; MPS_ERROR_STATE: a step has failed, or a callback of the
@@ -270,7 +270,7 @@ static inline mps_status mps_mpm_get_reaction(const mps_mpm *mpm, int32_t number
                                               mps_reaction *out) {
   return mps_mpm_get_reaction_sized(mpm, number, out, sizeof *out);
 }
-/** Shorthand: the side `side` of the domain becomes of `kind`, at rest, with `friction`. */
+/** Shorthand: the side `side` of the domain gets `kind`, at rest, with `friction`. */
 static inline mps_status mps_mpm_set_side(mps_mpm *mpm, int32_t side, int32_t kind,
                                           double friction) {
   mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
@@ -326,10 +326,10 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t numbe
  *  with a particle too deep in a body (MPS_ERROR_DIVERGED), without memory (MPS_ERROR_MEMORY), or
  *  with a user's law that fails is undone, except perhaps for the order of the particles. A step in
  *  which a particle leaves the domain (MPS_ERROR_DIVERGED) is complete and counted; no other is
- *  made until the particle is put back (mps_particles_edit of `position`) or removed, or the solver
- *  is rolled back. A step with a velocity or volume that is not finite (MPS_ERROR_DIVERGED) leaves
- *  that state for inspection: only mps_mpm_rollback or mps_mpm_restore continue from there, others
- *  return MPS_ERROR_STATE. The record names step and particle. */
+ *  made until the particle is moved back (mps_particles_edit of `position`) or removed, or the
+ *  solver is rolled back. A step with a velocity or volume that is not finite (MPS_ERROR_DIVERGED)
+ *  leaves that state for inspection: only mps_mpm_rollback or mps_mpm_restore continue from there,
+ *  others return MPS_ERROR_STATE. The record names step and particle. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end. A status other than
@@ -411,7 +411,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapsh
 MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
                                               const mps_checkpoint *info);
 
-/** Puts the state of mps_mpm_save into a solver that was built in the same way; its set takes the
+/** Restores a file of mps_mpm_save in a solver that was built in the same way; its set takes the
  *  particles of the file. These must agree: spacing, geometry, scheme, spline, cell, origin, places
  *  and kinds of walls and boxes, number of loads, whether there are body accelerations, names and
  *  order of materials, and the shapes, motions and numbers of parts of the bodies in their order.
@@ -421,7 +421,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
  *  particles, friction, masses of bodies.
  *
  *  The set takes the order of the file: views taken before are stale. On an error nothing has
- *  changed. `info` (NULL: not wanted) is as for mps_checkpoint_info. Statuses are those of
+ *  changed. `info` (may be NULL) is as for mps_checkpoint_info. Statuses are those of
  *  mps_checkpoint_read; MPS_ERROR_FORMAT: written without a solver; MPS_ERROR_ARGUMENT: by a solver
  *  that was built in another way, the message says in what; MPS_ERROR_STATE: another solver uses
  *  the set. */

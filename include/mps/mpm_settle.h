@@ -5,8 +5,8 @@
  * (dynamic relaxation with kinetic damping). Steps are those of mps_mpm_step, with these
  * differences: the time is constant, so signals of loads keep their value; boundaries and bodies in
  * contact are at rest, also driven ones. Reactions are those of the last step; impulses, works, the
- * budget and mps_mpm_steps go on. Laws whose stress depends on the rate of strain see the rates of
- * this motion, which are not those of the real one.
+ * budget and mps_mpm_steps continue. Laws whose stress depends on the rate of strain see the rates
+ * of this motion, which are not those of the real one.
  *
  * Thread rule: as mps/mpm.h.
  * SPDX-License-Identifier: BSD-3-Clause */

@@ -77,7 +77,7 @@ public:
 
   T *get() const noexcept { return object_; }
   operator T *() const noexcept { return object_; }
-  /** Whose error record tells why a call with this object failed. */
+  /** The context with the error record of failed calls of this object. */
   mps_context *error_context() const noexcept { return context_; }
   void reset() noexcept;                                            /* destroys the object */
   T *release() noexcept { return std::exchange(object_, nullptr); } /* gives it up */
@@ -311,7 +311,7 @@ public:
   }
   int64_t size() const noexcept { return view_.shape[0]; }
   int64_t components() const noexcept { return view_.shape[1]; }
-  /** Particles have come, gone or been sorted since: the array must be taken again. */
+  /** Particles were added, removed or sorted since: the array must be taken again. */
   bool stale() const noexcept { return mps_particles_epoch(set_) != view_.epoch; }
   const V &operator()(int64_t i, int64_t c = 0) const noexcept { return *at(i, c); }
   const V *data() const noexcept { return at(0, 0); }

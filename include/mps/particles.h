@@ -142,10 +142,10 @@ MPS_API MPS_NODISCARD mps_status mps_particles_edit(mps_particles *particles, co
                                                     mps_edit *out);
 /** Ends the editing of a field. Its values must be finite and in the field's range
  *  (docs/fields.md), and satisfy the solver that holds the set: positions inside its domain. It
- *  reads them before its next step, and finds neighbours and blocks of particles anew only where
- *  that is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the field stays open with
- *  the values written: correct them and commit again. Then `edit->data` is NULL, and the view is
- *  for reading as any other. MPS_ERROR_STATE: `edit` is of no open field. */
+ *  reads them before its next step, and renews neighbours and blocks of particles only where that
+ *  is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the field stays open with the
+ *  values written: correct them and commit again. Then `edit->data` is NULL, and the view is for
+ *  reading as any other. MPS_ERROR_STATE: `edit` is of no open field. */
 MPS_API MPS_NODISCARD mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit);
 /** Ends the editing with the values from before mps_particles_edit; solvers are not notified.
  *  MPS_ERROR_ARGUMENT: NULL; MPS_ERROR_STATE: `edit` is of no open field. */

@@ -4,8 +4,8 @@
  * the caller's own, mps_signal_create_user, as far as its function may). Before its first instant a
  * signal is at rest: v = a = 0, and u is 0, or what a table begins with.
  *
- * What lies before t = 0 displaces nothing at the start: tables of velocities and accelerations are
- * integrated so that u(0) = 0 when they begin before t = 0, and u = 0 at their first sample
+ * Motion before t = 0 gives no displacement at the start: tables of velocities and accelerations
+ * are integrated so that u(0) = 0 when they begin before t = 0, and u = 0 at their first sample
  * otherwise. Formats, units and the baseline correction of recorded motions are explained in
  * docs/signals.md.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -18,7 +18,7 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_signal mps_signal;
 
-/** What the samples of a table or record are. */
+/** Quantity of the samples of a table or record. */
 typedef enum mps_signal_quantity {
   MPS_SIGNAL_QUANTITY_DISPLACEMENT = 2, /* m */
   MPS_SIGNAL_QUANTITY_VELOCITY = 1,     /* m/s */
@@ -32,7 +32,7 @@ typedef enum mps_signal_quantity {
  *  acceleration. An offset of the instrument is a velocity trend of degree 1, a linear drift one of
  *  degree 2, a parabolic drift one of degree 3. */
 typedef enum mps_signal_baseline {
-  MPS_SIGNAL_BASELINE_NONE = 1,      /* integrate as it is */
+  MPS_SIGNAL_BASELINE_NONE = 1,      /* without correction */
   MPS_SIGNAL_BASELINE_MEAN = 2,      /* a - v(T)/T: the mean over time, so that v(T) = 0 */
   MPS_SIGNAL_BASELINE_LINEAR = 0,    /* a - c1 */
   MPS_SIGNAL_BASELINE_QUADRATIC = 3, /* a - c1 - 2 c2 t */
@@ -98,8 +98,8 @@ typedef enum mps_signal_record_format {
     '#' comments; one optional header line; uneven steps allowed */
 } mps_signal_record_format;
 
-/** How to read a record; always start from mps_signal_record_def_init or
- * mps_signal_record_defaults. */
+/** Reading of a record; always start from mps_signal_record_def_init or mps_signal_record_defaults.
+ *  */
 typedef struct mps_signal_record_def {
   uint32_t struct_size;
   int32_t format;   /* mps_signal_record_format, default AUTO */

@@ -17,7 +17,7 @@
  *   mps_S_set_boundary, mps_S_set_load, mps_S_remove_boundary, mps_S_remove_load
  *                          by that number; MPS_ERROR_ARGUMENT where there is none of it
  *   mps_S_get_reaction     what a boundary exerts (mps_reaction)
- *   mps_S_step, mps_S_run  ask the cancel hook: MPS_ERROR_CANCELLED, between two steps
+ *   mps_S_step, mps_S_run  call the cancel hook: MPS_ERROR_CANCELLED, between two steps
  *   mps_S_time, mps_S_dt, mps_S_limit   s, 0 for NULL; mps_S_steps: taken so far, 0 for NULL
  *   mps_S_get_totals       sums over the particles (mps_totals)
  *   mps_S_save, mps_S_restore (files); mps_S_snapshot, mps_S_rollback (memory)

@@ -22,7 +22,7 @@ context.mpm_create(...). The C header says what it does. So much is different:
 - a callback is a Python function, without C's `user`; an exception in it ends the call and comes out.
 
 A particle set gives its fields as NumPy arrays without a copy: sand["velocity"], for reading. They
-raise StaleError once particles have come, gone or been sorted. To write:
+raise StaleError once particles were added, removed or sorted. To write:
 
     with sand.edit("velocity") as v:
         v[:, 0] = 1.0

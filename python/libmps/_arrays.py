@@ -21,14 +21,14 @@ class _Loan:
         """Why the memory may not be looked at any more; None where it may."""
         if self.ended is None and (self.owner.pointer is None or
                                    library.mps_particles_epoch(self.owner.pointer) != self.epoch):
-            self.ended = "particles have come, gone or been sorted: take the field again"
+            self.ended = "particles were added, removed or sorted: take the field again"
         return self.ended
 
 
 class Field(NDArrayOperatorsMixin):
     """A field of particles, without a copy: (particles, components), or (particles,) for one
     component. It computes and answers as a NumPy array does; parts and turned views of it are fields
-    too. Using it after particles have come, gone or been sorted raises StaleError. numpy.array(field)
+    too. Using it after particles were added, removed or sorted raises StaleError. numpy.array(field)
     copies it; numpy.asarray(field) gives a copy that cannot be written, as writes would be lost."""
 
     __slots__ = ("_loan", "_memory")

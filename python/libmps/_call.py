@@ -45,7 +45,7 @@ class Error(Exception):
 
 
 class StaleError(Exception):
-    """An array of a field whose particles have come, gone or been sorted since."""
+    """An array of a field whose particles were added, removed or sorted since."""
 
 
 # ---- what C gives -------------------------------------------------------------------------------

@@ -238,8 +238,8 @@ static mps_status check_fans(mps_context *context, const char *function, const m
     } while (at != s);
     if (count[v] != 0)
       status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                         "at (%g, %g, %g) m, a corner of triangle %lld, parts of the surface touch "
-                         "in a point",
+                         "at (%g, %g, %g) m, a corner of triangle %lld, parts of the surface have "
+                         "a single point in common",
                          mesh->xyz[3 * (int64_t)v], mesh->xyz[3 * (int64_t)v + 1],
                          mesh->xyz[3 * (int64_t)v + 2], (long long)(s / 3));
   }

@@ -127,7 +127,7 @@ static float radius(const search *s) {
   return (float)(sqrt(s->square) / s->mesh->size * (1.0 + SLACK_RELATIVE) + s->slack);
 }
 
-static bool visit(struct RTCPointQueryFunctionArguments *args) {
+static bool query_triangle(struct RTCPointQueryFunctionArguments *args) {
   search *s = args->userPtr;
   measure(s, args->primID);
   const float smaller = radius(s);
@@ -152,7 +152,7 @@ static search nearest(const mpsi_mesh *mesh, const double *x) {
   struct RTCPointQuery query = {(float)q[0], (float)q[1], (float)q[2], 0.0f, radius(&s)};
   struct RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  rtcPointQuery(mesh->scene, &query, &context, visit, &s);
+  rtcPointQuery(mesh->scene, &query, &context, query_triangle, &s);
   return s;
 }
 

@@ -228,7 +228,7 @@ mps_status mps_body_advance(mps_body *body, double dt) {
   if (mpsi_body_mover(body))
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
                      "a solver moves this body: end that contact first, make it with mover 1 "
-                     "(other), or let the body no longer float");
+                     "(other), or set floats 0 for the body");
   const mps_status status = mpsi_body_look_ahead(body, __func__, -1, dt);
   if (status != MPS_OK) return status;
   const mps_body before = *body;
@@ -318,7 +318,7 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
   mps_body_motion motion = motion_defaults;
   if (!user_motion && free_body)
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "motion is NULL, and a free body has no signals to go back to");
+                     "motion is NULL, and a free body follows no signals");
   if (!user_motion) {
     mpsi_course course;
     const mps_status status = find_courses(body, used_by(body, __func__), -1, body->time, &course);

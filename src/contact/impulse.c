@@ -1,9 +1,9 @@
 /* impulse.c - see impulse.h. SPDX-License-Identifier: BSD-3-Clause */
-#include "visit.h"
+#include "update.h"
 
 #include <string.h>
 
-#define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own answer is not a size any more */
+#define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own result is not a size any more */
 #define RECOVERED 0.05     /* of an overlap, in a step: more is rougher */
 #define FASTEST 0.02       /* of the waves, at which an overlap opens: it must not throw */
 

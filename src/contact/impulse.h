@@ -3,9 +3,9 @@
  * outward normal n there and its own half size e is in contact over the gap g = D - e, D the
  * surface's distance. An impulse P n + T, with P >= 0 and |T| <= mu P, acts at x_c such that the
  * relative velocity there, u, is at least w along n (P > 0: just w) and does not slide unless |T|
- * is at its bound. Who owns the mass on the other side (nodes of a grid, ...) is the solver's:
- * it tells u and the mobility 1/m_c of its side. Vectors have three components, of which the last
- * is 0 in 2D. A visit of a sweep is in visit.h. SPDX-License-Identifier: BSD-3-Clause */
+ * is at its bound. The mass on the other side (nodes of a grid, ...) belongs to the solver, which
+ * passes u and the mobility 1/m_c of its side. Vectors have three components, of which the last
+ * is 0 in 2D. One Gauss-Seidel update is in update.h. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IMPULSE_H
 #define MPSI_IMPULSE_H
 
@@ -80,7 +80,7 @@ typedef struct mpsi_impulse {
 } mpsi_impulse;
 
 /* Begins with `share` of the last step's impulse `last` (N s), split on the present normal, or with
- * none where that pulled; `by` (N s) is what acts on the particle. Before all visits of a step. */
+ * none where that pulled; `by` (N s) is what acts on the particle. Before all updates of a step. */
 void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
                        double fraction, double *by);
 

@@ -1,4 +1,4 @@
-/* coupling_private.h - a coupling: the values tried and answered, and the differences that the
+/* coupling_private.h - a coupling: iterates, their answers H, and the differences that the
  * quasi-Newton method learns from. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_COUPLING_PRIVATE_H
 #define MPSI_COUPLING_PRIVATE_H

@@ -1,5 +1,5 @@
 /* swing.c - whether the values agreed on swing faster than the steps follow. Changes y of a value
- * that swings by w radians a step obey y(n+1) + y(n-1) = 2 cos(w) y(n), whatever its mean. The
+ * that oscillates by w radians a step obey y(n+1) + y(n-1) = 2 cos(w) y(n), whatever its mean. The
  * factor by least squares over some 64 steps is w of what dominates; what it leaves over is small
  * only where one frequency does: waves with a little noise, or impacts, say nothing.
  * SPDX-License-Identifier: BSD-3-Clause */

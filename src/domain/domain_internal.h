@@ -50,13 +50,13 @@ mps_status mpsi_domain_agree_given(mps_domain *domain, const char *function, mps
 /* The same, and the greatest of each value: at most MPSI_DOMAIN_ALONG - 2. */
 mps_status mpsi_domain_agree_given_max(mps_domain *domain, const char *function, mps_status status,
                                        const mpsi_given *list, int32_t count, double *values);
-mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
-                                        mps_particles *particles);
+mps_status mpsi_domain_agree_particles(mps_domain *domain, const char *function, mps_status status,
+                                       mps_particles *particles);
 
 /* parts.c: whether the set is in parts on all ranks or on none, with the same fields and constants.
  */
-mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mps_status status,
-                                    const mps_particles *particles);
+mps_status mpsi_domain_agree_parts(mps_domain *domain, const char *function, mps_status status,
+                                   const mps_particles *particles);
 
 /* parts.c: each particle with all its fields to rank to[k], which may be this one. The same fields
  * on all ranks. `status` is that of making the list; on an error nothing has changed. */

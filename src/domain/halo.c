@@ -22,8 +22,8 @@ static int compare(const void *left, const void *right) {
 }
 
 /* One message to each rank that owns guests: `value` of each of them, in their order. */
-static mps_status ask_owners(mpsi_halo *halo, const char *function, const int32_t *rank,
-                             const int64_t *value, mpsi_mailbox *box) {
+static mps_status request_items(mpsi_halo *halo, const char *function, const int32_t *rank,
+                                const int64_t *value, mpsi_mailbox *box) {
   mps_context *context = halo->domain->context;
   mps_domain_message *message = mpsi_alloc(context, mps_domain_size(halo->domain), sizeof *message);
   int32_t count = 0;
@@ -43,12 +43,12 @@ static mps_status ask_owners(mpsi_halo *halo, const char *function, const int32_
 static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_mailbox *asked) {
   mps_context *context = halo->domain->context;
   int64_t wanted = 0;
-  for (int32_t k = 0; k < asked->count; k++) wanted += asked->mail[k].bytes / 8;
+  for (int32_t k = 0; k < requested->count; k++) wanted += requested->mail[k].bytes / 8;
   halo->item = mpsi_alloc(context, wanted, sizeof *halo->item);
   if (!halo->item) return mpsi_fail_memory(context, function, (size_t)wanted * 8);
-  for (int32_t k = 0; k < asked->count; k++) {
-    memcpy(halo->item + halo->items, asked->mail[k].data, (size_t)asked->mail[k].bytes);
-    halo->items += asked->mail[k].bytes / 8;
+  for (int32_t k = 0; k < requested->count; k++) {
+    memcpy(halo->item + halo->items, requested->mail[k].data, (size_t)requested->mail[k].bytes);
+    halo->items += requested->mail[k].bytes / 8;
   }
   qsort(halo->item, (size_t)halo->items, sizeof *halo->item, compare);
   int64_t kept = 0;
@@ -62,20 +62,20 @@ static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_m
 static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *asked,
                          mpsi_mailbox *answers) {
   mps_context *context = halo->domain->context;
-  mps_domain_message *message = mpsi_alloc(context, asked->count, sizeof *message);
+  mps_domain_message *message = mpsi_alloc(context, requested->count, sizeof *message);
   mps_status status = message ? MPS_OK : mpsi_fail_memory(context, function, 24);
-  for (int32_t k = 0; message && k < asked->count; k++) {
-    int64_t *index = asked->mail[k].data;
-    for (int64_t i = 0; i < asked->mail[k].bytes / 8; i++)
+  for (int32_t k = 0; message && k < requested->count; k++) {
+    int64_t *index = requested->mail[k].data;
+    for (int64_t i = 0; i < requested->mail[k].bytes / 8; i++)
       index[i] = (int64_t *)bsearch(&index[i], halo->item, (size_t)halo->items, sizeof *halo->item,
                                     compare) -
                  halo->item;
     message[k] = (mps_domain_message){
-        .rank = asked->mail[k].rank, .bytes = asked->mail[k].bytes, .data = index};
+        .rank = requested->mail[k].rank, .bytes = requested->mail[k].bytes, .data = index};
   }
   status = mpsi_domain_agree(halo->domain, function, status);
   if (status == MPS_OK)
-    status = mpsi_domain_exchange(halo->domain, function, asked->count, message, answers);
+    status = mpsi_domain_exchange(halo->domain, function, requested->count, message, answers);
   mpsi_free(context, message);
   return status;
 }
@@ -108,19 +108,19 @@ static mps_status make_star(mpsi_halo *halo, const char *function, const int32_t
 mps_status mpsi_halo_create(mps_domain *domain, const char *function, const mpsi_halo_def *def,
                             mpsi_halo **out) {
   mps_context *context = domain->context;
-  mpsi_mailbox asked = {.context = context}, answers = {.context = context};
+  mpsi_mailbox requested = {.context = context}, answers = {.context = context};
   mpsi_halo *halo = *out = mpsi_alloc(context, 1, sizeof *halo);
   mps_status status = halo ? MPS_OK : mpsi_fail_memory(context, function, sizeof *halo);
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) {
     *halo = (mpsi_halo){.domain = domain, .guests = def->guests, .first = def->first};
-    status = ask_owners(halo, function, def->rank, def->index, &asked);
+    status = request_items(halo, function, def->rank, def->index, &requested);
   }
   if (status == MPS_OK)
-    status = mpsi_domain_agree(domain, function, list_items(halo, function, &asked));
-  if (status == MPS_OK) status = answer(halo, function, &asked, &answers);
+    status = mpsi_domain_agree(domain, function, list_items(halo, function, &requested));
+  if (status == MPS_OK) status = answer(halo, function, &requested, &answers);
   if (status == MPS_OK) status = make_star(halo, function, def->rank, &answers, def->columns);
-  mpsi_domain_free_mail(&asked);
+  mpsi_domain_free_mail(&requested);
   mpsi_domain_free_mail(&answers);
   if (status != MPS_OK) mpsi_halo_destroy(context, out);
   return status;

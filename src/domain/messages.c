@@ -36,7 +36,7 @@ mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t co
   status = domain->def.rendezvous(domain->def.user, count, messages, make_room, box);
   if (status == MPS_ERROR_MEMORY) /* no memory for a message: the others are valid */
     return mpsi_fail(domain->context, function, MPS_ERROR_MEMORY,
-                     "could not allocate what other ranks send");
+                     "could not allocate the messages of other ranks");
   return mpsi_domain_note(domain, function, "rendezvous", status);
 }
 

@@ -12,7 +12,7 @@ static mps_status agree_added(void *self, const char *function, mps_status statu
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "the number of particles that are added", (double)count);
-  mpsi_give(&given, "a hash of the places of what is added", mpsi_hash_short(hash));
+  mpsi_give(&given, "a hash of the positions of the added particles", mpsi_hash_short(hash));
   return mpsi_domain_agree_given(self, function, status, &given);
 }
 
@@ -68,8 +68,8 @@ mps_status mps_domain_create_particles(mps_domain *domain, const mps_particles_d
   return status;
 }
 
-mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mps_status status,
-                                    const mps_particles *particles) {
+mps_status mpsi_domain_agree_parts(mps_domain *domain, const char *function, mps_status status,
+                                   const mps_particles *particles) {
   const mpsi_deal *deal = mpsi_particles_deal(particles);
   mpsi_given given;
   mpsi_given_begin(&given);

@@ -46,8 +46,8 @@ mps_status mpsi_domain_agree_given_max(mps_domain *domain, const char *function,
   return mpsi_domain_agree(domain, function, status);
 }
 
-mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
-                                        mps_particles *particles) {
+mps_status mpsi_domain_agree_particles(mps_domain *domain, const char *function, mps_status status,
+                                       mps_particles *particles) {
   uint64_t hash = MPSI_HASH;
   for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
     mps_particles_field_info info;

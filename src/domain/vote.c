@@ -153,7 +153,7 @@ static mps_status read_vote(mps_domain *domain, const char *function, int32_t co
   const int64_t code = (int64_t)vote[STATUS], worst = code / domain->def.size;
   const int32_t rank = (int32_t)(domain->def.size - 1 - (code - worst * domain->def.size));
   for (int32_t k = 0; k < count; k++) values[k] = vote[VALUES + k];
-  if (worst == GONE) return report_gone(domain, function, rank);
+  if (worst == GONE) return report_left(domain, function, rank);
   if (vote[TAG] != -vote[LEAST_TAG]) return report_calls(domain, function, vote);
   return code == 0 ? MPS_OK : share_record(domain, function, rank, (mps_status)worst);
 }
@@ -199,8 +199,8 @@ static mps_status report_both(mps_domain *domain, const mps_error *own) {
   return domain->lost;
 }
 
-static mps_status settle_max(mps_domain *domain, const char *function, mps_status status,
-                             int32_t count, double *values) {
+static mps_status agree_max(mps_domain *domain, const char *function, mps_status status,
+                            int32_t count, double *values) {
   status = mpsi_domain_vote_begin(domain, function, status, count, values);
   return status == MPS_OK ? mpsi_domain_vote_end(domain, function, count, values) : status;
 }
@@ -210,9 +210,9 @@ mps_status mpsi_domain_agree_max(mps_domain *domain, const char *function, mps_s
   if (!mpsi_domain_many(domain)) return status;
   if (status == MPS_OK || domain->lost != MPS_OK ||
       mps_context_error(domain->context)->status != status)
-    return settle_max(domain, function, status, count, values);
+    return agree_max(domain, function, status, count, values);
   const mps_error own = *mps_context_error(domain->context);
-  status = settle_max(domain, function, status, count, values);
+  status = agree_max(domain, function, status, count, values);
   const bool left = status == MPS_ERROR_STATE; /* another rank has left: all report that */
   return domain->lost != MPS_OK && !left ? report_both(domain, &own) : status;
 }

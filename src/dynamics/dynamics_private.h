@@ -6,7 +6,7 @@
  *   coefficients.c  what forces need of the ground, particle by particle
  *   ground.c      what the body is made of; fields that the caller edits
  *   partition.c   the part of one rank in a body that lies on several
- *   change.c      other particles: what must be made anew when some leave, or come back
+ *   change.c      change of the set, by a removal or the restoration of a state
  *   removal.c     particles that leave between two steps
  *   begin.c       the initial state, and what the fields show of the present one
  *   dt.c          the length of the time step
@@ -17,7 +17,7 @@
  *   loads.c       loads: definitions, the forces of a step
  *   budget.c      energies and momenta, works of a step
  *   run.c         step and run as the caller sees them, hooks, callbacks
- *   limit.c       the stability limit; tangent.c, lattice.c what it is made from
+ *   limit.c       the stability limit; tangent.c, lattice.c its operators
  *   state.c       snapshots and checkpoints; files.c checkpoints of several ranks
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DYNAMICS_PRIVATE_H
@@ -295,7 +295,7 @@ typedef struct mpsi_dynamics_window {
 } mpsi_dynamics_window;
 mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
                               mpsi_dynamics_window *out);
-/* Displacement and rotation of ghosts as they are now; nothing to do on one rank. */
+/* Present displacement and rotation of ghosts; nothing to do on one rank. */
 mps_status mpsi_dynamics_bring_motion(mps_dynamics *dynamics, const char *function);
 /* After mpsi_dynamics_set_coefficients: those of ghosts, extremes, kind of damping. */
 mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *function,
@@ -333,10 +333,10 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
                                 const double *former);
 /* Before a step: reads edited material fields, and finds whether the motion was edited (begins), or
  * returns the error of either. `status` is this rank's so far. */
-mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *function,
-                                     mps_status status);
+mps_status mpsi_dynamics_reread_ground(mps_dynamics *dynamics, const char *function,
+                                       mps_status status);
 /* Before a query of the state: both. */
-mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
+mps_status mpsi_dynamics_read_edits(mps_dynamics *dynamics, const char *function,
                                     mps_status status);
 
 /* ---- begin.c, dt.c, run.c ---- */
@@ -349,9 +349,9 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 /* Brings position, velocity, spin and reaction up to date. */
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
 /* Chooses dt where the definition does not give it, and warns of one above the limit. */
-mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
+mps_status mpsi_dynamics_choose_dt(mps_dynamics *dynamics, const char *function);
 /* run.c: before steps: reads edited material fields and allocates the budget's arrays. */
-mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function);
+mps_status mpsi_dynamics_prepare_run(mps_dynamics *dynamics, const char *function);
 /* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; reads edited material
  * fields and chooses dt if need be. */
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);
@@ -385,9 +385,9 @@ typedef struct mpsi_dynamics_selection {
   }
 /* Status of all ranks, and whether all definitions are the same: the selection, which is added to
  * the list, and the list. */
-mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *function,
-                                           mps_status status, const mpsi_dynamics_selection *s,
-                                           mpsi_given *list);
+mps_status mpsi_dynamics_agree_definition(mps_dynamics *dynamics, const char *function,
+                                          mps_status status, const mpsi_dynamics_selection *s,
+                                          mpsi_given *list);
 /* Collective, as all definitions of boundaries and loads; `status` is that of this rank so far. */
 mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mps_status status,
                                 const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out);
@@ -415,13 +415,13 @@ void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);
 /* ---- constrain.c ---- */
 
 /* Evaluates the signals for a step from `now` to `then`: the only part of a step that can fail. */
-mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *function, double now,
-                                     double then);
+mps_status mpsi_dynamics_evaluate_signals(mps_dynamics *dynamics, const char *function, double now,
+                                          double then);
 /* Status of all ranks, and MPS_ERROR_ARGUMENT where signals of boundaries or loads have given them
  * different values; in the same reduction the greatest of each of `values`, at most
  * MPSI_DOMAIN_ALONG - 2. Collective. */
-mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *function,
-                                        mps_status status, int32_t count, double *values);
+mps_status mpsi_dynamics_agree_signals(mps_dynamics *dynamics, const char *function,
+                                       mps_status status, int32_t count, double *values);
 void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics);
 /* Begin and end of the sums of the boundaries' forces in a step. */
 void mpsi_dynamics_begin_counting(mps_dynamics *dynamics);
@@ -431,7 +431,7 @@ void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output)
 
 /* ---- loads.c ---- */
 
-mps_status mpsi_dynamics_ask_loads(mps_dynamics *dynamics, const char *function, double now);
+mps_status mpsi_dynamics_evaluate_loads(mps_dynamics *dynamics, const char *function, double now);
 /* Forces (N) on the particles in the coming step, component 0 or 1: a sum of up to two columns. */
 typedef struct mpsi_dynamics_forces {
   const double *load[2], *external[2]; /* NULL: none */

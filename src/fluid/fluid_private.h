@@ -218,7 +218,7 @@ typedef enum mpsi_fluid_change {
 /* A load of the caller, loads.c. */
 typedef struct mpsi_fluid_given {
   int32_t kind;
-  int64_t count; /* of ids, 0: none is given */
+  int64_t count; /* of ids, 0: no list */
   int64_t *ids;  /* ascending */
   double lower[2], upper[2];
   double amount[2]; /* m/s2, or Pa */
@@ -308,8 +308,7 @@ struct mps_fluid {
   mpsi_fluid_exchange exchange;
 };
 
-/* Runs task(fluid, chunk) for the chunks of `items` items on the executor, of those that are this
- * rank's. */
+/* Runs task(fluid, chunk) for this rank's chunks of `items` items on the executor. */
 typedef void (*mpsi_fluid_task)(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_for(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
 /* Runs task(data, unit, worker) for this rank's units of `size` particles on the executor. */
@@ -434,8 +433,8 @@ bool mpsi_fluid_any_afloat(const mps_fluid *fluid);
 mps_status mpsi_fluid_solve_afloat(mps_fluid *fluid, const char *function);
 /* sight.c */
 void mpsi_fluid_find_limits(mps_fluid *fluid);
-int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
-                             double *r2);
+int64_t mpsi_fluid_keep_visible(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
+                                double *r2);
 /* Whether a corner of a body, in the water, is within 1.5 l0 of particle i. */
 bool mpsi_fluid_near_corner(const mps_fluid *fluid, int64_t i);
 /* Whether an acute corner of the water is within 3.1 l0 of particle i, and within 60 degrees of the

@@ -93,7 +93,7 @@ typedef struct mpsi_elastic_load {
   int32_t kind;
   double force[3]; /* BODY, GRAVITY */
   mps_signal *signal[3];
-  double factor[3], scale[3]; /* scale: factor times the signal's value, at the time asked for */
+  double factor[3], scale[3]; /* scale: factor times the signal's value, at the requested time */
   mpsi_patch *patches;
   int64_t count, capacity;
 } mpsi_elastic_load;
@@ -220,7 +220,7 @@ struct mps_elastic {
   bool use_cg;
   double *rhs, *solution; /* unknowns each */
   double *cg_work;        /* 5 * unknowns, or NULL */
-  double *mass;           /* n, or NULL until dynamics asks for it */
+  double *mass;           /* n, or NULL until a motion needs it */
   mps_elastic_report report;
 
   mpsi_elastic_outside *outside; /* NULL: the library's own solvers */
@@ -452,12 +452,12 @@ mps_status mpsi_elastic_enter(mps_elastic *e, const char *function);
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
 /* On several ranks: an error of one is that of all. All ranks make the same calls, up to the first
  * that returns an error; `leave` is the last. */
-mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status);
+mps_status mpsi_elastic_agree(mps_elastic *e, const char *function, mps_status status);
 /* The same, and MPS_ERROR_ARGUMENT where ranks have different values of `name`. */
-mps_status mpsi_elastic_settle_given(mps_elastic *e, const char *function, mps_status status,
-                                     const mpsi_given *list);
-mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
-                                    const char *name, double value);
+mps_status mpsi_elastic_agree_given(mps_elastic *e, const char *function, mps_status status,
+                                    const mpsi_given *list);
+mps_status mpsi_elastic_agree_same(mps_elastic *e, const char *function, mps_status status,
+                                   const char *name, double value);
 /* For collective queries, also within a callback: e->agreed is restored afterwards. */
 bool mpsi_elastic_begin_reading(mps_elastic *e);
 /* For queries that use the scratch arrays: MPS_ERROR_STATE within a step. */
@@ -471,10 +471,10 @@ mps_status mpsi_elastic_write(mps_elastic *e, const char *function, const char *
 mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *name, double *values,
                              int32_t components);
 /* Reads `density` into mass, *former: the masses before (after an error too, and nothing has
- * changed). mpsi_elastic_settle_mass ends this. */
+ * changed). mpsi_elastic_finish_mass ends this. */
 mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function, double **former);
-/* Frees the former masses, or those that were read, which the former ones then replace. */
-void mpsi_elastic_settle_mass(mps_elastic *e, double *former, bool renewed);
+/* Frees the former masses, or on an error the new ones, and restores the former ones. */
+void mpsi_elastic_finish_mass(mps_elastic *e, double *former, bool renewed);
 /* MPS_ERROR_ARGUMENT that names the field, the particle and what is allowed. */
 mps_status mpsi_elastic_bad_value(mps_elastic *e, const char *function, const char *name, int64_t i,
                                   double value, const char *allowed);

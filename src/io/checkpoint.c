@@ -490,7 +490,7 @@ static void put_field(const reading *r, const mpsi_value *field) {
   }
 }
 
-static void tell(const reading *r, mps_checkpoint *info) {
+static void report(const reading *r, mps_checkpoint *info) {
   info->time = r->header.time;
   info->step = r->header.step;
   info->dt = r->header.dt;
@@ -513,7 +513,7 @@ mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_check
   mps_status status = check_path(context, __func__, path);
   if (status == MPS_OK) status = read_info(context, __func__, info, &wanted);
   if (status == MPS_OK) status = stage(&r, &wanted, NULL);
-  if (status == MPS_OK) tell(&r, info);
+  if (status == MPS_OK) report(&r, info);
   drop_reading(&r);
   return status;
 }
@@ -546,7 +546,7 @@ mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_c
   if (status == MPS_OK) status = add_missing(&r);
   if (status == MPS_OK) {
     for (int32_t k = 0; k < r.values.fields.count; k++) put_field(&r, &r.values.fields.item[k]);
-    tell(&r, info);
+    report(&r, info);
   }
   drop_reading(&r);
   return status;

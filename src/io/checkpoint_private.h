@@ -16,7 +16,7 @@ typedef struct mpsi_checkpoint_header {
 typedef struct mpsi_reading {
   mps_context *context;
   const char *function;
-  mps_particles *particles; /* NULL: only the header is wanted */
+  mps_particles *particles; /* NULL: only the header is read */
   const char *path;
   mpsi_h5_stay stay;
   mpsi_h5_file file;

@@ -177,7 +177,7 @@ mps_status mps_recorder_write(mps_recorder *recorder, double time) {
   mps_context *context = recorder->context;
   if (recorder->broken)
     return mpsi_fail(context, __func__, MPS_ERROR_STATE,
-                     "'%.300s' takes no more frames, since one could not be written",
+                     "'%.300s' accepts no more frames, since one could not be written",
                      recorder->path);
   if (mpsi_particles_ready(recorder->particles, __func__) != MPS_OK) return MPS_ERROR_STATE;
   if (!isfinite(time))

@@ -71,7 +71,7 @@ mps_status mps_material_get_moduli_sized(const mps_material *material, double de
   mps_context *context = material->context;
   if (!material->law.has_moduli)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                     "the law %s has no elastic constants that the library knows", material->name);
+                     "the law %s has no elastic constants known to the library", material->name);
   const mps_status status =
       mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
   if (status != MPS_OK) return status;
@@ -111,7 +111,7 @@ static mps_status write_ground(mps_particles *particles, const double value[GROU
       column[ids ? mps_particles_index(particles, ids[i]) : i] = value[k];
   }
   for (; read < GROUND && status == MPS_OK; read++) /* masses follow from densities */
-    status = mpsi_particles_tell(particles, set_material, ground[read], read ? NULL : former);
+    status = mpsi_particles_notify(particles, set_material, ground[read], read ? NULL : former);
   if (status == MPS_OK) return MPS_OK;
   for (int k = 0; k < GROUND; k++) {
     double *column = mpsi_particles_column(particles, ground[k], 0);
@@ -122,7 +122,7 @@ static mps_status write_ground(mps_particles *particles, const double value[GROU
     }
   }
   for (int k = 0; k < read - 1; k++)
-    (void)mpsi_particles_tell(particles, set_material, ground[k], k ? NULL : former);
+    (void)mpsi_particles_notify(particles, set_material, ground[k], k ? NULL : former);
   return status;
 }
 

@@ -233,7 +233,7 @@ static mps_status weigh(geostatic *g) {
 static mps_status open_stress(const geostatic *g, const char *function) {
   const int32_t fields = mps_particles_field_count(g->set);
   mps_status status = mpsi_as(g->context, function, mps_particles_add_field(g->set, "stress", 0));
-  if (status == MPS_OK) status = mpsi_particles_tell(g->set, function, "stress", NULL);
+  if (status == MPS_OK) status = mpsi_particles_notify(g->set, function, "stress", NULL);
   if (status != MPS_OK) mpsi_particles_drop_fields(g->set, fields);
   return status;
 }
@@ -309,7 +309,7 @@ mps_status mps_particles_set_stress(mps_particles *particles, mps_geostatic_stre
   look_at_set(&g);
   double *s = mpsi_alloc(g.context, 6 * g.count, sizeof *s);
   if (!s) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * 6 * sizeof *s);
-  status = ask_stress(&g, fn, user, s);
+  status = evaluate_stress(&g, fn, user, s);
   if (status == MPS_OK) status = open_stress(&g, __func__);
   for (int32_t c = 0; c < 2 * g.dim && status == MPS_OK; c++) {
     double *column = mpsi_particles_column(particles, "stress", c);

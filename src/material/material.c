@@ -213,12 +213,12 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
   char particle[40] = "";
   if (id >= 0) (void)snprintf(particle, sizeof particle, " particle %lld", (long long)id);
   const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
-  const mps_status told =
+  const mps_status reported =
       mpsi_fail(context, function, known ? status : MPS_ERROR_NUMERIC,
                 "the law '%s' has refused%s%s%s", material->name,
                 id >= 0 ? particle : " a block of particles", message[0] ? ": " : "", message);
   mpsi_fail_where(context, step, id);
-  return told;
+  return reported;
 }
 
 mps_status mps_material_update(mps_context *context, const mps_material *material,

@@ -141,7 +141,7 @@ static const char *call_umat(const umat_law *law, const mps_material_block *bloc
             &law->statev_count, law->props, &law->props_count, point->at, point->rotation, &factor,
             &law->length, point->before, point->after, &point->number, &one, &one, &one, step,
             &point->step, sizeof law->name);
-  if (factor < 1.0) return "the UMAT asks for a smaller step (PNEWDT)";
+  if (factor < 1.0) return "the UMAT requests a smaller step (PNEWDT)";
   double sum = 0.0;
   for (int c = 0; c < ntens; c++) sum += fabs(point->stress[c]);
   for (int c = 0; c < law->statev_count; c++) sum += fabs(point->statev[c]);

@@ -12,7 +12,7 @@
 typedef struct transport {
   MPI_Comm comm;
   MPI_Request vote;       /* of max_begin */
-  struct transport *next; /* of those that have left */
+  struct transport *next; /* of transports that have left */
   MPI_Request last;       /* of max_leave */
   double *values;         /* its own; NULL: the transport has not left */
 } transport;
@@ -215,7 +215,7 @@ static void drop(transport *t) {
   free(t);
 }
 
-/* Of the transports that have left those that all ranks have done with; `wait`: all of them. */
+/* Frees transports that have left and that no rank uses; `wait`: all of them. */
 static void drop_left(bool wait) {
   for (transport **at = &leaving; *at;) {
     transport *t = *at;

@@ -21,7 +21,7 @@
  *
  * In space smoothed aggregates reach so far beyond themselves that the product of matrix and
  * prolongation, which several processes make as a whole, has three times the matrix's entries.
- * Aggregates as they are, visited twice on each coarser level (a W cycle), take half the memory and
+ * Plain aggregates with two cycles on each coarser level (a W cycle) take half the memory and
  * less time for 1.5 times the iterations.
  * PETSc's options -mps_pc_gamg_agg_nsmooths 1 -mps_pc_mg_cycle_type v smooth them. */
 #define WEAK 0.05
@@ -39,7 +39,7 @@ static mps_status give_up(const mps_petsc_solver *s, mps_status status) {
 }
 
 /* The worst status of all processes: after what they have done together, and before. Where all have
- * failed they all come here; who has failed alone does not wait for ever. `what` has failed here,
+ * failed all arrive here; one that has failed alone does not wait for ever. `what` has failed here,
  * if anything has. */
 static mps_status agree(mps_petsc_solver *s, const char *what, mps_status status) {
   int here = 0;
@@ -206,7 +206,8 @@ static bool fill(Mat matrix, const indices *x, const double *value) {
          MatMPIAIJSetPreallocationCSR(matrix, x->start, x->column, value) == 0;
 }
 
-/* Orthonormal, as PETSc wants null spaces; motions that supports leave nothing of are left out. */
+/* Orthonormal, as PETSc requires null spaces; motions that supports leave nothing of are left out.
+ */
 static bool add_modes(const mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   Vec mode[6] = {NULL};
   PetscInt found = 0;
@@ -348,7 +349,7 @@ mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double toleran
   }
   if (VecPlaceArray(s->b, b + s->first) != 0 || VecPlaceArray(s->x, x + s->first) != 0)
     return MPS_ERROR_INTERNAL;
-  /* A little closer than asked for: the norm that the iteration carries on drifts. */
+  /* Slightly below the tolerance: the norm that the iteration carries on drifts. */
   const mps_status status = agree(s, "PETSc has failed, or its iterations do not converge",
                                   solve(s, 0.9 * tolerance, iterations));
   (void)VecResetArray(s->b);

@@ -19,7 +19,7 @@ static bool next_line(mpsi_text *text, mpsi_slice *line) {
   return false;
 }
 
-/* Names, not a number gone wrong: a broken first sample must not be skipped in silence. */
+/* Names, not a malformed number: a broken first sample must not be skipped in silence. */
 static bool is_names(mpsi_slice line) {
   const mpsi_slice word = mpsi_slice_word(&line, SEPARATORS);
   return mpsi_slice_size(word) > 0 && !strchr("+-.0123456789", *word.begin) &&

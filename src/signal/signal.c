@@ -114,7 +114,7 @@ void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *sign
   mpsi_give(list, name, mpsi_hash_short(mpsi_signal_hash(signal, MPSI_HASH)));
 }
 
-/* For the caller: NaN is the answer of a signal that has none. */
+/* For the caller: NaN is the value of a signal that has none. */
 static mpsi_signal_motion motion(const mps_signal *signal, double t) {
   const mpsi_signal_use use = {.owner = "caller", .number = -1, .component = -1};
   mpsi_signal_motion at = {NAN, NAN, NAN};

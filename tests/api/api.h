@@ -1,20 +1,19 @@
-/* api.h - a random caller of the public interface: what its parts share.
+/* api.h - a random caller of the public interface: common declarations.
  *
  * A seed makes a sequence of calls on all objects and solvers of include/mps. Every call has a
  * mood: valid arguments, arguments at the edge of what is allowed, or absurd ones. After each call
- * the caller checks what must hold whatever was called (check.c): a known status, a record of every
- * error, nothing changed by a call that failed, nothing that is not finite after one that did not.
+ * the caller checks the rules for all calls (check.c): a known status, a record of every error,
+ * nothing changed by a call that failed, nothing that is not finite after one that did not.
  *
  *   random.c    numbers and arguments by mood; each writes itself to the line of the call
- *   arena.c     the objects that live, by kind
+ *   arena.c     the existing objects, by kind
  *   state.c     the state of each object, in parts that have names and hashes
  *   check.c     before and after a call
  *   names.c     the arguments of each function, from the headers
- *   hooks.c     memory, hooks of a context, callbacks, and how they misbehave
+ *   hooks.c     memory, hooks of a context, callbacks, and their faults
  *   calls_*.c   one function for each function of the interface, in tables
  *   table.c     all tables; names that are deliberately in none
  *   main.c      seeds, shrinking, the command line
- *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef TESTS_API_API_H
 #define TESTS_API_API_H
@@ -52,7 +51,7 @@ typedef enum api_kind {
 } api_kind;
 
 enum {
-  API_SLOTS = 5,   /* objects of a kind that live at once */
+  API_SLOTS = 5,   /* objects of a kind that exist at once */
   API_PARTS = 96,  /* of an object's state */
   API_EDITS = 3,   /* fields of a set open at once */
   API_LINES = 20,  /* calls that a report shows */
@@ -73,7 +72,7 @@ typedef struct api_object {
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
   double contrast; /* of an elastic body, the highest so far (state.c); 0: none */
   bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
-  bool rewritten;  /* explicit dynamics: its set's motion has been written, and begins anew */
+  bool rewritten;  /* explicit dynamics: its set's motion has been edited, and restarts */
   bool drags;      /* nor need its momentum: it is damped, or driven by displacements */
   int part_count;
   api_part parts[API_PARTS];
@@ -83,7 +82,7 @@ typedef struct api_object {
 
 typedef enum api_mood { API_VALID, API_EDGE, API_ABSURD } api_mood;
 
-/* What a call may change although it failed, or although it only reads. */
+/* Changes that a failed call, or a query, may make. */
 typedef enum api_change {
   API_CHANGES_NOTHING,
   API_CHANGES_PLACES, /* the particles are sorted: order and epoch */
@@ -91,7 +90,7 @@ typedef enum api_change {
   API_CHANGES_ALL
 } api_change;
 
-/* How a callback misbehaves, once, in one call. */
+/* Fault of a callback, once, in one call. */
 typedef enum api_fault {
   API_FAULT_NONE,
   API_FAULT_STATUS,    /* returns an error */
@@ -113,7 +112,7 @@ typedef struct api {
   int32_t threads;
   int32_t dim;          /* of the scene */
   bool verbose, steady; /* steady: no refused allocations, whose number depends on the threads */
-  bool pushed;          /* loads or contacts have been given, whose impulses no boundary tells */
+  bool pushed;          /* loads or contacts have been given, whose impulses are in no reaction */
   bool lost;            /* a callback has returned MPS_ERROR_INTERNAL, which domains keep */
   uint64_t digest;      /* of all statuses and states so far */
   jmp_buf failed;
@@ -136,7 +135,7 @@ typedef struct api {
   bool faulted;
   api_object *running; /* solver whose call runs */
   api_kind running_kind;
-  int64_t cancel_at, cancels; /* question of the cancel hook that gets "stop"; how many so far */
+  int64_t cancel_at, cancels; /* call of the cancel hook that returns "stop"; number so far */
   size_t length;
   char line[API_LINE];
 
@@ -185,12 +184,12 @@ void api_say(api *a, const char *format, ...) API_PRINTF(2, 3);
 
 /* ---- arena.c --------------------------------------------------------------------------------- */
 extern const char *const api_kind_names[API_KINDS];
-/* One that lives, or one whose handle is NULL. */
+/* An existing object, or one whose handle is NULL. */
 api_object *api_any(api *a, api_kind kind);
 /* The same where NULL is allowed. */
 void *api_maybe(api *a, api_kind kind, const char *name);
 int api_alive(const api *a, api_kind kind);
-/* Takes over what a function has made (NULL: nothing). */
+/* Registers the object made by a function (NULL: none). */
 api_object *api_adopt(api *a, api_kind kind, void *handle, int context, const api_object *owner);
 /* Stresses have been written, which some laws replace: energies of WLS-MPM need not add up. */
 void api_loosen(api *a);
@@ -216,7 +215,7 @@ void api_check_room(api *a, const void *room, size_t all, size_t size, size_t mo
 /* After a function that has no status; the second, where it changes something. */
 void api_end_changed(api *a);
 void api_end_query(api *a);
-/* What is broken, for the report of this call. */
+/* Broken rule, for the report of this call. */
 void api_broken(api *a, const char *format, ...) API_PRINTF(2, 3);
 /* Ends a call that makes an object, and takes that over. */
 bool api_end_made(api *a, mps_status status, api_kind kind, void *made, const api_object *owner);
@@ -232,7 +231,7 @@ bool api_prints_allowed(const char *message);
 
 /* ---- hooks.c --------------------------------------------------------------------------------- */
 void api_hooks(api *a, mps_context_def *def);
-/* In a callback on the thread of the call: misbehaves if it is its turn. */
+/* In a callback on the thread of the call: makes the fault if it is due. */
 mps_status api_callback(api *a, double *values, int count);
 void api_arm(api *a);
 void api_run_solver(api *a, api_kind kind, api_object *object);
@@ -272,14 +271,14 @@ void api_print_counts(void);
     if (status == MPS_OK && u.def.struct_size != size) api_broken(a, "sets no size");              \
     (void)api_end(a, status);                                                                      \
   }
-/* A function that tells a number of one object. */
+/* A query of a number of one object. */
 #define API_QUERY(function, kind)                                                                  \
   static void query_##function(api *a) {                                                           \
     api_begin(a, "mps_" #function);                                                                \
     (void)mps_##function(api_any(a, kind)->handle);                                                \
     api_end_query(a);                                                                              \
   }
-/* Gives up the caller's share. */
+/* Releases the caller's reference. */
 #define API_DESTROY(function, kind)                                                                \
   static void destroy_##function(api *a) {                                                         \
     api_begin(a, "mps_" #function);                                                                \

@@ -1,4 +1,4 @@
-/* arena.c - the objects that live, by kind: a call takes any of them, or NULL.
+/* arena.c - the existing objects, by kind: a call takes any of them, or NULL.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 
@@ -93,7 +93,7 @@ void api_destroy(api_kind kind, void **handle) {
   }
 }
 
-/* Objects of a context that has been destroyed live on, but nobody can ask for their records. */
+/* Objects of a context that has been destroyed stay usable, but their records cannot be queried. */
 void api_forget(api *a, api_object *object) {
   const ptrdiff_t slot = object - a->objects[API_CONTEXT];
   for (int k = 0; slot >= 0 && slot < API_SLOTS && k < API_KINDS * API_SLOTS; k++) {
@@ -115,7 +115,7 @@ void api_rewrite(api *a, const char *field) {
       a->objects[API_DYNAMICS][k].rewritten = true;
 }
 
-/* A kind that has no room left loses its oldest object. */
+/* A full kind drops its oldest object. */
 static api_object *room(api *a, api_kind kind) {
   api_object *oldest = &a->objects[kind][0];
   for (int k = 0; k < API_SLOTS; k++) {

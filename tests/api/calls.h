@@ -1,4 +1,4 @@
-/* calls.h - what the files of calls share: their tables, and the calls that a scene is made of.
+/* calls.h - common declarations of the files of calls: their tables, and the calls of a scene.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef TESTS_API_CALLS_H
 #define TESTS_API_CALLS_H

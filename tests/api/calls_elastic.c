@@ -243,7 +243,7 @@ static void elastic_select_facets(api *a) {
   const int32_t axis = (int32_t)api_whole(a, "axis", 0, a->dim - 1);
   const int32_t side = (int32_t)api_whole(a, "side", -1, 1);
   if (a->wrong == 1 && axis == 2) a->wrong = !e; /* of a scene in space */
-  if (a->wrong == 1 && side == 0) a->wrong = !e; /* no axis is asked for */
+  if (a->wrong == 1 && side == 0) a->wrong = !e; /* no axis is requested */
   int64_t capacity = (int64_t)api_below(a, MOST);
   if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
   facets[capacity < 0 ? 0 : capacity] = -7;

@@ -268,7 +268,7 @@ static void fluid_end_step(api *a) {
   api_object *o = api_any(a, API_FLUID);
   api_run_solver(a, API_FLUID, o);
   const mps_status status = mps_fluid_end_step(o->handle);
-  /* the step has not happened: what was seen of it while it was open is gone */
+  /* the step is undone: readings of the open step are invalid */
   if (status == MPS_ERROR_MEMORY || status == MPS_ERROR_DIVERGED) a->change = API_CHANGES_ALL;
   (void)api_end(a, status);
 }

@@ -285,7 +285,7 @@ static void material_update(api *a) {
   double slope[9];
   const int before = a->wrong;
   api_vector(a, "gradient", 9, 0.0, 1.0, slope);
-  a->wrong = before; /* values are not looked at */
+  a->wrong = before; /* values are not checked */
   for (int k = 0; k < 9; k++) {
     for (int i = 0; i < BLOCK; i++) columns[k][i] = slope[k], columns[9 + k][i] = k % 4 == 0;
     block.gradient[k] = columns[k];

@@ -100,7 +100,7 @@ static void draw_boundary(api *a, mps_mpm *mpm, mps_mpm_boundary_def *def, int64
         def->lower[c] = api_near(a, "lower", 0.0, 0.1);
         def->upper[c] = api_near(a, "upper", 0.4, 0.1);
       }
-    a->wrong = 0; /* boxes may be endless */
+    a->wrong = 0; /* boxes may be infinite */
   }
   if (!side) def->dofs = api_below(a, 4);
   if (api_chance(a, 30)) {

@@ -103,7 +103,7 @@ static void particles_fill_where(api *a) {
   double lo[3], hi[3];
   mps_particles *set = api_any(a, API_SET)->handle;
   const api_mood mood = a->mood;
-  a->mood = API_VALID; /* 2^31 questions take long */
+  a->mood = API_VALID; /* 2^31 calls take long */
   api_box(a, room(set), lo, hi);
   a->mood = mood;
   if (mood == API_ABSURD && api_chance(a, 30)) hi[0] = NAN, api_wrong(a, "hi");

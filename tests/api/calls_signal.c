@@ -82,7 +82,7 @@ static void signal_user(api *a) {
 
 API_INIT(signal_record_def)
 
-/* A record as people have them, with some damage. */
+/* A record of a usual form, with some damage. */
 static void write_record(api *a, const char *path) {
   char text[600];
   size_t length = (size_t)snprintf(text, sizeof text, "time,acceleration\n");
@@ -223,7 +223,7 @@ static void coupling_get_report_sized(api *a) {
   API_SIZED_END(a, status, size, out, true);
 }
 
-/* What one coupling has learnt goes to another, or comes damaged. */
+/* The memory of one coupling is set in another, perhaps damaged. */
 static void coupling_memory(api *a) {
   double values[513];
   int64_t count = 0;

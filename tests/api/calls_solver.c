@@ -1,5 +1,5 @@
-/* calls_solver.c - what the calls of all solvers share: ends of runs, files and their damage,
- * states to be compared. SPDX-License-Identifier: BSD-3-Clause */
+/* calls_solver.c - common parts of the calls of all solvers: ends of runs, files and their damage,
+ * states to compare. SPDX-License-Identifier: BSD-3-Clause */
 #include "calls_solver.h"
 
 #include <stdio.h>
@@ -132,7 +132,7 @@ void api_balance(api *a, const api_object *o, const api_account *before, const a
       !(fabs(y->mass + gone - x->mass) <= 1e-9 * fabs(x->mass)))
     api_broken(a, "succeeds, and the mass is %.17g, not %.17g less %.17g", y->mass, x->mass, gone);
   if (after->count != before->count) return;
-  if (o->rewritten) return; /* what is held is put where its boundary is */
+  if (o->rewritten) return; /* prescribed particles are set to their boundary */
   if (!o->loose) balance_energy(a, x, y, o->contrast);
   if (momentum && !o->drags && !a->pushed && !before->pushed && !after->pushed)
     balance_momentum(a, before, after);

@@ -1,8 +1,7 @@
-/* calls_solver.h - the verbs that all solvers share (mps/solver.h), as calls of one of them:
+/* calls_solver.h - the functions of all solvers (mps/solver.h), as calls of one of them:
  *
  *   API_SOLVER(mpm, API_MPM)    defines them
  *   API_SOLVER_CALLS(mpm, API_MPM)    their lines of the table
- *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef TESTS_API_CALLS_SOLVER_H
 #define TESTS_API_CALLS_SOLVER_H
@@ -13,8 +12,8 @@
 
 #include <stdio.h>
 
-/* What a step or run may leave when it fails: steps that were made before stay. `steps`: taken
- * before and after. A step that diverged may have happened. */
+/* State after a failed step or run: earlier steps are kept. `steps`: taken before and after. A step
+ * that diverged may have happened. */
 void api_stepped(api *a, mps_status status, int64_t before, int64_t after);
 /* A snapshot or checkpoint of WLS-MPM or explicit dynamics reads first what the caller has edited,
  * as a step does; one that is refused leaves the edits unread, but may have sorted the particles of
@@ -192,7 +191,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     if (old->handle && o->handle && old->owner != o->serial) api_wrong(a, "snapshot");             \
     (void)api_end(a, mps_##S##_rollback(o->handle, old->handle));                                  \
   }                                                                                                \
-  /* There and back is as if nothing had been, and the same way leads to the same place. */        \
+  /* A rollback restores the state, and the same steps lead to the same state again. */            \
   static void S##_return(api *a) {                                                                 \
     static api_state begin, back, first, second;                                                   \
     api_begin(a, "mps_" #S "_snapshot");                                                           \

@@ -1,4 +1,4 @@
-/* check.c - what must hold before and after each call, whatever was called with what:
+/* check.c - rules before and after each call, for all functions and arguments:
  *
  *   the status is one of the table;
  *   an argument that no function may take is refused;
@@ -6,8 +6,7 @@
  *   argument where that is refused;
  *   a call that failed has changed nothing, nor has one that only reads;
  *   after one that succeeded all is finite;
- *   a callback's status comes back, and what a callback may not do is refused.
- *
+ *   a callback's status is returned, and calls that a callback may not make are refused.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 
@@ -183,8 +182,8 @@ static const api_part *former_part(const api_object *o, int k, const char *name)
   return NULL;
 }
 
-/* What was not finite before, after a step that diverged, is no news; nor is what could not be
- * read before. */
+/* Values that were not finite before, after a step that diverged, are no fault; nor are values that
+ * could not be read before. */
 static void check_finite(api *a, const api_object *o, const api_part *parts, int count,
                          api_kind kind, int slot) {
   for (int k = 0; k < API_EDITS; k++)

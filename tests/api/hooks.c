@@ -1,5 +1,5 @@
-/* hooks.c - what the library calls back: memory that counts and refuses, the hooks of a context,
- * and how callbacks misbehave: with an error, a number that is no status, a NaN, or by calling what
+/* hooks.c - callbacks of the library: memory that counts and refuses, the hooks of a context, and
+ * faults of callbacks: an error, a number that is no status, a NaN, or by calling what
  * a callback may not call. SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 
@@ -22,7 +22,7 @@ static void *get_memory(void *user, size_t size, size_t alignment) {
   }
   void *block = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
   if (!block) return NULL;
-  memset(block, 0xff, size); /* NaN: whatever reads it before it writes is seen */
+  memset(block, 0xff, size); /* NaN: a read before a write is detected */
   atomic_fetch_add(&memory->live, 1);
   return block;
 }
@@ -32,7 +32,7 @@ static void return_memory(void *user, void *block) {
   free(block);
 }
 
-/* ---- what a callback may not do -------------------------------------------------------------- */
+/* ---- calls that a callback may not make ------------------------------------------------------ */
 
 #define SOLVER(solver)                                                                             \
   static mps_status forbid_##solver(api *a, mps_##solver *s, const char **what) {                  \

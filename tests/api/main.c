@@ -43,7 +43,7 @@ static void choose_mood(api *a) {
   a->mood = k < 6 ? API_VALID : k < 8 ? API_EDGE : API_ABSURD;
 }
 
-/* By weight, of those whose object lives. */
+/* By weight, of calls whose object exists. */
 static const api_call *choose_call(api *a) {
   for (int pass = 0;; pass++) {
     int sum = 0, chosen = 0;
@@ -156,10 +156,10 @@ static bool run_seed(const options *o, const char *folder, uint64_t seed) {
   return o->threads || !a->steady || same_on_threads(o, folder, seed);
 }
 
-/* ---- what does not matter is left out -------------------------------------------------------- */
+/* ---- irrelevant calls are left out ----------------------------------------------------------- */
 
-/* In a process of its own: does the same happen? The outcome is the function and the reason, or
- * the signal. */
+/* Repeated in a process of its own: is the outcome the same? The outcome is the function and the
+ * reason, or the signal. */
 static void outcome_of(const options *o, const char *folder, uint64_t seed, char *text,
                        size_t size) {
   int ends[2], status = 0;

@@ -1,5 +1,5 @@
-/* state.c - the state of each object as its public functions tell it, in parts that have names and
- * hashes: fields by particles' ids, so that the order is a part of its own.
+/* state.c - the state of each object as its public functions report it, in parts that have names
+ * and hashes: fields by particles' ids, so that the order is a part of its own.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "api.h"
 
@@ -105,7 +105,7 @@ static void look_set(look *l, mps_particles *set) {
   }
 }
 
-/* The set of a solver, where the caller has given up its own share. */
+/* The set of a solver, where the caller has released its own reference. */
 static void look_lent(look *l, mps_particles *set) {
   for (int k = 0; k < API_SLOTS; k++)
     if (l->a->objects[API_SET][k].handle == set) return;
@@ -132,7 +132,7 @@ static void add_reaction(look *l, const char *name, int number, mps_status statu
     if (!isfinite(values[k])) not_finite(l);
 }
 
-/* What each solver can always tell, and the rest, which may be NaN. */
+/* What each solver can always report, and the rest, which may be NaN. */
 static void add_totals(look *l, mps_status status, const mps_totals *t) {
   if (status != MPS_OK) {
     add_whole(l, "totals: status", status);

@@ -71,8 +71,8 @@ static void drop_halves(cut_run *c, int32_t size) {
   for (int32_t r = 0; r < size; r++) drop(&c->rank[r]);
 }
 
-/* Written on 4 ranks, a run goes on with the bits of one that was not cut: on 3, and on one without
- * a domain; written without a domain, on 3. */
+/* Written on 4 ranks, a run continues with the bits of one that was not cut: on 3, and on one
+ * without a domain; written without a domain, on 3. */
 static void compare_cut(int what) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   result alone = {0}, on = {0};

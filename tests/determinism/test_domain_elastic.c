@@ -167,7 +167,7 @@ static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset
   return status;
 }
 
-/* What is asked of a solution or a motion. */
+/* Queries of a solution or a motion. */
 static mps_status ask(mps_elastic *elastic, double *out) {
   const int64_t facets = mps_elastic_facet_count(elastic);
   double *values = calloc((size_t)facets * 6, sizeof *values);

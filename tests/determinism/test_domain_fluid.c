@@ -46,8 +46,8 @@ static void run_half(result_fn *half, int32_t size, int64_t count, const result 
   free(seen);
 }
 
-/* Written by 3 ranks, it goes on with 2, and without a domain, as a run without one does; and
- * before it does, it tells what was told. */
+/* Written by 3 ranks, it continues with 2, and without a domain, as a run without one does; and
+ * before it does, it reports what it reported before. */
 static void test_checkpoint(void **state) {
   (void)state;
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();

@@ -84,8 +84,8 @@ static void run_half(result_fn *half, int32_t size, int what, int64_t steps,
   free(seen);
 }
 
-/* Written on 4 ranks, a run goes on with the bits of one that was not cut: on 3, and on one without
- * a domain; written without a domain, on 3. */
+/* Written on 4 ranks, a run continues with the bits of one that was not cut: on 3, and on one
+ * without a domain; written without a domain, on 3. */
 static void compare_cut(int what, int64_t steps) {
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
   result half = {0}, whole = {0}, on = {0};
@@ -135,7 +135,7 @@ static void test_refused_changes(void **state) {
   (void)state, refuse_memory(compute_changes, SPREAD, 12, 13);
 }
 
-/* ---- steps that leave no state to go on from ------------------------------------------------- */
+/* ---- steps that leave no state to restart from ----------------------------------------------- */
 
 /* The body flies towards a free side until a particle is lost, on one of the ranks. */
 static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) {
@@ -152,8 +152,8 @@ static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) 
   return MPS_OK;
 }
 
-/* A step that is refused because a particle is lost changes nothing on any rank: what is asked of
- * the state afterwards has the bits of one process. Without that particle the run goes on. */
+/* A step that is refused because a particle is lost changes nothing on any rank: queries of the
+ * state afterwards have the bits of one process. Without that particle the run continues. */
 static mps_status compute_lost(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                result *r) {
   scene s = {.set = NULL};
@@ -181,7 +181,7 @@ static mps_status compute_lost(mps_context *own, mps_domain *domain, int what, i
 static void test_lost(void **state) { (void)state, compare_teams(compute_lost, SLIDE, 5, true); }
 
 /* After a step that gives no finite numbers the set may not be changed, but nothing may be removed
- * from it: the same answers on one rank and on several. */
+ * from it: the same results on one rank and on several. */
 static mps_status compute_broken(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                  result *r) {
   enum { ANSWERS = 5 };

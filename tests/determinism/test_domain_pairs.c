@@ -1,11 +1,12 @@
 /* test_domain_pairs.c - every collective function beside every other one: one rank calls the first,
- * the others the second. All get the same error, none waits, nothing is done, and the ranks go on
+ * the others the second. All get the same error, none waits, nothing is done, and the ranks
+ * continue
  * together. SPDX-License-Identifier: BSD-3-Clause */
 #include "ranks_team.h"
 
 #include "collective_calls.h"
 
-/* The last pair that a rank has called, and what has become of it. */
+/* The last pair that a rank has called, and its status. */
 typedef struct pairs {
   struct {
     int pairs, bad;

@@ -176,7 +176,7 @@ static void test_refused(void **state) {
     const char *words;
   } expected[REFUSED] = {
       [FILLS] = {MPS_ERROR_ARGUMENT, "the number of particles that are added is"},
-      [POSITIONS] = {MPS_ERROR_ARGUMENT, "a hash of the places of what is added is"},
+      [POSITIONS] = {MPS_ERROR_ARGUMENT, "a hash of the positions of the added particles is"},
       [CONSTANTS] = {MPS_ERROR_ARGUMENT, "a hash of the constants given by mps_particles_set is"},
       [FIELDS] = {MPS_ERROR_ARGUMENT, "the number of fields of the set is"},
       [SPACINGS] = {MPS_ERROR_ARGUMENT, "spacing is"},

@@ -201,7 +201,7 @@ static mps_status make_dynamics(subject *s, plan *p, mps_domain *domain, bool od
   TRY(mps_dynamics_add_boundary(s->dynamics, &floor, &s->wall));
   mps_signal_destroy(&signal);
   TRY(edit_velocity(s, 0.0, uniform(p, -1.0, 1.0)));
-  if (shaken) TRY(mps_dynamics_step(s->dynamics, 1)); /* which tells whether motions differ */
+  if (shaken) TRY(mps_dynamics_step(s->dynamics, 1)); /* which shows whether motions differ */
   return status;
 }
 
@@ -345,8 +345,8 @@ static mps_status operate(subject *s, plan *p, int what, bool odd, result *r, in
 
 static bool has_other_value(const subject *s, int what) { return what != MOVE || s->body; }
 
-/* What comes out is compared where all ranks do the same; `status` and `other[k]` tell what each
- * operation has returned. */
+/* What comes out is compared where all ranks do the same; `status` and `other[k]` are the results
+ * of each operation. */
 static mps_status compute(mps_context *own, mps_domain *domain, int seed, int64_t length,
                           result *r) {
   (void)length;

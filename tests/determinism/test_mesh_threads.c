@@ -1,4 +1,4 @@
-/* test_mesh_threads.c - the nearest point of a mesh, asked for by many threads at once: the same
+/* test_mesh_threads.c - the nearest point of a mesh, requested by many threads at once: the same
  * bits as by one, and from another copy of the mesh. SPDX-License-Identifier: BSD-3-Clause */
 #include "body/body_internal.h"
 #include "mesh_shapes.h"

@@ -101,8 +101,8 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   return s;
 }
 
-/* A slab that slides on a rough floor in space, so that more particles touch than one thread sweeps
- * alone (SHARED in mpm/impulses.c). */
+/* A slab that slides on a rough floor in space, so that more particles are in contact than one
+ * thread sweeps alone (SHARED in mpm/impulses.c). */
 static mpm_scene slide_in_space(mps_context *context) {
   const double lo[] = {0.0, 0.0, 0.0}, hi[] = {0.3, 0.06, 0.3}, up[] = {0.0, 1.0, 0.0};
   const double v0[] = {1.0, -1.0, 0.5}, L[9] = {0.0};

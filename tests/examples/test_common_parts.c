@@ -108,7 +108,7 @@ static void numbers_are_written_so_that_they_read_back(void **state) {
   assert_string_equal(output_number(text, 0.1), "0.1");
 }
 
-/* A record of the options finds the one that differs, but for those that are free. */
+/* A record of the options finds the one that differs, except free ones. */
 static void options_are_compared_one_by_one(void **state) {
   (void)state;
   double radius = 0.1, three[3] = {1.0, -2.5, NAN};
@@ -314,8 +314,8 @@ typedef struct moment {
   double t, force, kinetic;
 } moment;
 
-/* A standing wave of amplitude exp(-c t): a force with a second harmonic that swings with the
- * second mode, whose crests tell another decay, and the kinetic energy. */
+/* A standing wave of amplitude exp(-c t): a force with a second harmonic that oscillates with the
+ * second mode, whose crests have another decay, and the kinetic energy. */
 static void a_decay_is_that_of_the_energy(void **state) {
   (void)state;
   const double c = 0.0067, w = 6.2, other = 9.9;

@@ -80,7 +80,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
 
 #include "mutation.h"
 
-/* One small damage of the kinds that files meet, or that a parser fears. */
+/* One small damage, of kinds that occur in files or are hard for a parser. */
 static size_t mutate(char *data, size_t size) {
   static const char *const words[] = {
       "NPTS=",    "DT=",   "Memo.",   "Origin Time", "Scale Factor",

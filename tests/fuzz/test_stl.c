@@ -1,5 +1,5 @@
-/* test_stl.c - damaged STL files: whatever the bytes, the outcome is a closed surface that answers
- * with numbers, or a clean error that names the place, and nothing leaks.
+/* test_stl.c - damaged STL files: whatever the bytes, the outcome is a closed surface with finite
+ * distances, or a clean error that names the place, and nothing leaks.
  *
  * As a test: some thousand mutations of a block in both notations, from a fixed seed (run it under
  * the asan preset too). With libFuzzer:
@@ -103,7 +103,7 @@ static size_t binary_sample(char *data) {
   return 84 + 50 * (size_t)block.triangles;
 }
 
-/* One small damage of the kinds that files meet, or that a parser fears. */
+/* One small damage, of kinds that occur in files or are hard for a parser. */
 static size_t mutate(char *data, size_t size) {
   static const char *const words[] = {
       "solid", "endsolid", "facet", "endfacet", "outer loop", "endloop", "vertex", "normal", "nan",

@@ -76,7 +76,7 @@ int main(int argc, char **argv) {
     fprintf(stderr, "refused: %s\n", mps_context_error(context)->message);
     return 2;
   }
-  mps_domain *none = NULL; /* MPI's own answer would be the end of the program */
+  mps_domain *none = NULL; /* MPI itself would end the program */
   const int32_t nobody = (int32_t)MPI_Comm_c2f(MPI_COMM_NULL);
   if (mps_petsc_domain_create_c2f(context, nobody, &none) != MPS_ERROR_ARGUMENT ||
       !strstr(mps_context_error(context)->message, "MPI_COMM_NULL"))

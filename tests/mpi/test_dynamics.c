@@ -1,6 +1,6 @@
 /* test_dynamics.c - explicit dynamics on the ranks that mpirun starts: each rank computes the body
- * alone, then all of them together, and compares its share bit for bit. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * alone, then all of them together, and compares its share bit for bit.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics_scene.h"
 #include "world.h"
 

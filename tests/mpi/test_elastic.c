@@ -1,6 +1,6 @@
 /* test_elastic.c - implicit elasticity on the ranks that mpirun starts: each rank solves alone by
- * CHOLMOD, then all of them together by PETSc, and compares. SPDX-License-Identifier: BSD-3-Clause
- */
+ * CHOLMOD, then all of them together by PETSc, and compares.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
 #include "world.h"
 
@@ -70,7 +70,7 @@ static void motions_are_cholmods(void **state) {
 }
 
 /* A bar 50 times as long as wide: the last places of its displacements alone are forces above the
- * tolerance, which no solver can be asked to reach. */
+ * tolerance, which no solver can reach. */
 static void a_slender_bar_is_solved(void **state) {
   (void)state;
   test_body both[2];

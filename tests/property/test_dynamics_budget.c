@@ -1,5 +1,5 @@
 /* test_dynamics_budget.c - the energy budget of explicit dynamics closes, impulses are changes of
- * momentum, and reactions are what statics asks for, under every kind of boundary and load.
+ * momentum, and reactions are those of statics, under every kind of boundary and load.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
 #include "test_fixture.h"

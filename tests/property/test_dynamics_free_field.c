@@ -1,5 +1,5 @@
 /* test_dynamics_free_field.c - free-field columns and viscous edges: level ground between columns
- * moves exactly as endless ground, and waves from inside leave.
+ * moves exactly as infinite ground, and waves from inside leave.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
 

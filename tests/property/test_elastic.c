@@ -194,7 +194,7 @@ static double *pressed(mps_context *context, int m, bool half, int64_t *count) {
   return uy;
 }
 
-/* A cut layer does not know that the body goes on as its mirror image: its gradient across the
+/* A cut layer does not know that the body continues as its mirror image: its gradient across the
  * plane is one-sided, where the whole body's is 0 by symmetry, and it has fewer stabilising pairs.
  * The difference is that of a discretisation, and falls with the spacing (docs/elastic.md). */
 static void a_half_differs_from_the_whole_by_the_discretisation(void **state) {

@@ -1,5 +1,5 @@
-/* test_fluid_cantilever.c - an elastic wall that swings in front of water gains no energy from it,
- * with the trapezoidal rule (rho_inf 1) and with one that damps high frequencies.
+/* test_fluid_cantilever.c - an elastic wall that oscillates in front of water gains no energy from
+ * it, with the trapezoidal rule (rho_inf 1) and with one that damps high frequencies.
  * tests/property/test_fluid_cantilever_long.c has shorter steps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"

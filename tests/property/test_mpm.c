@@ -511,7 +511,7 @@ static void thin_wall_lets_nothing_pass(void **state) {
     mps_body *wall = NULL;
     mps_body_def body = mps_body_defaults();
     body.position[0] =
-        shift + h - 0.0005; /* off the lump at rest, which would touch by round-off */
+        shift + h - 0.0005; /* off the lump at rest, which would be in contact by round-off */
     mps_assert_ok(context, mps_body_create_box(context, &body, 2.0 * h, 1.0, &wall));
     mpm_scene_contact(&s, wall, 0.3);
     mps_assert_ok(context, mps_mpm_step(s.mpm, 100));

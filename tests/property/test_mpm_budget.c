@@ -128,7 +128,7 @@ static void closes_with_lists_of_particles(void **state) {
     }
 }
 
-/* The works are those that the reactions tell, added up. */
+/* The works are the sums of those of the reactions. */
 static void works_are_those_of_the_reactions(void **state) {
   (void)state;
   int32_t box = -1, loads[2];

@@ -1,7 +1,7 @@
 /* test_mpm_energy.c - the energy budget of WLS-MPM closes wherever particles lie: beside sides
  * where nodes end, where shape functions of the fit give nodes a negative mass, and with bodies
- * that move freely, whose work is minus that of the particles on them. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * that move freely, whose work is minus that of the particles on them.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
 

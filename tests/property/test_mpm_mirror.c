@@ -162,7 +162,7 @@ static void bodies_cross_a_mirror(void **state) {
 
 /* Sweeps go through the whole from one side to the other, and what they leave is not symmetric;
  * where contacts slide, some of it falls by a tenth in several hundred sweeps. So for as long as a
- * thousand bring it to round-off. (Much rougher bodies have several answers, of which the whole
+ * thousand bring it to round-off. (Much rougher bodies have several solutions, of which the whole
  * takes one that is not symmetric: docs/theory/contact.md.) */
 static void rough_bodies_cross_a_mirror(void **state) {
   (void)state;
@@ -187,7 +187,7 @@ static void thin_bodies_cross_a_mirror(void **state) {
 /* ---- balances -------------------------------------------------------------------------------- */
 
 /* A domain full of particles in disorder, walls of all mirrored kinds at work; y frictional above,
- * so that mirrors meet a wall of the other kind; a rough disc or ball across the wall x = 0.4. */
+ * so that mirrors join a wall of the other kind; a rough disc or ball across the wall x = 0.4. */
 static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body, int32_t budget) {
   const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   const double lo[] = {geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 0.0 : 0.1, -0.1, 0.0};

@@ -1,5 +1,5 @@
 /* test_mpm_sweeps.c - the sweeps over the contacts of a step end at their tolerance, or at their
- * number; what is left is told. SPDX-License-Identifier: BSD-3-Clause */
+ * number; the remainder is reported. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
@@ -41,7 +41,8 @@ static void end_press(press *p) {
   mps_body_destroy(&p->above);
 }
 
-/* In each step the sweeps go on until they change little enough, or as many are made as may be. */
+/* In each step the sweeps continue until they change little enough, or as many are made as may be.
+ */
 static void sweeps_end_at_their_tolerance(void **state) {
   (void)state;
   const struct {

@@ -182,7 +182,7 @@ static void tip_of_a_cone(void **state) {
 
 /* ---- overlap and walls ----------------------------------------------------------------------- */
 
-/* Two bodies that touch at x = 0, the second moved to overlap by `by`, turned together. */
+/* Two bodies in contact at x = 0, the second moved to overlap by `by`, turned together. */
 static bool overlap(int one, int two, double by, double turn) {
   static const double square[] = {0.0, -1.0, 2.0, -1.0, 2.0, 1.0, 0.0, 1.0};
   static const double tooth[] = {0.0, 0.0, -1.0, 0.4, -1.0, -0.4};

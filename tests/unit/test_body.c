@@ -31,7 +31,7 @@ static void refuses_bad_definitions(void **state) {
   mps_assert_fails(context, mps_body_create_polygon(context, &def, 2, square, &body),
                    MPS_ERROR_ARGUMENT, "vertices is 2");
   mps_assert_fails(context, mps_body_create_polygon(context, &def, 4, bow, &body),
-                   MPS_ERROR_ARGUMENT, "cross or touch");
+                   MPS_ERROR_ARGUMENT, "intersect");
   def = mps_body_defaults();
   def.mass = 1.0;
   mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,

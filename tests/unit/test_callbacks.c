@@ -1,14 +1,14 @@
 /* test_callbacks.c - one rule for every callback of every solver: it may read the solver and its
- * set, and nothing else. Each solver is asked from the callback of a run, from a signal of the
+ * set, and nothing else. Each solver is called from the callback of a run, from a signal of the
  * caller's and from the cancel hook to step, to change, to go back and to die, and its set to be
- * edited, filled and emptied: MPS_ERROR_STATE, and the run goes on as if nobody had asked.
+ * edited, filled and emptied: MPS_ERROR_STATE, and the run continues as if it had not been called.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "digest.h"
 #include "test_fixture.h"
 
 #include <mps/mps.h>
 
-/* ---- four solvers, asked alike --------------------------------------------------------------- */
+/* ---- four solvers, called alike -------------------------------------------------------------- */
 
 typedef struct verbs {
   const char *name;
@@ -53,7 +53,7 @@ typedef struct scene {
   mps_signal *signal;
   mps_snapshot *before, *now;
   double end;   /* s, of the run */
-  bool asks;    /* whether callbacks ask at all */
+  bool asks;    /* whether callbacks call at all */
   bool within;  /* the solver is at work */
   int asked[3]; /* from the run, a signal, the cancel hook */
 } scene;
@@ -219,7 +219,8 @@ static uint64_t run_scene(void (*make)(scene *s), const verbs *verb, bool asks) 
   return hash;
 }
 
-/* The cancel hook and signals are asked within a step, or between two where it makes no odds. */
+/* The cancel hook and signals are called within a step, or between two where that makes no
+ * difference. */
 static void callbacks_only_read(void **state) {
   (void)state;
   const struct {

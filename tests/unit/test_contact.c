@@ -63,7 +63,7 @@ static void bad_definitions(void **state) {
   mpm_scene_end(&s);
 }
 
-/* Pressed by 1 mm: the particles that touch, each with its gap, normal and force by the penalty. */
+/* Pressed by 1 mm: the particles in contact, each with its gap, normal and force by the penalty. */
 static void tells_who_touches(void **state) {
   (void)state;
   mpm_scene s = block_at(0.0);
@@ -97,14 +97,14 @@ static void tells_who_touches(void **state) {
   assert_memory_equal(&r, &body, sizeof r);
   mps_assert_fails(context, mps_contact_get_reaction(contact, 1, &r), MPS_ERROR_ARGUMENT,
                    "part is 1");
-  /* its end: nothing touches any more, and the body is the caller's */
+  /* its end: no contact is left, and the body is the caller's */
   mps_contact_destroy(&contact);
   assert_null(contact);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
   mps_assert_ok(context, mps_body_get_reaction(plate, -1, &r));
   mps_assert_near(r.impulse[1], body.impulse[1], 0.0);
   mps_assert_ok(context, mps_body_advance(plate, 0.1));
-  /* the solver goes first: the handle still answers */
+  /* the solver goes first: the handle still returns values */
   mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, &contact));
   mpm_scene_end(&s);
   mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
@@ -158,8 +158,7 @@ static void bodies_are_shared(void **state) {
   mps_body_destroy(&beam);
 }
 
-/* A servo: the plate's speed answers to the force that it feels, until that is what was asked for.
- */
+/* A servo: the plate's speed is set by the force on it, until that is what was requested. */
 static void servo_keeps_a_force(void **state) {
   (void)state;
   mpm_scene s = block_at(0.0);

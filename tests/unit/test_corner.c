@@ -1,4 +1,4 @@
-/* test_corner.c - corners as particles meet them (src/contact/corner.h), against the distances of
+/* test_corner.c - corners as seen by particles (src/contact/corner.h), against the distances of
  * rounded boxes and wedges in closed form.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
@@ -69,7 +69,7 @@ static void boxes_are_rounded(void **state) {
   mps_body_destroy(&body);
 }
 
-/* A cube of twelve triangles: edges and corners where three faces meet. */
+/* A cube of twelve triangles: edges and corners of three faces. */
 static void edges_in_space_are_rounded(void **state) {
   (void)state;
   static const int32_t corner[36] = {0, 3, 1, 0, 2, 3, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
@@ -104,7 +104,7 @@ static void rims_are_rounded(void **state) {
 }
 
 /* Below a wedge of 60 degrees the ball ends radius/sin 30 above the tip: rounding would let the
- * particle in, which meets the wedge itself at a quarter of its half size. */
+ * particle in, which is in contact with the wedge itself at a quarter of its half size. */
 static void tips_keep_particles_out(void **state) {
   (void)state;
   const double xy[6] = {0.0, 0.0, 0.5, 0.5 * sqrt(3.0), -0.5, 0.5 * sqrt(3.0)};

@@ -67,7 +67,8 @@ static int take_step(mps_coupling *c, int step, double *x) {
 static void one_value_takes_three_repeats_then_two(void **state) {
   (void)state;
   mps_coupling *c = make(MPS_COUPLING_METHOD_AITKEN, 1);
-  for (int step = 0; step < 4; step++) { /* x = 5 + step - 20 x: handed to and fro it diverges */
+  for (int step = 0; step < 4;
+       step++) { /* x = 5 + step - 20 x: by fixed-point iteration it diverges */
     double x, answer;
     int32_t done = 0;
     int repeats = 0;
@@ -157,7 +158,7 @@ static void guesses_lie_on_a_line_through_the_last_steps(void **state) {
   mps_coupling_destroy(&c);
 }
 
-/* Memory put into another object: both go on bit for bit. */
+/* Memory put into another object: both continue bit for bit. */
 static void what_is_learnt_can_be_kept(void **state) {
   (void)state;
   double x[N], y[N], memory[4000];

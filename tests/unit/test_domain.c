@@ -358,7 +358,8 @@ static void test_refused_memory(void **state) {
   }
 }
 
-/* Ranks in different calls: each gets an error that names both, nothing waits, and they go on. */
+/* Ranks in different calls: each gets an error that names both, nothing waits, and they continue.
+ */
 static void run_calls(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];

@@ -1,4 +1,4 @@
-/* test_domain_messages.c - how much ranks of WLS-MPM tell one another in a step, counted, so that
+/* test_domain_messages.c - how much ranks of WLS-MPM exchange in a step, counted, so that
  * it cannot grow unseen: the numbers of docs/cluster.md. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_ranks.h"
 #include "ranks_team.h"
@@ -98,7 +98,7 @@ static void measure(void *user, team *t, int32_t rank) {
   mps_status status = mps_domain_create(own, &def, &domain);
   TRY(make_scene(own, domain, m->what, &s));
   TRY(mps_particles_set(s.set, "velocity", 0, 0.0));
-  TRY(mps_mpm_step(s.mpm, 4)); /* all bodies touch */
+  TRY(mps_mpm_step(s.mpm, 4)); /* all bodies are in contact */
   const uint64_t epoch = s.set ? mps_particles_epoch(s.set) : 0;
   const counts few = call(s.mpm, &c, 1, &status), many = call(s.mpm, &c, 1 + STEPS, &status);
   m->step[rank] = (counts){many.reductions - few.reductions, many.meetings - few.meetings,
@@ -140,8 +140,8 @@ static void expect(int what, int64_t reductions, int64_t meetings, int64_t copie
 /* A message to the neighbours and a reduction. */
 static void test_alone(void **state) { (void)state, expect(SLIDE, 1, 0, 1, 40000); }
 
-/* Bodies by impulses: what is reached and the tiles; ready, mates, touches, loads and the end, with
- * how much the sweeps have left. */
+/* Bodies by impulses: what is reached and the tiles; ready, partners, contacts, loads and the end,
+ * with how much the sweeps have left. */
 static void test_bodies(void **state) { (void)state, expect(PILES, 5, 1, 2, 60000); }
 
 int main(void) {

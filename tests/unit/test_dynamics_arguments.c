@@ -136,7 +136,7 @@ static void bad_definitions_are_refused(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* Writes one coordinate of a particle, told by its id: the set may have been sorted. */
+/* Writes one coordinate of a particle, found by its id: the set may have been sorted. */
 static void move(mps_particles *set, int64_t id, int component, double x) {
   mps_edit edit;
   mps_assert_ok(context, mps_particles_edit(set, "position", &edit));

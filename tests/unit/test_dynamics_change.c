@@ -113,7 +113,7 @@ static void a_changed_boundary_keeps_its_account(void **state) {
   mps_assert_fails(context, mps_dynamics_set_boundary(dynamics, number, NULL), MPS_ERROR_ARGUMENT,
                    "NULL");
 
-  /* Let go, the block falls freely. */
+  /* Released, the block falls freely. */
   const double before = totals_of(dynamics).linear[1];
   mps_assert_ok(context, mps_dynamics_remove_boundary(dynamics, number));
   mps_assert_fails(context, mps_dynamics_get_reaction(dynamics, number, &r), MPS_ERROR_ARGUMENT,

@@ -175,7 +175,7 @@ static void a_refused_material_writes_no_velocities(void **state) {
   mps_material_destroy(&stiff);
 }
 
-/* Totals of a state that the caller has written are those that its motion begins with. */
+/* Totals of a state that the caller has written are those of the beginning of its motion. */
 static void totals_are_of_the_written_rotations(void **state) {
   (void)state;
   for (int rotation = 0; rotation < 2; rotation++) {
@@ -366,8 +366,8 @@ static void a_jump_of_the_ground_is_not_damped(void **state) {
   const double former = value_of(set, "acceleration", 5, 0);
   mps_assert_ok(context, mps_dynamics_step(d, 1));
   const double now = value_of(set, "acceleration", 5, 0);
-  /* G = rho Vs^2 is half too: the same acceleration but for mass-proportional damping and the
-   * 1e-4 of its period that has gone by; with the jump counted it would be five times as much */
+  /* G = rho Vs^2 is half too: the same acceleration but for mass-proportional damping and the 1e-4
+   * of its period that has passed; with the jump counted it would be five times as much */
   mps_assert_near(now, former, 0.25 * fabs(former));
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
@@ -497,7 +497,7 @@ static void a_failed_creation_changes_nothing(void **state) {
     assert_null(d);
     assert_same_picture(picture_of(context, set), before);
     const double more[2] = {9.5, 9.5};
-    mps_assert_ok(context, mps_particles_append(set, 1, more)); /* nobody holds it */
+    mps_assert_ok(context, mps_particles_append(set, 1, more)); /* no solver holds it */
     mps_material_destroy(&def.material);
     mps_particles_destroy(&set);
   }
@@ -591,7 +591,7 @@ static void an_excavation_is_a_new_solver_on_what_is_left(void **state) {
   mps_assert_ok(context, mps_particles_remove(set, count, ids));
   assert_int_equal(mps_particles_count(set), body - 9);
   mps_dynamics *fresh = solver_of(rest, NULL, NULL);
-  load_block(fresh, false); /* the traction has gone with its row */
+  load_block(fresh, false); /* the traction was removed with its row */
   copy_motion(set, rest);
   mps_assert_ok(context, mps_dynamics_restart(fresh, mps_dynamics_time(d)));
   assert_int_equal(mps_dynamics_pairs(d), mps_dynamics_pairs(fresh));
@@ -719,7 +719,7 @@ static void removals_that_cannot_be_are_refused(void **state) {
   mps_assert_fails(context, mps_particles_remove(set, 1, of_column), MPS_ERROR_ARGUMENT,
                    "belongs to a free-field column");
   mps_assert_fails(context, mps_particles_remove(set, 19, all), MPS_ERROR_ARGUMENT,
-                   "all 19 particles of the body are to go");
+                   "all 19 particles of the body are to be removed");
   mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE,
                    "takes no more particles");
   assert_same_picture(picture_of(context, set), before);

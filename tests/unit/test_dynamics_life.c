@@ -124,7 +124,7 @@ static mps_status everything(mps_context *own, int integrator) {
   return status;
 }
 
-/* Refuses one allocation after the other. Arrays that belong together are asked for together, so
+/* Refuses one allocation after the other. Arrays that belong together are requested together, so
  * unlike test_allocator_sweep this does not mind if some follow the refused one. */
 static void a_refused_allocation_leaks_nothing(void **state) {
   (void)state;
@@ -143,7 +143,7 @@ static void a_refused_allocation_leaks_nothing(void **state) {
       mps_context_destroy(&own);
       assert_int_equal(allocator.live, 0);
     }
-    assert_true(refuse > 80); /* it met them all */
+    assert_true(refuse > 80); /* it covered them all */
   }
 }
 

@@ -238,7 +238,7 @@ static void euler_holds_below_its_limit_and_not_above(void **state) {
   assert_true(limit_of(&def, 6, 6, 2.0, 0.0).dt == 0.0);
 }
 
-/* Undamped Euler grows, over the duration asked for, by at most 1e15; at the limit by nearly that:
+/* Undamped Euler grows, over the duration requested, by at most 1e15; at the limit by nearly that:
  * the part of the highest mode in the initial state is a few per cent. */
 static void eulers_limit_for_a_duration(void **state) {
   (void)state;

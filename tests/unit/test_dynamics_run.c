@@ -8,7 +8,7 @@
 
 static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.0};
 
-/* What the hooks of a context saw, and what they are to answer. */
+/* What the hooks of a context saw, and their results. */
 typedef struct hooks {
   int warnings, progress, callbacks;
   int cancel_after; /* cancel at that call, 0 never */

@@ -221,7 +221,7 @@ static void free_rigid_motions_are_named(void **state) {
   mps_assert_ok(context, test_roller(e, square_to_it, 1, &other, NULL));
   mps_assert_ok(context, mps_elastic_solve(e));
   test_body_end(&b);
-  /* Two bodies, one of them unsupported: its part is named. Touching at a corner is no support. */
+  /* Two bodies, one of them unsupported: its part is named. Contact at a corner is no support. */
   b = test_body_begin(context, 2, 0.5);
   test_body_box(&b, 0, 0, 0, 1, 1, 0);
   test_body_box(&b, 1, 1, 0, 2, 2, 0);
@@ -556,8 +556,8 @@ static void failures_inside_cholmod_are_reported_and_leak_nothing(void **state) 
   drop_suite_hooks();
 }
 
-/* METIS, which would print and take memory from elsewhere, is not called where what it may want is
- * not there: 0.3 MB for this graph, more than anything else here takes at once. */
+/* METIS, which would print and take memory from elsewhere, is not called where the memory that it
+ * may need is not available: 0.3 MB for this graph, more than anything else here takes at once. */
 static void without_memory_for_metis_the_ordering_is_amd(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

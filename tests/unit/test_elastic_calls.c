@@ -32,7 +32,7 @@ static test_body square(mps_context *context, int cells) {
   return b;
 }
 
-/* What the cancel hook does: counts, cancels from call `at` on, or asks for modes. */
+/* What the cancel hook does: counts, cancels from call `at` on, or computes modes. */
 typedef struct hook {
   int calls, at;
   mps_elastic *modes;
@@ -105,7 +105,7 @@ static void a_cancelled_solution_changes_nothing(void **state) {
   mps_context_destroy(&context);
 }
 
-/* It deadlocked: the hook asks for modes while modes are found. */
+/* It deadlocked: the hook computes modes while modes are computed. */
 static void modes_within_modes_are_an_error(void **state) {
   (void)state;
   hook h = {.at = INT32_MAX};

@@ -1,7 +1,7 @@
 /* test_elastic_change.c - what changes while a motion of implicit elasticity is under way: with
  * Newmark's average acceleration the budget closes over each step after another material or
  * boundary, and the first step of what is set free is that of its forces; densities are those of
- * the start, whatever is asked in between.
+ * the start, whatever is queried in between.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
 #include "test_fixture.h"
@@ -149,7 +149,7 @@ static void a_second_start_has_the_present_densities(void **state) {
   motion.dt = 2e-3;
   motion.rho_inf = 1.0;
   OK(mps_particles_set(x.set, "density", 0, 4000.0));
-  OK(mps_elastic_modes(x.e, 2, omega, NULL)); /* of the new ones; the motion goes on as it was */
+  OK(mps_elastic_modes(x.e, 2, omega, NULL)); /* of the new ones; the motion continues as it was */
   OK(mps_elastic_step(x.e, 3));
   OK(mps_elastic_step(y.e, 3));
   const mps_totals a = totals_of(&x), b = totals_of(&y);

@@ -258,7 +258,7 @@ static void an_excavation_is_a_new_solver_on_what_is_left(void **state) {
     mps_assert_ok(context, mps_particles_remove(set, count, top));
     assert_int_equal(mps_particles_count(set), n - count);
     mps_assert_ok(context, mps_elastic_solve(e));
-    /* the same body from the start; its left side has the pressure that has not gone */
+    /* the same body from the start; its left side has the remaining pressure */
     mps_particles *rest = block(context, dim, 6, 6, false);
     mps_assert_ok(context, mps_particles_remove(rest, count, top));
     fresh = solver_of(rest, NULL, NULL);
@@ -302,7 +302,7 @@ static void a_motion_ends_with_a_removal(void **state) {
   mps_assert_fails(context, mps_elastic_step(e, 1), MPS_ERROR_STATE, "no motion under way");
   const double u = value_of(set, "displacement", 20, 0);
   assert_true(u != 0.0);
-  mps_assert_ok(context, mps_elastic_start(e, &motion)); /* goes on from the fields */
+  mps_assert_ok(context, mps_elastic_start(e, &motion)); /* continues from the fields */
   mps_assert_near(value_of(set, "displacement", 20, 0), u, 0.0);
   mps_assert_ok(context, mps_elastic_step(e, 3));
   free(top);
@@ -456,7 +456,7 @@ static void without_memory_nothing_changes(void **state) {
   }
 }
 
-/* Other materials where memory is refused: the solver goes on with the former ones, as its energy
+/* Other materials where memory is refused: the solver continues with the former ones, as its energy
  * says, which is found from the moduli. */
 static void without_memory_the_material_stays(void **state) {
   (void)state;

@@ -1,6 +1,6 @@
 /* test_elastic_outside.c - equations of implicit elasticity solved from outside: conjugate
- * gradients of this test in place of the library's solvers, the matrix in parts, answers that are
- * none. SPDX-License-Identifier: BSD-3-Clause */
+ * gradients of this test in place of the library's solvers, the matrix in parts, invalid solutions.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "conjugate.h"
 #include "elastic_common.h"
 

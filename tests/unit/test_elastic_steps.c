@@ -168,7 +168,7 @@ static void a_step_can_be_repeated_with_other_loads(void **state) {
   mps_context_destroy(&context);
 }
 
-/* A solver built in the same way goes on from a file bit for bit. */
+/* A solver built in the same way continues from a file bit for bit. */
 static void a_saved_motion_goes_on(void **state) {
   (void)state;
   const char *path = "test_elastic_steps.h5";

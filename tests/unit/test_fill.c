@@ -180,7 +180,7 @@ static void bad_polygons_are_refused_with_the_edges_named(void **state) {
   const double far[] = {0, 0, 4, 0, 0, 1e300}, huge[] = {-1e5, -1e5, 1e5, -1e5, 0, 1e5};
   const double tall[] = {0, -2e9, 1, -2e9, 0, 2e9};
   mps_assert_fails(context, mps_particles_fill_polygon(set, 4, bow_tie, NULL), MPS_ERROR_ARGUMENT,
-                   "edges 0 and 2 of the polygon cross");
+                   "edges 0 and 2 of the polygon intersect");
   mps_assert_fails(context, mps_particles_fill_polygon(set, 5, crossed_again, NULL),
                    MPS_ERROR_ARGUMENT, "edges 0 and 2 of");
   mps_assert_fails(context, mps_particles_fill_polygon(set, 5, touching, NULL), MPS_ERROR_ARGUMENT,
@@ -253,7 +253,7 @@ static void bad_boxes_are_refused(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* A chequerboard; counts how often it is asked. */
+/* A chequerboard; counts its calls. */
 static mps_status dark_field(void *user, const double *x, int32_t *inside) {
   ++*(int *)user;
   *inside = ((int)floor(x[0]) + (int)floor(x[1])) % 2 == 0;

@@ -180,7 +180,7 @@ static void drop_with(mps_kernel *kernel, double *out) {
   mps_particles_destroy(&p);
 }
 
-/* The weight is the kernel that the caller can ask: of another radius, and no other kind. */
+/* The weight is the kernel that the caller can query: of another radius, and no other kind. */
 static void takes_a_kernel(void **state) {
   (void)state;
   double by_radius[50], by_kernel[50], most = 0.0;
@@ -343,7 +343,7 @@ static void a_film_one_particle_thick_lies_still(void **state) {
   tank_free(&t);
 }
 
-/* The tank's floor opens: all water falls out, and the steps go on. */
+/* The tank's floor opens: all water falls out, and the steps continue. */
 static void a_tank_runs_empty(void **state) {
   (void)state;
   tank t = tank_make(context, 0.5, 0.1, 0.02, NULL, 2e-3);
@@ -391,7 +391,7 @@ static void a_rollback_repeats_the_steps_bit_for_bit(void **state) {
   mps_signal_destroy(&piston);
 }
 
-/* A piston that gets another signal goes on from where it is with the velocity it has. */
+/* A piston that gets another signal continues from where it is with the velocity it has. */
 static void a_boundary_can_change(void **state) {
   (void)state;
   mps_signal *piston = NULL, *slow = NULL;
@@ -515,10 +515,10 @@ static void forces_on_particles_push(void **state) {
  * lost, and the next steps are short. */
 static void count_warnings(void *user, int32_t level, const char *message) {
   int *count = user;
-  *count += level == MPS_CONTEXT_LOG_WARNING && strstr(message, "pushed off walls") != NULL;
+  *count += level == MPS_CONTEXT_LOG_WARNING && strstr(message, "moved off walls") != NULL;
 }
 
-/* Its step is made, and the log told once that the guards act often. */
+/* Its step is made, and the log has one warning that the guards act often. */
 static void a_wall_may_be_fast(void **state) {
   (void)state;
   int warnings = 0;
@@ -760,7 +760,7 @@ static void water_leaves_by_an_open_side(void **state) {
     assert_int_equal(mps_particles_count(t.water) + r.removed, 150);
     mps_assert_near(sum.mass + r.removed_mass, 150.0 * mass, 1e-9);
     assert_true(mps_fluid_time(t.fluid) < 1.0);
-    /* what has gone took its momentum along x; what is left got the wall's */
+    /* removed particles took their momentum along x; the others got the wall's */
     mps_reaction wall;
     mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, 1, &wall));
     mps_assert_near(sum.linear[0], wall.impulse[0] + r.impulse[0], 0.05 * wall.impulse[0]);
@@ -778,7 +778,7 @@ static void water_leaves_by_an_open_side(void **state) {
   mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &again));
   assert_memory_equal(&first, &again, sizeof first);
   mps_snapshot_destroy(&before);
-  /* It is no wall, does not move, and becomes a wall again only where nobody is near. */
+  /* It is no wall, does not move, and becomes a wall again only where no particle is near. */
   mps_assert_fails(context, mps_fluid_get_wall(t.fluid, number, 0, &count, NULL, NULL),
                    MPS_ERROR_ARGUMENT, "number 2");
   def.nodes = x, def.node_count = 1;

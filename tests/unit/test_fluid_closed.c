@@ -1,6 +1,6 @@
 /* test_fluid_closed.c - fluid that fills a closed box: what keeps its volume works, with pressures
- * up to a constant; what changes it is refused and changes nothing. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * up to a constant; what changes it is refused and changes nothing.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include "fluid_tank.h"
@@ -86,7 +86,7 @@ static void a_full_box_is_carried_along(void **state) {
 }
 
 /* A piston of .05 m/s against a lid, also a slow one of 1 um/s, is refused at the first step;
- * places, forces and time stay, and without it the run goes on. */
+ * places, forces and time stay, and without it the run continues. */
 static void a_piston_against_a_lid_is_refused(void **state) {
   (void)state;
   const double speeds[3] = {0.05, -0.05, 1e-6};

@@ -53,8 +53,8 @@ static double residual(double (*full)[ROWS], const double *x, const double *b) {
   return most;
 }
 
-/* Rows that sum to 0 have an answer only to a right side that does, up to a constant: one value is
- * then 0. */
+/* Rows that sum to 0 have a solution only for a right side that does, up to a constant: one value
+ * is then 0. */
 static void the_coarse_equation_is_solved(void **state) {
   (void)state;
   double full[ROWS][ROWS], b[ROWS], x[ROWS];

@@ -35,7 +35,7 @@ static void pressures_of_still_water(void **state) {
     mps_assert_near(size, 1000.0 * TANK_G * DEPTH * (walls[w] == TANK_BED ? 0.6 : 0.5 * DEPTH),
                     1e-6 * size);
   }
-  /* A list too short tells how many there are. */
+  /* A list too short receives the number. */
   mps_assert_ok(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 2, &count, NULL, p));
   assert_int_equal(count, 20);
   mps_assert_ok(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 0, &count, NULL, NULL));

@@ -1,7 +1,6 @@
-/* test_fluid_readings.c - what a fluid tells between steps follows from its state: after a rollback
- * or a step given up it tells the same, bit for bit, as before. SPDX-License-Identifier:
- * BSD-3-Clause
- */
+/* test_fluid_readings.c - readings of a fluid between steps follow from its state: after a rollback
+ * or an abandoned step they are the same, bit for bit, as before.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include "fluid_readings.h"

@@ -1,5 +1,5 @@
 /* test_fluid_solver.c - the pressure equation solved from outside: CHOLMOD in place of the
- * library's own solver gives the same motion; answers that are none are refused.
+ * library's own solver gives the same motion; invalid solutions are refused.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 

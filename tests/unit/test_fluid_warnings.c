@@ -33,9 +33,9 @@ static void a_wall_that_goes_far_in_a_step(void **state) {
   assert_int_equal(j.count, 0);
   assert_int_equal(go(own, 0.8), MPS_OK);
   assert_int_equal(j.count, 1);
-  assert_non_null(strstr(j.last, "boundary 1 goes 0.016 m"));
+  assert_non_null(strstr(j.last, "boundary 1 moves 0.016 m"));
   assert_int_equal(go(own, 2.0), MPS_ERROR_DIVERGED);
-  assert_non_null(strstr(mps_context_error(own)->message, "boundary 1 goes 0.04 m"));
+  assert_non_null(strstr(mps_context_error(own)->message, "boundary 1 moves 0.04 m"));
   mps_context_destroy(&own);
 }
 
@@ -142,7 +142,7 @@ static void a_body_that_rolls_onto_the_bed(void **state) {
   mps_context_destroy(&own);
 }
 
-/* A particle of 1e6 m/s would ask for steps of 5 ns; without gravity for as many. */
+/* A particle of 1e6 m/s would need steps of 5 ns; without gravity for as many. */
 static void a_run_does_not_choose_endless_steps(void **state) {
   (void)state;
   for (int weightless = 0; weightless < 2; weightless++) {

@@ -221,7 +221,7 @@ static void a_function_sets_the_stress(void **state) {
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-/* The stress that somebody is editing is not written. */
+/* A stress field in an edit is not written. */
 static void an_open_edit_is_respected(void **state) {
   (void)state;
   mps_particles *set = ground(context, 2, 2.0);

@@ -699,8 +699,8 @@ static void results_stay_within_the_callers_struct(void **state) {
                    MPS_ERROR_ARGUMENT, "allowed are 1 to 4096");
 }
 
-/* Field by field: the struct of a caller who knows only its first members. */
-/* A program built against an older libmps asks for a definition and creates another solver by it:
+/* Field by field: the struct of a caller with only its first members. */
+/* A program built against an older libmps queries a definition and creates another solver by it:
  * the size that comes with it is the program's. */
 static void definitions_come_back_with_the_callers_size(void **state) {
   (void)state;

@@ -241,7 +241,7 @@ static mps_particles *free_set(void) {
   return set;
 }
 
-/* What each step reads anew moves nobody in memory, and no other field but positions does. */
+/* What each step reads anew moves no particle in memory, and no other field but positions does. */
 static void only_positions_make_a_solver_sort(void **state) {
   (void)state;
   static const char *const fields[] = {"external_force", "velocity", "stress", "density",
@@ -287,7 +287,8 @@ static void an_edited_force_acts_at_once(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* The values are those from before, also where the solver had refused them, and nobody re-reads. */
+/* The values are those from before, also where the solver had refused them, and no holder reads
+ * again. */
 static void an_abandoned_edit_was_none(void **state) {
   (void)state;
   mps_particles *set = make_set(context, 2.0);

@@ -1,4 +1,4 @@
-/* test_hdf5_fluid.c - a fluid that goes on from a checkpoint in a new solver is, bit for bit, the
+/* test_hdf5_fluid.c - a fluid that continues from a checkpoint in a new solver is, bit for bit, the
  * one that never stopped, on any number of threads; a tank built otherwise, or a damaged file, is
  * refused and changes nothing. SPDX-License-Identifier: BSD-3-Clause */
 #include "digest.h"

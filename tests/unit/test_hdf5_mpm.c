@@ -1,4 +1,4 @@
-/* test_hdf5_mpm.c - a WLS-MPM run that goes on from a checkpoint in a new solver is, bit for bit,
+/* test_hdf5_mpm.c - a WLS-MPM run that continues from a checkpoint in a new solver is, bit for bit,
  * the run that never stopped, on any number of threads; a solver built otherwise is refused by
  * name. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
@@ -18,7 +18,7 @@ static const char path[] = TEST_TMP "/mpm.h5", part[] = TEST_TMP "/mpm.h5.part";
 
 /* ---- the same bits --------------------------------------------------------------------------- */
 
-/* One run goes on all the while; at each stop it is saved, and another solver, on other threads,
+/* One run continues all the while; at each stop it is saved, and another solver, on other threads,
  * takes over and follows it to the next stop. */
 static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
@@ -248,7 +248,7 @@ static void other_files_and_bad_arguments(void **state) {
   mps_context_destroy(&context);
 }
 
-/* A run that has diverged cannot be saved, but goes on from an earlier checkpoint. */
+/* A run that has diverged cannot be saved, but continues from an earlier checkpoint. */
 static void a_broken_run_goes_back(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

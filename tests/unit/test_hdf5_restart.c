@@ -1,4 +1,4 @@
-/* test_hdf5_restart.c - a run that stops at a checkpoint and goes on in a new solver is, bit for
+/* test_hdf5_restart.c - a run that stops at a checkpoint and continues in a new solver is, bit for
  * bit, the run that never stopped: every integrator, with and without damping, driven, with a
  * viscous base and free-field columns.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -104,7 +104,7 @@ static void checkpoint(const body *b) {
   mps_assert_ok(context, mps_dynamics_save(b->solver, path, NULL));
 }
 
-/* The program that goes on: with a time step of its own, which the file's replaces. */
+/* The program that continues: with a time step of its own, which the file's replaces. */
 static body resume(const run *r) {
   body b = build(r, 1e-4);
   mps_assert_ok(context, mps_dynamics_restore(b.solver, path, NULL));
@@ -166,8 +166,8 @@ static void so_does_one_that_has_not_begun(void **state) {
   }
 }
 
-/* A run that is dug into, and stops after that, goes on in a new solver on all particles; and a run
- * goes back to a file from before in a solver that has been dug into. */
+/* A run that is dug into, and stops after that, continues in a new solver on all particles; and a
+ * run goes back to a file from before in a solver that has been dug into. */
 static void so_does_one_that_was_dug_into(void **state) {
   (void)state;
   for (int driven = 0; driven < 2; driven++) {

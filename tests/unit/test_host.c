@@ -3,7 +3,7 @@
  * and water against it (fluid). In each of its steps the host carries forces and motions from one
  * to the other, takes particles away and brings others, makes the step, goes back, makes it with
  * other loads, goes back again, and repeats the first: the same bits. In each step the energy
- * budget of every solver closes. What the solvers have in common (mps/solver.h) is asked in one
+ * budget of every solver closes. What the solvers have in common (mps/solver.h) is queried in one
  * way. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
@@ -51,13 +51,13 @@ typedef struct host {
   const verbs *verb[SOLVERS];
   void *solver[SOLVERS];
   mps_snapshot *before[SOLVERS];
-  int32_t boundary[SOLVERS]; /* whose reaction is asked */
+  int32_t boundary[SOLVERS]; /* whose reaction is queried */
   int32_t wall_load, water_wall;
   mps_body *plate;
   mps_contact *contact;
   mps_signal *shake;
   int64_t facets[32], facet_count; /* of the wall, towards the water */
-  double amplitude;                /* m, of what the signal answers */
+  double amplitude;                /* m, of the signal's value */
   double time;
 } host;
 
@@ -99,7 +99,7 @@ static void make_soil(host *h) {
   mps_particles_destroy(&set);
 }
 
-/* What the host tells its signals: the ground's base is shaken by it. */
+/* Values of the host's signals: the ground's base is shaken by it. */
 static mps_status shake(void *user, double t, double motion[3]) {
   const host *h = user;
   const double w = 60.0;
@@ -187,7 +187,7 @@ static void push(mps_particles *set, double level, double fx, double fy) {
   mps_assert_ok(context, mps_particles_commit(set, &f));
 }
 
-/* What the solvers feel now, to what they are told for the next step; `more` makes it another. */
+/* What the solvers feel now, to their input of the next step; `more` makes it another. */
 static void exchange(host *h, double more) {
   mps_reaction plate, base, water;
   mps_assert_ok(context, mps_contact_get_reaction(h->contact, -1, &plate));
@@ -349,7 +349,7 @@ static void a_host_exchanges_and_repeats(void **state) {
     trade(&h, n);
     exchange(&h, 0.0);
     step(&h, first);
-    go_back(&h); /* what has gone is there again, what has come is not */
+    go_back(&h); /* removed particles are restored, added ones are not */
     trade(&h, n);
     exchange(&h, 50.0);
     step(&h, other);
@@ -366,7 +366,7 @@ static void a_host_exchanges_and_repeats(void **state) {
     mps_assert_ok(context, mps_contact_get_reaction(h.contact, -1, &plate));
     most = fmax(most, plate.force[1]);
   }
-  assert_true(most > 1e3); /* soil and plate have met */
+  assert_true(most > 1e3); /* soil and plate are in contact */
   for (int k = 0; k < SOLVERS; k++) mps_snapshot_destroy(&h.before[k]);
   mps_contact_destroy(&h.contact);
   mps_mpm_destroy((mps_mpm **)&h.solver[SOIL]);

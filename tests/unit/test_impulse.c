@@ -5,7 +5,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "contact/visit.h"
+#include "contact/update.h"
 
 #include <mps/mpm_energy.h>
 
@@ -64,7 +64,7 @@ static void mobility_is_what_a_kick_does(void **state) {
 }
 
 /* One mass on a driven floor: what it falls with is stopped, what it slides with by at most mu. */
-static void one_visit_solves_one_contact(void **state) {
+static void one_update_solves_one_contact(void **state) {
   (void)state;
   mps_body *floor = NULL;
   const double up[] = {0.0, 1.0};
@@ -80,14 +80,14 @@ static void one_visit_solves_one_contact(void **state) {
     const double none[3] = {0.0};
     double u[3] = {slides[k], -1.0, 0.0}, by[3];
     mpsi_impulse_warm(&c, &b, none, 1.0, by);
-    assert_true(mpsi_impulse_visit(&c, &b, u, by));
+    assert_true(mpsi_impulse_update(&c, &b, u, by));
     mps_assert_near(c.normal_impulse, m * 1.0, 1e-15);
     mps_assert_near(c.tangent_impulse[0], -fmin(m * slides[k], 0.3 * m), 1e-15);
     u[0] += by[0] / m, u[1] += by[1] / m;
-    (void)mpsi_impulse_visit(&c, &b, u, by);
+    (void)mpsi_impulse_update(&c, &b, u, by);
     mps_assert_near(fabs(by[0]) + fabs(by[1]), 0.0, 1e-15); /* solved */
     u[1] = 3.0; /* something else throws it off: nothing pulls */
-    (void)mpsi_impulse_visit(&c, &b, u, by);
+    (void)mpsi_impulse_update(&c, &b, u, by);
     mps_assert_near(c.normal_impulse, 0.0, 0.0);
     mps_assert_near(c.tangent_impulse[0], 0.0, 0.0);
     const double last[3] = {-0.5, 1.0, 0.0}, pulls[3] = {0.1, -1.0, 0.0};
@@ -119,11 +119,11 @@ static void shear_has_adhesion_and_strength(void **state) {
     const double none[3] = {0.0};
     double u[3] = {5.0, -1.0, 0.0}, by[3];
     mpsi_impulse_warm(&c, &b, none, 1.0, by);
-    (void)mpsi_impulse_visit(&c, &b, u, by);
+    (void)mpsi_impulse_update(&c, &b, u, by);
     mps_assert_near(c.normal_impulse, 2.0, 1e-15);
     mps_assert_near(c.tangent_impulse[0], -bears[k], 1e-15);
     u[1] = 3.0; /* lifted off: nothing adheres */
-    (void)mpsi_impulse_visit(&c, &b, u, by);
+    (void)mpsi_impulse_update(&c, &b, u, by);
     mps_assert_near(c.tangent_impulse[0], 0.0, 0.0);
   }
   mps_body_destroy(&floor);
@@ -153,8 +153,8 @@ static void drive(mps_body *body, double vx, double vy) {
 }
 
 /* A plate strikes a block that nothing else holds: momentum and moment of momentum of the block,
- * with the spin of the velocity gradients, are what the plate gave; the touching particles' forces
- * sum up to the reaction, within the cone; the energies balance. */
+ * with the spin of the velocity gradients, are what the plate gave; the forces of particles in
+ * contact sum up to the reaction, within the cone; the energies balance. */
 static void gives_force_and_moment(void **state) {
   (void)state;
   mps_body *plate = NULL;
@@ -399,8 +399,8 @@ static void put_at(mpm_scene *s, int64_t name, double y) {
 }
 
 /* Particles too deep in a plate over many blocks of the grid: the step is refused as often as it is
- * tried, names the same particle, and one that is taken out is forgotten at once: errors tell of
- * the present state alone, whichever blocks the next step comes to. */
+ * tried, names the same particle, and one that is taken out is forgotten at once: errors report the
+ * present state alone, whichever blocks the next step comes to. */
 static void depth_is_found_anew(void **state) {
   (void)state;
   for (int32_t threads = 1; threads <= 2; threads++) {
@@ -412,7 +412,7 @@ static void depth_is_found_anew(void **state) {
     def.cell = 0.02;
     mpm_scene_box(&s, 0.0, 0.0, 1.2, 0.1); /* 60 cells, 8 blocks of them */
     mpm_scene_solve(&s, &def);
-    at.position[0] = 0.6, at.position[1] = 0.22; /* nothing else touches it */
+    at.position[0] = 0.6, at.position[1] = 0.22; /* no other contact */
     mps_assert_ok(own, mps_body_create_box(own, &at, 1.4, 0.2, &plate));
     mpm_scene_contact(&s, plate, 0.3);
     mps_assert_ok(own, mps_mpm_step(s.mpm, 3));
@@ -448,7 +448,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(half_size_follows_elastic_strain),
                                      cmocka_unit_test(aims_at_the_surface),
                                      cmocka_unit_test(mobility_is_what_a_kick_does),
-                                     cmocka_unit_test(one_visit_solves_one_contact),
+                                     cmocka_unit_test(one_update_solves_one_contact),
                                      cmocka_unit_test(shear_has_adhesion_and_strength),
                                      cmocka_unit_test(gives_force_and_moment),
                                      cmocka_unit_test(bodies_end_and_materials_differ),

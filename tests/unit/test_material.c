@@ -221,7 +221,7 @@ static void a_users_law_is_called_once_a_block(void **state) {
     mps_assert_near(volume[k], 2.0 * pow(1.0 + 0.05 * k, 3.0), 1e-12 * volume[k]);
     assert_int_equal(flags[k], MPS_MATERIAL_FLAG_PLASTIC);
   }
-  block.count = 0; /* nothing to do: nobody is called */
+  block.count = 0; /* nothing to do: no callback is called */
   mps_assert_ok(context, mps_material_update(context, m, &block));
   assert_int_equal(seen.blocks, 3);
   block.count = 64;

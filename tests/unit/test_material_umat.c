@@ -9,7 +9,7 @@
 #define E 1e7
 #define NU 0.3
 
-/* A UMAT's arguments; those that a test does not use are named by (void). */
+/* A UMAT's arguments; unused ones are named by (void). */
 #define UMAT(name)                                                                                 \
   static void name(                                                                                \
       double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,       \
@@ -28,7 +28,7 @@
   (void)time, (void)dtime, (void)drot, (void)dfgrd0, (void)dfgrd1, (void)celent, (void)kinc
 #define UNUSED_NAMES (void)cmname, (void)cmname_length, (void)nprops, (void)nstatv
 
-/* s += C:e, with the matrix that Abaqus wants. */
+/* s += C:e, with the matrix of Abaqus' convention. */
 static void add_elastic(const double *props, int32_t ndi, int32_t ntens, const double *e,
                         double *ddsdde, double *stress) {
   const double shear = props[0] / (2.0 * (1.0 + props[1]));
@@ -223,7 +223,7 @@ static void a_umat_works_in_the_solver(void **unused) {
 
 /* ---- arguments ------------------------------------------------------------------------------- */
 
-/* What the UMAT was told last. C has no other way out of a UMAT: it has no pointer of its user. */
+/* Last arguments of the UMAT. C has no other way out of a UMAT: it has no pointer of its user. */
 static struct spied {
   double stress[6], drot[9], f0[9], f1[9], dstran[6], stran[6], time[2], dtime, temp, celent;
   int32_t ndi, nshr, ntens, nstatv, nprops, kstep, kinc;

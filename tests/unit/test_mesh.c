@@ -83,7 +83,7 @@ static void refuses_a_pinched_surface(void **state) {
   mps_body *body = NULL;
   block.triangles = 0;
   for (int k = 0; k < 8; k++) mesh_add(&block, p[faces[k][0]], p[faces[k][1]], p[faces[k][2]]);
-  mps_assert_fails(context, create(&body), MPS_ERROR_ARGUMENT, "touch in a point");
+  mps_assert_fails(context, create(&body), MPS_ERROR_ARGUMENT, "have a single point in common");
   block.triangles = 4;
   mps_assert_ok(context, create(&body)); /* one of them is a body */
   mps_body_destroy(&body);

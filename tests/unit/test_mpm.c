@@ -133,7 +133,7 @@ static void owns_its_bodies(void **state) {
   assert_true(mps_mpm_dt(NULL) == 0.0 && mps_mpm_time(NULL) == 0.0 && mps_mpm_steps(NULL) == 0);
 }
 
-/* A run ends exactly at its end, calls back as asked, and dt is that of (49). */
+/* A run ends exactly at its end, calls back as requested, and dt is that of (49). */
 static mps_status count_calls(void *user, mps_mpm *mpm) {
   (void)mpm;
   ++*(int *)user;
@@ -158,7 +158,7 @@ static void runs_to_the_end(void **state) {
   mpm_scene_end(&s);
 }
 
-/* A law of the caller's that refuses when told so. */
+/* A law of the caller's that fails on request. */
 static mps_status refusing(void *user, const mps_material_block *block) {
   const int32_t now = *(const int32_t *)user;
   if (now == 0) return MPS_OK;
@@ -237,7 +237,7 @@ static void sets_materials(void **state) {
   mpm_scene_end(&s);
 }
 
-/* No law tells the stress of what is turned inside out. */
+/* No law gives the stress of an inverted particle. */
 static void inverted_deformations_are_refused(void **state) {
   (void)state;
   mps_material *law = NULL;
@@ -267,7 +267,7 @@ static void inverted_deformations_are_refused(void **state) {
   }
 }
 
-/* A lump that bursts out of the domain is told with id and step, and the solver stops. */
+/* A lump that bursts out of the domain is reported with id and step, and the solver stops. */
 static void tells_what_left(void **state) {
   (void)state;
   mpm_scene s = small_scene(context);
@@ -405,7 +405,7 @@ static void survives_lack_of_memory(void **state) {
   for (int what = 0; what < 3; what++) test_allocator_sweep(make, what);
 }
 
-/* Steps that sort, touch a body and have room allocate nothing. */
+/* Steps that sort, are in contact with a body and have enough memory allocate nothing. */
 static void steady_steps_allocate_nothing(void **state) {
   (void)state;
   test_allocator allocator = {0};
@@ -413,7 +413,7 @@ static void steady_steps_allocate_nothing(void **state) {
   mpm_scene s = small_scene(own);
   const double v0[] = {1.0, 0.5}, L[] = {0.0, -8.0, 8.0, 0.0};
   mpm_scene_affine(&s, v0, L);
-  mps_mpm_def def = mps_mpm_defaults(); /* no walls: they hold what touches them */
+  mps_mpm_def def = mps_mpm_defaults(); /* no walls: they hold particles in contact */
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
   mps_body *body = NULL;

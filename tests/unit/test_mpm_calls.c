@@ -1,5 +1,6 @@
 /* test_mpm_calls.c - what a caller of the WLS-MPM solver relies on: an error leaves the set as it
- * was, callbacks may only ask, runs go forwards and end where told, forces are of the measure.
+ * was, callbacks may only query, runs go forwards and end where requested, forces are of the
+ * measure.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "core/particles/particles_internal.h"
@@ -179,7 +180,7 @@ static void steps_can_be_cancelled(void **state) {
   mpm_scene_solve(&s, &def);
   mps_assert_fails(own, mps_mpm_step(s.mpm, 100), MPS_ERROR_CANCELLED, "cancel hook at step 1");
   assert_int_equal(mps_mpm_steps(s.mpm), 1);
-  mps_assert_ok(own, mps_mpm_step(s.mpm, 1)); /* one step alone is not asked about */
+  mps_assert_ok(own, mps_mpm_step(s.mpm, 1)); /* one step alone calls no hook */
   mpm_scene_end(&s);
   mps_context_destroy(&own);
   context = shared;

@@ -79,7 +79,7 @@ static void erosion_of_half_a_column_takes_its_mass_and_momentum(void **state) {
   for (int c = 0; c < 2; c++)
     mps_assert_near(after.linear[c], before.linear[c] - momentum[c], 1e-12 * before.mass);
   stress = column(x.s.particles, "stress", 1, &w), m = column(x.s.particles, "mass", 0, &v);
-  for (int64_t id = 0; id < 800; id++) { /* those that stay are what they were */
+  for (int64_t id = 0; id < 800; id++) { /* remaining particles are unchanged */
     const int64_t at = mps_particles_index(x.s.particles, id);
     if (at >= 0) assert_true(stress[at] == former[2 * id] && m[at] == former[2 * id + 1]);
   }
@@ -390,7 +390,7 @@ static void refusals_change_nothing(void **state) {
   mps_context_destroy(&context);
 }
 
-/* All may go; time goes on, and others may come. */
+/* All may be removed; time continues, and others may be added. */
 static void an_empty_solver_waits(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
@@ -452,7 +452,7 @@ static void a_step_that_would_go_too_deep_does_not_begin(void **state) {
   FAILS(mps_mpm_step(x[0].s.mpm, 1), MPS_ERROR_DIVERGED, "below the surface"); /* again */
   mps_reaction r[2];
   mps_snapshot *snapshot = NULL;
-  for (int k = 0; k < 2; k++) { /* without the body it goes on, as that which never failed */
+  for (int k = 0; k < 2; k++) { /* without the body it continues, as one that never failed */
     mps_assert_ok(context, mps_contact_get_reaction(contact[k], -1, &r[k]));
     mps_assert_ok(context, mps_mpm_snapshot(x[k].s.mpm, &snapshot));
     mps_snapshot_destroy(&snapshot);

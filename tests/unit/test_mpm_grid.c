@@ -1,4 +1,4 @@
-/* test_mpm_grid.c - mps/grid.h: nodes of the present state, fields at points; that asking changes
+/* test_mpm_grid.c - mps/grid.h: nodes of the present state, fields at points; that queries change
  * nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_twins.h"
@@ -260,7 +260,7 @@ static void nodes_fill_a_set(void **state) {
   mps_context_destroy(&context);
 }
 
-/* The weights as an object, given or asked for. */
+/* The weights as an object, given or queried. */
 static void weights_are_a_kernel(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

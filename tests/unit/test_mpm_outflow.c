@@ -1,5 +1,5 @@
 /* test_mpm_outflow.c - particles that leave a WLS-MPM solver in a step: a jet through an open side,
- * what a body takes away; mass and momentum are kept to the last digit.
+ * removal by a body; mass and momentum are kept to the last digit.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 
@@ -74,7 +74,7 @@ static void a_jet_leaves_the_channel(void **state) {
   }
   assert_in_range(side_of(&s, 1).removed, 14 * 8, 18 * 8);
   assert_true(side_of(&s, 1).work < 0.0);
-  /* In the end all have gone, and time goes on. */
+  /* In the end all are removed, and time continues. */
   mps_assert_ok(context, mps_mpm_run(s.mpm, 1.0, 1, NULL, NULL));
   assert_int_equal(mps_particles_count(s.particles), 0);
   check_balance(&s, came, momentum, angular);
@@ -86,7 +86,7 @@ static void a_jet_leaves_the_channel(void **state) {
   mps_context_destroy(&context);
 }
 
-/* Before, the side failed the step. Going back brings those that left back. */
+/* Before, the side failed the step. A rollback restores removed particles. */
 static void goes_back_and_leaves_again(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

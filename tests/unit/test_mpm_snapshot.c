@@ -1,12 +1,13 @@
-/* test_mpm_snapshot.c - mps_mpm_snapshot and mps_mpm_rollback: the steps after a rollback are those
- * that followed the snapshot, bit for bit, on any number of threads; whose snapshot it is; refused
+/* test_mpm_snapshot.c - mps_mpm_snapshot and mps_mpm_rollback: the steps after a rollback are the
+ * same as after the snapshot, bit for bit, on any number of threads; whose snapshot it is; refused
  * memory changes nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "mpm_twins.h"
 #include "test_allocator.h"
 
-/* All that a program can see of a run, as a new scene would have it: `x` goes on as `twin` does. */
+/* All that a program can see of a run, as a new scene would have it: `x` continues as `twin` does.
+ */
 static void follows(scene *x, scene *twin, int64_t steps) {
   same(x, twin);
   mps_assert_ok(x->s.context, mps_mpm_step(x->s.mpm, steps));

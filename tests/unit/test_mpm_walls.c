@@ -198,7 +198,7 @@ static void reads_external_forces(void **state) {
   mpm_scene_end(&s);
 }
 
-/* ---- what the log is told -------------------------------------------------------------------- */
+/* ---- warnings of the log --------------------------------------------------------------------- */
 
 typedef struct heard {
   int warnings;
@@ -277,7 +277,8 @@ static void tells_of_bodies(void **state) {
   mps_assert_fails(own, mps_mpm_add_contact(s.mpm, bodies[2], &contact, NULL), MPS_ERROR_ARGUMENT,
                    "0.03 m thin, 1.5 cells");
   contact.thin = 1;
-  mps_assert_ok(own, mps_mpm_add_contact(s.mpm, bodies[2], &contact, NULL)); /* they touch */
+  mps_assert_ok(own,
+                mps_mpm_add_contact(s.mpm, bodies[2], &contact, NULL)); /* they are in contact */
   expect_warning(&h, 1, "0.03 m thin, 1.5 cells");
   mps_assert_ok(own, mps_mpm_step(s.mpm, 2));
   assert_int_equal(h.warnings, 1);

@@ -1,7 +1,7 @@
 /* test_mpm_whole.c - a step of WLS-MPM is whole or has not happened: one that a law refuses leaves
  * all as before it, bit for bit, and one in which a particle leaves the domain is complete, and the
- * solver goes on when that particle is put back or removed. SPDX-License-Identifier: BSD-3-Clause
- */
+ * solver continues when that particle is put back or removed.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_twins.h"
 #include "test_fixture.h"
 

@@ -422,7 +422,7 @@ static void every_allocation_failure_is_reported_and_changes_nothing(void **stat
     mps_context_destroy(&c);
     assert_int_equal(memory.live, 0);
   }
-  assert_true(refuse > 30); /* it did meet failures */
+  assert_true(refuse > 30); /* it did have failures */
 }
 
 static void the_documentation_shows_the_table(void **state) {

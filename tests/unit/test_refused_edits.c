@@ -220,7 +220,7 @@ static void accelerations_that_are_not_finite_are_not_shown(void **state) {
 
 /* ---- ids to come ----------------------------------------------------------------------------- */
 
-/* Ids 5 to 9 are gone: the set that was brought together knows that they were there. */
+/* Ids 5 to 9 are removed: the set that was brought together knows that they were there. */
 static void ids_to_come_follow_those_that_are_gone(void **state) {
   (void)state;
   static const int64_t ids[10] = {5, 6, 7, 8, 9, 0, 1, 2, 3, 4};
@@ -239,7 +239,7 @@ static void ids_to_come_follow_those_that_are_gone(void **state) {
     OK(mps_particles_create(own, &set_def, &set));
     for (int part = 0; part < 2; part++) {
       OK(mps_particles_append(set, 5, places));
-      /* `again`: it has the same particles already when more have come and gone */
+      /* `again`: it has the same particles already when more were added and removed */
       if (part == 0 && again) OK(mps_domain_gather_fields(domain, set, 1, names, &whole));
     }
     OK(mps_particles_remove(set, again ? 5 : 10, ids));

@@ -1,6 +1,6 @@
 /* test_refusing_signals.c - a function of the caller that refuses a motion
  * (mps_signal_create_user): every call that evaluates it returns the caller's status with a record
- * that names the signal, whose it is and the time; nothing has changed, and the run goes on as if
+ * that names the signal, whose it is and the time; nothing has changed, and the run continues as if
  * it had never refused. SPDX-License-Identifier: BSD-3-Clause */
 #include "unchanged.h"
 #include "test_fixture.h"
@@ -314,7 +314,7 @@ static void bodies_stay_where_they_are(void **state) {
   motion.velocity[0] = 1.0;
   mps_assert_ok(context, mps_body_set_motion(s.body, &motion));
   REFUSED(&s, mps_body_set_motion(s.body, NULL), "mps_body_set_motion", seen_body(context, s.body));
-  from.refuses = true; /* a signal that is not wanted any more is not evaluated */
+  from.refuses = true; /* a signal that is not used any more is not evaluated */
   mps_assert_ok(context, mps_body_drive(s.body, 1, NULL, 1.0));
   from.refuses = false;
   mps_body_destroy(&s.body);

@@ -129,7 +129,7 @@ static void a_table_of_accelerations_is_integrated_exactly(void **state) {
     mps_assert_near(mps_signal_displacement(signal, 13.0 + s),
                     19.0 + 15.0 * s + 3.0 * s * s - 6.0 * s * s * s, 1e-13);
   }
-  /* v(17.5) = 13.5 - 12 * 4/2 = -10.5: it goes on with it */
+  /* v(17.5) = 13.5 - 12 * 4/2 = -10.5: it continues with it */
   mps_assert_near(mps_signal_velocity(signal, 17.5), -10.5, 1e-13);
   const double last = mps_signal_displacement(signal, 17.5);
   mps_assert_near(mps_signal_displacement(signal, 19.5), last - 21.0, 1e-13);
@@ -388,7 +388,7 @@ static void what_lies_before_zero_displaces_nothing_at_the_start(void **state) {
     mps_assert_near(mps_signal_velocity(signal, t), t + 2.0, 1e-14);
   }
   mps_signal_destroy(&signal);
-  /* entirely in the past: what goes on is the last velocity, from 0 at t = 0 */
+  /* entirely in the past: what continues is the last velocity, from 0 at t = 0 */
   const double past[] = {-5.0, -4.0};
   mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, past,
                                                  ones, &signal));

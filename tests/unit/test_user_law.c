@@ -1,5 +1,5 @@
-/* test_user_law.c - a law of the caller's own in the WLS-MPM solver: what its block tells, where
- * its history lives, how it refuses. SPDX-License-Identifier: BSD-3-Clause */
+/* test_user_law.c - a law of the caller's own in the WLS-MPM solver: its block, its history, and
+ * its failures. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "pthread_executor.h"
 
@@ -12,7 +12,7 @@
 
 enum { MOST = 40, PARTICLES = 400 };
 
-/* What it is told, by id; each particle is written by one thread. */
+/* Its arguments, by id; each particle is written by one thread. */
 typedef struct seen {
   double x[PARTICLES][2], temperature[PARTICLES], time[PARTICLES];
   int64_t bad; /* id that it refuses, or -1 */
@@ -79,7 +79,7 @@ static mpm_scene begin(mps_context *context, mps_material *law, bool warm) {
   return s;
 }
 
-/* ---- what a block tells ---------------------------------------------------------------------- */
+/* ---- members of a block ---------------------------------------------------------------------- */
 
 static void a_block_tells_ids_places_time_and_temperature(void **state) {
   (void)state;
@@ -185,7 +185,7 @@ static void histories_may_be_long(void **state) {
 
 /* ---- refusals -------------------------------------------------------------------------------- */
 
-/* The status, the words and the particle reach the caller, whichever thread met them first. */
+/* The status, the words and the particle reach the caller, from whichever thread. */
 static void a_refusal_names_the_particle(void **state) {
   (void)state;
   int64_t told_first = -1;

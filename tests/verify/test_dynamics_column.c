@@ -68,7 +68,7 @@ typedef struct response {
   mps_particles *particles;
   int64_t id[2];
   double peak[2], time[2];
-  double *trace; /* of the middle, if wanted */
+  double *trace; /* of the middle, if not NULL */
 } response;
 
 static mps_status watch(void *user, mps_dynamics *dynamics) {

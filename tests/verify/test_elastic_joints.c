@@ -169,7 +169,7 @@ static void layers_in_constant_traction_are_exact(void **state) {
   mps_context_destroy(&context);
 }
 
-/* The finding as it was met: uniform tension of 1 MPa, nu = 0. */
+/* The finding as reported: uniform tension of 1 MPa, nu = 0. */
 static void a_bar_in_series_carries_its_load_everywhere(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

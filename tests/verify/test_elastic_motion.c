@@ -40,7 +40,7 @@ static double energy_error(test_body *b, double *largest) {
   return t.kinetic + t.strain + t.dissipated - t.work_loads - t.work_boundaries - t.work_bodies;
 }
 
-/* A load that swings, gravity, a force on one particle, a wall that is shaken. */
+/* A load that oscillates, gravity, a force on one particle, a wall that is shaken. */
 static void load_all(test_body *b, mps_signal *swing) {
   const double gravity[2] = {0.01, -0.05};
   int64_t count, *facets = test_facets(b, 0, 1, &count);
@@ -125,7 +125,7 @@ static void impulses_are_the_momentum(void **state) {
 
 /* ---- damping --------------------------------------------------------------------------------- */
 
-/* Amplitudes of the two lowest modes fall as exp(-h w t), with h as asked for. */
+/* Amplitudes of the two lowest modes fall as exp(-h w t), with h as requested. */
 static void modes_decay_with_the_damping_ratios_asked_for(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

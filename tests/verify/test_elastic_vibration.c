@@ -71,7 +71,7 @@ static void the_period_of_a_slender_cantilever_is_that_of_beam_theory(void **sta
   mps_context_destroy(&context);
 }
 
-/* Released from its first mode it swings with that mode's period; total energy stays. */
+/* Released from its first mode it oscillates with that mode's period; total energy stays. */
 static void a_released_mode_keeps_its_period_and_energy(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);

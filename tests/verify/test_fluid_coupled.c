@@ -44,9 +44,9 @@ static double coupled_step(const tank *t, spring_wall *w, double a, double dt) {
   return a;
 }
 
-/* Added mass (kg) of the end wall of a closed tank that swings with w, by linear potential flow:
- * sum over the k with k tan(k d) = -w^2/g of rho I^2 coth(k L)/(k N), I = int cos(k y) dy,
- * N = int cos^2(k y) dy. The short surface wave carries less than 1/1000 of it. */
+/* Added mass (kg) of the end wall of a closed tank that oscillates with w, by linear potential
+ * flow: sum over the k with k tan(k d) = -w^2/g of rho I^2 coth(k L)/(k N), I = int cos(k y) dy, N
+ * = int cos^2(k y) dy. The short surface wave carries less than 1/1000 of it. */
 static double added_mass(double w, double length, double depth) {
   double sum = 0.0;
   for (int j = 0; j < 2000; j++) {

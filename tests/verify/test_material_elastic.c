@@ -186,7 +186,7 @@ static void neo_hookean_stress_is_the_derivative_of_its_energy(void **state) {
   mps_material_destroy(&material);
 }
 
-/* The bound on the wave modulus holds for every direction, and is met by some. */
+/* The bound on the wave modulus holds for every direction, and is attained by some. */
 static void neo_hookean_wave_modulus_bounds_every_direction(void **state) {
   (void)state;
   mps_material *material = neo_hookean();

@@ -100,7 +100,7 @@ static void trembling_does_not_wear_the_volume_away(void **state) {
   }
 }
 
-/* What holds the grains together pulls as they part, not as they meet again. */
+/* What holds the grains together pulls as they part, not as they close again. */
 static void cohesion_pulls_only_on_opening(void **state) {
   (void)state;
   const double limit = 2e3;

@@ -127,8 +127,8 @@ static double limit_radius(const mps_material *material, double p, double theta)
   return root_j2(point.stress);
 }
 
-/* The inscribed cone touches the pyramid and never leaves it; plane strain and associated is the
- * same cone, Nakamura (56). */
+/* The inscribed cone has lines in common with the pyramid and never leaves it; plane strain and
+ * associated is the same cone, Nakamura (56). */
 static void the_inscribed_cone_touches_the_pyramid_from_inside(void **state) {
   (void)state;
   const double p = -8e4, phi = 30.0 * PI / 180.0;

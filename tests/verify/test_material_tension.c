@@ -138,7 +138,7 @@ static int place(const plane *planes, const double *s) {
 }
 
 /* Every face, edge and corner of the cut pyramid: 1 face, 2 edge of the pyramid; 4, 8, 12 face,
- * edge, apex of the cut-off; 5 where the faces meet; 6 on s2 = s3, 10 on s1 = s2. */
+ * edge, apex of the cut-off; 5 where the faces intersect; 6 on s2 = s3, 10 on s1 = s2. */
 static void mohr_coulomb_goes_to_the_closest_point(void **state) {
   (void)state;
   static const double cases[][3] = {

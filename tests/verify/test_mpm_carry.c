@@ -129,7 +129,7 @@ static void a_bent_beam_keeps_its_deflection(void **state) {
       growth[strain] = moved / rest - 1.0;
     }
     assert_true(fabs(growth[0]) < most[spline - 2]);
-    assert_true(growth[1] > 3.0 * fabs(growth[0])); /* the test can tell */
+    assert_true(growth[1] > 3.0 * fabs(growth[0])); /* the test can distinguish */
   }
 }
 

@@ -1,6 +1,6 @@
-/* test_mpm_column.c - the WLS-MPM solver against exact answers: a column under its own weight, the
- * period of a bar, an axisymmetric cylinder and a column in space under
- * their weight, and a slab in space that does what plane strain does.
+/* test_mpm_column.c - the WLS-MPM solver against exact solutions: a column under its own weight,
+ * the period of a bar, an axisymmetric cylinder and a column in space under their weight, and a
+ * slab in space that does what plane strain does.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"

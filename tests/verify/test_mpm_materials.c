@@ -79,9 +79,9 @@ static void two_layers_at_rest(void **state) {
   mpm_scene_end(&s);
 }
 
-/* A pulse that travels up in the lower part (0 to 1 m) of a bar and meets the joint. Momentum of
- * the lower part afterwards is R of the pulse's, R = (Z1 - Z2)/(Z1 + Z2), Z = rho c; the pulse in
- * the upper part is where its own wave speed puts it. */
+/* A pulse that travels up in the lower part (0 to 1 m) of a bar and arrives at the joint. Momentum
+ * of the lower part afterwards is R of the pulse's, R = (Z1 - Z2)/(Z1 + Z2), Z = rho c; the pulse
+ * in the upper part is where its own wave speed puts it. */
 static void joint_reflects(void **state) {
   (void)state;
   const double rho1 = 1000.0, rho2 = 2500.0, E1 = 1e6, E2 = 5e6, width = 0.12, from = 0.5;

@@ -10,7 +10,7 @@
 
 /* A column of water, two particles a cell along each axis, a/cells wide cells, between walls
  * `sides` apart on a floor, all without friction. It begins with the pressure of its depth (at
- * rest), or none, as where a gate has gone at its side. */
+ * rest), or none, as where a gate was removed at its side. */
 static mpm_scene water(int32_t spline, int32_t volumetric, int cells, double sides, bool at_rest) {
   const double h = WIDTH / cells, height = 2.0 * WIDTH, c = 10.0 * sqrt(2.0 * GRAVITY * height);
   const double K = RHO * c * c;

@@ -132,8 +132,8 @@ static double bar_energy(mpm_scene *s, double modulus) {
   return sum;
 }
 
-/* A bar of 25 cells between rollers, fixed at the bottom, swings `periods` times: the mean period
- * over the exact 4 L/c, and what is left of the energy. */
+/* A bar of 25 cells between rollers, fixed at the bottom, oscillates `periods` times: the mean
+ * period over the exact 4 L/c, and what is left of the energy. */
 static void vibrating_bar(int scheme, int periods, double *period, double *energy) {
   const double E = 1e6, rho = 1000.0, length = 1.0, modulus = E * 0.7 / (1.3 * 0.4);
   const double exact = 4.0 * length / sqrt(modulus / rho);

@@ -188,7 +188,7 @@ static void flow_does_not_settle(void **state) {
                    "no equilibrium after 200 steps");
   assert_true(out.steps == 200 && out.unbalanced > 1e-3 && out.applied > 1000.0);
   assert_true(mpm_scene_totals(&s).kinetic == 0.0);
-  mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* it goes on */
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* it continues */
   settle.max_steps = 0;
   mps_assert_fails(context, mps_mpm_settle(s.mpm, &settle, NULL), MPS_ERROR_ARGUMENT,
                    "max_steps is 0");
@@ -355,10 +355,10 @@ static void press(footing *f, double speed, double way) {
                 mps_mpm_run(f->s.mpm, mps_mpm_time(f->s.mpm) + way / speed, 1, NULL, NULL));
 }
 
-/* q/c at 0.6 mm: at two speeds, which tell the one without inertia (from 1 and 0.5 mm/s to 0.1 %; a
- * quick test has twice the speeds and half a percent); and by settling after each of
- * six small ways. A fast way makes the ground flow further than the footing asks for, and leaves
- * less than it can bear. */
+/* q/c at 0.6 mm: at two speeds, which give the one without inertia (from 1 and 0.5 mm/s to 0.1 %; a
+ * quick test has twice the speeds and half a percent); and by settling after each of six small
+ * ways. A fast way makes the ground flow further than the footing requires, and leaves less than it
+ * can bear. */
 static void footing_bears(void **state) {
   (void)state;
   const double slowest = test_quick() ? 1e-3 : 0.5e-3, within = test_quick() ? 0.0125 : 0.01;
@@ -397,7 +397,7 @@ static void footing_bears(void **state) {
   mpm_scene_end(&f.s);
 }
 
-/* Cancels when it has been asked so often; never, if that is 0. */
+/* Cancels at that call; never, if that is 0. */
 typedef struct patience {
   int left;
 } patience;
@@ -425,8 +425,8 @@ static void same_particles(mpm_scene *a, mpm_scene *b) {
   }
 }
 
-/* A settling that is cut, twice, and gone on with, also after a rollback to where it was cut, is
- * the one that was not, bit for bit; a step in between begins from rest. */
+/* A settling that is cut, twice, and continued, also after a rollback to where it was cut, is the
+ * one that was not, bit for bit; a step in between begins from rest. */
 static void settling_goes_on_where_it_was_cut(void **state) {
   (void)state;
   patience p = {0};

@@ -137,9 +137,9 @@ static void become_sand(mpm_scene *s) {
   mps_assert_ok(context, mps_material_create_drucker_prager(context, &law, &s->material));
 }
 
-/* On a floor that holds it, free at its side: let go, it sags and bulges. The largest differences
- * between space and axisymmetry over SAMPLES times until t_end, over the largest velocity:
- * outward and upward. */
+/* On a floor that holds it, free at its side: released, it sags and bulges. The largest differences
+ * between space and axisymmetry over SAMPLES times until t_end, over the largest velocity: outward
+ * and upward. */
 static void sag(const tube *column, bool sand, double t_end, double *apart) {
   double v[2][2][SAMPLES], most[2] = {0.0, 0.0};
   apart[0] = apart[1] = 0.0;

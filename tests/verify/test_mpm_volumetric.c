@@ -101,7 +101,7 @@ static void takes_the_mean(int32_t geometry) {
   def.geometry = geometry, def.cell = h, def.dt = dt;
   def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, /* means of what the set tells, and not of derivatives */
+  mps_assert_ok(context, /* means of fields, and not of derivatives */
                 mps_experimental_mpm_strain(s.mpm, MPS_EXPERIMENTAL_STRAIN_FIT));
   mps_assert_ok(context, mps_mpm_step(s.mpm, 15)); /* 12 to 18 mm: within a cell of the blocks */
   mps_view x = mpm_scene_view(&s, "position"), L = mpm_scene_view(&s, "velocity_gradient");
@@ -158,8 +158,8 @@ static double tip_of(mpm_scene *s, double from) {
   return sum / (double)count;
 }
 
-/* Fixed at x = 0, gravity from t = 0 on: the tip swings about its deflection at rest, which is the
- * mean up to the turning point. Over that of a beam in plane strain with its shear. */
+/* Fixed at x = 0, gravity from t = 0 on: the tip oscillates about its deflection at rest, which is
+ * the mean up to the turning point. Over that of a beam in plane strain with its shear. */
 static double deflection(int32_t spline, int32_t volumetric) {
   const double h = 0.05, E = 1e6, nu = 0.499, rho = 1000.0, g = 0.02;
   const double length = h * LENGTH_CELLS, height = h * HEIGHT_CELLS;

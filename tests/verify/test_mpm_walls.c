@@ -1,6 +1,6 @@
-/* test_mpm_walls.c - walls and loads of the WLS-MPM solver against exact answers: waves that leave
- * through an absorbing wall, a column at rest on one, a block that slides on a frictional wall,
- * moving walls, a bar under traction.
+/* test_mpm_walls.c - walls and loads of the WLS-MPM solver against exact solutions: waves that
+ * leave through an absorbing wall, a column at rest on one, a block that slides on a frictional
+ * wall, moving walls, a bar under traction.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
@@ -164,8 +164,8 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
   mps_signal *signal = constant_velocity(belt);
   mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, mu, 0, signal, 1.0);
   mps_signal_destroy(&signal);
-  /* It starts with a shiver, during which friction acts across the slope too, and goes on bouncing
-   * a little; places at three instants tell the acceleration without that. */
+  /* It starts with a shiver, during which friction acts across the slope too, and continues
+   * bouncing a little; positions at three instants give the acceleration without that. */
   const double span = dim == 3 ? 0.15 : 0.3;
   double at[3];
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
@@ -209,7 +209,7 @@ static void block_slides(void **state) {
   mps_assert_near(stuck, 0.0, 0.1); /* its shear vibration is left */
 }
 
-/* A frictional wall does not pull: a lump that leaves it goes on as it was. */
+/* A frictional wall does not pull: a lump that leaves it continues as it was. */
 static void wall_lets_go(void **state) {
   (void)state;
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);

@@ -15,7 +15,7 @@ static bool between(const double *a, const double *b, const double *x) {
 }
 
 /* Whether the closed segments ab and cd have a point in common. */
-static bool segments_meet(const double *a, const double *b, const double *c, const double *d) {
+static bool segments_intersect(const double *a, const double *b, const double *c, const double *d) {
   for (int axis = 0; axis < 2; axis++)
     if (fmax(a[axis], b[axis]) < fmin(c[axis], d[axis]) ||
         fmax(c[axis], d[axis]) < fmin(a[axis], b[axis]))
@@ -56,10 +56,10 @@ static mps_status check_edges(mps_context *context, const char *function, int64_
   for (int64_t k = 0; k < n; k++)
     for (int64_t m = k + 2; m < n - (k == 0); m++) {
       const double *a = corner(n, xy, k), *c = corner(n, xy, m);
-      if (segments_meet(a, corner(n, xy, k + 1), c, corner(n, xy, m + 1)))
+      if (segments_intersect(a, corner(n, xy, k + 1), c, corner(n, xy, m + 1)))
         return mpsi_fail(
             context, function, MPS_ERROR_ARGUMENT,
-            "vertices: edges %lld and %lld of the polygon cross or touch: from corner (%g, %g) "
+            "vertices: edges %lld and %lld of the polygon intersect: from corner (%g, %g) "
             "and from corner (%g, %g) m",
             (long long)k, (long long)m, a[0], a[1], c[0], c[1]);
     }

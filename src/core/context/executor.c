@@ -80,7 +80,7 @@ mps_status mpsi_executor_check(mps_context *context, const char *function) {
   return mpsi_fail(
       context, function, MPS_ERROR_STATE,
       "the caller's parallel_for gave a worker outside 0 to %d or an index outside its "
-      "range: that unit of work was left out, and what came of it is not to be used",
+      "range: that unit of work was left out, and the result must not be used",
       context->threads - 1);
 }
 

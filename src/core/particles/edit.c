@@ -128,8 +128,8 @@ static mps_status check_field(const mps_particles *p, const char *function,
   return MPS_OK;
 }
 
-mps_status mpsi_particles_tell(mps_particles *p, const char *function, const char *field,
-                               const double *former) {
+mps_status mpsi_particles_notify(mps_particles *p, const char *function, const char *field,
+                                 const double *former) {
   mps_status status = MPS_OK;
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
     if (h->commit)
@@ -221,7 +221,7 @@ mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit) {
   if (!field) return mps_context_error(particles->context)->status;
   mps_status status = check_field(particles, __func__, field);
   if (status == MPS_OK)
-    status = mpsi_particles_tell(particles, __func__, field->name, field->former);
+    status = mpsi_particles_notify(particles, __func__, field->name, field->former);
   if (status == MPS_OK) close_field(particles, field, edit);
   return status;
 }
@@ -249,7 +249,7 @@ static mps_status set_column(mps_particles *p, const char *function, const char 
   for (int64_t i = 0; i < p->count; i++) column[i] = value;
   const mpsi_field *field = mpsi_field_find(p, name);
   const mps_status status =
-      mpsi_particles_tell(p, function, name, field->components == 1 ? former : NULL);
+      mpsi_particles_notify(p, function, name, field->components == 1 ? former : NULL);
   if (status != MPS_OK) memcpy(column, former, (size_t)p->count * sizeof *former);
   mpsi_free(p->context, former);
   return status;

@@ -25,7 +25,7 @@
 /* ---- runs ------------------------------------------------------------------------------------ */
 
 /* Adds a run behind all others; false when out of memory. */
-static bool runs_push(mps_context *context, mpsi_site_runs *runs, mpsi_site_run run) {
+static bool append_run(mps_context *context, mpsi_site_runs *runs, mpsi_site_run run) {
   if (runs->count > 0) {
     mpsi_site_run *last = &runs->item[runs->count - 1];
     if (last->k == run.k && last->j == run.j && last->end == run.begin) {
@@ -64,11 +64,11 @@ static bool runs_subtract(mps_context *context, const mpsi_site_runs *a, const m
     for (int64_t q = n; q < b->count && !run_before(&rest, &b->item[q]); q++) {
       mpsi_site_run head = rest;
       head.end = b->item[q].begin;
-      if (head.begin < head.end && !runs_push(context, out, head)) return false;
+      if (head.begin < head.end && !append_run(context, out, head)) return false;
       rest.begin = b->item[q].end;
       if (rest.begin >= rest.end) break;
     }
-    if (rest.begin < rest.end && !runs_push(context, out, rest)) return false;
+    if (rest.begin < rest.end && !append_run(context, out, rest)) return false;
   }
   return true;
 }
@@ -79,7 +79,7 @@ static bool runs_unite(mps_context *context, const mpsi_site_runs *a, const mpsi
   int64_t m = 0, n = 0;
   while (m < a->count || n < b->count) {
     const bool from_a = n == b->count || (m < a->count && run_before(&a->item[m], &b->item[n]));
-    if (!runs_push(context, out, from_a ? a->item[m++] : b->item[n++])) return false;
+    if (!append_run(context, out, from_a ? a->item[m++] : b->item[n++])) return false;
   }
   return true;
 }
@@ -225,10 +225,10 @@ static mps_status read_box(const mps_particles *p, filler by, const double *lo, 
 }
 
 /* A row of a box. */
-static bool push_row(const mps_particles *p, const site_box *box, int64_t j, int64_t k,
-                     mpsi_site_runs *out) {
+static bool append_row(const mps_particles *p, const site_box *box, int64_t j, int64_t k,
+                       mpsi_site_runs *out) {
   const mpsi_site_run row = {.begin = box->begin[0], .end = box->end[0], .j = j, .k = k};
-  return row.begin >= row.end || runs_push(p->context, out, row);
+  return row.begin >= row.end || append_run(p->context, out, row);
 }
 
 /* The sites of a row at which `inside` gives 1. `*complete` is false where memory was refused. */
@@ -244,7 +244,7 @@ static mps_status push_wanted(const mps_particles *p, const char *function, cons
     const mps_status status =
         mpsi_guard_leave(&guard, p->context, function, inside(user, x, &wanted));
     if (status != MPS_OK) return status;
-    if (wanted) *complete = runs_push(p->context, out, site);
+    if (wanted) *complete = append_run(p->context, out, site);
   }
   return MPS_OK;
 }
@@ -258,9 +258,9 @@ static mps_status box_runs(const mps_particles *p, const char *function, const s
   for (int64_t k = box->begin[2]; k < box->end[2]; k++)
     for (int64_t j = box->begin[1]; j < box->end[1] && status == MPS_OK && *complete; j++)
       if (inside)
-        status = push_wanted(p, function, box, j, k, inside, user, out, complete);
+        status = append_wanted(p, function, box, j, k, inside, user, out, complete);
       else
-        *complete = push_row(p, box, j, k, out);
+        *complete = append_row(p, box, j, k, out);
   return status;
 }
 
@@ -398,7 +398,7 @@ static bool polygon_runs(const mps_particles *p, const polygon *s, const int64_t
     for (int64_t m = 0; m + 1 < crossings; m += 2) {
       const mpsi_site_run run = {.begin = sites[m], .end = sites[m + 1], .j = j};
       total += (double)(run.end - run.begin);
-      if (run.begin < run.end && !runs_push(p->context, out, run)) return false;
+      if (run.begin < run.end && !append_run(p->context, out, run)) return false;
     }
     *more = total > MAX_SITES;
   }

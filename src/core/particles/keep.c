@@ -10,7 +10,7 @@ struct mpsi_storage {
   int64_t count, capacity;
 };
 
-static void tell(const mps_particles *p) {
+static void notify_holders(const mps_particles *p) {
   for (const mpsi_holder *h = p->holders; h; h = h->next)
     if (h->renew && h->kind == MPSI_USE_LOOK) h->renew(h->self);
 }
@@ -58,7 +58,7 @@ mps_status mpsi_particles_keep(mps_particles *p, const char *function, int64_t c
   p->count = count, p->capacity = capacity;
   index_ids(p);
   p->epoch++;
-  tell(p);
+  notify_holders(p);
   return MPS_OK;
 }
 
@@ -74,7 +74,7 @@ void mpsi_particles_take_back(mps_particles *p, mpsi_storage **former) {
   }
   p->count = s->count, p->capacity = s->capacity;
   index_ids(p);
-  tell(p);
+  notify_holders(p);
   drop(p->context, s);
 }
 

@@ -1,6 +1,6 @@
 /* kernel.c - weight functions: w = re/r - 1, Yoshida (A8), the B-splines of grids, Nakamura (36),
- * the smooth one of the fluid, and the density of a lattice, Yoshida (A9). SPDX-License-Identifier:
- * BSD-3-Clause */
+ * the smooth one of the fluid, and the density of a lattice, Yoshida (A9).
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
 
 #include "core/base/ranges.h"

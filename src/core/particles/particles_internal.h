@@ -149,7 +149,7 @@ mps_status mpsi_particles_writable(const mps_particles *particles, const char *f
 mps_particles *mpsi_particles_pin(mps_particles *particles); /* returns `particles` */
 void mpsi_particles_unpin(mps_particles *particles);         /* accepts NULL */
 
-/* ---- going back ------------------------------------------------------------------------------ */
+/* ---- rollback -------------------------------------------------------------------------------- */
 
 /* Backup of a set (fields, values, order, epoch), restored when the creation of a solver fails: no
  * particle may be added or removed in between. Needs the memory of the set once more. */

@@ -86,7 +86,7 @@ void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
  * then moved, and their former memory is kept until mpsi_particles_settle_columns, which frees it
  * or moves the columns back: then the caller's views are valid again. */
 bool mpsi_particles_reserve(mps_particles *p, int64_t capacity);
-void mpsi_particles_settle_columns(mps_particles *p, bool moved);
+void mpsi_particles_finish_columns(mps_particles *p, bool moved);
 /* Moves a field of `count` particles into a block of mpsi_field_allocate. */
 void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
                      int64_t capacity);

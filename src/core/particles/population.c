@@ -24,13 +24,13 @@ static void clear_tail(mps_particles *p, int64_t count) {
 mps_status mpsi_particles_check_free(const mps_particles *p, const char *function) {
   const mps_status status = mpsi_particles_writable(p, function);
   if (status != MPS_OK) return status;
-  const char *who = p->pins > 0 ? "a solver" : NULL;
-  for (const mpsi_holder *h = p->holders; h && !who; h = h->next)
-    if (!h->insert && h->kind != MPSI_USE_LOOK) who = h->name;
-  if (!who) return MPS_OK;
+  const char *holder = p->pins > 0 ? "a solver" : NULL;
+  for (const mpsi_holder *h = p->holders; h && !holder; h = h->next)
+    if (!h->insert && h->kind != MPSI_USE_LOOK) holder = h->name;
+  if (!holder) return MPS_OK;
   return mpsi_fail(
       p->context, function, MPS_ERROR_STATE,
-      "the particle set is held by %s, which takes no more particles: destroy it first", who);
+      "the particle set is held by %s, which takes no more particles: destroy it first", holder);
 }
 
 bool mpsi_particles_reserve(mps_particles *p, int64_t capacity) {
@@ -58,7 +58,7 @@ bool mpsi_particles_reserve(mps_particles *p, int64_t capacity) {
   return true;
 }
 
-void mpsi_particles_settle_columns(mps_particles *p, bool moved) {
+void mpsi_particles_finish_columns(mps_particles *p, bool moved) {
   if (!p->former) return;
   for (int32_t f = 0; f < p->field_count; f++) {
     mpsi_field *field = p->fields[f];
@@ -141,7 +141,7 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, const c
     if (!p->former) clear_tail(p, count);
   }
   p->came = 0;
-  mpsi_particles_settle_columns(p, status == MPS_OK);
+  mpsi_particles_finish_columns(p, status == MPS_OK);
   renew_holders(p);
   return status;
 }
@@ -262,7 +262,7 @@ mps_status mpsi_particles_hold_room(mps_particles *p, const char *function, int6
   const bool ids = mpsi_ids_reserve(p->context, &p->ids, p->next_id, p->next_id, count);
   if (ids && count <= p->capacity) return MPS_OK;
   if (ids && mpsi_particles_reserve(p, count + count / 8)) {
-    mpsi_particles_settle_columns(p, true);
+    mpsi_particles_finish_columns(p, true);
     return MPS_OK;
   }
   return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
@@ -286,15 +286,15 @@ void mpsi_particles_admit(mps_particles *p, int64_t arriving) {
     if (h->renew && h->kind == MPSI_USE_LOOK) h->renew(h->self);
 }
 
-static mps_status ask_holders(const mps_particles *p, const char *function, int64_t count,
-                              const int64_t *ids) {
-  const char *who = p->pins > 0 ? "a solver" : NULL;
-  for (const mpsi_holder *h = p->holders; h && !who; h = h->next)
-    if (!h->remove && h->kind != MPSI_USE_LOOK) who = h->name;
-  if (who)
+static mps_status check_holders(const mps_particles *p, const char *function, int64_t count,
+                                const int64_t *ids) {
+  const char *holder = p->pins > 0 ? "a solver" : NULL;
+  for (const mpsi_holder *h = p->holders; h && !holder; h = h->next)
+    if (!h->remove && h->kind != MPSI_USE_LOOK) holder = h->name;
+  if (holder)
     return mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                     "the particle set is held by %s, which lets no particle go: destroy it first",
-                     who);
+                     "the particle set is held by %s, which allows no removal: destroy it first",
+                     holder);
   mps_status status = MPS_OK;
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
     if (h->remove)
@@ -330,13 +330,13 @@ mps_status mps_particles_remove(mps_particles *particles, int64_t count, const i
   if (status == MPS_OK)
     status = mark(particles, __func__, count, ids, gone, shared ? &known : NULL);
   if (shared) status = shared->find(shared->self, __func__, status, count, ids, known, &all);
-  if (status == MPS_OK && all > 0) status = ask_holders(particles, __func__, count, ids);
+  if (status == MPS_OK && all > 0) status = check_holders(particles, __func__, count, ids);
   if (status == MPS_OK && (known > 0 || !shared)) mpsi_particles_take_out(particles, gone);
   mpsi_free(context, gone);
   return status;
 }
 
-/* ---- going back ------------------------------------------------------------------------------ */
+/* ---- rollback -------------------------------------------------------------------------------- */
 
 /* Copies all columns to the backup, or back. */
 static void copy_columns(const mps_particles *p, char *memory, bool back) {
@@ -378,7 +378,7 @@ mps_status mpsi_particles_fit(mps_particles *p, const char *function) {
     return mpsi_fail_memory(p->context, function, (size_t)wanted * 16);
   if (p->capacity <= wanted) return MPS_OK;
   if (mpsi_particles_reserve(p, wanted)) {
-    mpsi_particles_settle_columns(p, true);
+    mpsi_particles_finish_columns(p, true);
     return MPS_OK;
   }
   return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,

@@ -154,7 +154,7 @@ mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
   return mpsi_state_prepare(of, function, snapshot, "the snapshot", MPS_ERROR_STATE, out);
 }
 
-/* ---- going back ---------------------------------------------------------------------------- */
+/* ---- rollback -------------------------------------------------------------------------------- */
 
 /* One call. */
 typedef struct way_back {
@@ -242,7 +242,7 @@ mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
       (!of->particles || !of->make_room || of->make_room(of->solver, from->particles));
   if (status == MPS_OK && !room)
     status = mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
-                       "could not allocate what going back to %s needs", source);
+                       "could not allocate the memory to restore %s", source);
   const int32_t fields = of->particles ? mps_particles_field_count(of->particles) : 0;
   if (status == MPS_OK && of->particles)
     status = mpsi_particles_prepare_state(of->particles, function, from, &out->scratch);

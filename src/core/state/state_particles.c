@@ -92,7 +92,7 @@ void mpsi_particles_take_next_id(mps_particles *p, const mps_snapshot *from) {
   memcpy(&p->next_id, mpsi_values_find(&from->state, NEXT_ID)->data, sizeof p->next_id);
 }
 
-/* ---- going back ---------------------------------------------------------------------------- */
+/* ---- rollback -------------------------------------------------------------------------------- */
 
 /* Data of the first phase for the second, where order or number change. */
 typedef struct move {
@@ -175,7 +175,7 @@ static mps_status check_fields(const mps_particles *p, const char *function,
     const mpsi_field *now = mpsi_field_find(p, then->name);
     if (now && (now->components != then->columns || type_of(now) != then->type))
       return mpsi_fail(p->context, function, MPS_ERROR_FIELD,
-                       "field '%s' has %d components, in the state to go back to %d", then->name,
+                       "field '%s' has %d components, in the state to restore %d", then->name,
                        now->components, then->columns);
   }
   return MPS_OK;

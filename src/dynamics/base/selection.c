@@ -7,9 +7,9 @@
 
 #include <stdlib.h>
 
-mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *function,
-                                           mps_status status, const mpsi_dynamics_selection *s,
-                                           mpsi_given *list) {
+mps_status mpsi_dynamics_agree_definition(mps_dynamics *dynamics, const char *function,
+                                          mps_status status, const mpsi_dynamics_selection *s,
+                                          mpsi_given *list) {
   if (status == MPS_OK) {
     mpsi_give(list, "all", s->all);
     mpsi_give(list, "id_count", (double)s->id_count);

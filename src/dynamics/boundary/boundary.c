@@ -92,7 +92,7 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
   MPSI_GIVE(&given, &def, density);
   MPSI_GIVE(&given, &def, shear_velocity);
   MPSI_GIVE(&given, &def, pressure_velocity);
-  status = mpsi_dynamics_settle_definition(dynamics, function, status, &selection, &given);
+  status = mpsi_dynamics_agree_definition(dynamics, function, status, &selection, &given);
   if (status != MPS_OK) {
     mpsi_free(dynamics->context, b);
     return status;

@@ -23,8 +23,8 @@ static motion component(const mps_dynamics *dynamics, int32_t c) {
   return c == 0 ? (motion){s->dx, s->ox, s->vx, s->ax} : (motion){s->dy, s->oy, s->vy, s->ay};
 }
 
-mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *function, double now,
-                                     double then) {
+mps_status mpsi_dynamics_evaluate_signals(mps_dynamics *dynamics, const char *function, double now,
+                                          double then) {
   for (int32_t k = 0; k < dynamics->boundary_room; k++) {
     mpsi_dynamics_boundary *b = dynamics->boundary[k];
     for (int c = 0; b && c < 2; c++) {
@@ -48,8 +48,8 @@ mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *functio
 }
 
 /* Signal values of a step, compared between ranks: functions of the caller may differ. */
-mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *function,
-                                        mps_status status, int32_t count, double *values) {
+mps_status mpsi_dynamics_agree_signals(mps_dynamics *dynamics, const char *function,
+                                       mps_status status, int32_t count, double *values) {
   mpsi_given list;
   mpsi_given_begin(&list);
   for (int32_t k = 0; status == MPS_OK && k < dynamics->boundary_room; k++) {

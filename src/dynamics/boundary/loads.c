@@ -76,7 +76,7 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
   MPSI_GIVE_VECTOR(&given, &def, traction, 2);
   MPSI_GIVE_VECTOR(&given, &def, acceleration, 2);
   MPSI_GIVE(&given, &def, area);
-  status = mpsi_dynamics_settle_definition(dynamics, function, status, &selection, &given);
+  status = mpsi_dynamics_agree_definition(dynamics, function, status, &selection, &given);
   if (status != MPS_OK) {
     mpsi_free(dynamics->context, load);
     return status;
@@ -174,7 +174,7 @@ void mpsi_dynamics_free_loads(mps_dynamics *dynamics) {
 /* ---- in a step
  * ------------------------------------------------------------------------------------ */
 
-mps_status mpsi_dynamics_ask_loads(mps_dynamics *dynamics, const char *function, double now) {
+mps_status mpsi_dynamics_evaluate_loads(mps_dynamics *dynamics, const char *function, double now) {
   for (int32_t k = 0; k < dynamics->load_room; k++) {
     mpsi_dynamics_load *load = dynamics->load[k];
     for (int c = 0; load && c < 2; c++) {

@@ -84,7 +84,7 @@ void mpsi_dynamics_use_change(mps_dynamics *dynamics) {
   dynamics->forces_stale = true;
 }
 
-/* ---- a state to go back to ------------------------------------------------------------------- */
+/* ---- restoration of a state ------------------------------------------------------------------ */
 
 /* Geometry of the pairs of `from`. */
 typedef struct former {

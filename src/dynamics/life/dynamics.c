@@ -168,7 +168,7 @@ static mps_status find_extent(mps_particles *particles, mps_domain *domain, mps_
   for (int c = 0; c < 2; c++) lo[c] = INFINITY, hi[c] = -INFINITY;
   for (int c = 0; c < 2 && status == MPS_OK; c++) extent(particles, c, &lo[c], &hi[c]);
   if (!mpsi_domain_many(domain)) return status;
-  status = mpsi_domain_settle_parts(domain, "mps_dynamics_create", status, particles);
+  status = mpsi_domain_agree_parts(domain, "mps_dynamics_create", status, particles);
   if (status != MPS_OK || !mpsi_particles_deal(particles)) return status;
   double most[4] = {-lo[0], -lo[1], hi[0], hi[1]};
   status = mpsi_domain_max(domain, "mps_dynamics_create", 4, most);
@@ -224,7 +224,7 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_back
   if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
   return status;
 }
-/* Holds the set, which may be held, and takes over the definition. */
+/* Holds the set, which may be held, and copies the definition. */
 static void describe(mps_dynamics *dynamics, const mps_dynamics_def *def) {
   dynamics->holder = (mpsi_holder){.name = "a solver of elastodynamics (mps_dynamics)",
                                    .self = dynamics,

@@ -21,7 +21,7 @@ static mps_status mark(mps_dynamics *dynamics, const char *function, int64_t cou
   }
   if (count < dynamics->body) return MPS_OK;
   return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                   "all %lld particles of the body are to go, at least one must stay",
+                   "all %lld particles of the body are to be removed, at least one must stay",
                    (long long)dynamics->body);
 }
 
@@ -73,7 +73,7 @@ mps_status mpsi_dynamics_remove(void *self, const char *function, int64_t count,
     return mpsi_fail(dynamics->context, function, MPS_ERROR_UNSUPPORTED,
                      "the particles lie on %d ranks: none can be removed there",
                      mps_domain_size(dynamics->domain));
-  if (status == MPS_OK) status = mpsi_dynamics_take_edits(dynamics, function, MPS_OK);
+  if (status == MPS_OK) status = mpsi_dynamics_read_edits(dynamics, function, MPS_OK);
   return status == MPS_OK ? prepare(dynamics, function, count, ids) : status;
 }
 
@@ -81,7 +81,8 @@ void mpsi_dynamics_renew(void *self) {
   mps_dynamics *dynamics = self;
   const mpsi_dynamics_change *c = dynamics->change;
   mpsi_dynamics_bind(dynamics);
-  if (c && mps_particles_count(dynamics->particles) == c->structure.count) { /* nobody refused */
+  if (c &&
+      mps_particles_count(dynamics->particles) == c->structure.count) { /* no holder has refused */
     const double energy = c->energy;
     mpsi_dynamics_use_change(dynamics);
     double left = 0.0;

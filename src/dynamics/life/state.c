@@ -169,7 +169,7 @@ static void after(void *solver) {
   dynamics->checked = !isnan(dynamics->dt);
 }
 
-static mps_status agree_to_go_back(void *solver, const char *function, mps_status status) {
+static mps_status agree_to_restore(void *solver, const char *function, mps_status status) {
   return mpsi_domain_agree(((mps_dynamics *)solver)->domain, function, status);
 }
 
@@ -181,7 +181,7 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
                          .identity = &dynamics->identity,
                          .list = list_state,
                          .prepare = mpsi_dynamics_prepare_state,
-                         .settle = agree_to_go_back,
+                         .settle = agree_to_restore,
                          .take_share = mpsi_dynamics_take_values,
                          .bind = bind,
                          .after = after,
@@ -203,7 +203,7 @@ static mps_status check_whole(const mps_dynamics *dynamics, const char *function
 }
 
 static mps_status take_in(void *solver, const char *function, mps_status status) {
-  return mpsi_dynamics_take_edits(solver, function, status);
+  return mpsi_dynamics_read_edits(solver, function, status);
 }
 
 /* The state with the edited fields, once no error is possible. */
@@ -223,7 +223,8 @@ mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot
 }
 
 /* Quantities that follow from a state and lie on other ranks. */
-static mps_status settle_back(mps_dynamics *dynamics, const char *function, mps_status status) {
+static mps_status agree_on_restore(mps_dynamics *dynamics, const char *function,
+                                   mps_status status) {
   double other = !dynamics->have_limit;
   if (status != MPS_OK || !mpsi_domain_many(dynamics->domain)) return status;
   status = mpsi_dynamics_join_coefficients(dynamics, function, MPS_OK);
@@ -239,7 +240,7 @@ mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *sna
     status = mpsi_domain_agree_moment(dynamics->domain, __func__, status, snapshot);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
-  return settle_back(dynamics, __func__, mpsi_state_rollback(&of, __func__, snapshot));
+  return agree_on_restore(dynamics, __func__, mpsi_state_rollback(&of, __func__, snapshot));
 }
 
 mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps_checkpoint *info) {
@@ -257,7 +258,7 @@ mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_ch
   const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
-  return settle_back(dynamics, __func__, mpsi_checkpoint_restore(&of, __func__, path, info));
+  return agree_on_restore(dynamics, __func__, mpsi_checkpoint_restore(&of, __func__, path, info));
 }
 
 /* ---- the step to come
@@ -272,7 +273,7 @@ static mps_status check_kept(mps_dynamics *dynamics, const char *function, const
     const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[k % n];
     status = mpsi_fail(dynamics->context, function, MPS_ERROR_DIVERGED,
                        "particle %lld would have acceleration (%g, %g) m/s2 and pressure %g Pa, "
-                       "must be finite: the state has diverged; mps_dynamics_rollback leads back",
+                       "must be finite: the state has diverged; mps_dynamics_rollback recovers it",
                        id, kept[k % n], kept[n + k % n], kept[2 * n + k % n]);
     mpsi_fail_where(dynamics->context, dynamics->steps, id);
   }
@@ -299,7 +300,7 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   memcpy(kept + dynamics->count, dynamics->state.ay, bytes);
   memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
   mpsi_state_go(&of, &back);
-  const mps_status settled = settle_back(dynamics, function, MPS_OK);
+  const mps_status settled = agree_on_restore(dynamics, function, MPS_OK);
   if (status != MPS_OK && status != MPS_ERROR_DIVERGED) return status;
   return settled == MPS_OK ? check_kept(dynamics, function, kept) : settled;
 }

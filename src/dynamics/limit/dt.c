@@ -38,7 +38,7 @@ static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
   return MPS_OK;
 }
 
-mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function) {
+mps_status mpsi_dynamics_choose_dt(mps_dynamics *dynamics, const char *function) {
   if (dynamics->checked) return MPS_OK;
   const mps_status status = isnan(dynamics->dt) ? choose_dt(dynamics, function)
                                                 : compare_dt(dynamics, function, dynamics->dt);
@@ -47,7 +47,7 @@ mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function)
 }
 
 double mps_dynamics_dt(mps_dynamics *dynamics) {
-  if (!dynamics || mpsi_dynamics_settle_dt(dynamics, __func__) != MPS_OK) return 0.0;
+  if (!dynamics || mpsi_dynamics_choose_dt(dynamics, __func__) != MPS_OK) return 0.0;
   return dynamics->dt;
 }
 

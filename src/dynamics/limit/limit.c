@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define LANCZOS_MOST 400
-#define LANCZOS_EVERY 10 /* iterations between looks at the result */
+#define LANCZOS_EVERY 10 /* iterations between checks of the result */
 /* Enough: a relative bound on the error of the eigenvalue, or, where eigenvalues cluster, a
  * thousandth of that as relative change between two looks. */
 #define LANCZOS_BOUND 1e-7

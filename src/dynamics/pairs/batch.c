@@ -9,7 +9,7 @@
 #define LEAST_BLOCKS 8  /* a batch */
 #define MOST_BATCHES 64 /* so that going through all bounds for each costs little */
 
-/* Particles begin to end - 1 of those that are here, of one block and near one another. */
+/* Particles begin to end - 1 of the local ones, of one block and near one another. */
 typedef struct mpsi_dynamics_piece {
   int64_t block, begin, end;
   double lo[2], hi[2]; /* m */
@@ -96,7 +96,7 @@ static bool within_reach(const mpsi_dynamics_source *s, const piece *a, const pi
   return false;
 }
 
-/* Own pieces within reach of `p`, of those that are in the batch. */
+/* Own pieces of the batch within reach of `p`. */
 static int64_t list_near(const mpsi_dynamics_source *s, int64_t own, const piece *batch,
                          const piece *all, const piece *p, int64_t *near) {
   int64_t count = 0;

@@ -55,8 +55,8 @@ typedef struct dealing {
   int64_t count;
   int64_t *key, *id; /* of each rank but the first: where its interval begins */
   mpsi_mailbox box;  /* pieces of all ranks */
-  piece *asked;      /* around which this rank needs all particles */
-  int64_t asks;
+  piece *requested;  /* around which this rank needs all particles */
+  int64_t requests;
 } dealing;
 
 static mps_status refused(const dealing *d, int64_t bytes) {
@@ -195,7 +195,7 @@ static mps_status sort_own(dealing *d) {
                          mpsi_dynamics_first_of_rank(d->whole, d->rank, d->ranks);
   if (status == MPS_OK && d->count != wanted)
     status = mpsi_fail(dynamics->context, d->function, MPS_ERROR_INTERNAL,
-                       "%lld particles have come to rank %d, expected are %lld",
+                       "%lld particles have arrived on rank %d, expected are %lld",
                        (long long)d->count, (int)d->rank, (long long)wanted);
   return status;
 }
@@ -245,7 +245,7 @@ static int64_t list_pieces(const dealing *d, piece *out) {
   return pieces;
 }
 
-static mps_status tell_pieces(dealing *d) {
+static mps_status exchange_pieces(dealing *d) {
   mps_context *context = d->dynamics->context;
   const int64_t pieces = list_pieces(d, NULL);
   piece *own = mpsi_alloc(context, pieces, sizeof *own);
@@ -282,12 +282,12 @@ static piece bounds_of(const piece *list, int64_t count) {
 }
 
 /* The blocks that this rank arranges: its own, and those near them. */
-static mps_status list_asked(dealing *d) {
+static mps_status list_requested(dealing *d) {
   int64_t own, count, all = 0;
   const piece *here = pieces_here(d, &own), bounds = bounds_of(here, own);
   for (int32_t m = 0; m < d->box.count; m++) (void)pieces_of(&d->box, m, &count), all += count;
-  d->asked = mpsi_alloc(d->dynamics->context, all, sizeof *d->asked);
-  if (!d->asked) return refused(d, all * (int64_t)sizeof *d->asked);
+  d->requested = mpsi_alloc(d->dynamics->context, all, sizeof *d->requested);
+  if (!d->requested) return refused(d, all * (int64_t)sizeof *d->requested);
   for (int32_t m = 0; m < d->box.count; m++) {
     const piece *list = pieces_of(&d->box, m, &count);
     for (int64_t k = 0, next; k < count; k = next) {
@@ -295,7 +295,7 @@ static mps_status list_asked(dealing *d) {
       for (next = k; next < count && list[next].block == list[k].block; next++)
         for (int64_t q = 0; !near && q < own && within_reach(d, &list[next], &bounds); q++)
           near = within_reach(d, &list[next], &here[q]);
-      for (int64_t q = k; near && q < next; q++) d->asked[d->asks++] = list[q];
+      for (int64_t q = k; near && q < next; q++) d->requested[d->requests++] = list[q];
     }
   }
   return MPS_OK;
@@ -303,7 +303,7 @@ static mps_status list_asked(dealing *d) {
 
 /* ---- what is near ---------------------------------------------------------------------------- */
 
-static mps_status ask(dealing *d, mpsi_mailbox *box) {
+static mps_status request(dealing *d, mpsi_mailbox *box) {
   mps_context *context = d->dynamics->context;
   mps_domain_message *message = mpsi_alloc(context, d->ranks, sizeof *message);
   piece *list = NULL;
@@ -318,9 +318,9 @@ static mps_status ask(dealing *d, mpsi_mailbox *box) {
       const int64_t first = used;
       const piece *theirs = pieces_of(&d->box, m, &count), bounds = bounds_of(theirs, count);
       if (d->box.mail[m].rank == d->rank) continue;
-      for (int64_t k = 0; k < d->asks; k++)
-        if (within_reach(d, &d->asked[k], &bounds)) {
-          if (list) list[used++] = d->asked[k];
+      for (int64_t k = 0; k < d->requests; k++)
+        if (within_reach(d, &d->requested[k], &bounds)) {
+          if (list) list[used++] = d->requested[k];
           room += pass == 0;
         }
       if (used > first)
@@ -338,7 +338,7 @@ static mps_status ask(dealing *d, mpsi_mailbox *box) {
 }
 
 /* Own particles within reach of the pieces; `out` NULL: how many. `near` is for work. */
-static int64_t answer(const dealing *d, int64_t asks, const piece *asked, int64_t *near,
+static int64_t answer(const dealing *d, int64_t requests, const piece *requested, int64_t *near,
                       neighbour *out) {
   const mpsi_dynamics_geometry g = mpsi_dynamics_present_geometry(d->dynamics);
   const int64_t first = mpsi_dynamics_first_of_rank(d->whole, d->rank, d->ranks);
@@ -346,12 +346,12 @@ static int64_t answer(const dealing *d, int64_t asks, const piece *asked, int64_
   const piece *here = pieces_here(d, &own);
   for (int64_t p = 0; p < own; p++) {
     int64_t nears = 0;
-    for (int64_t q = 0; q < asks; q++)
-      if (within_reach(d, &here[p], &asked[q])) near[nears++] = q;
+    for (int64_t q = 0; q < requests; q++)
+      if (within_reach(d, &here[p], &requested[q])) near[nears++] = q;
     for (int64_t k = here[p].begin; nears > 0 && k < here[p].end; k++) {
       const piece at = {.lo = {g.x[k], g.y[k]}, .hi = {g.x[k], g.y[k]}};
       bool any = false;
-      for (int64_t q = 0; q < nears && !any; q++) any = within_reach(d, &at, &asked[near[q]]);
+      for (int64_t q = 0; q < nears && !any; q++) any = within_reach(d, &at, &requested[near[q]]);
       if (any && out) out[found] = (neighbour){first + k, g.x[k], g.y[k]};
       found += any;
     }
@@ -362,35 +362,35 @@ static int64_t answer(const dealing *d, int64_t asks, const piece *asked, int64_
 /* Particles of other ranks near the blocks that this one arranges, in order. */
 static mps_status bring_near(dealing *d, mpsi_mailbox *out) {
   mps_context *context = d->dynamics->context;
-  mpsi_mailbox asks = {.context = context};
-  mps_status status = ask(d, &asks);
+  mpsi_mailbox requests = {.context = context};
+  mps_status status = request(d, &requests);
   if (status != MPS_OK) return status;
   int64_t all = 0, most = 0, count, used = 0;
   int32_t messages = 0;
-  for (int32_t m = 0; m < asks.count; m++) {
-    (void)pieces_of(&asks, m, &count);
+  for (int32_t m = 0; m < requests.count; m++) {
+    (void)pieces_of(&requests, m, &count);
     most = count > most ? count : most;
   }
   int64_t *near = mpsi_alloc(context, most, sizeof *near);
-  for (int32_t m = 0; near && m < asks.count; m++) {
-    const piece *list = pieces_of(&asks, m, &count);
+  for (int32_t m = 0; near && m < requests.count; m++) {
+    const piece *list = pieces_of(&requests, m, &count);
     all += answer(d, count, list, near, NULL);
   }
   neighbour *found = mpsi_alloc(context, all, sizeof *found);
   mps_domain_message *message = mpsi_alloc(context, d->ranks, sizeof *message);
   if (!near || !found || !message) status = refused(d, all * (int64_t)sizeof *found);
-  for (int32_t m = 0; status == MPS_OK && m < asks.count; m++) {
-    const piece *list = pieces_of(&asks, m, &count);
+  for (int32_t m = 0; status == MPS_OK && m < requests.count; m++) {
+    const piece *list = pieces_of(&requests, m, &count);
     const int64_t n = answer(d, count, list, near, found + used);
     if (n > 0)
       message[messages++] = (mps_domain_message){
-          .rank = asks.mail[m].rank, .bytes = n * (int64_t)sizeof *found, .data = found + used};
+          .rank = requests.mail[m].rank, .bytes = n * (int64_t)sizeof *found, .data = found + used};
     used += n;
   }
   status = mpsi_domain_agree(d->domain, d->function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(d->domain, d->function, messages, message, out);
-  mpsi_domain_free_mail(&asks);
+  mpsi_domain_free_mail(&requests);
   void *parts[] = {near, found, message};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   return status;
@@ -495,13 +495,13 @@ mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
   if (status == MPS_OK) status = find_cuts(&d);
   if (status == MPS_OK) status = travel(&d);
   if (status == MPS_OK) status = mpsi_domain_agree(d.domain, function, sort_own(&d));
-  if (status == MPS_OK) status = tell_pieces(&d);
-  if (status == MPS_OK) status = mpsi_domain_agree(d.domain, function, list_asked(&d));
+  if (status == MPS_OK) status = exchange_pieces(&d);
+  if (status == MPS_OK) status = mpsi_domain_agree(d.domain, function, list_requested(&d));
   if (status == MPS_OK) status = bring_near(&d, &near);
   if (status == MPS_OK) status = number(&d, &near, out); /* settled by the caller */
   mpsi_domain_free_mail(&near);
   mpsi_domain_free_mail(&d.box);
-  void *parts[] = {d.item, d.key, d.asked};
+  void *parts[] = {d.item, d.key, d.requested};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   return status;
 }

@@ -390,7 +390,7 @@ static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mp
   mpsi_material_give(&given, d->material);
   status = mpsi_domain_agree_given(dynamics->domain, function, status, &given);
   if (status != MPS_OK || mpsi_particles_deal(dynamics->particles)) return status;
-  return mpsi_domain_settle_particles(dynamics->domain, function, status, dynamics->particles);
+  return mpsi_domain_agree_particles(dynamics->domain, function, status, dynamics->particles);
 }
 
 /* Sums and extremes over the ranks; and the halo, once ghosts have their numbers. */

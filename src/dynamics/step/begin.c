@@ -14,7 +14,7 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
   dynamics->steps = dynamics->base_step = 0;
   dynamics->fresh = true;
   dynamics->kernels->trig[dynamics->def.rotation](&dynamics->state, 0, dynamics->count);
-  const mps_status status = mpsi_dynamics_settle_signals(
+  const mps_status status = mpsi_dynamics_agree_signals(
       dynamics, function, mpsi_dynamics_take_bounds(dynamics, function), 0, NULL);
   if (status != MPS_OK) { /* a signal refused */
     dynamics->base_time = former[0];

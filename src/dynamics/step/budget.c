@@ -210,7 +210,7 @@ static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_
   mps_status status =
       own ? MPS_OK : mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *own);
   status = mpsi_domain_agree(dynamics->domain, function, status);
-  if (status == MPS_OK) status = mpsi_dynamics_settle_dt(dynamics, function);
+  if (status == MPS_OK) status = mpsi_dynamics_choose_dt(dynamics, function);
   if (status == MPS_OK && dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
   if (status == MPS_OK) status = sum_up(dynamics, function, t);
   if (status == MPS_OK) status = read_energies(dynamics, function, own, t);

@@ -287,8 +287,8 @@ static bool has_refusing_signal(const mps_dynamics *dynamics) {
   return false;
 }
 
-mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *function,
-                                     mps_status status) {
+mps_status mpsi_dynamics_reread_ground(mps_dynamics *dynamics, const char *function,
+                                       mps_status status) {
   double edited[3] = {dynamics->unread, dynamics->rewritten != NULL, has_refusing_signal(dynamics)};
   if (status != MPS_OK)
     ; /* as before the call */
@@ -296,12 +296,12 @@ mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *functio
     status =
         mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                   "field '%s' has been written, which the solver relies on: "
-                  "mps_dynamics_rollback or mps_dynamics_restore leads back, else make a new one",
+                  "mps_dynamics_rollback or mps_dynamics_restore recovers it, else make a new one",
                   dynamics->broken);
   else if (dynamics->rewritten && !dynamics->fresh)
     status = mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                        "field '%s' has been written: mps_dynamics_restart begins a motion from "
-                       "it, mps_dynamics_rollback leads back",
+                       "it, mps_dynamics_rollback recovers it",
                        dynamics->rewritten);
   status = mpsi_domain_agree_max(dynamics->domain, function, status, 3, edited);
   if (status == MPS_OK) dynamics->cautious = edited[2] != 0.0;
@@ -312,9 +312,9 @@ mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *functio
   return MPS_OK;
 }
 
-mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
+mps_status mpsi_dynamics_read_edits(mps_dynamics *dynamics, const char *function,
                                     mps_status status) {
-  status = mpsi_dynamics_take_ground(dynamics, function, status);
+  status = mpsi_dynamics_reread_ground(dynamics, function, status);
   if (status != MPS_OK || !dynamics->begins) return status;
   return mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
 }

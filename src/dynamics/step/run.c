@@ -8,12 +8,12 @@
 
 #define PROMPT_WORK 5000000 /* particle-steps between calls of the cancel hook: some 0.1 s */
 
-mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function) {
+mps_status mpsi_dynamics_prepare_run(mps_dynamics *dynamics, const char *function) {
   mps_status status = mpsi_particles_ready(dynamics->particles, function);
   if (status == MPS_OK && mpsi_particles_column(dynamics->particles, "external_force", 0) &&
       !mpsi_dynamics_reserve_accounts(dynamics))
     status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
-  return mpsi_dynamics_take_ground(dynamics, function, status);
+  return mpsi_dynamics_reread_ground(dynamics, function, status);
 }
 
 /* Before the first step of `length`: reads the edited motion, if the signals of that step succeed.
@@ -30,11 +30,11 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
   if (status != MPS_OK) return status;
   if (dynamics->diverged)
     return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
-                     "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore leads "
-                     "back, mps_dynamics_restart begins a new one");
-  status = mpsi_dynamics_take_up(dynamics, function);
+                     "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore recovers "
+                     "it, mps_dynamics_restart begins a new one");
+  status = mpsi_dynamics_prepare_run(dynamics, function);
   if (status != MPS_OK) return status;
-  return mpsi_dynamics_settle_dt(dynamics, function);
+  return mpsi_dynamics_choose_dt(dynamics, function);
 }
 
 /* Steps between calls of the cancel hook. */
@@ -132,7 +132,8 @@ static mps_status march(const run *r) {
                call = r->callback && (last || !((done + n) % r->every));
     const bool look = last || (done + n) % r->report == 0;
     done += n;
-    if (r->callback) status = mpsi_dynamics_take_up(dynamics, function); /* it may have edited */
+    if (r->callback)
+      status = mpsi_dynamics_prepare_run(dynamics, function); /* it may have edited */
     if (status == MPS_OK)
       status = mpsi_dynamics_advance(dynamics, function, n, r->length, call || last);
     if (last && status == MPS_OK) {

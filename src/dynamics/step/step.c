@@ -245,17 +245,17 @@ static bool diverges(mps_dynamics *dynamics, double limit2) {
 
 /* Status of all ranks: `status` of this one, whether its last step has diverged, and, for signals
  * that are functions of the caller, whether they have the same values in the next. */
-static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_status status,
-                              bool *diverged) {
+static mps_status agree_on_step(mps_dynamics *dynamics, const char *function, mps_status status,
+                                bool *diverged) {
   double any = *diverged;
-  status = dynamics->cautious ? mpsi_dynamics_settle_signals(dynamics, function, status, 1, &any)
+  status = dynamics->cautious ? mpsi_dynamics_agree_signals(dynamics, function, status, 1, &any)
                               : mpsi_domain_agree_max(dynamics->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
   return report_divergence(dynamics, function);
 }
 
 /* The same at the end of a call, with the speeds; refresh leaves both to the step itself. */
-static mps_status settle_last(mps_dynamics *dynamics, const char *function, bool diverged) {
+static mps_status agree_on_last(mps_dynamics *dynamics, const char *function, bool diverged) {
   const bool looks = isinf(dynamics->def.divergence);
   double any[2] = {diverged, !diverged && !looks && too_fast(dynamics)};
   const mps_status status = mpsi_domain_agree_max(dynamics->domain, function, MPS_OK, 2, any);
@@ -289,7 +289,7 @@ static mps_status pass_blocks(work *w, const char *function) {
 static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
   mps_dynamics *dynamics = w->dynamics;
   if (dynamics->cautious) {
-    status = settle_step(dynamics, function, status, diverged);
+    status = agree_on_step(dynamics, function, status, diverged);
     return status == MPS_OK ? pass_blocks(w, function) : status;
   }
   double any = *diverged;
@@ -346,13 +346,13 @@ static mps_status evaluate_signals(mps_dynamics *dynamics, const char *function,
       length == dynamics->length
           ? dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length
           : now + length;
-  const mps_status status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
-  return status == MPS_OK ? mpsi_dynamics_ask_loads(dynamics, function, now) : status;
+  const mps_status status = mpsi_dynamics_evaluate_signals(dynamics, function, now, then);
+  return status == MPS_OK ? mpsi_dynamics_evaluate_loads(dynamics, function, now) : status;
 }
 
 mps_status mpsi_dynamics_look_ahead(mps_dynamics *dynamics, const char *function, double length) {
   const mps_status status = evaluate_signals(dynamics, function, length);
-  return dynamics->cautious ? mpsi_dynamics_settle_signals(dynamics, function, status, 0, NULL)
+  return dynamics->cautious ? mpsi_dynamics_agree_signals(dynamics, function, status, 0, NULL)
                             : status;
 }
 
@@ -393,6 +393,6 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
     w.account = w.forces.any || watch;
     take_step(&w, output && k == count - 1, &diverged);
   }
-  status = settle_last(dynamics, function, diverged);
+  status = agree_on_last(dynamics, function, diverged);
   return status == MPS_ERROR_DIVERGED ? show_diverged(&w, function, status) : status;
 }

@@ -177,7 +177,7 @@ void mpsi_fluid_balance(mps_fluid *f) {
   if (f->report.surface > 0) return;
   double sum = 0.0, rows = 0.0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, sum_right);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
   for (int64_t k = 0; k * MPSI_FLUID_CHUNK < f->count; k++)
     sum += f->system.sums[2 * k], rows += f->system.sums[2 * k + 1];
   f->system.mean = rows > 0.0 ? sum / rows : 0.0;
@@ -201,7 +201,7 @@ void mpsi_fluid_set_level(mps_fluid *f) {
   if (f->report.surface > 0) return;
   double least = INFINITY;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_least);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
   for (int64_t k = 0; k * MPSI_FLUID_CHUNK < f->count; k++)
     least = fmin(least, f->system.sums[2 * k]);
   f->system.mean = isfinite(least) ? 0.5 * f->def.density * f->g * f->l0 - least : 0.0;

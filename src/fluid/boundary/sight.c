@@ -19,7 +19,7 @@
 #define WEDGE 3.1  /* l0: to the edge of an acute corner */
 #define TOWARDS 0.5
 
-static bool meet_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
+static bool join_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
   const double cosine = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1];
   return fabs(cosine) > 1e-6 && fabs(cosine) < 1.0 - 1e-9;
 }
@@ -65,7 +65,7 @@ void mpsi_fluid_find_limits(mps_fluid *f) {
     if (!w->used) continue;
     if (w->of_body) f->faces |= UINT32_C(1) << b, f->stood_on |= w->stands_on[0] | w->stands_on[1];
     for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES && !w->of_body; k++)
-      if (k != b && f->wall[k].used && meet_at_an_angle(w, &f->wall[k]))
+      if (k != b && f->wall[k].used && join_at_an_angle(w, &f->wall[k]))
         f->limited |= UINT32_C(1) << b;
   }
   f->limited |= f->faces;
@@ -105,7 +105,7 @@ bool mpsi_fluid_hidden(const mps_fluid *f, int wall, const double *a, const doub
 static bool mirror_is_there(const mps_fluid *f, int wall, const double *at) {
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
-    if (b != wall && w->used && meet_at_an_angle(w, &f->wall[wall]) && ahead(w, at) < -EDGE * f->l0)
+    if (b != wall && w->used && join_at_an_angle(w, &f->wall[wall]) && ahead(w, at) < -EDGE * f->l0)
       return false;
   }
   return true;
@@ -164,8 +164,8 @@ static double way_around(const mps_fluid *f, const double *a, const double *b) {
   return least;
 }
 
-int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32_t *index,
-                             double *r2) {
+int64_t mpsi_fluid_keep_visible(const mps_fluid *f, int64_t i, int64_t count, int32_t *index,
+                                double *r2) {
   if (!near_limit(f, i)) return count;
   int64_t kept = 0;
   const double own[2] = {f->x[0][i], f->x[1][i]};

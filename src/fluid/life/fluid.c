@@ -162,7 +162,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   mps_status status = mpsi_fluid_partition_create(f, function);
   if (status == MPS_OK && !(mpsi_fluid_coarse_create(f) && mpsi_fluid_reserve(f, f->count)))
     status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
   if (status == MPS_OK) status = mpsi_fluid_look(f, function);
@@ -190,7 +190,7 @@ static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, m
   MPSI_GIVE(&given, d, radius_ratio);
   MPSI_GIVE(&given, d, tolerance);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
-  return status == MPS_OK ? mpsi_domain_settle_particles(d->domain, function, status, particles)
+  return status == MPS_OK ? mpsi_domain_agree_particles(d->domain, function, status, particles)
                           : status;
 }
 
@@ -226,7 +226,7 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   f->def = def;
   f->def.domain = mpsi_domain_retain(def.domain);
   f->def.kernel = def.kernel ? mpsi_kernel_retain(def.kernel) : NULL;
-  status = mpsi_fluid_settle(f, __func__, mpsi_as(context, __func__, add_fields(particles)));
+  status = mpsi_fluid_agree(f, __func__, mpsi_as(context, __func__, add_fields(particles)));
   if (status == MPS_OK) status = start(f, __func__);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(particles, fields);

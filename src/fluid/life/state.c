@@ -124,7 +124,7 @@ static void after(void *solver) {
 }
 
 static mps_status settle(void *fluid, const char *function, mps_status status) {
-  return mpsi_fluid_settle(fluid, function, status);
+  return mpsi_fluid_agree(fluid, function, status);
 }
 
 static mps_status have_read(void *fluid, const char *function, mps_status status,

@@ -32,8 +32,9 @@ static mps_status check_load(mps_fluid *f, const char *function, const mps_fluid
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "kind of the load is %d, allowed are 0 (body) and 1 (pressure)", d->kind);
   if (d->kind == MPS_FLUID_LOAD_PRESSURE && f->classical.gamma > 0.0)
-    return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED,
-                     "a load presses on the surface, which the classical scheme does not know");
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_UNSUPPORTED,
+        "a pressure load acts on the surface, which the classical scheme does not have");
   if (d->id_count < 0 || (d->id_count > 0) != (d->ids != NULL))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "id_count of the load is %lld with ids %s: give both or neither",
@@ -217,7 +218,7 @@ static void add_forces(mps_fluid *f) {
   }
 }
 
-static mps_status ask_signals(mps_fluid *f, const char *function, double t, bool *any) {
+static mps_status evaluate_signals(mps_fluid *f, const char *function, double t, bool *any) {
   for (int32_t k = 0; k < f->given_room; k++) {
     mpsi_fluid_given *g = f->given[k];
     if (!g) continue;
@@ -237,7 +238,7 @@ static mps_status ask_signals(mps_fluid *f, const char *function, double t, bool
 mps_status mpsi_fluid_find_loads(mps_fluid *f, const char *function, double t) {
   bool any = mpsi_particles_column(f->particles, "external_force", 0) != NULL;
   f->push[0] = f->push[1] = f->over = NULL;
-  const mps_status status = ask_signals(f, function, t, &any);
+  const mps_status status = evaluate_signals(f, function, t, &any);
   if (status != MPS_OK || !any) return status;
   if (!mpsi_room_ensure(f->context, &f->push_room, 3 * f->count, sizeof(double)))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * 24);

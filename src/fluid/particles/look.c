@@ -28,7 +28,7 @@ void mpsi_fluid_load_cloud(mps_fluid *f) {
 mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function, mps_status status) {
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
-  status = mpsi_fluid_settle_alike(f, function, status);
+  status = mpsi_fluid_agree_same(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) status = mpsi_fluid_find_halo(f, function);
   if (status == MPS_OK) mpsi_fluid_find_moments(f);
@@ -47,9 +47,9 @@ mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
 static mps_status find_surface(mps_fluid *f, const char *function) {
   if (!f->unknown) return MPS_OK;
   f->report_before_look = f->report;
-  mps_status status = mpsi_fluid_settle(f, function, MPS_OK);
+  mps_status status = mpsi_fluid_agree(f, function, MPS_OK);
   if (status == MPS_OK && f->stage == MPSI_FLUID_BETWEEN) status = mpsi_fluid_look(f, function);
-  if (status == MPS_OK) mpsi_fluid_tell_local(f);
+  if (status == MPS_OK) mpsi_fluid_send_local(f);
   if (status == MPS_OK) status = mpsi_fluid_lost(f, function);
   return status;
 }
@@ -67,7 +67,7 @@ mps_status mpsi_fluid_show_surface(mps_fluid *f, mps_status status) {
   return status;
 }
 
-mps_status mpsi_fluid_know(mps_fluid *f, const char *function) {
+mps_status mpsi_fluid_ensure_surface(mps_fluid *f, const char *function) {
   return f->unknown ? mpsi_fluid_show_surface(f, find_surface(f, function)) : MPS_OK;
 }
 
@@ -102,7 +102,7 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
   const int64_t number = (int64_t)cells;
   double none =
       !mpsi_room_fit(f->context, &f->lower_col_room, 2 * (number + 1 + n), sizeof(uint16_t));
-  const mps_status lost = mpsi_fluid_settle_max(f, function, MPS_OK, 1, &none); /* all or nobody */
+  const mps_status lost = mpsi_fluid_agree_max(f, function, MPS_OK, 1, &none); /* all or none */
   if (lost != MPS_OK || none > 0.0) return lost;
   int32_t *first = f->lower_col_room.item, *cell = first + number + 1;
   int64_t *order = (int64_t *)f->system.r; /* free between steps, as z is */
@@ -120,6 +120,6 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
   }
   void *const scratch = f->system.z;
   if (sorted) return MPS_OK;
-  return mpsi_fluid_settle(f, function,
-                           mpsi_particles_permute_in(f->particles, function, order, &scratch, 1));
+  return mpsi_fluid_agree(f, function,
+                          mpsi_particles_permute_in(f->particles, function, order, &scratch, 1));
 }

@@ -79,7 +79,7 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
 
 /* Marks all particles within 1.6 l0 of a surface particle, own images included, as possibly in its
  * zone. At a bent wall two particles may be at different distances from each other's images. */
-static void tell_zone(mps_fluid *f, int64_t i) {
+static void mark_zone(mps_fluid *f, int64_t i) {
   const double reach2 = 1.2 * ZONE * ZONE * f->l0 * f->l0;
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   atomic_store_explicit(&f->zone[i], 1, memory_order_relaxed);
@@ -117,7 +117,7 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
     }
     f->local[i] = local;
-    if (f->state[i] != MPSI_FLUID_INSIDE) tell_zone(f, i);
+    if (f->state[i] != MPSI_FLUID_INSIDE) mark_zone(f, i);
   }
 }
 
@@ -218,7 +218,7 @@ double mpsi_fluid_rise(const mps_fluid *f, int64_t i) {
 void mpsi_fluid_find_moments(mps_fluid *f) {
   for (int64_t i = 0; i < f->count; i++) atomic_init(&f->zone[i], 0);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, look_around);
-  mpsi_fluid_tell_looks(f);
+  mpsi_fluid_send_moments(f);
   mpsi_fluid_count(f);
   f->any_apart = f->report.apart > 0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_zone);

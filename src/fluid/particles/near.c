@@ -179,7 +179,7 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
       return;
     }
     if (index == apart) index = memcpy(f->index + at, apart, (size_t)found * sizeof *index);
-    if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, index, r2);
+    if (f->limited) found = mpsi_fluid_keep_visible(f, i, found, index, r2);
     const int32_t company = f->loops->weigh(f, i, found, index, r2, w);
     if (f->bent) average_weights(f, i, found, index, w);
     f->company[i] =
@@ -208,7 +208,7 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
     pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk, .pairs = pairs};
     if (status == MPS_OK) mpsi_fluid_units(f, MPSI_FLUID_CHUNK, find_chunk, &p);
     double full[2] = {atomic_load(&p.full), atomic_load(&p.crowded)};
-    status = mpsi_fluid_settle_max(f, function, status, 2, full);
+    status = mpsi_fluid_agree_max(f, function, status, 2, full);
     if (status != MPS_OK || (full[0] == 0.0 && full[1] == 0.0)) return status;
     if (full[1] > 0.0)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,

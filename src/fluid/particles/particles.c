@@ -122,7 +122,8 @@ mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, co
   if (status != MPS_OK) return status;
   if (count >= f->count)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
-                     "all %lld particles are to go, a fluid needs one", (long long)f->count);
+                     "all %lld particles are to be removed, a fluid needs one",
+                     (long long)f->count);
   expect_change(f, MPSI_FLUID_CHANGED_BY_CALLER);
   return MPS_OK;
 }
@@ -154,8 +155,8 @@ static void carry_out(const mps_fluid *f, mpsi_fluid_wall *w, const double *x, c
   w->removed_mass += mass;
 }
 
-void mpsi_fluid_let_go(mps_fluid *f) {
-  uint8_t *const gone = f->company; /* free between steps; found again when it is asked for */
+void mpsi_fluid_remove_outflow(mps_fluid *f) {
+  uint8_t *const gone = f->company; /* free between steps; computed again when needed */
   uint32_t open = 0;
   int64_t count = 0;
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {

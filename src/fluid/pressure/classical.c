@@ -81,12 +81,12 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_sta
   f->stage = MPSI_FLUID_MOVED; /* walls are at their positions of the end of the step */
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
-  status = mpsi_fluid_settle_alike(f, function, status);
+  status = mpsi_fluid_agree_same(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) status = mpsi_fluid_find_halo(f, function);
   if (status != MPS_OK) return status;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh);
-  mpsi_fluid_tell_looks(f);
+  mpsi_fluid_send_moments(f);
   mpsi_fluid_count(f);
   return mpsi_fluid_lost(f, function);
 }

@@ -205,7 +205,7 @@ static void tell(mps_fluid *f, int64_t count, double *values, int64_t first, int
   if (!f->partition) return;
   for (int64_t k = 0; k < count; k++)
     if (k < first || k >= end) values[k] = -INFINITY;
-  mpsi_fluid_tell_most(f, count, values);
+  mpsi_fluid_reduce_max(f, count, values);
 }
 
 static bool fit(mps_fluid *f, mpsi_room *room, int64_t count, size_t size) {
@@ -218,7 +218,7 @@ static mps_status make_aggregates(mps_fluid *f, const char *function) {
   if (!fit(f, &c->block_room, 3 * (c->blocks + 1), sizeof *c->own) ||
       !fit(f, &c->of_room, f->count + f->ghosts, sizeof *c->of))
     status = mpsi_fail_memory(f->context, function, (size_t)(f->count + f->ghosts) * sizeof *c->of);
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   if (status != MPS_OK) return status;
   c->of = c->of_room.item;
   c->own = c->block_room.item, c->slots = c->own + c->blocks + 1;
@@ -235,7 +235,7 @@ static mps_status make_aggregates(mps_fluid *f, const char *function) {
       !fit(f, &c->value_room, c->aggregates + 1, sizeof *c->value))
     status = mpsi_fail_memory(f->context, function, (size_t)maps * sizeof *c->map);
   c->map = c->map_room.item, c->list = c->list_room.item, c->value = c->value_room.item;
-  return mpsi_fluid_settle(f, function, status);
+  return mpsi_fluid_agree(f, function, status);
 }
 
 /* *crowded: a block has more slots than its entries can index. */
@@ -254,7 +254,7 @@ static mps_status make_rows(mps_fluid *f, const char *function, bool *crowded) {
     atomic_store(&p.full, false), atomic_store(&p.crowded, false);
     if (status == MPS_OK) mpsi_fluid_units(f, c->block, find_rows, &p);
     double flag[2] = {atomic_load(&p.full), atomic_load(&p.crowded)};
-    status = mpsi_fluid_settle_max(f, function, status, 2, flag);
+    status = mpsi_fluid_agree_max(f, function, status, 2, flag);
     *crowded = flag[1] > 0.0;
     if (status != MPS_OK || flag[0] == 0.0) return status;
     c->most += (c->most + 7) / 8;
@@ -265,23 +265,23 @@ static mps_status make_rows(mps_fluid *f, const char *function, bool *crowded) {
 static mps_status join_slots(mps_fluid *f, const char *function) {
   mpsi_fluid_coarse *c = f->coarse;
   mps_status status = MPS_OK;
-  mpsi_fluid_tell_sums(f, c->block);
+  mpsi_fluid_send_sums(f, c->block);
   c->slots[0] = 0;
   for (int64_t b = 0; b < c->blocks; b++)
     c->slots[b + 1] = c->slots[b] + (int64_t)f->system.sums[2 * b];
   const int64_t all = c->slots[c->blocks];
   if (!fit(f, &c->slot_room, all, sizeof *c->slot) || !fit(f, &c->part_room, all, sizeof *c->part))
     status = mpsi_fail_memory(f->context, function, (size_t)all * 12);
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   if (status != MPS_OK) return status;
   c->slot = c->slot_room.item, c->part = c->part_room.item;
   for (int64_t b = first_block(f); b < end_block(f); b++)
     for (int64_t k = c->slots[b]; k < c->slots[b + 1]; k++)
       c->part[k] = c->list[b * (c->aggregates + 1) + k - c->slots[b]];
-  tell(f, all, c->part, c->slots[first_block(f)], c->slots[end_block(f)]);
+  send_values(f, all, c->part, c->slots[first_block(f)], c->slots[end_block(f)]);
   for (int64_t k = 0; k < all; k++) c->slot[k] = (int32_t)c->part[k];
   for (int64_t a = 0; a < c->aggregates; a++) c->value[a] = -c->matrix.first[a];
-  tell(f, c->aggregates, c->value, c->own[first_block(f)], c->own[end_block(f)]);
+  send_values(f, c->aggregates, c->value, c->own[first_block(f)], c->own[end_block(f)]);
   for (int64_t a = 0; a < c->aggregates; a++) c->matrix.first[a] = (int32_t)-c->value[a];
   return mpsi_fluid_lost(f, function);
 }
@@ -292,13 +292,13 @@ static mps_status make_matrix(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
   if (!mpsi_envelope_make(f->context, e))
     status = mpsi_fail_memory(f->context, function, (size_t)e->entries * sizeof *e->value);
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   if (status != MPS_OK) return status;
   mpsi_fluid_units(f, c->block, add_rows, f);
   const int64_t low = c->own[first_block(f)], high = c->own[end_block(f)];
-  tell(f, e->entries, e->value, low < e->rows ? e->start[low] : e->entries,
-       high < e->rows ? e->start[high] : e->entries);
-  tell(f, e->rows, e->diagonal, low, high);
+  send_values(f, e->entries, e->value, low < e->rows ? e->start[low] : e->entries,
+              high < e->rows ? e->start[high] : e->entries);
+  send_values(f, e->rows, e->diagonal, low, high);
   mpsi_envelope_factor(e);
   return mpsi_fluid_lost(f, function);
 }
@@ -341,7 +341,7 @@ void mpsi_fluid_coarse_restrict(mps_fluid *f, int64_t b, const double *v) {
 void mpsi_fluid_coarse_solve(mps_fluid *f) {
   mpsi_fluid_coarse *c = f->coarse;
   const int64_t all = c->slots[c->blocks];
-  tell(f, all, c->part, c->slots[first_block(f)], c->slots[end_block(f)]);
+  send_values(f, all, c->part, c->slots[first_block(f)], c->slots[end_block(f)]);
   memset(c->value, 0, (size_t)(c->aggregates + 1) * sizeof *c->value);
   for (int64_t k = 0; k < all; k++) c->value[c->slot[k]] += c->part[k];
   mpsi_envelope_solve(&c->matrix, c->value + 1);
@@ -378,7 +378,7 @@ double mpsi_fluid_coarse_start(mps_fluid *f) {
   mpsi_fluid_units(f, c->block, sum_residual, f);
   mpsi_fluid_coarse_solve(f);
   mpsi_fluid_units(f, c->block, correct, f);
-  mpsi_fluid_tell_sums(f, c->block);
+  mpsi_fluid_send_sums(f, c->block);
   for (int64_t b = 0; b < c->blocks; b++) rr += f->system.sums[2 * b];
   return rr;
 }

@@ -120,7 +120,7 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
     atomic_store(&p.full, false);
     if (status == MPS_OK) mpsi_fluid_units(f, p.blocks.size, factor_block, &p);
     double full = atomic_load(&p.full);
-    status = mpsi_fluid_settle_max(f, function, status, 1, &full);
+    status = mpsi_fluid_agree_max(f, function, status, 1, &full);
     if (status == MPS_OK && full == 0.0)
       return mpsi_fluid_coarsen(f, function, p.blocks.size, p.blocks.count);
     if (status != MPS_OK) return status;
@@ -206,25 +206,25 @@ static bool iterate(iteration *it, double rr, double enough, int64_t *done) {
   const int64_t number = it->blocks.count;
   it->beta = 0.0;
   mpsi_fluid_units(f, it->blocks.size, start_block, it);
-  mpsi_fluid_tell_sums(f, it->blocks.size);
+  mpsi_fluid_send_sums(f, it->blocks.size);
   double rz = total(f, number, 0), look_at = LOOK_FROM * rz * enough / rr;
   for (int64_t k = 0;; k++) {
     if (rz <= look_at) {
       mpsi_fluid_units(f, it->blocks.size, norm, it);
-      mpsi_fluid_tell_sums(f, it->blocks.size);
+      mpsi_fluid_send_sums(f, it->blocks.size);
       rr = total(f, number, 1);
       if (rr <= enough) return true;
       look_at = rz * fmax(LOOK_AGAIN, enough / rr);
     }
     if (!isfinite(rz) || *done == f->def.iterations) return false;
     if (f->coarse->used) mpsi_fluid_coarse_solve(f);
-    mpsi_fluid_tell_near(f, 1, &f->system.z);
+    mpsi_fluid_send_halo(f, 1, &f->system.z);
     mpsi_fluid_units(f, it->blocks.size, rise, it);
-    mpsi_fluid_tell_sums(f, it->blocks.size);
+    mpsi_fluid_send_sums(f, it->blocks.size);
     const double before = it->alpha, qz = total(f, number, 1);
     it->alpha = k == 0 ? rz / qz : rz / (qz - it->beta * rz / before);
     mpsi_fluid_units(f, it->blocks.size, descend, it);
-    mpsi_fluid_tell_sums(f, it->blocks.size);
+    mpsi_fluid_send_sums(f, it->blocks.size);
     (*done)++;
     const double next = total(f, number, 0);
     it->beta = next / rz;
@@ -240,10 +240,10 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
   it.room = f->most_lower * it.blocks.size;
   int64_t done = 0;
   for (double left = INFINITY;;) {
-    mpsi_fluid_tell_near(f, 1, &s->x);
+    mpsi_fluid_send_halo(f, 1, &s->x);
     for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, first_residual);
-    mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+    mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
     const double rr = total(f, chunks, 0), bb = total(f, chunks, 1);
     const double enough = tolerance * tolerance * bb;
     if (bb == 0.0) memset(s->x, 0, (size_t)(f->count + f->ghosts) * sizeof *s->x);

@@ -124,7 +124,7 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
   if (!classical) mpsi_fluid_set_level(f);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_solution : take_solution);
-  mpsi_fluid_tell_all(f, classical ? 2 : 1, (double *const[]){f->q, f->pressure});
+  mpsi_fluid_send_all(f, classical ? 2 : 1, (double *const[]){f->q, f->pressure});
   if (classical) return MPS_OK;
   for (int64_t g = 0; g < f->ghosts; g++) f->q[f->count + g] = f->q[f->parent[g]] + f->offset[g];
   return MPS_OK;

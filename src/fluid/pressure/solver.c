@@ -58,7 +58,7 @@ mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_d
     outside = mpsi_alloc(f->context, 1, sizeof *outside);
     if (!outside) status = mpsi_fail_memory(f->context, __func__, sizeof *outside);
   }
-  status = settle_solver(f, __func__, status, user_def != NULL, &def);
+  status = agree_on_solver(f, __func__, status, user_def != NULL, &def);
   if (status != MPS_OK) {
     mpsi_free(f->context, outside);
     return status;
@@ -164,7 +164,7 @@ static void close_gaps(mps_fluid *f) {
 
 mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   mpsi_fluid_outside *o = f->outside;
-  mps_status status = mpsi_fluid_settle(f, function, make_room(f, function));
+  mps_status status = mpsi_fluid_agree(f, function, make_room(f, function));
   if (status != MPS_OK) return status;
   const int32_t *column = o->column_room.item;
   const double *value = o->value_room.item;
@@ -177,7 +177,7 @@ mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   status = f->partition
                ? o->rows_of_rank(o->user, f->count, f->own[0], rows, o->start, column, value)
                : o->matrix(o->user, rows, o->start, column, value);
-  return mpsi_fluid_settle(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
+  return mpsi_fluid_agree(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
 }
 
 /* ---- solution -------------------------------------------------------------------------------- */
@@ -199,12 +199,11 @@ mps_status mpsi_fluid_solve_outside(mps_fluid *f, const char *function) {
   int64_t iterations = 0;
   mpsi_guard_enter(&f->guard, f->context, "the callback solve of mps_fluid_set_solver");
   mps_status status = o->solve(o->user, s->right, f->def.tolerance, s->x, &iterations);
-  status =
-      mpsi_fluid_settle(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
+  status = mpsi_fluid_agree(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
   if (status != MPS_OK) return status;
   for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, residual);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
   const mps_status lost = mpsi_fluid_lost(f, function);
   if (lost != MPS_OK) return lost;
   double rr = 0.0, bb = 0.0;

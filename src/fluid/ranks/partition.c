@@ -24,7 +24,7 @@ struct mpsi_fluid_partition {
   int64_t block, blocks;  /* particles a block of the deal */
   int64_t count;          /* of particles: what `all` is of; -1: nothing yet */
   uint64_t epoch;         /* order that `near` is of */
-  link all, near, back;   /* back: of marks, from those who have copies to the owners */
+  link all, near, back;   /* back: of marks, from ranks with copies to the owners */
   atomic_uchar *is_guest; /* count */
   double *mark;           /* of the guests of `near`, or of own particles */
   bool knows_local;
@@ -70,12 +70,12 @@ void mpsi_fluid_partition_destroy(mps_fluid *f) {
 
 /* ---- errors ---------------------------------------------------------------------------------- */
 
-mps_status mpsi_fluid_settle(mps_fluid *f, const char *function, mps_status status) {
+mps_status mpsi_fluid_agree(mps_fluid *f, const char *function, mps_status status) {
   return mpsi_domain_agree(f->def.domain, function, status);
 }
 
-mps_status mpsi_fluid_settle_max(mps_fluid *f, const char *function, mps_status status,
-                                 int32_t count, double *values) {
+mps_status mpsi_fluid_agree_max(mps_fluid *f, const char *function, mps_status status,
+                                int32_t count, double *values) {
   return mpsi_domain_agree_max(f->def.domain, function, status, count, values);
 }
 
@@ -99,14 +99,14 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
     if (f->given[k]) mpsi_give_vector(list, "the present factor on a load", 2, f->given[k]->now);
 }
 
-mps_status mpsi_fluid_settle_alike(mps_fluid *f, const char *function, mps_status status) {
+mps_status mpsi_fluid_agree_same(mps_fluid *f, const char *function, mps_status status) {
   mpsi_given list;
   double edited = f->edited;
   if (!f->partition) return status;
   give_state(f, &list);
   status = mpsi_domain_agree_given_max(f->partition->domain, function, status, &list, 1, &edited);
   if (status == MPS_OK && edited > 0.0)
-    status = mpsi_domain_settle_particles(f->partition->domain, function, status, f->particles);
+    status = mpsi_domain_agree_particles(f->partition->domain, function, status, f->particles);
   if (status == MPS_OK) f->edited = false;
   return status;
 }
@@ -117,7 +117,7 @@ static void note(mpsi_fluid_partition *s, mps_status status) {
 
 mps_status mpsi_fluid_lost(mps_fluid *f, const char *function) {
   if (!f->partition || f->partition->lost == MPS_OK) return MPS_OK;
-  return mpsi_fluid_settle(f, function, f->partition->lost);
+  return mpsi_fluid_agree(f, function, f->partition->lost);
 }
 
 /* ---- the deal -------------------------------------------------------------------------------- */
@@ -128,12 +128,12 @@ mps_status mpsi_fluid_lost(mps_fluid *f, const char *function) {
 
 mpsi_fluid_blocks mpsi_fluid_cut(const mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
-  int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
-  wanted += wanted > 1 && wanted % 2; /* two threads, equal shares */
-  if (wanted > MOST_BLOCKS) wanted = MOST_BLOCKS;
-  if (wanted < (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS)
-    wanted = (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS;
-  const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks: ranks have whole blocks */
+  int64_t needed = (f->count + BLOCK - 1) / BLOCK;
+  needed += needed > 1 && needed % 2; /* two threads, equal shares */
+  if (needed > MOST_BLOCKS) needed = MOST_BLOCKS;
+  if (needed < (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS)
+    needed = (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS;
+  const int64_t each = (chunks + needed - 1) / needed; /* whole chunks: ranks have whole blocks */
   return (mpsi_fluid_blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
 
@@ -185,7 +185,7 @@ static mps_status make_link(mps_fluid *f, const char *function, link *l, int64_t
   mps_status status =
       room ? MPS_OK : mpsi_fail_memory(f->context, function, (size_t)count * sizeof *l->in);
   if (room) list(f, from, &g);
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   const mpsi_halo_def def = {
       .guests = count, .rank = g.rank, .index = g.index, .columns = MPSI_FLUID_SHARED};
   if (status == MPS_OK) status = mpsi_halo_create(f->partition->domain, function, &def, &l->halo);
@@ -208,19 +208,19 @@ static void copy(mps_fluid *f, link *l, int32_t columns, double *const *column,
     for (int64_t k = 0; k < l->guests; k++) into[c][l->guest[k]] = in[c][k];
 }
 
-typedef bool (*wanted_fn)(const mps_fluid *, int64_t);
+typedef bool (*needed_fn)(const mps_fluid *, int64_t);
 
-static void list_wanted(const mps_fluid *f, const void *from, guests *g) {
-  const wanted_fn wanted = *(const wanted_fn *)from;
+static void list_needed(const mps_fluid *f, const void *from, guests *g) {
+  const needed_fn needed = *(const needed_fn *)from;
   for (int64_t i = 0; i < f->count; i++)
-    if (wanted(f, i)) add_guest(g, i, owner(f->partition, i), i);
+    if (needed(f, i)) add_guest(g, i, owner(f->partition, i), i);
 }
 
-/* The particles that `wanted` picks as guests of a link. */
-static mps_status join(mps_fluid *f, const char *function, link *l, wanted_fn wanted) {
+/* The particles selected by `needed` as guests of a link. */
+static mps_status join(mps_fluid *f, const char *function, link *l, needed_fn needed) {
   int64_t count = 0;
-  for (int64_t i = 0; i < f->count; i++) count += wanted(f, i);
-  return make_link(f, function, l, count, list_wanted, &wanted);
+  for (int64_t i = 0; i < f->count; i++) count += needed(f, i);
+  return make_link(f, function, l, count, list_needed, &needed);
 }
 
 /* ---- the way back ---------------------------------------------------------------------------- */
@@ -244,7 +244,7 @@ static mps_status ask_owners(mps_fluid *f, const char *function, mpsi_mailbox *b
     for (; k < l->guests && owner(s, l->guest[k]) == rank; k++) words[at++] = l->guest[k];
     m->bytes = (const char *)(words + at) - (const char *)m->data;
   }
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   if (status == MPS_OK) status = mpsi_domain_exchange(s->domain, function, count, message, box);
   mpsi_free(f->context, message);
   mpsi_free(f->context, words);
@@ -252,7 +252,7 @@ static mps_status ask_owners(mps_fluid *f, const char *function, mpsi_mailbox *b
 }
 
 /* Its guests are the guests of `near` elsewhere that are this rank's particles. */
-static void list_asked(const mps_fluid *f, const void *from, guests *g) {
+static void list_requested(const mps_fluid *f, const void *from, guests *g) {
   const mpsi_mailbox *box = from;
   (void)f;
   for (int32_t m = 0; m < box->count; m++) {
@@ -265,10 +265,10 @@ static void list_asked(const mps_fluid *f, const void *from, guests *g) {
 static mps_status join_back(mps_fluid *f, const char *function) {
   mpsi_mailbox box = {.context = f->context};
   int64_t count = 0;
-  mps_status status = ask_owners(f, function, &box);
+  mps_status status = request_items(f, function, &box);
   if (status != MPS_OK) return status;
   for (int32_t m = 0; m < box.count; m++) count += box.mail[m].bytes / 8 - 1;
-  status = make_link(f, function, &f->partition->back, count, list_asked, &box);
+  status = make_link(f, function, &f->partition->back, count, list_requested, &box);
   mpsi_domain_free_mail(&box);
   return status;
 }
@@ -289,7 +289,7 @@ static mps_status begin_anew(mps_fluid *f, const char *function) {
   mps_status status = s->is_guest && s->mark
                           ? MPS_OK
                           : mpsi_fail_memory(f->context, function, (size_t)f->count * 9);
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   if (status == MPS_OK) status = join(f, function, &s->all, is_foreign);
   if (status != MPS_OK) return status;
   s->count = f->count;
@@ -332,24 +332,24 @@ mps_status mpsi_fluid_find_halo(mps_fluid *f, const char *function) {
   s->epoch = epoch;
   mpsi_fluid_units(f, MPSI_FLUID_CHUNK, find_guests, &found);
   double more = atomic_load(&found.more);
-  status = mpsi_fluid_settle_max(f, function, status, 1, &more);
+  status = mpsi_fluid_agree_max(f, function, status, 1, &more);
   if (status == MPS_OK && more > 0.0) status = join(f, function, &s->near, is_guest);
   if (status == MPS_OK && more > 0.0) status = join_back(f, function);
-  if (status != MPS_OK) s->count = -1; /* begins anew */
+  if (status != MPS_OK) s->count = -1; /* starts again */
   return status;
 }
 
 /* ---- exchange -------------------------------------------------------------------------------- */
 
-void mpsi_fluid_tell_near(mps_fluid *f, int32_t columns, double *const *column) {
+void mpsi_fluid_send_halo(mps_fluid *f, int32_t columns, double *const *column) {
   if (f->partition) copy(f, &f->partition->near, columns, column, column);
 }
 
-void mpsi_fluid_tell_all(mps_fluid *f, int32_t columns, double *const *column) {
+void mpsi_fluid_send_all(mps_fluid *f, int32_t columns, double *const *column) {
   if (f->partition) copy(f, &f->partition->all, columns, column, column);
 }
 
-void mpsi_fluid_tell_most(mps_fluid *f, int64_t count, double *values) {
+void mpsi_fluid_reduce_max(mps_fluid *f, int64_t count, double *values) {
   if (!f->partition) return;
   for (int64_t k = 0; k < count; k++)
     if (isnan(values[k])) values[k] = INFINITY;
@@ -357,7 +357,7 @@ void mpsi_fluid_tell_most(mps_fluid *f, int64_t count, double *values) {
   if (f->partition->lost != MPS_OK) memset(values, 0, (size_t)count * sizeof *values);
 }
 
-void mpsi_fluid_tell_exact(mps_fluid *f, int32_t count, mpsi_exact *sums) {
+void mpsi_fluid_reduce_exact(mps_fluid *f, int32_t count, mpsi_exact *sums) {
   if (f->partition)
     note(f->partition, mpsi_domain_sum_exact(f->partition->domain, "mps_fluid", count, sums));
 }
@@ -369,12 +369,12 @@ void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
   double *sums = f->system.sums;
   for (int64_t k = 0; k < 2 * units; k++)
     if (!is_own(f, k / 2 * unit)) sums[k] = -INFINITY;
-  mpsi_fluid_tell_most(f, 2 * units, sums);
+  mpsi_fluid_reduce_max(f, 2 * units, sums);
 }
 
 /* In scratch columns, which the pressure has not begun to use: z states and numbers, p and q m,
  * r h. */
-void mpsi_fluid_tell_looks(mps_fluid *f) {
+void mpsi_fluid_send_moments(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s) return;
   mpsi_fluid_system *y = &f->system;
@@ -382,8 +382,8 @@ void mpsi_fluid_tell_looks(mps_fluid *f) {
     y->z[i] = f->state[i] + 4.0 * f->near[i];
     y->p[i] = f->local[i].m[0], y->q[i] = f->local[i].m[1], y->r[i] = f->local[i].h;
   }
-  mpsi_fluid_tell_all(f, 1, &y->z);
-  mpsi_fluid_tell_near(f, 3, (double *const[]){y->p, y->q, y->r});
+  mpsi_fluid_send_all(f, 1, &y->z);
+  mpsi_fluid_send_halo(f, 3, (double *const[]){y->p, y->q, y->r});
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k], word = (int64_t)y->z[i];
     f->state[i] = (uint8_t)(word % 4), f->near[i] = (uint16_t)(word / 4);
@@ -424,7 +424,7 @@ void mpsi_fluid_tell_local(mps_fluid *f) {
     const mpsi_fluid_local *l = &f->local[i];
     y->p[i] = l->n, y->q[i] = l->m[0], y->r[i] = l->m[1], y->z[i] = l->h;
   }
-  mpsi_fluid_tell_all(f, 4, column);
+  mpsi_fluid_send_all(f, 4, column);
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k];
     f->local[i] = (mpsi_fluid_local){.n = y->p[i], .m = {y->q[i], y->r[i]}, .h = y->z[i]};

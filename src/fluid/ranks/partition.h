@@ -51,7 +51,7 @@ void mpsi_fluid_tell_near(mps_fluid *fluid, int32_t columns, double *const *colu
 /* The same, to all ranks. */
 void mpsi_fluid_tell_all(mps_fluid *fluid, int32_t columns, double *const *column);
 /* system.sums of units of so many particles, two of each, to all. */
-void mpsi_fluid_tell_sums(mps_fluid *fluid, int64_t unit);
+void mpsi_fluid_send_sums(mps_fluid *fluid, int64_t unit);
 /* The greatest of each value over the ranks, and 0 where the transport has failed. */
 void mpsi_fluid_tell_most(mps_fluid *fluid, int64_t count, double *values);
 /* Sums over all ranks; invalid where the transport has failed. */

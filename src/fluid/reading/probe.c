@@ -241,7 +241,7 @@ mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
     resultant r = {w, pitch(f, w) * f->def.measure};
     status = for_points(f, b, function, add_force, &r);
   }
-  return mpsi_fluid_settle(f, function, status);
+  return mpsi_fluid_agree(f, function, status);
 }
 
 static mps_status check_wall(const mps_fluid *f, const char *function, int32_t number) {
@@ -305,7 +305,7 @@ mps_status mps_fluid_get_wall(const mps_fluid *handle, int32_t number, int64_t c
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
   status = check_pressure(f, __func__);
   if (status == MPS_OK) status = for_points(f, number, __func__, list_point, &list);
-  status = mpsi_fluid_show_surface(f, mpsi_fluid_settle(f, __func__, status));
+  status = mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, __func__, status));
   if (status == MPS_OK) *count = list.count;
   return status;
 }
@@ -334,11 +334,11 @@ mps_status mps_fluid_get_pressure(const mps_fluid *handle, int32_t number, int64
                      "count is %lld, x and pressure must be given", (long long)count);
   int64_t near = 0;
   if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
-  status = mpsi_fluid_settle(f, __func__, status);
+  status = mpsi_fluid_agree(f, __func__, status);
   if (status != MPS_OK) return status;
   status = check_pressure(f, __func__);
   if (status == MPS_OK) status = gather(f, &f->wall[number], __func__, &near);
-  status = mpsi_fluid_show_surface(f, mpsi_fluid_settle(f, __func__, status));
+  status = mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, __func__, status));
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
     const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);
@@ -370,7 +370,7 @@ mps_status mps_fluid_get_levels(const mps_fluid *handle, int64_t count, const do
     if (!isfinite(station[k]))
       return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                        "station %lld is %g m, must be finite", (long long)k, station[k]);
-  const mps_status status = mpsi_fluid_know(f, __func__);
+  const mps_status status = mpsi_fluid_ensure_surface(f, __func__);
   if (status != MPS_OK) return status;
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);

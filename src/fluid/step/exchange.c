@@ -104,7 +104,7 @@ void mpsi_fluid_end_exchange(mps_fluid *f) {
     for (int64_t k = 0; k < e->width; k++)
       if (row[k] != 0.0) mpsi_exact_add(&sum[k], row[k]);
   }
-  mpsi_fluid_tell_exact(f, (int32_t)e->width, sum);
+  mpsi_fluid_reduce_exact(f, (int32_t)e->width, sum);
   for (int c = 0; c < 2; c++) e->gain[c] = mass_of(f) * mpsi_exact_value(&sum[c]);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];

@@ -146,9 +146,9 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
   if (!classical) mpsi_fluid_prepare_smoothing(f);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_accelerate : accelerate);
-  mpsi_fluid_tell_near(f, 2, f->u_new);
+  mpsi_fluid_send_halo(f, 2, f->u_new);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
   swap(&f->u_new[0], &f->system.r);
   swap(&f->u_new[1], &f->system.z);
   for (int64_t k = 0; k < chunks; k++) {
@@ -267,8 +267,8 @@ static double wall_travel(const mps_fluid *f) {
 
 int64_t mpsi_fluid_advance(mps_fluid *f) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
-  mpsi_fluid_tell_all(
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_all(
       f, 6,
       (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure, mpsi_fluid_rises(f)});
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;

@@ -100,7 +100,7 @@ static void abandon(mps_fluid *f) {
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mps_status status = mpsi_particles_ready(f->particles, function);
   if (status == MPS_OK) status = mpsi_fluid_look_ahead(f, function, dt);
-  status = mpsi_fluid_settle(f, function, status);
+  status = mpsi_fluid_agree(f, function, status);
   if (status != MPS_OK) return status;
   f->stage = MPSI_FLUID_BEGUN;
   f->dt = dt;
@@ -125,7 +125,7 @@ static mps_status solve(mps_fluid *f, const char *function) {
 static mps_status finish(mps_fluid *f, const char *function) {
   const mps_status walls = mpsi_fluid_check_walls(f, function);
   if (walls != MPS_OK) return walls;
-  mpsi_fluid_tell_local(f); /* for the work of loads, and for the surface at walls */
+  mpsi_fluid_send_local(f); /* for the work of loads, and for the surface at walls */
   mpsi_fluid_find_velocities(f);
   const int64_t bad = mpsi_fluid_advance(f);
   mpsi_fluid_end_exchange(f);
@@ -148,7 +148,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   f->steps++;
   mpsi_fluid_warn_of_guards(f);
   mpsi_fluid_warn_of_angles(f);
-  mpsi_fluid_let_go(f);
+  mpsi_fluid_remove_outflow(f);
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
   f->stale = true;
   return mpsi_fluid_sort(f, function);
@@ -213,13 +213,13 @@ static mps_status check_dt(mps_fluid *f, const char *function, double span) {
 }
 
 /* On one rank, on all. */
-static mps_status ask_cancel(mps_fluid *f, const char *function) {
+static mps_status call_cancel(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
   if (mpsi_cancelled(f->context))
     status = mpsi_fail(f->context, function, MPS_ERROR_CANCELLED,
                        "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps,
                        f->time);
-  return mpsi_fluid_settle(f, function, status);
+  return mpsi_fluid_agree(f, function, status);
 }
 
 mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
@@ -232,7 +232,7 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
   if (status != MPS_OK) return status;
   mpsi_guard_enter(&f->guard, f->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    status = ask_cancel(f, __func__);
+    status = call_cancel(f, __func__);
     if (status == MPS_OK) status = check_dt(f, __func__, INFINITY);
     if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
   }
@@ -251,7 +251,7 @@ mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the classical scheme's steps cannot be made in parts");
   mpsi_guard_enter(&f->guard, f->context, __func__);
-  status = ask_cancel(f, __func__);
+  status = call_cancel(f, __func__);
   if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__, INFINITY);
   if (status == MPS_OK) {
     status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
@@ -274,11 +274,11 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
   mpsi_guard_enter(&f->guard, f->context, __func__);
-  status = mpsi_fluid_settle(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
+  status = mpsi_fluid_agree(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
   if (status == MPS_OK) {
     f->stage = MPSI_FLUID_BEGUN;
     mpsi_fluid_begin_walls(f, f->dt);
-    status = mpsi_fluid_settle_alike(f, __func__, MPS_OK);
+    status = mpsi_fluid_agree_same(f, __func__, MPS_OK);
     if (status == MPS_OK) status = solve(f, __func__);
     f->stage = status == MPS_OK ? MPSI_FLUID_SOLVED : MPSI_FLUID_BEGUN;
   }
@@ -293,7 +293,7 @@ mps_status mps_fluid_end_step(mps_fluid *f) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_stage(f, __func__, MPSI_FLUID_SOLVED);
   if (status != MPS_OK) return status;
-  status = mpsi_fluid_settle(f, __func__, mpsi_particles_ready(f->particles, __func__));
+  status = mpsi_fluid_agree(f, __func__, mpsi_particles_ready(f->particles, __func__));
   if (status != MPS_OK) return status;
   status = finish(f, __func__);
   if (status == MPS_OK) return keep(f, __func__);
@@ -315,7 +315,7 @@ mps_status mps_fluid_abandon_step(mps_fluid *f) {
 static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
   if (!callback) return MPS_OK;
   mpsi_guard_enter(&f->guard, f->context, "the callback of mps_fluid_run");
-  return mpsi_fluid_settle(
+  return mpsi_fluid_agree(
       f, "mps_fluid_run",
       mpsi_guard_leave(&f->guard, f->context, "mps_fluid_run", callback(user, f)));
 }
@@ -353,7 +353,7 @@ static mps_status march(mps_fluid *f, const char *function, const run *r) {
       reported = last ? 100 : (int64_t)((f->time - r->start) / slice);
       mpsi_progress(f->context, "fluid", f->steps, f->time - r->start, r->t_end - r->start);
     }
-    if (status == MPS_OK && !last) status = ask_cancel(f, function);
+    if (status == MPS_OK && !last) status = call_cancel(f, function);
   }
   return status;
 }

@@ -29,10 +29,11 @@ void mpsi_fluid_warn_of_guards(mps_fluid *f) {
   const double share = acted / ((double)f->steps * (double)f->count + 1.0);
   if (f->steps < WARN_FROM || !(share > MOST_GUARDED) || !first_time(f, MPSI_FLUID_WARNED_GUARDS))
     return;
-  mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
-           "step %lld of the fluid: collisions, cut velocities and particles pushed off walls are "
-           "%.1f %% of the particles a step, above %g %%: the flow wants a smaller spacing or step",
-           (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
+  mpsi_log(
+      f->context, MPS_CONTEXT_LOG_WARNING,
+      "step %lld of the fluid: collisions, limited velocities and particles moved off walls are "
+      "%.1f %% of the particles a step, above %g %%: the flow needs a smaller spacing or step",
+      (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
 }
 
 /* A rolling body may develop acute corners, which mps_fluid_add_body does not accept. */
@@ -81,7 +82,7 @@ mps_status mpsi_fluid_check_walls(mps_fluid *f, const char *function) {
     if (!(travel <= MOST_TRAVEL * f->l0))
       return mpsi_fail(
           f->context, function, MPS_ERROR_DIVERGED,
-          "step %lld, t = %g s: %s %d goes %g m in the step of %g s, allowed is %g l0 = %g "
+          "step %lld, t = %g s: %s %d moves %g m in the step of %g s, allowed is %g l0 = %g "
           "m; the step is not made",
           (long long)f->steps, f->time, kind_of(w), number, travel, f->dt, MOST_TRAVEL,
           MOST_TRAVEL * f->l0);
@@ -93,8 +94,8 @@ mps_status mpsi_fluid_check_walls(mps_fluid *f, const char *function) {
           (long long)f->steps, f->time, b, slope, MOST_SLOPE);
     if (travel > FAR_TRAVEL * f->l0 && first_time(f, MPSI_FLUID_WARNED_TRAVEL))
       mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
-               "step %lld of the fluid: %s %d goes %g m in the step of %g s, more than half the "
-               "spacing of %g m: the pressure there wants a smaller step",
+               "step %lld of the fluid: %s %d moves %g m in the step of %g s, more than half the "
+               "spacing of %g m: the pressure there needs a smaller step",
                (long long)f->steps, kind_of(w), number, travel, f->dt, f->l0);
     if (slope > FAR_SLOPE && first_time(f, MPSI_FLUID_WARNED_SLOPE))
       mpsi_log(

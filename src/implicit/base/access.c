@@ -11,28 +11,28 @@ mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
   mps_status status = mpsi_guard_check(&e->guard, e->context, function);
   e->agreed = false;
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_settle(e, function, mpsi_particles_ready(e->particles, function));
+  status = mpsi_elastic_agree(e, function, mpsi_particles_ready(e->particles, function));
   if (status == MPS_OK) mpsi_guard_enter(&e->guard, e->context, function);
   return status;
 }
 
-mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status) {
+mps_status mpsi_elastic_agree(mps_elastic *e, const char *function, mps_status status) {
   if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
   status = mpsi_domain_agree(e->def.domain, function, status);
   e->agreed = status != MPS_OK;
   return status;
 }
 
-mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
-                                    const char *name, double value) {
+mps_status mpsi_elastic_agree_same(mps_elastic *e, const char *function, mps_status status,
+                                   const char *name, double value) {
   if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
   status = mpsi_domain_agree_same(e->def.domain, function, status, name, value);
   e->agreed = status != MPS_OK;
   return status;
 }
 
-mps_status mpsi_elastic_settle_given(mps_elastic *e, const char *function, mps_status status,
-                                     const mpsi_given *list) {
+mps_status mpsi_elastic_agree_given(mps_elastic *e, const char *function, mps_status status,
+                                    const mpsi_given *list) {
   if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
   status = mpsi_domain_agree_given(e->def.domain, function, status, list);
   e->agreed = status != MPS_OK;
@@ -43,7 +43,7 @@ mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
   const char *function = e->guard.callback; /* that of mpsi_elastic_enter */
   mpsi_guard_end(&e->guard);
   e->within = false;
-  return mpsi_elastic_settle(e, function, status);
+  return mpsi_elastic_agree(e, function, status);
 }
 
 bool mpsi_elastic_begin_reading(mps_elastic *e) {
@@ -144,7 +144,7 @@ mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function, double *
   return status;
 }
 
-void mpsi_elastic_settle_mass(mps_elastic *e, double *former, bool renewed) {
+void mpsi_elastic_finish_mass(mps_elastic *e, double *former, bool renewed) {
   if (e->mass == former) return;
   double *const other = renewed ? former : e->mass;
   if (!renewed) use_mass(e, former);

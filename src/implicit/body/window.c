@@ -1,6 +1,6 @@
 /* window.c - the particles whose neighbours, joints and stiffnesses a rank has: those of its
- * window, or the whole body; volumes and pair stiffnesses there. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * window, or the whole body; volumes and pair stiffnesses there.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
 void mpsi_elastic_measure(mps_elastic *e) {

@@ -260,7 +260,7 @@ static mps_status put(mps_elastic *e, const char *function, mps_status status, i
   mpsi_give(&given, "number", number);
   if (status == MPS_OK) status = make(e, function, def, &b);
   if (status == MPS_OK) give(&given, &b);
-  status = mpsi_elastic_settle_given(e, function, status, &given);
+  status = mpsi_elastic_agree_given(e, function, status, &given);
   if (status != MPS_OK)
     release(e, &b);
   else
@@ -301,7 +301,7 @@ mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number) {
   if (status != MPS_OK) return status;
   mpsi_elastic_boundary none = {.used = false};
   status =
-      mpsi_elastic_settle_same(e, __func__, check_number(e, __func__, number), "number", number);
+      mpsi_elastic_agree_same(e, __func__, check_number(e, __func__, number), "number", number);
   if (status == MPS_OK) status = replace(e, __func__, number, &none);
   if (status == MPS_OK) e->boundaries[number].reaction = (mps_reaction){.count = 0};
   return mpsi_elastic_leave(e, status);
@@ -324,7 +324,8 @@ void mpsi_elastic_drop_boundaries(mps_elastic *e) {
 
 /* ---- driving --------------------------------------------------------------------------------- */
 
-static mps_status ask_signals(mps_elastic *e, const char *function, double t, bool *by_caller) {
+static mps_status evaluate_signals(mps_elastic *e, const char *function, double t,
+                                   bool *by_caller) {
   for (int32_t k = 0; k < e->boundary_count; k++) {
     mpsi_elastic_boundary *b = &e->boundaries[k];
     for (int c = 0; b->used && c < 3; c++) {
@@ -344,14 +345,14 @@ static mps_status ask_signals(mps_elastic *e, const char *function, double t, bo
 /* Motions of all boundaries at time t. Functions of the caller may differ between ranks. */
 static mps_status find_motions(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
-  const mps_status status = ask_signals(e, function, t, &by_caller);
+  const mps_status status = evaluate_signals(e, function, t, &by_caller);
   mpsi_given list;
   if (!by_caller) return status;
   mpsi_given_begin(&list);
   for (int32_t k = 0; status == MPS_OK && k < e->boundary_count; k++)
     for (int m = 0; e->boundaries[k].used && m < 3; m++)
       mpsi_give_vector(&list, "the motion of a boundary", 3, e->boundaries[k].motion[m]);
-  return mpsi_elastic_settle_given(e, function, status, &list);
+  return mpsi_elastic_agree_given(e, function, status, &list);
 }
 
 mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t) {

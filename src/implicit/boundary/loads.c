@@ -191,8 +191,8 @@ static mps_status put(mps_elastic *e, const char *function, mps_status status, i
   if (status == MPS_OK && def.kind == MPS_ELASTIC_LOAD_GRAVITY && !mass)
     status = mpsi_elastic_read_mass(e, function, &mass);
   if (status == MPS_OK) status = make_patches(e, function, &def);
-  status = mpsi_elastic_settle_given(e, function, status, &given);
-  mpsi_elastic_settle_mass(e, mass, status == MPS_OK);
+  status = mpsi_elastic_agree_given(e, function, status, &given);
+  mpsi_elastic_finish_mass(e, mass, status == MPS_OK);
   if (status != MPS_OK) return status;
   mpsi_elastic_load *l = &e->loads[number];
   if (def.kind > MPS_ELASTIC_LOAD_GRAVITY) { /* the former patches become scratch memory */
@@ -254,7 +254,7 @@ mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number) {
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   status =
-      mpsi_elastic_settle_same(e, __func__, check_number(e, __func__, number), "number", number);
+      mpsi_elastic_agree_same(e, __func__, check_number(e, __func__, number), "number", number);
   if (status == MPS_OK) release(e, &e->loads[number]);
   return mpsi_elastic_leave(e, status);
 }
@@ -327,10 +327,11 @@ mps_status mpsi_elastic_weigh(mps_elastic *e, const char *function, double **for
   for (int32_t k = 0; k < e->load_count; k++)
     weighs = weighs || (e->loads[k].used && e->loads[k].kind == MPS_ELASTIC_LOAD_GRAVITY);
   if (!weighs) return MPS_OK;
-  return mpsi_elastic_settle(e, function, mpsi_elastic_read_mass(e, function, former));
+  return mpsi_elastic_agree(e, function, mpsi_elastic_read_mass(e, function, former));
 }
 
-static mps_status ask_signals(mps_elastic *e, const char *function, double t, bool *by_caller) {
+static mps_status evaluate_signals(mps_elastic *e, const char *function, double t,
+                                   bool *by_caller) {
   for (int32_t k = 0; k < e->load_count; k++) {
     mpsi_elastic_load *l = &e->loads[k];
     for (int c = 0; l->used && c < 3; c++) {
@@ -350,14 +351,14 @@ static mps_status ask_signals(mps_elastic *e, const char *function, double t, bo
 /* Factors of all loads at time t. Functions of the caller may differ between ranks. */
 static mps_status find_scales(mps_elastic *e, const char *function, double t) {
   bool by_caller = false;
-  mps_status status = ask_signals(e, function, t, &by_caller);
+  mps_status status = evaluate_signals(e, function, t, &by_caller);
   mpsi_given list;
   if (!by_caller) return status;
   mpsi_given_begin(&list);
   for (int32_t k = 0; status == MPS_OK && k < e->load_count; k++)
     if (e->loads[k].used)
       mpsi_give_vector(&list, "the present factor on a load", 3, e->loads[k].scale);
-  return mpsi_elastic_settle_given(e, function, status, &list);
+  return mpsi_elastic_agree_given(e, function, status, &list);
 }
 
 /* On all ranks: all fail or none. */
@@ -443,11 +444,11 @@ mps_status mps_elastic_get_load_resultant(const mps_elastic *handle, const doubl
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_settle(e, __func__, mpsi_elastic_check_about(e, __func__, about));
+  status = mpsi_elastic_agree(e, __func__, mpsi_elastic_check_about(e, __func__, about));
   double *mass = e->mass;
   if (status == MPS_OK && !e->motion) status = mpsi_elastic_weigh(e, __func__, &mass);
   if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, __func__, mps_elastic_time(e));
   if (status == MPS_OK) status = give_resultant(e, __func__, about, force, moment);
-  mpsi_elastic_settle_mass(e, mass, false);
+  mpsi_elastic_finish_mass(e, mass, false);
   return mpsi_elastic_leave(e, status);
 }

@@ -129,7 +129,7 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
   double *former = mpsi_alloc(e->context, 2 * e->n, sizeof *former);
   if (!former) status = mpsi_fail_memory(e->context, __func__, (size_t)e->n * 16);
-  status = mpsi_elastic_settle_given(e, __func__, status, &given);
+  status = mpsi_elastic_agree_given(e, __func__, status, &given);
   if (status == MPS_OK) status = mpsi_material_check_elastic(e->context, __func__, material);
   if (status == MPS_OK)
     status = mpsi_particles_check_ids_or_all(e->particles, __func__, count, ids);
@@ -185,7 +185,7 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
   status = check_cut(e, __func__, axis, side, count, ids);
-  status = mpsi_elastic_leave(e, mpsi_elastic_settle_given(e, __func__, status, &given));
+  status = mpsi_elastic_leave(e, mpsi_elastic_agree_given(e, __func__, status, &given));
   if (status != MPS_OK) return status;
   mpsi_elastic_end_motion(e); /* the masses of its cells have changed */
   for (int64_t k = 0; k < count; k++) {

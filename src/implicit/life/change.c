@@ -96,7 +96,7 @@ static mps_status prepare_removal(mps_elastic *e, const char *function, int64_t 
                                   const int64_t *ids) {
   if (count >= e->n)
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "all %lld particles of the solver are to go, a body must be left",
+                     "all %lld particles of the solver are to be removed, a body must remain",
                      (long long)e->n);
   mps_status status = begin(e, function, e->n - count);
   uint8_t *gone = mpsi_alloc(e->context, e->n, 1);
@@ -122,14 +122,14 @@ mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count,
 void mpsi_elastic_renew(void *self) {
   mps_elastic *e = self;
   if (!e->change) return;
-  if (mps_particles_count(e->particles) == e->change->next.n) { /* nobody refused */
+  if (mps_particles_count(e->particles) == e->change->next.n) { /* no holder has refused */
     mpsi_elastic_suspend_motion(e);
     use(e);
   }
   mpsi_elastic_drop_change(e);
 }
 
-/* ---- a state to go back to ------------------------------------------------------------------- */
+/* ---- restoration of a state ------------------------------------------------------------------ */
 
 static const mpsi_value *find_value(const mpsi_values *values, const char *name, int64_t rows) {
   const mpsi_value *value = mpsi_values_find(values, name);

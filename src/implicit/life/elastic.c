@@ -172,7 +172,7 @@ static mps_status agree_on_body(const mps_elastic_def *def, const char *function
   mpsi_give(&given, "the kind of the kernel", def->kernel ? mps_kernel_get_kind(def->kernel) : -1);
   if (status == MPS_OK) mpsi_material_give(&given, def->material);
   status = mpsi_domain_agree_given(def->domain, function, status, &given);
-  return status == MPS_OK ? mpsi_domain_settle_particles(def->domain, function, status, particles)
+  return status == MPS_OK ? mpsi_domain_agree_particles(def->domain, function, status, particles)
                           : status;
 }
 

@@ -139,11 +139,11 @@ mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega, doubl
   if (!omega) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "omega is NULL");
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_settle_same(e, __func__, status, "count", count);
+  status = mpsi_elastic_agree_same(e, __func__, status, "count", count);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   e->within = true;
   double *mass = e->mass; /* a motion under way and a load of gravity keep theirs */
   status = find_modes(e, __func__, count, omega, shapes, &mass);
-  mpsi_elastic_settle_mass(e, mass, status == MPS_OK && !mass);
+  mpsi_elastic_finish_mass(e, mass, status == MPS_OK && !mass);
   return mpsi_elastic_leave(e, status);
 }

@@ -145,8 +145,8 @@ static mps_status check_finite(const mps_elastic *e, const char *function, int64
 }
 
 /* Do all ranks start the same motion? */
-static mps_status settle_motion(mps_elastic *e, const char *function, mps_status status,
-                                const mps_elastic_motion_def *def) {
+static mps_status agree_on_motion(mps_elastic *e, const char *function, mps_status status,
+                                  const mps_elastic_motion_def *def) {
   mpsi_given given;
   mpsi_given_begin(&given);
   MPSI_GIVE(&given, def, dt);
@@ -158,7 +158,7 @@ static mps_status settle_motion(mps_elastic *e, const char *function, mps_status
   MPSI_GIVE_VECTOR(&given, def, ratio, 2);
   MPSI_GIVE_VECTOR(&given, def, frequency, 2);
   MPSI_GIVE(&given, def, time);
-  return mpsi_elastic_settle_given(e, function, status, &given);
+  return mpsi_elastic_agree_given(e, function, status, &given);
 }
 
 /* `mass`: the former masses, restored on an error. */
@@ -174,7 +174,7 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   if (status == MPS_OK) status = read_family(e->context, function, &def, &made);
   if (status == MPS_OK) status = read_damping(e->context, function, &def, &made);
   if (status == MPS_OK) status = mpsi_elastic_read_mass(e, function, mass);
-  status = settle_motion(e, function, status, &def);
+  status = agree_on_motion(e, function, status, &def);
   if (status == MPS_OK) status = mpsi_elastic_prepare(e, function);
   double factor;
   if (status == MPS_OK)
@@ -216,7 +216,7 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
   const int32_t fields = mps_particles_field_count(e->particles);
   double *mass = e->mass;
   status = begin(e, __func__, def, &mass);
-  mpsi_elastic_settle_mass(e, mass, status == MPS_OK);
+  mpsi_elastic_finish_mass(e, mass, status == MPS_OK);
   if (status != MPS_OK) mpsi_particles_drop_fields(e->particles, fields);
   if (status == MPS_OK) {
     mpsi_elastic_motion *m = e->motion;
@@ -334,7 +334,7 @@ static mps_status advance(mps_elastic *e, const char *function, double dt, doubl
   return status;
 }
 
-static mps_status ask_cancel(mps_elastic *e, const char *function) {
+static mps_status call_cancel(mps_elastic *e, const char *function) {
   if (!mpsi_cancelled(e->context)) return MPS_OK;
   const mps_status status =
       mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled at %g s, after %lld steps",
@@ -367,11 +367,11 @@ mps_status mps_elastic_step(mps_elastic *e, int64_t count) {
   if (status == MPS_OK && count < 0)
     status = mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                        (long long)count);
-  status = mpsi_elastic_settle_same(e, __func__, status, "count", (double)count);
+  status = mpsi_elastic_agree_same(e, __func__, status, "count", (double)count);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const int64_t before = e->motion->steps;
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    status = mpsi_elastic_settle(e, __func__, ask_cancel(e, __func__));
+    status = mpsi_elastic_agree(e, __func__, call_cancel(e, __func__));
     if (status == MPS_OK)
       status = advance(e, __func__, e->motion->dt, e->motion->time + e->motion->dt);
   }
@@ -397,13 +397,13 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
   mpsi_give(&given, "t_end", t_end);
   mpsi_give(&given, "every", (double)every);
   mpsi_give(&given, "having a callback", callback != NULL);
-  status = mpsi_elastic_settle_given(e, __func__, status, &given);
+  status = mpsi_elastic_agree_given(e, __func__, status, &given);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const int64_t steps = (int64_t)wanted, before = e->motion->steps;
   for (int64_t k = 0; k <= steps && status == MPS_OK; k++) {
     if (k > 0) {
       const double time = k == steps ? t_end : begin + (t_end - begin) * (double)k / (double)steps;
-      status = mpsi_elastic_settle(e, __func__, ask_cancel(e, __func__));
+      status = mpsi_elastic_agree(e, __func__, call_cancel(e, __func__));
       if (status == MPS_OK) status = advance(e, __func__, (t_end - begin) / (double)steps, time);
     }
     if (status == MPS_OK && k % (1 + steps / 100) == 0)
@@ -412,7 +412,7 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
     if ((status = publish(e, __func__)) != MPS_OK) continue;
     mpsi_guard_enter(&e->guard, e->context, "the callback of mps_elastic_run");
     status = mpsi_guard_leave(&e->guard, e->context, __func__, callback(user, e));
-    status = mpsi_elastic_settle(e, __func__, status);
+    status = mpsi_elastic_agree(e, __func__, status);
     if (status != MPS_OK) mpsi_fail_where(e->context, e->motion->steps, -1);
   }
   if (status == MPS_OK || e->motion->steps > before) status = finish(e, __func__, status);
@@ -430,7 +430,7 @@ mps_status mps_elastic_set_dt(mps_elastic *e, double dt) {
   if (status != MPS_OK) return status;
   status = check_motion(e, __func__);
   if (status == MPS_OK) status = check_dt(e->context, __func__, dt);
-  status = mpsi_elastic_settle_same(e, __func__, status, "dt", dt);
+  status = mpsi_elastic_agree_same(e, __func__, status, "dt", dt);
   if (status == MPS_OK) e->motion->dt = dt;
   return mpsi_elastic_leave(e, status);
 }

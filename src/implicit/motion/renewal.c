@@ -5,8 +5,8 @@
  * have changed, these are computed again before the next step, for the present displacements and
  * velocities: free directions get the acceleration of the balance of forces, fixed ones that of
  * their boundary. The change of strain energy by a change of moduli is no work: the budget
- * continues from the new value (mpsi_elastic_former_strain, fabric.c). SPDX-License-Identifier:
- * BSD-3-Clause */
+ * continues from the new value (mpsi_elastic_former_strain, fabric.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
 #include <string.h>

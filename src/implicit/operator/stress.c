@@ -151,7 +151,7 @@ static mps_status share_table(mps_elastic *e, const char *function, mps_status s
     status = mpsi_fail_memory(e->context, function, (size_t)words * sizeof *own);
   for (int64_t k = from; status == MPS_OK && k < e->span[0].to; k++)
     find_row(e, e->at[k], own + (k - from) * ROW);
-  status = mpsi_elastic_settle(e, function, status);
+  status = mpsi_elastic_agree(e, function, status);
   for (int32_t c = 0; status == MPS_OK && c < t->columns; c += e->dim) {
     for (int64_t k = from; k < e->span[0].to; k++)
       memcpy(e->work + e->at[k] * e->dim, own + (k - from) * ROW + c, (size_t)e->dim * sizeof *own);

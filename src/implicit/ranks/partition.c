@@ -6,8 +6,8 @@
  * interval too: the window. Vectors, moduli and volumes of all particles are on all ranks;
  * `mpsi_elastic_complete` sends the results of a rank's own particles to the others. A solver that
  * is
- * not shared has the whole body as its window, in ascending order of ids. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * not shared has the whole body as its window, in ascending order of ids.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/elastic_private.h"
 
 #define MOST_AT_ONCE (1 << 20) /* numbers of one reduction */
@@ -95,7 +95,7 @@ mps_status mpsi_elastic_open_window(mps_elastic *e, const char *function) {
 
 mps_status mpsi_elastic_join(mps_elastic *e, const char *function, mps_status status, int64_t count,
                              double *values) {
-  status = mpsi_elastic_settle(e, function, status);
+  status = mpsi_elastic_agree(e, function, status);
   for (int64_t k = 0; status == MPS_OK && k < count; k += MOST_AT_ONCE)
     status =
         mpsi_domain_max(e->def.domain, function,

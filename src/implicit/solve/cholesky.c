@@ -173,7 +173,7 @@ static mps_status order_groups(mpsi_cholesky *c, const char *function, const mps
 }
 
 /* CHOLMOD cannot end a stage before it is complete: the hook is called between them. */
-static mps_status ask_cancel(mpsi_cholesky *c, const char *function, const char *what) {
+static mps_status call_cancel(mpsi_cholesky *c, const char *function, const char *what) {
   if (!mpsi_cancelled(c->context)) return MPS_OK;
   return mpsi_fail(c->context, function, MPS_ERROR_CANCELLED, "cancelled before %s", what);
 }
@@ -203,7 +203,7 @@ static mps_status analyse_ordered(mpsi_cholesky *c, const char *function, const 
 mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                  const int64_t *group, int64_t groups,
                                  mpsi_cholesky_symbolic *out) {
-  const mps_status cancelled = ask_cancel(c, function, "the ordering");
+  const mps_status cancelled = call_cancel(c, function, "the ordering");
   if (cancelled != MPS_OK) return cancelled;
   cholmod_l_free_factor(&c->factor, &c->common);
   c->factored = false;
@@ -212,7 +212,7 @@ mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const m
   if (!scratch) return mpsi_fail_memory(c->context, function, (size_t)words * sizeof *scratch);
   int64_t *order = scratch + (words - a->n);
   mps_status status = order_groups(c, function, a, group, groups, scratch, order, &out->ordering);
-  if (status == MPS_OK) status = ask_cancel(c, function, "the analysis");
+  if (status == MPS_OK) status = call_cancel(c, function, "the analysis");
   if (status == MPS_OK) status = analyse_ordered(c, function, a, order, out);
   mpsi_free(c->context, scratch);
   return status;
@@ -221,7 +221,7 @@ mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const m
 mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                 int64_t *bad) {
   *bad = -1;
-  const mps_status cancelled = ask_cancel(c, function, "the factorisation");
+  const mps_status cancelled = call_cancel(c, function, "the factorisation");
   if (cancelled != MPS_OK) return cancelled;
   c->factored = false;
   cholmod_sparse s = wrap(a);

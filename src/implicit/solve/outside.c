@@ -38,7 +38,7 @@ mps_status mps_elastic_set_solver(mps_elastic *e, const mps_elastic_solver_def *
   mpsi_given_begin(&given);
   mpsi_give(&given, "having a solver", user != NULL);
   MPSI_GIVE(&given, &def, parts);
-  status = mpsi_elastic_settle_given(e, __func__, status, &given);
+  status = mpsi_elastic_agree_given(e, __func__, status, &given);
   if (status != MPS_OK) mpsi_free(e->context, outside);
   if (status == MPS_OK) {
     if (outside) outside->def = def;
@@ -101,7 +101,7 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
   double *mode = mpsi_alloc(e->context, e->modes * rows, sizeof *mode);
   mps_status status = mode ? MPS_OK : mpsi_fail_memory(e->context, function, (size_t)rows * 48);
   if (status == MPS_OK) status = mpsi_elastic_assemble_rows(e, function, shift, &a);
-  status = mpsi_elastic_settle(e, function, status); /* before ranks wait for one another */
+  status = mpsi_elastic_agree(e, function, status); /* before ranks wait for one another */
   if (status == MPS_OK) status = find_stiffest(e, function, &a);
   if (status == MPS_OK) {
     fill_modes(e, from, to, mode);
@@ -119,7 +119,7 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
     status =
         mpsi_callback_status(e->context, function, "the callback matrix of mps_elastic_set_solver",
                              failures, o->def.matrix(o->def.user, &matrix, sizeof matrix));
-    status = mpsi_elastic_settle(e, function, status);
+    status = mpsi_elastic_agree(e, function, status);
   }
   mpsi_free(e->context, mode);
   mpsi_free(e->context, a.start);
@@ -194,7 +194,7 @@ mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, doub
   mps_status status = MPS_OK;
   if (mpsi_cancelled(e->context))
     status = mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled before the solution");
-  status = mpsi_elastic_settle(e, function, status);
+  status = mpsi_elastic_agree(e, function, status);
   if (status != MPS_OK) return status;
   if (!o->valid || o->shift != shift) {
     o->valid = false;
@@ -204,15 +204,15 @@ mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, doub
   }
   double *work = mpsi_alloc(e->context, words, sizeof *work);
   if (!work) status = mpsi_fail_memory(e->context, function, (size_t)words * sizeof *work);
-  status = mpsi_elastic_settle(e, function, status);
+  status = mpsi_elastic_agree(e, function, status);
   if (status == MPS_OK)
-    status = mpsi_elastic_settle(e, function, solve(e, function, rhs, solution, work));
+    status = mpsi_elastic_agree(e, function, solve(e, function, rhs, solution, work));
   double left = 0.0, rounding = 0.0;
   if (status == MPS_OK) {
     status = residual(e, function, shift, rhs, solution, work, &left, &rounding);
     if (status == MPS_OK && !(left <= 1.01 * e->def.tolerance + fmax(ROUNDING, rounding)))
       status = mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
-                         "the answer of the callback solve of mps_elastic_set_solver has the "
+                         "the solution of the callback solve of mps_elastic_set_solver has the "
                          "residual %g of the right side, tolerance is %g",
                          left, e->def.tolerance);
   }

@@ -119,7 +119,7 @@ static void simplify(double *null, int32_t count, int32_t modes, int32_t d) {
 }
 
 /* Rounding errors are no part of a direction. */
-static double tidy(double v) { return fabs(v) < 1e-9 ? 0.0 : v; }
+static double round_off(double v) { return fabs(v) < 1e-9 ? 0.0 : v; }
 
 static void describe(const mps_elastic *e, const part *p, const double *null, char *text,
                      size_t size) {
@@ -135,15 +135,15 @@ static void describe(const mps_elastic *e, const part *p, const double *null, ch
     if (many == 1)
       snprintf(text, size, "translation along %c", "xyz"[only]);
     else
-      snprintf(text, size, "translation along (%.3g, %.3g, %.3g)", tidy(t[0]), tidy(t[1]),
-               e->dim == 3 ? tidy(t[2]) : 0.0);
+      snprintf(text, size, "translation along (%.3g, %.3g, %.3g)", round_off(t[0]), round_off(t[1]),
+               e->dim == 3 ? round_off(t[2]) : 0.0);
   } else if (e->dim == 2) {
     /* v = t + r (-y, x) / size vanishes at the centre of rotation. */
     snprintf(text, size, "rotation about (%.4g, %.4g)", p->centre[0] - t[1] / r[0] * p->size,
              p->centre[1] + t[0] / r[0] * p->size);
   } else {
-    snprintf(text, size, "rotation about the direction (%.3g, %.3g, %.3g)", tidy(r[0] / turn),
-             tidy(r[1] / turn), tidy(r[2] / turn));
+    snprintf(text, size, "rotation about the direction (%.3g, %.3g, %.3g)", round_off(r[0] / turn),
+             round_off(r[1] / turn), round_off(r[2] / turn));
   }
 }
 

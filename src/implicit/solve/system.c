@@ -306,7 +306,7 @@ mps_status mps_elastic_solve(mps_elastic *e) {
     status = mpsi_fail_memory(e->context, __func__, (size_t)(e->n * e->dim) * sizeof *u);
   else
     status = solve(e, __func__, u, &mass);
-  mpsi_elastic_settle_mass(e, mass, status == MPS_OK);
+  mpsi_elastic_finish_mass(e, mass, status == MPS_OK);
   mpsi_free(e->context, u);
   return mpsi_elastic_leave(e, status);
 }
@@ -377,7 +377,7 @@ mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *
   mpsi_give(&given, "count", (double)count);
   mpsi_give_bytes(&given, "a hash of loads", status == MPS_OK ? loads : NULL,
                   status == MPS_OK ? (size_t)(count * e->n) * 3 * sizeof *loads : 0);
-  status = mpsi_elastic_settle_given(e, __func__, status, &given);
+  status = mpsi_elastic_agree_given(e, __func__, status, &given);
   if (status == MPS_OK) status = solve_cases(e, __func__, count, loads, displacements);
   return mpsi_elastic_leave(e, status);
 }

@@ -1,4 +1,4 @@
-/* access.c - what can be asked of a solver between its steps: whether it may be used, its Courant
+/* access.c - queries of a solver between its steps: whether it may be used, its Courant
  * limit and its step, where it is in time. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 #include "mpm/particles/particles.h"

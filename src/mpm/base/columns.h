@@ -11,7 +11,7 @@ typedef struct mpsi_columns {
   double *x[3], *v[3]; /* m, m/s */
   double *L[9];        /* 1/s, velocity gradient; 2D: xx, xy, yx, yy, hoop */
   double *D[9];        /* 1/s, derivatives of the velocity that the laws see, as L without the hoop;
-                          NULL with VOLUMETRIC_POINT: G2P hands them on */
+                          NULL with VOLUMETRIC_POINT: G2P passes them on */
   double *s[6];        /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *V, *m;       /* m3, kg */
   double *J;           /* V/V0 where some law reads it, else NULL */

@@ -10,7 +10,7 @@
  * adjoint of P2G), those of contacts and boundaries at the nodes. What the transfers take is the
  * kinetic energy of the particles less that of the nodes, before and after.
  *
- * Sums over blocks, particles and ranks are exact: they do not depend on who has what. On several
+ * Sums over blocks, particles and ranks are exact: they do not depend on the partition. On several
  * ranks each has its part of them.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_ENERGY_H
@@ -62,7 +62,7 @@ typedef enum mpsi_energy_sum {
 } mpsi_energy_sum;
 
 typedef struct mpsi_energy {
-  bool counts; /* the definition asks for the budget */
+  bool counts; /* `budget` of the definition is 1 */
   mpsi_cell_energy *cells;
   mpsi_node_energy *nodes;
   mpsi_exact sum[MPSI_ENERGY_SUMS];
@@ -77,7 +77,7 @@ typedef struct mpsi_before_law {
   double stress[6][64], volume[64];
 } mpsi_before_law;
 
-/* Where the budget is wanted: to the step being made, or (at once) to what has been. */
+/* With a budget: to the step being made, or (at once) to what has been. */
 void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy);
 void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy);
 /* Before the step: room, and the energy of penalty contact. */

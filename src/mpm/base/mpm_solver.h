@@ -46,7 +46,7 @@ struct mps_mpm {
   bool standard;      /* the original material point method, with `flip`; else that is 0 */
   double flip;
   const struct mpsi_kernels *kernels;
-  mps_kernel *weights; /* for the caller to ask */
+  mps_kernel *weights; /* for queries of the caller */
   mpsi_columns p;
   mpsi_rooms rooms;
   mpsi_grid grid;

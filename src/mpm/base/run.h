@@ -30,7 +30,7 @@ typedef struct mpsi_run {
  * that are no numbers (run.broken). */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
 /* signals.c: of loads and boundaries, and of bodies where they `move` at the end of the step of dt.
- * Not collective: `function` goes on with the status where all ranks agree on one. */
+ * Not collective: `function` continues with the status where all ranks agree on one. */
 mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double dt, bool moves);
 /* signals.c: whether one of a load or boundary may, which all ranks know alike; not of bodies. */
 bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm);

@@ -80,7 +80,7 @@ typedef struct mpsi_boundaries {
   double dt;       /* s, of the step whose sums are kept */
   mpsi_exact work; /* J, of boundaries that are no more */
   mpsi_room held_room, dashpot_room, old_held_room, old_dashpot_room;
-  mpsi_room warm_room; /* dashpots of a state that ranks go back to, until they share its blocks */
+  mpsi_room warm_room; /* dashpots of a state to restore, until ranks have its blocks */
   int64_t warm;
 } mpsi_boundaries;
 
@@ -103,7 +103,7 @@ mps_status mpsi_mpm_put_dashpots(mps_mpm *mpm, const char *function, int64_t cou
  * warm_room, which has room for them; then, collective, both. */
 void mpsi_mpm_keep_dashpots(mps_mpm *mpm, int64_t count, const mpsi_dashpot *dashpot);
 mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function);
-/* walls.c: absorbing walls at rest have looked for dt longer. */
+/* walls.c: the time at rest of absorbing walls grows by dt. */
 void mpsi_mpm_begin_boundaries(mps_mpm *mpm, double dt);
 void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, const double *moment,
                                    double work, int64_t count);

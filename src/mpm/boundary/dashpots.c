@@ -1,6 +1,6 @@
 /* dashpots.c - dashpots of absorbing sides (absorb.c) on several ranks: the sums of the ranks' own
  * blocks come with messages as tiles do, and forces at rest go to the ranks that have come to share
- * a block of nodes. Both only where the lists are made anew, after a sort.
+ * a block of nodes. Both only where the lists are rebuilt, after a sort.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 

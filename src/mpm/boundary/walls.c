@@ -210,7 +210,7 @@ static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held,
     if (slip[c] != 0.0) set(b, hold, held, k, c, hold->v[c] + left * slip[c]);
 }
 
-/* All components of a fixed side, those that a box prescribes. */
+/* All components of a fixed side, prescribed ones of a box. */
 static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   for (int c = 0; c < b->mpm->dim; c++)
     if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);

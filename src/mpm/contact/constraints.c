@@ -93,7 +93,7 @@ static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
          (1.0 + 1e-9);
 }
 
-/* What the foot of x tells: distances change no faster than places, and a convex body lies behind
+/* Bounds by the foot of x: distances change no faster than positions, and a convex body lies behind
  * the tangent plane. */
 static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const double *x,
                        double reach) {
@@ -137,8 +137,8 @@ static bool is_block_far(const mps_mpm *mpm, const mpsi_cell_block *cells,
   return before > reach * (1.0 + 1e-9);
 }
 
-/* Those of a pair of a block and a body: the last foot that was found tells of most particles that
- * they are too far. */
+/* Candidates of a pair of a block and a body: the last foot found excludes most particles as too
+ * far. */
 static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
   const mps_contact *contact = mpm->contact.handle[pair->body];
   const double reach = longest_reach(mpm, cells, contact);

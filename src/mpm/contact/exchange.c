@@ -333,7 +333,7 @@ static int64_t message_bytes(const mps_mpm *mpm) {
   return bytes;
 }
 
-/* Those that are sent to partners, or the others. */
+/* Constraints that are sent to partners, or the others. */
 static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
   const mpsi_grid *grid = &mpm->grid;
   const mpsi_impulses *all = &mpm->contact.impulses;
@@ -346,7 +346,7 @@ static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
   return to;
 }
 
-/* For this rank's entries, of which those that go lie first, and for whom they go to. */
+/* For this rank's entries, of which the ones to send are first, with their receivers. */
 static mps_status make_room_for_message(exchange *m, mps_domain_message **list) {
   mps_mpm *mpm = m->mpm;
   mps_domain *domain = mpm->partition->domain;

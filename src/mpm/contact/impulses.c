@@ -53,7 +53,7 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
 
 /* ---- when sweeps end ------------------------------------------------------------------------- */
 
-/* The most sweeps and the least tolerance that a contact asks for. */
+/* The most sweeps and the least tolerance of all contacts. */
 static int32_t most_sweeps(const mps_mpm *mpm, double *tolerance) {
   int32_t most = 0;
   *tolerance = INFINITY;
@@ -98,7 +98,7 @@ static bool is_checked(int32_t sweeps) { return sweeps >= 10 && sweeps % 4 == 2;
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-/* The impulse `by` on the particle, to what its block and the body feel. */
+/* The impulse `by` on the particle, to the impulses on its block and on the body. */
 static void add_reaction(mps_mpm *mpm, const mpsi_constraint *constraint, const double *by) {
   mpsi_cell_pair *pair = &mpm->contact.cell_pair[constraint->pair];
   const double *x = mpm->contact.body[constraint->body]->pose.x;
@@ -112,7 +112,7 @@ static void add_reaction(mps_mpm *mpm, const mpsi_constraint *constraint, const 
   mpsi_contact_add_load(&pair->load[constraint->part], arm, force);
 }
 
-/* What the bodies feel, and what the next step begins with. */
+/* Forces on the bodies, and the initial state of the next step. */
 static void take_over(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_warm_impulse *next = all->next_room.item;

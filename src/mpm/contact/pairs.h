@@ -1,5 +1,5 @@
 /* pairs.h - contact on the grid. A block and a body near it are a pair: the lists of pairs are
- * found anew before each step, so that only the blocks near a body are searched for contact.
+ * rebuilt before each step, so that only the blocks near a body are searched for contact.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_PAIRS_H
 #define MPSI_MPM_PAIRS_H
@@ -50,7 +50,7 @@ typedef struct mpsi_contacts {
   uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
   uint32_t thin;            /* bit b: body b parts particles (thin_bodies.h) */
   mpsi_sight *sight;        /* as node, where there are such bodies; */
-  mpsi_parted *across;      /* of each particle that has been asked: mpsi_mpm_find_parted */
+  mpsi_parted *across;      /* of each particle queried: mpsi_mpm_find_parted */
   uint8_t *beside;          /* as inside: beside or in one of them */
   _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;
@@ -66,7 +66,7 @@ typedef struct mpsi_contacts {
  * where there are bodies. */
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status);
 /* pairs.c: lists the pairs; whether a body may have a node inside of the tile or block at `at` of
- * `side` nodes an axis; the masses that friction with free bodies asks for, when those of the node
+ * `side` nodes an axis; the masses that friction with free bodies needs, once those of the node
  * pairs are known: of all ranks. */
 mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function);
 bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side);
@@ -88,8 +88,8 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
 mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);
 /* area.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
 bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
-/* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies
- * feel, and their motion, for which there is room. */
+/* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; forces on the
+ * bodies, and their motion, for which there is memory. */
 bool mpsi_mpm_load_room(mps_mpm *mpm);
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);

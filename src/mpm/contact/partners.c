@@ -1,8 +1,8 @@
 /* partners.c - see partners.h. Ranks reduce the counts of failures and of constraints, then a
  * matrix of bits, of which each rank sets its own part: a row of the ranks whose constraints its
  * own ones reach, and a row of the ranks whose constraints change nodes under its own blocks that
- * have none there; of more than MPSI_MOST_PARTNERS ranks or with free bodies, one row of those that
- * have constraints. SPDX-License-Identifier: BSD-3-Clause */
+ * have none there; of more than MPSI_MOST_PARTNERS ranks or with free bodies, one row of the ranks
+ * with constraints. SPDX-License-Identifier: BSD-3-Clause */
 #include "partners.h"
 
 #include "mpm/base/mpm_solver.h"
@@ -116,7 +116,7 @@ static void find_links(mps_mpm *mpm, uint64_t *linked, uint64_t *readers) {
 }
 
 /* All constraints are sent to all ranks. */
-static void tell_all(mps_mpm *mpm, uint64_t *row) {
+static void send_rows(mps_mpm *mpm, uint64_t *row) {
   const int32_t rank = mps_domain_rank(mpm->partition->domain);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
@@ -172,7 +172,7 @@ mps_status mpsi_mpm_find_partners(mps_mpm *mpm, const char *function, mps_status
   m->words[FAILED] = status != MPS_OK;
   m->words[CONSTRAINTS] = mpm->contact.impulses.constraint_count;
   if (status == MPS_OK && rows == 1)
-    tell_all(mpm, row);
+    send_rows(mpm, row);
   else if (status == MPS_OK) {
     uint64_t *linked = row + (int64_t)mps_domain_rank(mpm->partition->domain) * words;
     find_links(mpm, linked, linked + (int64_t)(rows / 2) * words);

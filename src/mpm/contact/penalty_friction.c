@@ -99,8 +99,8 @@ static void react(mps_mpm *mpm, int32_t b, load_sums *sum) {
         mpm->run.dt * (mpsi_dot3(load[part].force, v) + mpsi_dot3(load[part].moment, spin));
 }
 
-/* Reactions to the bodies, by the sums over all blocks on all ranks: exact, as who has which block
- * must not matter. Then the bodies move. */
+/* Reactions to the bodies, by the sums over all blocks on all ranks: exact, independent of the
+ * partition. Then the bodies move. */
 void mpsi_mpm_update_bodies(mps_mpm *mpm) {
   load_sums *sum = mpm->contact.load_room.item, *of = sum;
   const int32_t parts = all_parts(mpm);

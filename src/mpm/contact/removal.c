@@ -1,6 +1,6 @@
 /* removal.c - bodies that take away the particles which they find inside: when the contact is made,
- * and before each step those that lie deeper than its depth. SPDX-License-Identifier: BSD-3-Clause
- */
+ * and before each step those that lie deeper than its depth.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
@@ -60,7 +60,7 @@ static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *con
   return status;
 }
 
-/* Marks of what lies in bodies: the number of the contact and 1. */
+/* Marks of particles in bodies: the number of the contact and 1. */
 static int64_t mark_inside(mps_mpm *mpm) {
   uint8_t *gone = mpm->rooms.gone.item;
   int64_t count = 0;

@@ -47,11 +47,11 @@ int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mps_mpm *mpm, const mpsi_far *fa
   return mpm->dim == 3 ? next_near(mpm, 3, far, begin, end) : next_near(mpm, 2, far, begin, end);
 }
 
-/* Lanes of particles that may be in cells low to high - 1 of each axis, of which the first that is
- * asked excludes most; on the upper side of the domain, or beyond, one is in the last cell. */
+/* Lanes of particles that may be in cells low to high - 1 of each axis, of which the first queried
+ * excludes most; on the upper side of the domain, or beyond, one is in the last cell. */
 MPSI_INLINE mpsi_mask may_be_in(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int slim,
                                 const int *low, const int *high, int64_t k, int n) {
-  const double slack = 1e-6; /* of round-off: who asks looks again */
+  const double slack = 1e-6; /* of round-off: the caller checks again */
   mpsi_mask in = (mpsi_mask){0, 1, 2, 3} < n;
   for (int a = 0; a < dim && (in[0] | in[1] | in[2] | in[3]); a++) {
     const int c = slim + a < dim ? slim + a : slim + a - dim;

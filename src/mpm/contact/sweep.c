@@ -1,7 +1,7 @@
 /* sweep.c - a projected Gauss-Seidel update of each contact constraint of a block, see impulses.c.
  * Node by node the four values are one vector, and so are the weights. Compiled once for each
  * instruction set. SPDX-License-Identifier: BSD-3-Clause */
-#include "contact/visit.h"
+#include "contact/update.h"
 #include "mpm/base/loops.h"
 
 #define WAYS 8 /* sums side by side: none waits for the one before */
@@ -89,7 +89,7 @@ void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_constraint_block *block, b
     velocity_at(all, n, u);
     mpsi_impulse_surface(body, c->at, surface);
     for (int a = 0; a < 3; a++) u[a] = a < mpm->dim ? u[a] - surface[a] : 0.0;
-    if (mpsi_impulse_visit(c, body, u, by)) {
+    if (mpsi_impulse_update(c, body, u, by)) {
       kick(all, n, by);
       changed += mpsi_dot3(by, by);
     }

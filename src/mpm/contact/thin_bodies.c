@@ -67,7 +67,7 @@ void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g) {
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
-/* Room for `count` blocks of nodes, of which those that there are stay. */
+/* Room for `count` blocks of nodes, keeping the present ones. */
 static bool keep_and_widen(mps_mpm *mpm, int64_t count) {
   mpsi_grid *grid = &mpm->grid;
   if (count > grid->nodes_room.capacity) {

@@ -10,8 +10,8 @@
  * sides that lie within one stencil are not distinguished: two thin walls within two cells of each
  * other.
  *
- * Values across have blocks of nodes of their own, behind those that the particles reach
- * (mpsi_all_nodes), and a second tile; they are found anew before each step. With penalty contact
+ * Values across have blocks of nodes of their own, behind the nodes in the particles' supports
+ * (mpsi_all_nodes), and a second tile; they are rebuilt before each step. With penalty contact
  * (MPS_CONTACT_METHOD_PENALTY) no node is two-sided. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_THIN_BODIES_H
 #define MPSI_MPM_THIN_BODIES_H
@@ -32,7 +32,7 @@ typedef struct mpsi_sight {
 
 /* Nodes of a particle's stencil, bit 16 k + 4 j + i that of node (i, j, k). */
 typedef struct mpsi_parted {
-  uint64_t across; /* of those that take part their values across do */
+  uint64_t across; /* of participating nodes their values across do */
   uint64_t cut;    /* do not take part */
 } mpsi_parted;
 

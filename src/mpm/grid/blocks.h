@@ -1,13 +1,13 @@
 /* blocks.h - the grid that follows the particles, in blocks.
  *
- * The grid is cut into blocks of 8 nodes along each axis; only those that particles reach exist. A
- * particle is sorted into a block of cells by the lowest node of its stencil, so that the stencils
- * of a block lie in a tile of 13 nodes along each axis, which begins at the block's first node: 1
- * node that only a particle which has left to the lower side uses, 8, 1 for one that has left to
- * the upper side, and the other 3 of a cubic stencil. So the particles are sorted anew only when
- * one has moved a whole cell beyond its block, or beyond the cells of it that had particles: the
- * rest of the tile is not worked on. The tile lies over the block's own nodes and its
- * neighbours at +x, +y, +x+y (and so on at +z).
+ * The grid is cut into blocks of 8 nodes along each axis; only nodes in the support of a particle
+ * exist. A particle is sorted into a block of cells by the lowest node of its stencil, so that the
+ * stencils of a block lie in a tile of 13 nodes along each axis, which begins at the block's first
+ * node: 1 node that only a particle which has left to the lower side uses, 8, 1 for one that has
+ * left to the upper side, and the other 3 of a cubic stencil. So the particles are sorted again
+ * only when one has moved a whole cell beyond its block, or beyond the cells of it that had
+ * particles: the rest of the tile is not worked on. The tile lies over the block's own nodes and
+ * its neighbours at +x, +y, +x+y (and so on at +z).
  *
  * Each task sums the particles of one block of cells into a tile of its own and adds that to the
  * nodes. Blocks of one colour (2 along each axis) share no nodes; blocks that do give one after the
@@ -63,7 +63,7 @@ typedef struct mpsi_cell_block {
   bool late;       /* it, or one that gives before it, is a ghost */
   bool in_contact; /* it has constraints in the step, or areas (area.c) */
   bool sent;       /* these are sent to partner ranks: partners.h */
-  int64_t parcel;  /* where its tile is among those that come (ghosts) or go; -1: nowhere */
+  int64_t parcel;  /* index of its tile among received (ghosts) or sent ones; -1: none */
 } mpsi_cell_block;
 
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
@@ -143,11 +143,11 @@ static inline double mpsi_own_mass(double mass, double excess) {
 }
 
 typedef struct mpsi_grid {
-  bool apart;                      /* a reader wants the forces apart from the momenta everywhere */
+  bool apart;                      /* a query needs the forces apart from the momenta everywhere */
   int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
   double inverse;                  /* 1/m, 1/h */
   int64_t low[3], high[3];         /* first and last node of the domain */
-  int64_t use_low[3], use_high[3]; /* and of those that stencils may use: none beyond mirrors */
+  int64_t use_low[3], use_high[3]; /* and of nodes that stencils may use: none beyond mirrors */
   mpsi_cell_block *cells;
   mpsi_node_block *nodes;
   mpsi_node *node, *side;

@@ -138,7 +138,7 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 /* The sorted list of blocks shifted to each corner of a tile gives sorted lists; merging them gives
- * the blocks of nodes, and tells which tiles cover which. The count alone where `nodes` is NULL. */
+ * the blocks of nodes, and the tiles that cover each. The count alone where `nodes` is NULL. */
 static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
   mpsi_cell_block *cells = mpm->grid.cells;
   const int corners = 1 << mpm->dim;

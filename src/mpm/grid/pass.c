@@ -1,18 +1,18 @@
 /* pass.c - see pass.h. Blocks that are ready stand in a queue, from which the threads claim some at
  * a time; the thread that completes a block's last dependency enqueues it. Blocks that became ready
- * go before those that were so from the start: their particles and nodes are still in the cache. A
- * thread that finds nothing ready spins for some microseconds and then sleeps for a moment; under a
- * caller's executor, which may run the units one after the other, it leaves. All is done when all
- * have left, since the thread that makes a block ready looks at the queue after that. One thread
- * alone goes over the blocks in their order and does for each what it depends on. On several ranks
- * the caller's thread, which alone may call the transport, receives the ghosts' tiles when it finds
+ * precede blocks that were ready from the start: their particles and nodes are still in the cache.
+ * A thread that finds nothing ready spins for some microseconds and then sleeps for a moment; under
+ * a caller's executor, which may run the units one after the other, it leaves. All is done when all
+ * have left, since the thread that makes a block ready polls the queue after that. One thread alone
+ * goes over the blocks in their order and does for each what it depends on. On several ranks the
+ * caller's thread, which alone may call the transport, receives the ghosts' tiles when it finds
  * nothing else to do, while the others work on. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <stdatomic.h>
 
 #define SMALL_SET 2048 /* particles: below, sharing the work costs more than it gains */
-#define VISITS 4       /* of a thread of a caller's executor: it may leave and come back so often */
+#define ROUNDS 4       /* of a thread of a caller's executor: it may leave and come back so often */
 #define MOST_CLAIMED 8
 
 /* Which coordinates of a block of nodes are odd, bit by bit. */
@@ -64,8 +64,8 @@ static int32_t giver_before(const mps_mpm *mpm, int32_t g, int q) {
   return -1;
 }
 
-/* Lets block b give, and before it those that have to: it calls itself as often as there are
- * colours, at most. */
+/* Lets block b give, after the blocks that have to precede it: it calls itself as often as there
+ * are colours, at most. */
 static void give_in_turn(wave *w, int32_t b) {
   const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
   if (!mark(&w->given[b], 1)) return;
@@ -150,7 +150,7 @@ static void put(flow *f, int32_t entry) {
   atomic_store_explicit(&f->queue[at], entry, memory_order_release);
 }
 
-/* Whether that was the last. What was done before by all who have counted is then visible. */
+/* Whether that was the last. The work of all counted threads is then visible. */
 static bool count_down(_Atomic int32_t *count) {
   return atomic_fetch_sub_explicit(count, 1, memory_order_acq_rel) == 1;
 }
@@ -224,7 +224,7 @@ static int32_t claim_next(flow *f, int32_t *entry) {
   }
 }
 
-/* The same of those that were ready from the start. */
+/* The same for blocks that were ready from the start. */
 static int32_t claim_start(flow *f, int32_t *entry) {
   const int64_t left = f->starts - atomic_load_explicit(&f->begun, memory_order_relaxed);
   if (left <= 0) return 0;
@@ -250,7 +250,7 @@ static void receive(flow *f) {
 }
 
 /* Worker 0 of the context's own executors is the caller's thread. */
-static void visit(void *data, int64_t unit, int32_t worker) {
+static void run_worker(void *data, int64_t unit, int32_t worker) {
   flow *f = data;
   const bool own = mpsi_executor_is_own(f->mpm->context), receives = own && worker == 0;
   (void)unit;
@@ -312,12 +312,12 @@ void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
             .scatter_waits = room,
             .gather_waits = room + grid->cell_count,
             .queue = room + 2 * grid->cell_count};
-  const int64_t visits = mpsi_executor_is_own(mpm->context) ? 1 : VISITS;
+  const int64_t rounds = mpsi_executor_is_own(mpm->context) ? 1 : ROUNDS;
   fill(&f);
-  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+  mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
   if (atomic_load_explicit(&f.arrived, memory_order_relaxed)) return;
   receive(&f); /* the caller's executor has done what needs no ghosts */
-  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+  mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
 }
 
 bool mpsi_mpm_ensure_pass(mps_mpm *mpm) {

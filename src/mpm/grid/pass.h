@@ -7,7 +7,7 @@
  *   scatter(b) --> scatter of the next colour ... --> update(g) --> finish(g) --> gather(b)
  *
  * Blocks of cells that share a block of nodes give to it one after the other, in the order of their
- * colours (mpsi_node_block): sums do not depend on who works when, nor on how many.
+ * colours (mpsi_node_block): sums do not depend on the order or number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_PASS_H
 #define MPSI_MPM_PASS_H

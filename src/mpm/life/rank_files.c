@@ -1,6 +1,6 @@
 /* rank_files.c - checkpoints of a body that lies on several ranks. Rank 0 writes what the run
  * without a domain would write: particles and blocks in the order of one rank, sums over all ranks.
- * Each rank reads the whole file and keeps its own part, so that a run goes on with any number of
+ * Each rank reads the whole file and keeps its own part, so that a run continues on any number of
  * ranks, or without a domain. SPDX-License-Identifier: BSD-3-Clause */
 #include "rank_files.h"
 
@@ -40,7 +40,7 @@ static int by_place(const void *left, const void *right) {
   return 0;
 }
 
-/* The blocks of all ranks in their order; on the way they tell how many particles they have in
+/* The blocks of all ranks in their order; during the exchange they have the number of particles in
  * place of the first. */
 static mps_status gather_blocks(mps_mpm *mpm, const char *function, mpsi_value *value) {
   mpsi_block *block = value->data;
@@ -169,7 +169,7 @@ mps_status mpsi_mpm_restore_on_ranks(void *solver, const char *function, mps_sta
     const int64_t count = take_blocks(mpm, blocks, values->particles, rows);
     take_fields(values, rows, count);
     take_values(mpm, &values->state);
-    mpm->partition->heaviest = 0.0; /* to be cut anew where it is sorted next */
+    mpm->partition->heaviest = 0.0; /* to be cut again at the next sort */
   }
   mpsi_free(mpm->context, rows);
   return status;

@@ -1,5 +1,5 @@
 /* restart.c - the state of the WLS-MPM solver (core/state.h): snapshots, rollback, checkpoints.
- * Sums over particles go block by block in the set's order: a run that goes on bit for bit needs
+ * Sums over particles go block by block in the set's order: a run that continues bit for bit needs
  * both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
 #include "restart.h"
 

@@ -8,7 +8,7 @@
 #include <mps/mpm.h>
 
 /* A block of cells: its first particle, where it is (3), and the part of its tile in use (low 3,
- * high 3). The particles' present places do not tell: these are those of the last sort. */
+ * high 3). The particles' present positions do not determine them: these are of the last sort. */
 enum { MPSI_BLOCK_AT = 1, MPSI_BLOCK_LOW = 4, MPSI_BLOCK_HIGH = 7, MPSI_BLOCK = 10 };
 typedef int64_t mpsi_block[MPSI_BLOCK];
 

@@ -8,8 +8,8 @@ void mpsi_mpm_begin_block(mps_material_block *block) {
   *block = (mps_material_block){.struct_size = sizeof *block};
 }
 
-/* Columns of particles [begin, end) as the law sees them: all members but those of its answers.
- * `flags` has room for a chunk. */
+/* Columns of particles [begin, end) as the law sees them: all members but its outputs. `flags` has
+ * room for a chunk. */
 static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin, int64_t end,
                          int64_t *flags, mps_material_block *block) {
   static const int planar[5] = {0, 1, 3, 4, 8};
@@ -126,7 +126,7 @@ void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t 
   }
 }
 
-/* A viscous law asks for dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
+/* A viscous law requires dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
 static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
                              int64_t end, double *moduli) {
   const double v = 4.0 * mpm->dim * mpsi_material_viscosity(law->material) * mpm->grid.inverse;

@@ -19,7 +19,7 @@ typedef struct mpsi_law_use {
   double **history; /* columns over all particles; NULL for none */
 } mpsi_law_use;
 
-/* Why a law has refused a block in the step being made: the first block that has one tells. */
+/* Why a law has refused a block in the step being made: that of the first block with one. */
 typedef struct mpsi_refusal {
   atomic_flag busy;
   const mpsi_cell_block *cells; /* NULL: none has refused */

@@ -166,8 +166,8 @@ void mpsi_mpm_begin_particles(mps_mpm *mpm) {
   }
 }
 
-/* The caller has written density or volume: the mass follows in the particles that changed. Those
- * that have come since have none yet, and may wait. */
+/* The caller has written density or volume: the mass follows in the particles that changed. Added
+ * particles have none yet. */
 static mps_status renew_masses(mps_mpm *mpm, const char *function, const char *field,
                                const double *former) {
   const double *density = mpsi_particles_column(mpm->particles, "density", 0);
@@ -187,13 +187,13 @@ bool mpsi_mpm_compares(const void *self, const char *field) {
   return strcmp(field, "density") == 0 || strcmp(field, "volume") == 0;
 }
 
-/* Fields that each step reads anew, so that nothing follows from an edit. */
+/* Fields read again in each step, so that nothing follows from an edit. */
 static bool read_by_steps(const char *field) {
   return strcmp(field, "external_force") == 0 || strcmp(field, "body_acceleration") == 0;
 }
 
-/* The set has checked that the values are finite and in range. Places must be in the domain, and
- * the particles are sorted anew; the limit follows from all else. */
+/* The set has checked that the values are finite and in range. Positions must be in the domain, and
+ * the particles are sorted again; the limit follows from all else. */
 mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *field,
                               const double *former) {
   mps_mpm *mpm = self;

@@ -41,7 +41,7 @@ static int compare(const void *left, const void *right) {
   return a < b ? -1 : a > b;
 }
 
-/* As mpsi_curve_cut: the middle of a block's weight tells its part of the whole. */
+/* As mpsi_curve_cut: the middle of a block's weight determines its part of the whole. */
 static void find_owners(trial *t) {
   int64_t below = 0;
   for (int64_t b = 0; b < t->blocks; b++)

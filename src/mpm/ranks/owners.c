@@ -1,6 +1,6 @@
 /* owners.c - which rank has which block of cells, by Hilbert's curve (domain/curve.h), and
- * particles that go to the ranks of their blocks. The curve is cut anew where some rank has come to
- * have more particles than any had after the last cut. Results do not depend on who has what.
+ * particles that go to the ranks of their blocks. The curve is cut again where a rank has more
+ * particles than any had after the last cut. Results do not depend on the partition.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain/curve.h"
 #include "domain/migrate.h"
@@ -188,7 +188,7 @@ static mps_status send(departure *d, const char *function, mps_status status, bo
   return status;
 }
 
-/* Anew where a rank has more than any had. */
+/* Again where a rank has more than any had. */
 static mps_status rebalance(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_partition *partition = mpm->partition;
   double most = (double)mpm->p.count;

@@ -17,7 +17,7 @@ typedef struct notice {
   int32_t at[3], low[3], high[3];
 } notice;
 
-/* While ghosts are looked for. */
+/* Search for ghosts. */
 typedef struct search {
   mps_mpm *mpm;
   const char *function;
@@ -89,7 +89,7 @@ static bool near_range(const int64_t *range, const int32_t *at) {
   return true;
 }
 
-static mps_status tell(search *s) {
+static mps_status exchange_search(search *s) {
   mps_context *context = s->mpm->context;
   mps_domain *domain = s->mpm->partition->domain;
   const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
@@ -230,7 +230,7 @@ static void mark_blocks(mps_mpm *mpm) {
     grid->nodes[g].foreign = !mpsi_mpm_node_block_complete(mpm, g);
 }
 
-/* Which own blocks others have asked for; room for parcels. */
+/* Own blocks requested by other ranks; memory for parcels. */
 static mps_status find_border(mps_mpm *mpm, const char *function) {
   mpsi_partition *partition = mpm->partition;
   const int64_t *item;
@@ -280,13 +280,13 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK)
     status = mpsi_domain_sum(partition->domain, function,
                              RANGE * mps_domain_size(partition->domain), s.range);
-  if (status == MPS_OK) status = tell(&s);
+  if (status == MPS_OK) status = exchange_search(&s);
   if (status == MPS_OK) status = join(&s);
   mpsi_domain_free_mail(&s.box);
   void *parts[] = {s.own, s.range, s.sent, s.message, s.ghost, s.rank, s.index};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
   partition->outdated = status != MPS_OK;
-  if (partition->outdated) mpm->run.stale = true; /* the lists may be gone */
+  if (partition->outdated) mpm->run.stale = true; /* the lists may have been freed */
   return status;
 }
 
@@ -362,7 +362,7 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   if (status == MPS_OK) mpsi_material_give(&given, mpm->laws.law[0].material);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
   if (status != MPS_OK || mpsi_particles_deal(mpm->particles)) return status;
-  return mpsi_domain_settle_particles(d->domain, function, status, mpm->particles);
+  return mpsi_domain_agree_particles(d->domain, function, status, mpm->particles);
 }
 
 mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
@@ -370,7 +370,7 @@ mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status s
   if (status == MPS_OK) mpm->partition = mpsi_alloc(mpm->context, 1, sizeof *mpm->partition);
   if (status == MPS_OK && !mpm->partition)
     status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->partition);
-  status = mpsi_domain_settle_parts(domain, function, status, mpm->particles);
+  status = mpsi_domain_agree_parts(domain, function, status, mpm->particles);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, mpm->partition);
     mpm->partition = NULL;

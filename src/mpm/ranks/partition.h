@@ -25,7 +25,7 @@ typedef struct mpsi_partition {
   mps_domain *domain;
   mpsi_halo *halo;         /* of tiles; NULL: none yet */
   bool outdated;           /* the ghosts are not those of the present blocks */
-  bool ready;              /* all ranks were for the last step, and nobody has written since */
+  bool ready;              /* all ranks passed the checks of the last step; no field edited since */
   int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
   int32_t *border;         /* numbers of the blocks of cells */
   int32_t *ghost_rank;     /* of each copy */
@@ -37,7 +37,7 @@ typedef struct mpsi_partition {
   int64_t *first;         /* of each rank: the first key on the curve of its blocks (curve.h) */
   mpsi_curve_orientation orientation; /* how the curve lies over the blocks */
   double heaviest;                    /* particles of the rank that had most, after the last cut */
-  bool cancel;                        /* a hook has asked to stop, on whatever rank */
+  bool cancel;                        /* a hook has cancelled the run, on any rank */
   mps_status lost;                    /* of a message in the step being made */
   mpsi_room border_room, rank_room, out_room, in_room;
 } mpsi_partition;
@@ -55,12 +55,12 @@ mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status st
 mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status);
 /* Not collective. */
 void mpsi_mpm_partition_free(mps_mpm *mpm);
-/* owners.c: cuts the curve anew for blocks in grid.cells, which all ranks or (`whole`) each has all
- * of; the owner of a block (not collective). */
+/* owners.c: cuts the curve again for blocks in grid.cells, which all ranks or (`whole`) each has
+ * all of; the owner of a block (not collective). */
 mps_status mpsi_mpm_partition_cut(mps_mpm *mpm, const char *function, bool whole);
 int32_t mpsi_mpm_block_owner(const mps_mpm *mpm, const int32_t *at);
-/* owners.c: particles of blocks of cells that are not this rank's go to their owners; `moved`
- * where some have gone or come. */
+/* owners.c: particles of blocks of cells that are not this rank's go to their owners; `moved` where
+ * particles were sent or received. */
 mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_status status,
                                       bool *moved);
 /* partition.c: sorts, and finds the ghosts; the latter alone, where they are outdated. */

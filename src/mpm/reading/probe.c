@@ -103,7 +103,7 @@ static mps_status join_rows(near *list, const char *function, const mpsi_mailbox
   return MPS_OK;
 }
 
-static mps_status tell_all(near *list, const char *function, mps_status status) {
+static mps_status exchange_particles(near *list, const char *function, mps_status status) {
   mps_domain *domain = list->mpm->partition->domain;
   mps_context *context = list->mpm->context;
   mpsi_mailbox box = {.context = context};
@@ -129,7 +129,7 @@ static mps_status list_near(near *list, const char *function, int64_t count, con
   mps_status status = MPS_OK;
   if (!list_own(list, count, points))
     status = mpsi_fail_memory(context, function, (size_t)list->count * sizeof *list->row);
-  if (list->mpm->partition) status = tell_all(list, function, status);
+  if (list->mpm->partition) status = exchange_particles(list, function, status);
   if (status != MPS_OK) return status;
   list->item = mpsi_alloc(context, list->count, sizeof *list->item);
   if (!list->item)
@@ -176,9 +176,9 @@ typedef struct fit {
                 [3]; /* of the second moments about the mean; 0 along directions without spread */
 } fit;
 
-typedef void (*visit_fn)(fit *f, int64_t particle, double w, const double *s, void *data);
+typedef void (*particle_fn)(fit *f, int64_t particle, double w, const double *s, void *data);
 
-static void for_particles(fit *f, visit_fn visit, void *data) {
+static void for_particles(fit *f, particle_fn add, void *data) {
   const near *list = f->list;
   const mps_mpm *mpm = list->mpm;
   int64_t own[3] = {0}, cell[3];
@@ -195,7 +195,7 @@ static void for_particles(fit *f, visit_fn visit, void *data) {
           s[c] = mpsi_grid_coordinate(mpm, c, list->row[at->index].value[c]) - f->X[c];
           w *= spline_at(mpm->def.spline, s[c]);
         }
-        if (w > 0.0) visit(f, at->index, w, s, data);
+        if (w > 0.0) add(f, at->index, w, s, data);
       }
     }
 }

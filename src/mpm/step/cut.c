@@ -56,7 +56,7 @@ static bool near_thin(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   return any && mpm->contact.thin;
 }
 
-/* Forces are wanted apart from the momenta at all nodes. */
+/* Forces are needed apart from the momenta at all nodes. */
 static bool all_apart(const mps_mpm *mpm) { return mpsi_forces_apart(mpm) || mpm->grid.apart; }
 
 /* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
@@ -102,7 +102,7 @@ static bool list_fits(mps_mpm *mpm) {
  * by forces, FLIP, and the transfer by weights, which divides momentum and force by different
  * masses, as nodes of small mass between two bodies do (node_update.c). */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
-  bool finds = false; /* an absorbing wall asks for the forces of its first step */
+  bool finds = false; /* an absorbing side needs the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     const mpsi_boundary *hold = &mpm->boundaries.hold[k];
     finds = finds || (hold->finds && !(hold->settle > 0.0));

@@ -16,7 +16,7 @@ typedef struct mpsi_node_balance {
 typedef struct mpsi_settling {
   bool on;  /* in mps_mpm_settle: bodies and boundaries are at rest */
   bool cut; /* a call was cancelled, and no step has been taken since */
-  /* Of the call that was cut, for the one that goes on: */
+  /* Of the cancelled call, for the one that continues it: */
   bool from_rest;
   double before;        /* J, kinetic energy of the last step; 0 from rest */
   int64_t steps, peaks; /* so far */

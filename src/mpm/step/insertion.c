@@ -38,7 +38,7 @@ mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int6
 }
 
 mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
-  (void)count, (void)ids; /* lists of ids pass over those that are no more */
+  (void)count, (void)ids; /* lists of ids skip removed particles */
   return mpsi_mpm_agree(self, function, mpsi_mpm_usable(self, function));
 }
 

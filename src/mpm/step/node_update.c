@@ -79,7 +79,7 @@ static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
 }
 
 /* The same with damping, and with the energies of the nodes and their distance from equilibrium
- * where these are wanted. */
+ * where these are needed. */
 static void finish_and_damp(mps_mpm *mpm, int64_t g) {
   mpsi_node held[MOST], damped[MOST];
   uint8_t fixed[MOST] = {0};

@@ -25,7 +25,7 @@ static int32_t passed(const mps_mpm *mpm, int64_t k) {
   return -1;
 }
 
-/* What a particle carries out is taken from those that stay, as by an impulse. */
+/* The momentum of a removed particle is subtracted from the total, as by an impulse. */
 static void carry_out(mps_mpm *mpm, int64_t k, mpsi_boundary *hold) {
   const mpsi_columns *p = &mpm->p;
   const double m = p->m[k], h = mpm->def.cell;

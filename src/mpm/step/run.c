@@ -5,7 +5,7 @@
 #include "settle.h"
 #include "core/base/digits.h"
 
-/* All ranks are asked for the same. */
+/* All ranks have the same arguments. */
 static mps_status same_on_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 const char *name, double value) {
   if (!mpm->partition) return status;

@@ -149,7 +149,7 @@ static void add_impulses(const mps_mpm *mpm, mpsi_exact *sum) {
   }
 }
 
-/* Of all blocks, on all ranks: exact, as who has which block must not matter. */
+/* Of all blocks, on all ranks: exact, independent of the partition. */
 static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) {
   mpsi_exact sum[SUMS];
   mps_status status = MPS_OK;
@@ -263,7 +263,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   const mpsi_settling former = *settling;
   const mpsi_energy energy = mpm->energy;
   stop_bodies(mpm, &warm);
-  if (!settling->cut) { /* else all goes on from where it was cut */
+  if (!settling->cut) { /* else continues from the state of the cancellation */
     stop_particles(mpm);
     settling->from_rest = true;
     settling->before = 0.0;

@@ -1,5 +1,5 @@
-/* settle.h - the first step after settling. SPDX-License-Identifier:
- * BSD-3-Clause */
+/* settle.h - the first step after settling.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_SETTLE_H
 #define MPSI_MPM_SETTLE_H
 

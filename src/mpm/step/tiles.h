@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 /* Whether the step to be made needs what the last one needed, so that nothing of it can fail: then
- * the ranks need not ask one another. Not collective: all know the same. */
+ * the ranks need no reduction. Not collective: all know the same. */
 bool mpsi_mpm_partition_unchanged(const mps_mpm *mpm);
 /* Before a step, all that can fail has been done: the worst of all ranks. Collective. */
 mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status);

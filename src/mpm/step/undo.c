@@ -112,7 +112,7 @@ void mpsi_mpm_undo(mps_mpm *mpm) {
   put_impulses_back(mpm);
   if (b->dashpot_count > 0)
     memcpy(b->dashpot, u->dashpot_room.item, (size_t)b->dashpot_count * sizeof *b->dashpot);
-  for (int64_t c = 0; c < mpm->grid.cell_count; c++) { /* nobody has moved */
+  for (int64_t c = 0; c < mpm->grid.cell_count; c++) { /* no particle has moved */
     mpm->grid.cells[c].left = mpm->grid.cells[c].gone = mpm->grid.cells[c].lost = false;
     mpm->grid.cells[c].bad = -1;
   }

@@ -25,7 +25,7 @@ typedef struct mpsi_undo {
 mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function);
 /* Keeps the particles of a block of cells, before G2P writes them. */
 void mpsi_mpm_keep_block(mps_mpm *mpm, int64_t b);
-/* All as it was. */
+/* Restores the state before the step. */
 void mpsi_mpm_undo(mps_mpm *mpm);
 
 #endif

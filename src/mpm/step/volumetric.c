@@ -28,8 +28,8 @@
  * below 0 they are closed. With the operator S of the means, r = e - S e and e' = e - a (r - S r),
  * so that sum V e is kept, a smooth field to the fourth order too, and what S does not see decays.
  * p' is e' where that is closed, else what is left of p, the gap the rest; then the law's own
- * return, without strain. V follows the elastic volume strain of p' - p. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * return, without strain. V follows the elastic volume strain of p' - p.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/ranks/parcels.h"
 
@@ -63,8 +63,8 @@ static void former_place(const mps_mpm *mpm, int64_t k, double *x) {
     x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
 }
 
-/* The sums of tile node (i, j, k): those that a block gives, in the tile of a worker, or (NULL)
- * those of all blocks, at the node. */
+/* The sums of tile node (i, j, k): those of a block, in the tile of a worker, or (NULL) those of
+ * all blocks, at the node. */
 static double *sums_at(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                        bool across, int i, int j, int k) {
   if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];
@@ -115,7 +115,7 @@ typedef struct support {
   uint64_t across; /* see thin_bodies.h */
 } support;
 
-/* The particle has moved by dt v since G2P found its stencil, or was put back on a wall. */
+/* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
 static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
   const double least = mpm->def.spline == 3 ? 1.0 : 0.5;
   support out = {.w = {{1.0}, {1.0}, {1.0}}};

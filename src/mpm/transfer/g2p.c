@@ -241,9 +241,9 @@ MPSI_INLINE void store_some(double *to, mpsi_quad v, int n) {
   for (int i = 0; i < n; i++) to[i] = v[i];
 }
 
-/* Velocities and gradients to the particles' columns; the particles move. Tells whether one is then
- * `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils would
- * leave the tile. */
+/* Velocities and gradients to the particles' columns; the particles move. Returns whether one is
+ * then `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils
+ * would leave the tile. */
 typedef struct moved {
   bool outside, left;
 } moved;
@@ -295,7 +295,7 @@ static void add_own(mps_mpm *mpm, int64_t begin, int n, const mpsi_gathered *fro
 
 /* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
  * particle that is pressed on it passes it by a little in time. At a mirror it does not. */
-#define BEYOND 0.1 /* cells: a particle so far behind a wall is put back on it */
+#define BEYOND 0.1 /* cells: a particle so far behind a wall is moved back to it */
 
 /* Looks after particles [begin, end), one of which is outside the domain: the first that is too far
  * beyond a wall, or not a number; -1 where there is none. Those beyond an open side leave after the

@@ -295,8 +295,8 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
   }
 }
 
-/* Asks the memory for the columns of a chunk. In the plane the few particles of a block end before
- * the processor has seen that it reads on, and the next block of the colour is elsewhere. */
+/* Prefetches the columns of a chunk. In the plane the few particles of a block end before the
+ * processor has seen that it reads on, and the next block of the colour is elsewhere. */
 MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end && k < begin + MPSI_CHUNK; k += 8) {
     for (int c = 0; c < 2; c++) __builtin_prefetch(p->x[c] + k), __builtin_prefetch(p->v[c] + k);
@@ -306,9 +306,8 @@ MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t en
   }
 }
 
-/* What lies across thin bodies. Particles whose supports these do not cut write nothing of it, but
- * are asked for it on the way back where some node keeps momentum (give_back of
- * least_squares.c). */
+/* Nodes across thin bodies. Particles whose supports these do not cut write nothing of it, but need
+ * it in the transfer back where some node keeps momentum (give_back of least_squares.c). */
 static void begin_across(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
   const size_t count = (size_t)(cells->end - cells->begin);
   clear(cells, worker->across_tile);

@@ -1,7 +1,7 @@
-/* visit.h - one visit of a sweep to a contact (impulse.h), for the loops that make them: visits are
- * many, and each waits for the one before. SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_VISIT_H
-#define MPSI_VISIT_H
+/* update.h - one Gauss-Seidel update of a contact (impulse.h), for the loops of a sweep: updates
+ * are many, and each depends on the previous one. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_UPDATE_H
+#define MPSI_UPDATE_H
 
 #include "impulse.h"
 
@@ -34,13 +34,13 @@ static inline double mpsi_impulse_mobility_along(const mpsi_impulse *c, const mp
          (b->free ? mpsi_impulse_mobility(b->body, c->at, d) : 0.0);
 }
 
-/* One visit of a sweep: P and T such that the contact alone, all others as they are, is satisfied
- * from the relative velocity u (m/s, of the particle's side less the body's, at the foot). `by` (N
- * s) is the change on the particle. Returns whether there is any. The slip is not brought to unit
- * length, which saves a root and three divisions. A visit waits for the one before it, so that
- * every operation in a row counts. */
-static inline bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
-                                      double *by) {
+/* One Gauss-Seidel update: P and T such that the contact alone, all others as they are, is
+ * satisfied from the relative velocity u (m/s, of the particle's side less the body's, at the
+ * foot). `by` (N s) is the change on the particle. Returns whether there is any. The slip is not
+ * brought to unit length, which saves a root and three divisions. An update depends on the previous
+ * one, so that every operation in a row counts. */
+static inline bool mpsi_impulse_update(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
+                                       double *by) {
   const double across = mpsi_dot3(u, c->normal), before = c->normal_impulse;
   c->normal_impulse = mpsi_larger(0.0, before + (c->aim - across) * c->inertia);
   if (before == 0.0 && c->normal_impulse == 0.0)
