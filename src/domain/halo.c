@@ -40,7 +40,7 @@ static mps_status request_items(mpsi_halo *halo, const char *function, const int
 }
 
 /* The items requested by other ranks, each once. */
-static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_mailbox *asked) {
+static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_mailbox *requested) {
   mps_context *context = halo->domain->context;
   int64_t wanted = 0;
   for (int32_t k = 0; k < requested->count; k++) wanted += requested->mail[k].bytes / 8;
@@ -59,7 +59,7 @@ static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_m
 }
 
 /* Index in the list of each requested item: sent back to the requesting rank. */
-static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *asked,
+static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *requested,
                          mpsi_mailbox *answers) {
   mps_context *context = halo->domain->context;
   mps_domain_message *message = mpsi_alloc(context, requested->count, sizeof *message);

@@ -15,8 +15,7 @@
 #define PIECE_BYTES (INT64_C(1) << 18) /* of a column on its way, of all ranks together */
 #define LEAST_ROWS 64                  /* of one rank in a piece */
 
-/* ---- what a rank tells of its rows: head, runs, heads of fields -------------------------------
- */
+/* ---- a rank's description of its rows: head, runs, heads of fields ------------------------- */
 
 typedef struct head {
   int64_t particles, fields, dim, runs, made; /* made: ids lie below it */
@@ -311,7 +310,7 @@ static mps_status open(stream *s) {
   return status;
 }
 
-/* The columns that nobody has asked for on this rank: all but rank 0 only send. */
+/* The columns that this rank has not requested: all but rank 0 only send. */
 static void send_rest(stream *s) {
   int32_t before = 0;
   for (int32_t f = 0; f < mps_particles_field_count(s->source.set); f++) {

@@ -91,7 +91,7 @@ static mps_status share_record(mps_domain *domain, const char *function, int32_t
 }
 
 /* Another rank has destroyed its domain: no agreement is possible. */
-static mps_status report_gone(mps_domain *domain, const char *function, int32_t rank) {
+static mps_status report_left(mps_domain *domain, const char *function, int32_t rank) {
   domain->lost = MPS_ERROR_STATE;
   (void)mpsi_fail(domain->context, function, MPS_ERROR_STATE,
                   "rank %d has destroyed its domain, while rank %d has called %s: all ranks must "

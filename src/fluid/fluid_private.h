@@ -486,7 +486,7 @@ void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int
 void mpsi_fluid_classical_solution(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_accelerate(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 /* particles.c */
-void mpsi_fluid_let_go(
+void mpsi_fluid_remove_outflow(
     mps_fluid *fluid); /* removes particles beyond an open side, at the end of a step */
 #define MPSI_FLUID_MOST_PARTICLES (INT32_MAX / 4)
 bool mpsi_fluid_reserve(mps_fluid *fluid, int64_t count);
@@ -509,7 +509,7 @@ mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
  * surface (know); and with them the cloud, its loads and walls (refresh). After the latter
  * mpsi_fluid_show_surface writes the fields if the whole reading has succeeded, and otherwise
  * changes nothing; it returns `status`. */
-mps_status mpsi_fluid_know(mps_fluid *fluid, const char *function);
+mps_status mpsi_fluid_ensure_surface(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_show_surface(mps_fluid *fluid, mps_status status);
 /* look.c: sorts the particles by position. */

@@ -572,7 +572,7 @@ mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function
   if (status == MPS_OK)
     status = mpsi_fail_of(
         of->context, mpsi_state_put(of, function, &r.values, source, MPS_ERROR_ARGUMENT), "path");
-  if (status == MPS_OK) tell(&r, info);
+  if (status == MPS_OK) report(&r, info);
   drop_reading(&r);
   return status;
 }

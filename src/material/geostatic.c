@@ -282,8 +282,8 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
 }
 
 /* Calls the caller's function for each particle in turn: s[6 k + c]. */
-static mps_status ask_stress(const geostatic *g, mps_geostatic_stress_fn fn, void *user,
-                             double *s) {
+static mps_status evaluate_stress(const geostatic *g, mps_geostatic_stress_fn fn, void *user,
+                                  double *s) {
   static const char function[] = "mps_particles_set_stress";
   for (int64_t k = 0; k < g->count; k++) {
     double x[3] = {0.0};

@@ -1,6 +1,6 @@
 /* test_domain_odd.c - one rank of three that gives another value than the others: constants of
- * definitions, weight functions, what a body is to do next, states to go back to. All ranks get the
- * same error, which names what differs, and none goes on to a third result.
+ * definitions, weight functions, the next motion of a body, states to roll back to. All ranks get
+ * the same error, which names what differs, and none computes a third result.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "ranks_team.h"
 

@@ -81,14 +81,13 @@ static double sheared(mps_fluid_def def, const mps_material *later, double densi
   mps_assert_ok(context, mps_fluid_step(f, 10));
   mps_view v;
   mps_assert_ok(context, mps_particles_view(p, "velocity", &v));
-  for (int64_t i = 0; i < v.shape[0]; i++)
-    sum += *mps_view_f64(&v, i, 0) * (double)(1 + i);
+  for (int64_t i = 0; i < v.shape[0]; i++) sum += *mps_view_f64(&v, i, 0) * (double)(1 + i);
   mps_fluid_destroy(&f);
   mps_particles_destroy(&p);
   return sum;
 }
 
-/* One fluid, told by numbers, by a material at creation or after it, by the set's field. */
+/* One fluid, given by numbers, by a material at creation or after it, by the set's field. */
 static void a_fluid_is_a_material(void **state) {
   (void)state;
   mps_fluid_def plain = mps_fluid_defaults(), numbers = plain, law = plain, now;

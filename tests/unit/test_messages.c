@@ -1,6 +1,7 @@
 /* test_messages.c - what the message of an error must say: the argument at fault by the name that
- * the header gives it, once and before all else, and a value in as many digits as tell it from the
- * bound that it is beyond. SPDX-License-Identifier: BSD-3-Clause */
+ * the header gives it, once and before all else, and a value in as many digits as distinguish it
+ * from the bound that it is beyond.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
 #include "core/base/digits.h"

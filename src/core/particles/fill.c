@@ -232,9 +232,9 @@ static bool append_row(const mps_particles *p, const site_box *box, int64_t j, i
 }
 
 /* The sites of a row at which `inside` gives 1. `*complete` is false where memory was refused. */
-static mps_status push_wanted(const mps_particles *p, const char *function, const site_box *box,
-                              int64_t j, int64_t k, mps_particles_predicate_fn inside, void *user,
-                              mpsi_site_runs *out, bool *complete) {
+static mps_status append_wanted(const mps_particles *p, const char *function, const site_box *box,
+                                int64_t j, int64_t k, mps_particles_predicate_fn inside, void *user,
+                                mpsi_site_runs *out, bool *complete) {
   for (int64_t i = box->begin[0]; i < box->end[0] && *complete; i++) {
     const double x[3] = {centre(p, 0, i), centre(p, 1, j), centre(p, 2, k)};
     const mpsi_site_run site = {.begin = i, .end = i + 1, .j = j, .k = k};

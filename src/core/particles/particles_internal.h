@@ -41,7 +41,7 @@ mps_status mpsi_particles_permute(mps_particles *particles, const char *function
 mps_status mpsi_particles_permute_in(mps_particles *particles, const char *function,
                                      const int64_t *order, void *const *scratch, int32_t columns);
 
-/* ---- holders: who uses a set ------------------------------------------------------------------
+/* ---- holders: users of a set ------------------------------------------------------------------
  * A held set exists until the caller has destroyed it and the last holder has released it. A solver
  * holds the set first of all and releases it last:
  *
@@ -134,8 +134,8 @@ mps_status mpsi_particles_hold(mps_particles *particles, const char *function, m
 void mpsi_particles_release(mps_particles *particles, mpsi_holder *holder); /* set may be NULL */
 /* Notifies the holders of an edited field, with its former values (NULL: not known); one may return
  * an error. */
-mps_status mpsi_particles_tell(mps_particles *particles, const char *function, const char *field,
-                               const double *former);
+mps_status mpsi_particles_notify(mps_particles *particles, const char *function, const char *field,
+                                 const double *former);
 /* At the beginning of each step: MPS_ERROR_STATE while the caller edits a field. */
 mps_status mpsi_particles_ready(const mps_particles *particles, const char *function);
 

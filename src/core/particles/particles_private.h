@@ -83,7 +83,7 @@ void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t
 /* The field lies in a block of mpsi_field_allocate from now on; nothing is copied or freed. */
 void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
 /* Makes room for so many particles; false: no memory, and nothing has changed. The columns have
- * then moved, and their former memory is kept until mpsi_particles_settle_columns, which frees it
+ * then moved, and their former memory is kept until mpsi_particles_finish_columns, which frees it
  * or moves the columns back: then the caller's views are valid again. */
 bool mpsi_particles_reserve(mps_particles *p, int64_t capacity);
 void mpsi_particles_finish_columns(mps_particles *p, bool moved);

@@ -201,7 +201,7 @@ static int64_t end_block(const mps_fluid *f) {
 }
 
 /* Sends this rank's values [first, end) of `count` to all. */
-static void tell(mps_fluid *f, int64_t count, double *values, int64_t first, int64_t end) {
+static void send_values(mps_fluid *f, int64_t count, double *values, int64_t first, int64_t end) {
   if (!f->partition) return;
   for (int64_t k = 0; k < count; k++)
     if (k < first || k >= end) values[k] = -INFINITY;

@@ -25,8 +25,8 @@ void mpsi_fluid_drop_solver(mps_fluid *f) {
 }
 
 /* Status of all ranks, and a check that all have such a solver. */
-static mps_status settle_solver(mps_fluid *f, const char *function, mps_status status, bool given,
-                                const mps_fluid_solver_def *def) {
+static mps_status agree_on_solver(mps_fluid *f, const char *function, mps_status status, bool given,
+                                  const mps_fluid_solver_def *def) {
   mpsi_given list;
   mpsi_given_begin(&list);
   mpsi_give(&list, "having a solver", given);

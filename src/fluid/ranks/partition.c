@@ -226,7 +226,7 @@ static mps_status join(mps_fluid *f, const char *function, link *l, needed_fn ne
 /* ---- the way back ---------------------------------------------------------------------------- */
 
 /* Sends each owner the number of its first guest here, and the guests' indices. */
-static mps_status ask_owners(mps_fluid *f, const char *function, mpsi_mailbox *box) {
+static mps_status request_items(mps_fluid *f, const char *function, mpsi_mailbox *box) {
   const mpsi_fluid_partition *s = f->partition;
   const link *l = &s->near;
   const int64_t ranks = mps_domain_size(s->domain);
@@ -363,7 +363,7 @@ void mpsi_fluid_reduce_exact(mps_fluid *f, int32_t count, mpsi_exact *sums) {
 }
 
 /* A sum is on its rank, and below any number on others; a NaN must not be sent. */
-void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
+void mpsi_fluid_send_sums(mps_fluid *f, int64_t unit) {
   if (!f->partition) return;
   const int64_t units = (f->count + unit - 1) / unit;
   double *sums = f->system.sums;
@@ -402,20 +402,20 @@ void mpsi_fluid_send_moments(mps_fluid *f) {
 }
 
 /* In columns that the pressure no longer needs. */
-void mpsi_fluid_tell_flux(mps_fluid *f) {
+void mpsi_fluid_send_flux(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s) return;
   mpsi_fluid_system *y = &f->system;
   double *const column[] = {y->p, y->q, y->r, y->z, y->diagonal};
   for (int c = 0; c < 5; c++)
     for (int64_t i = f->own[0]; i < f->own[1]; i++) column[c][i] = f->flux[c][i];
-  mpsi_fluid_tell_near(f, 5, column);
+  mpsi_fluid_send_halo(f, 5, column);
   for (int c = 0; c < 5; c++)
     for (int64_t k = 0; s->lost == MPS_OK && k < s->near.guests; k++)
       f->flux[c][s->near.guest[k]] = (float)column[c][s->near.guest[k]];
 }
 
-void mpsi_fluid_tell_local(mps_fluid *f) {
+void mpsi_fluid_send_local(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s || s->knows_local) return;
   mpsi_fluid_system *y = &f->system; /* free after the pressure */

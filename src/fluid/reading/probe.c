@@ -233,7 +233,7 @@ static void add_force(void *user, const double *x, double p) {
 
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
-  if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_tell_local(f); /* the memory is allocated by then */
+  if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_send_local(f); /* the memory is allocated by then */
   for (int32_t b = 0; status == MPS_OK && b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;

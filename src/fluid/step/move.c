@@ -3,9 +3,9 @@
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
  *   u += -(dt/rho) grad q, smoothing and viscosity (smooth.c).
  *
- * Guards: pairs that approach within l0/2 share their momentum, who strikes a wall is stopped .35
- * l0 before it, |u| <= 1.1 of the neighbours' largest plus a free fall's share, and nobody comes
- * nearer than .1 l0 to a wall; the report counts them. Then
+ * Guards: pairs that approach within l0/2 share their momentum, a particle that strikes a wall is
+ * stopped .35 l0 before it, |u| <= 1.1 of the neighbours' largest plus a free fall's share, and no
+ * particle comes nearer than .1 l0 to a wall; the report counts them. Then
  *
  *   x += dt u + f,  u += b G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
  *

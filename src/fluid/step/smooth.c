@@ -4,7 +4,7 @@
  *   u += a (1 - s) v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,  s0 = sqrt(g/l0),
  *
  * the first part a .12 dt s0 near the surface but in breakers, and the second times 10 dt s0 <= 1
- * where walls meet it. This is not the same from both sides of a pair. Where the flow is steep,
+ * at walls. This is not the same from both sides of a pair. Where the flow is steep,
  * s = 10 |G|^2/(.05 s0^2) - .1 within [0, 1], as in breakers, pairs exchange momentum instead:
  *
  *   u_i += sum w 1/2 (b_i + b_j) (u_j - u_i - 1/2 (G_i + G_j) dx),
@@ -62,9 +62,9 @@ typedef struct parts {
 
 /* Of a rough velocity field more, but not where the flow turns around a corner, which is no linear
  * field however smooth it is. Near the surface less: among neighbours on one side v is not 0 for
- * the curved field of a wave, which it would damp. Where a wall meets the surface the water rises
- * by ln r beside it: v is no roughness there either, and what is taken of it in a step must not
- * grow as the steps get shorter. */
+ * the curved field of a wave, which it would damp. Where a wall and the surface join the water
+ * rises by ln r beside it: v is no roughness there either, and what is taken of it in a step must
+ * not grow as the steps get shorter. */
 static parts find_parts(const mps_fluid *f, int64_t i) {
   const mpsi_fluid_local *local = &f->local[i];
   double steep = 1e-4 * f->g * f->l0, v2 = 0.0, G[4];
@@ -139,13 +139,13 @@ void mpsi_fluid_prepare_smoothing(mps_fluid *f) {
   const int64_t padded = mpsi_fluid_sorted_room(f->count + f->ghosts);
   for (int k = 0; k < 5; k++) f->flux[k] = (float *)f->lower_room.item + k * padded;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, prepare);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_send_sums(f, MPSI_FLUID_CHUNK);
   double any = 0.0;
   for (int64_t k = 0; k * MPSI_FLUID_CHUNK < f->count; k++)
     any = mpsi_fluid_larger(f->system.sums[2 * k], any);
   f->paired = any > 0.0;
   if (!f->paired) return;
-  mpsi_fluid_tell_flux(f);
+  mpsi_fluid_send_flux(f);
   mpsi_fluid_for_all(f, f->ghosts, MPSI_FLUID_CHUNK, mirror_images);
 }
 
