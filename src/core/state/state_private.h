@@ -10,7 +10,6 @@
 /* Where a value is and how it is kept there. */
 typedef enum mpsi_state_width { /* WIDE: as in mpsi_value */
                                 MPSI_STATE_WIDE,
-                                MPSI_STATE_INT32,
                                 MPSI_STATE_BOOL
 } mpsi_state_width;
 
