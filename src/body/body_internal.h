@@ -159,20 +159,12 @@ mps_status mpsi_body_new(mps_context *context, const char *function, const mps_b
 /* Releases one reference; the last frees. */
 void mpsi_body_release(mps_body *body);
 
-/* MPS_ERROR_ARGUMENT where the length `name` of a shape is not between MPSI_BODY_SMALL and
- * MPSI_BODY_FAR. */
-mps_status mpsi_body_check_length(mps_context *context, const char *function, const char *name,
-                                  double value);
-
 /* Sets a new body to the pose of its definition. */
 void mpsi_body_begin(mps_body *body);
 
 /* Distance (m) of the furthest point of the surface from the reference point; 0 of half spaces. */
 double mpsi_body_extent(const mps_body *body);
 
-/* Adds the force on one part in a step of dt to its reaction, with `count` particles in contact. */
-void mpsi_body_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
-                       mps_reaction *r);
 /* Adds or removes one of the body's sources. */
 void mpsi_body_join(mps_body *body, mpsi_body_source *source);
 void mpsi_body_leave(mps_body *body, const mpsi_body_source *source);

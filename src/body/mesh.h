@@ -29,7 +29,6 @@ void mpsi_mesh_destroy(mps_context *context, mpsi_mesh *mesh); /* accepts NULL *
 
 /* The search tree of Embree over a mesh whose triangles are known. */
 mps_status mpsi_mesh_index(mps_context *context, const char *function, mpsi_mesh *mesh);
-void mpsi_mesh_unindex(mpsi_mesh *mesh);
 
 /* As mpsi_body_foot, in the body's frame. */
 mpsi_foot mpsi_mesh_foot(const mpsi_mesh *mesh, const double *x);

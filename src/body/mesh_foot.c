@@ -63,7 +63,7 @@ mps_status mpsi_mesh_index(mps_context *context, const char *function, mpsi_mesh
   return MPS_OK;
 }
 
-void mpsi_mesh_unindex(mpsi_mesh *mesh) {
+static void drop_index(mpsi_mesh *mesh) {
   if (mesh->scene) rtcReleaseScene(mesh->scene);
   if (mesh->device) rtcReleaseDevice(mesh->device);
 }
@@ -218,7 +218,7 @@ double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) {
 
 void mpsi_mesh_destroy(mps_context *context, mpsi_mesh *mesh) {
   if (!mesh) return;
-  mpsi_mesh_unindex(mesh);
+  drop_index(mesh);
   mpsi_free(context, mesh->xyz);
   mpsi_free(context, mesh->corner);
   mpsi_free(context, mesh->across);

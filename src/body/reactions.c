@@ -8,8 +8,9 @@
 
 /* ---- reactions ------------------------------------------------------------------------------- */
 
-void mpsi_body_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
-                       mps_reaction *r) {
+/* Puts the force on one part in a step of dt into its account: `count` particles touch it. */
+static void add_to_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
+                           mps_reaction *r) {
   r->work -= dt * (mpsi_dot3(load->force, pose->v) + mpsi_dot3(load->moment, pose->spin));
   for (int c = 0; c < 3; c++) {
     r->force[c] = load->force[c];
@@ -50,8 +51,8 @@ static void sum_forces(mps_body *body, int32_t part) {
 void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const mpsi_load *load,
                      const int64_t *count) {
   for (int32_t part = 0; part < body->parts; part++) {
-    mpsi_body_account(&body->pose, dt, &load[part], count[part], &source->reaction[part]);
-    mpsi_body_account(&body->pose, dt, &load[part], count[part], &body->reaction[part]);
+    add_to_account(&body->pose, dt, &load[part], count[part], &source->reaction[part]);
+    add_to_account(&body->pose, dt, &load[part], count[part], &body->reaction[part]);
     if (body->sources->next) sum_forces(body, part);
     for (int c = 0; c < 3; c++) {
       body->pending.force[c] += dt * load[part].force[c];

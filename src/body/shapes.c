@@ -9,8 +9,10 @@
 
 #define MAX_VERTICES 10000
 
-mps_status mpsi_body_check_length(mps_context *context, const char *function, const char *name,
-                                  double value) {
+/* MPS_ERROR_ARGUMENT where the length `name` of a shape is not between MPSI_BODY_SMALL and
+ * MPSI_BODY_FAR. */
+static mps_status check_length(mps_context *context, const char *function, const char *name,
+                               double value) {
   if (value >= MPSI_BODY_SMALL && value <= MPSI_BODY_FAR) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %s m, must be in %g to %g m", name,
                    mpsi_outside(value, MPSI_BODY_SMALL, MPSI_BODY_FAR).text, MPSI_BODY_SMALL,
@@ -84,8 +86,8 @@ mps_status mps_body_create_box(mps_context *context, const mps_body_def *def, do
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = mpsi_body_check_length(context, __func__, "width", width);
-  if (status == MPS_OK) status = mpsi_body_check_length(context, __func__, "height", height);
+  mps_status status = check_length(context, __func__, "width", width);
+  if (status == MPS_OK) status = check_length(context, __func__, "height", height);
   if (status != MPS_OK) return status;
   const double x = 0.5 * width, y = 0.5 * height;
   const double xy[8] = {-x, -y, x, -y, x, y, -x, y};
@@ -97,7 +99,7 @@ static mps_status make_ball(mps_context *context, const char *function, const mp
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = mpsi_body_check_length(context, function, "radius", radius);
+  mps_status status = check_length(context, function, "radius", radius);
   if (status == MPS_OK) status = mpsi_body_new(context, function, def, dim, MPSI_BALL, 1, out);
   if (status == MPS_OK) (*out)->radius = radius;
   return status;
@@ -178,8 +180,8 @@ mps_status mps_body_create_cylinder(mps_context *context, const mps_body_def *de
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  mps_status status = mpsi_body_check_length(context, __func__, "radius", radius);
-  if (status == MPS_OK) status = mpsi_body_check_length(context, __func__, "length", length);
+  mps_status status = check_length(context, __func__, "radius", radius);
+  if (status == MPS_OK) status = check_length(context, __func__, "length", length);
   if (status != MPS_OK) return status;
   const double z = 0.5 * length;
   const double rz[8] = {0.0, -z, radius, -z, radius, z, 0.0, z};

@@ -287,7 +287,7 @@ static mps_status begin(mpsi_row_source *source, mps_status status) {
 /* ---- all of it --------------------------------------------------------------------------------
  */
 
-static mps_status open(stream *s) {
+static mps_status open_stream(stream *s) {
   mps_domain *domain = s->domain;
   char *data = NULL;
   int64_t bytes = 0;
@@ -328,7 +328,7 @@ mps_status mpsi_domain_write_rows(mps_domain *domain, const char *function,
               .function = function,
               .heads.context = domain->context,
               .begun = MPS_ERROR_STATE};
-  mps_status status = open(&s);
+  mps_status status = open_stream(&s);
   if (status == MPS_OK) {
     status = domain->def.rank == 0 ? take(user, &s.source) : begin(&s.source, MPS_OK);
     if (s.begun == MPS_OK) send_rest(&s);

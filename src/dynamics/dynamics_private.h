@@ -326,8 +326,6 @@ mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *fu
  * shifts the budget's initial value by the difference. Fails with a domain only. */
 mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *function,
                                         double *energy);
-/* Reads the material fields. */
-mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function);
 /* The holder's commit: a field has been edited. */
 mps_status mpsi_dynamics_commit(void *self, const char *function, const char *field,
                                 const double *former);
@@ -350,8 +348,6 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
 /* Chooses dt where the definition does not give it, and warns of one above the limit. */
 mps_status mpsi_dynamics_choose_dt(mps_dynamics *dynamics, const char *function);
-/* run.c: before steps: reads edited material fields and allocates the budget's arrays. */
-mps_status mpsi_dynamics_prepare_run(mps_dynamics *dynamics, const char *function);
 /* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; reads edited material
  * fields and chooses dt if need be. */
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);

@@ -304,8 +304,6 @@ MPS_NODISCARD mps_status mpsi_elastic_apply(mps_elastic *e, const char *function
  * changed. */
 mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function);
 void mpsi_elastic_drop_joints(mps_elastic *e);
-mpsi_joint_law mpsi_elastic_joint_law(const mps_elastic *e, const mpsi_joint *q);
-double mpsi_elastic_face_weight(const mps_elastic *e, int64_t i, int axis, int up);
 /* From plain gradients to those with the face values of joints. */
 void mpsi_elastic_joint_gradients(mps_elastic *e, const double *u, double *gradient);
 /* Its transpose: P = dPi/dG to the stresses of plain gradients, and forces. */
@@ -442,9 +440,6 @@ void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double 
                             double *force, double *moment);
 
 /* ---- elastic.c ------------------------------------------------------------------------------- */
-mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
-                               const mps_elastic_def *def, bool published, bool constant,
-                               mps_elastic **out);
 
 /* ---- access.c ---- */
 /* MPS_ERROR_STATE within a callback of the solver; until `leave` it is busy. */

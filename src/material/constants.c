@@ -19,8 +19,8 @@ static mps_status out_of_range(mps_context *context, const char *function, const
                    name, mpsi_outside(value, low, high).text, unit, sign, low, high);
 }
 
-mps_status mpsi_check_within(mps_context *context, const char *function, const char *name,
-                             const char *unit, double value, double low, double high) {
+static mps_status check_within(mps_context *context, const char *function, const char *name,
+                               const char *unit, double value, double low, double high) {
   if (value >= low && value < high) return MPS_OK; /* not NaN */
   return out_of_range(context, function, name, unit, value, low, high, ">=");
 }
@@ -36,8 +36,8 @@ mps_status mpsi_check_elastic(mps_context *context, const char *function, double
 
 mps_status mpsi_check_friction(mps_context *context, const char *function, double friction,
                                double dilation, double cohesion) {
-  mps_status status = mpsi_check_within(context, function, "friction: the friction angle",
-                                        " rad (angles are in radians)", friction, 0.0, RIGHT_ANGLE);
+  mps_status status = check_within(context, function, "friction: the friction angle",
+                                   " rad (angles are in radians)", friction, 0.0, RIGHT_ANGLE);
   if (status != MPS_OK) return status;
   if (!(dilation >= 0.0 && dilation <= friction))
     return mpsi_fail(

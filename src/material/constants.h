@@ -7,8 +7,6 @@
 #include "material_private.h"
 
 /* Checks one parameter: low <= value < high. Records the error with the value and the range. */
-mps_status mpsi_check_within(mps_context *context, const char *function, const char *name,
-                             const char *unit, double value, double low, double high);
 mps_status mpsi_check_elastic(mps_context *context, const char *function, double young,
                               double poisson);
 /* Angles and cohesion of Drucker-Prager and Mohr-Coulomb. */

@@ -95,7 +95,9 @@ mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, d
 
 bool mpsi_signal_may_fail(const mps_signal *signal) { return signal && signal->fn; }
 
-uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash) {
+/* Goes on with a hash (core/hash.h) over what the signal is made of; of a function of the caller,
+ * over that it is one. */
+static uint64_t hash_of(const mps_signal *signal, uint64_t hash) {
   const double kind = !signal ? 0.0 : signal->fn ? 1.0 : 2.0;
   hash = mpsi_hash(hash, &kind, sizeof kind);
   if (kind < 2.0) return hash;
@@ -111,7 +113,7 @@ uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash) {
 }
 
 void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *signal) {
-  mpsi_give(list, name, mpsi_hash_short(mpsi_signal_hash(signal, MPSI_HASH)));
+  mpsi_give(list, name, mpsi_hash_short(hash_of(signal, MPSI_HASH)));
 }
 
 /* For the caller: NaN is the value of a signal that has none. */

@@ -30,9 +30,6 @@ mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, d
                                 mpsi_signal_motion *out);
 /* Whether the caller may refuse: the signal is a function of the caller. NULL: no. */
 bool mpsi_signal_may_fail(const mps_signal *signal);
-/* Continues a hash (core/base/hash.h) over the definition of the signal made of; of a function of
- * the caller, over that it is one. */
-uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash);
 /* Adds that hash. */
 void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *signal);
 

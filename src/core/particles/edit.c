@@ -108,8 +108,9 @@ static mps_status check_value(const mps_particles *p, const char *function, cons
   return MPS_ERROR_ARGUMENT;
 }
 
-mps_status mpsi_field_check_value(const mps_particles *p, const char *function,
-                                  const mpsi_field *field, double value) {
+/* MPS_ERROR_ARGUMENT unless `value` is one that the caller may give the field. */
+static mps_status check_field_value(const mps_particles *p, const char *function,
+                                    const mpsi_field *field, double value) {
   return check_value(p, function, field, range_of(field->name), value, -1);
 }
 
@@ -281,7 +282,7 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
   const bool present = mpsi_field_find(particles, name) != NULL;
   if (present && shape.open) return mpsi_particles_ready(particles, __func__);
   const int32_t fields = particles->field_count;
-  status = mpsi_field_check_value(particles, __func__, &shape, value);
+  status = check_field_value(particles, __func__, &shape, value);
   if (status == MPS_OK && !present)
     status = mpsi_as(particles->context, __func__, mps_particles_add_field(particles, name, 0));
   if (status == MPS_OK) status = set_column(particles, __func__, name, component, value);

@@ -53,8 +53,6 @@ static const table_row *table_find(const char *name) {
   return NULL;
 }
 
-bool mpsi_field_reserved(const char *name) { return table_find(name) != NULL; }
-
 static bool is_f64(mps_dtype dtype) { return dtype.code == 2; }
 
 /* ---- storage --------------------------------------------------------------------------------- */
@@ -76,8 +74,9 @@ void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity) {
   field->stride = column_stride(capacity);
 }
 
-void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
-                     int64_t capacity) {
+/* Moves a field of `count` particles into a block of mpsi_field_allocate. */
+static void move_field(mps_context *context, mpsi_field *field, void *block, int64_t count,
+                       int64_t capacity) {
   mpsi_field moved = *field;
   mpsi_field_place(&moved, block, capacity);
   for (int32_t c = 0; c < field->components && count > 0; c++)
@@ -135,7 +134,7 @@ static mps_status insert_field(mps_particles *p, const char *function, const mps
                      "could not allocate field '%s' of %lld particles", like->name,
                      (long long)p->capacity);
   }
-  mpsi_field_move(p->context, field, block, 0, p->capacity);
+  move_field(p->context, field, block, 0, p->capacity);
   p->fields = list;
   p->fields[p->field_count++] = field;
   p->columns += field->components;

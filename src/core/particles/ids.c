@@ -72,13 +72,13 @@ bool mpsi_ids_fit(mps_context *context, mpsi_ids *ids, int64_t count) {
 
 /* ---- both ------------------------------------------------------------------------------------ */
 
-bool mpsi_ids_fits(const mpsi_ids *ids, int64_t made, int64_t count) {
+static bool fits(const mpsi_ids *ids, int64_t made, int64_t count) {
   return ids->sparse ? slots_for(count) <= ids->room : made <= ids->room;
 }
 
 bool mpsi_ids_reserve(mps_context *context, mpsi_ids *ids, int64_t former, int64_t made,
                       int64_t count) {
-  if (mpsi_ids_fits(ids, made, count)) return true;
+  if (fits(ids, made, count)) return true;
   if (ids->sparse) return grow_table(context, ids, count);
   const int64_t half_more = ids->room + ids->room / 2;
   const int64_t room = made > half_more ? made : half_more;

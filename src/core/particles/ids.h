@@ -27,8 +27,6 @@ bool mpsi_ids_reserve(mps_context *context, mpsi_ids *ids, int64_t former, int64
                       int64_t count);
 /* Releases slots of a table for more than `count` ids; false as above. */
 bool mpsi_ids_fit(mps_context *context, mpsi_ids *ids, int64_t count);
-/* The greatest number of particles that the map has room for now, with ids below `made`. */
-bool mpsi_ids_fits(const mpsi_ids *ids, int64_t made, int64_t count);
 void mpsi_ids_free(mps_context *context, mpsi_ids *ids);
 
 /* -1: it is not here. `id` lies below those reserved. */

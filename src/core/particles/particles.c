@@ -202,8 +202,6 @@ mps_status mpsi_particles_permute(mps_particles *p, const char *function, const 
 
 int64_t mpsi_particles_made(const mps_particles *p) { return p->next_id; }
 
-bool mpsi_particles_dense(const mps_particles *p) { return p->next_id == p->count; }
-
 /* ---- selection ------------------------------------------------------------------------------- */
 
 static mps_status check_select(const mps_particles *p, const char *function, const double *lo,

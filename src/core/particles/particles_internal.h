@@ -8,10 +8,6 @@
 
 #include <mps/particles.h>
 
-/* Whether `name` is in the field table, and so reserved: neither a caller's field of another shape
- * nor a history column of a law may have it. */
-bool mpsi_field_reserved(const char *name);
-
 /* One component of a float64 field as a contiguous array, or NULL when the set has no such field
  * or component. Aligned to MPSI_ALIGNMENT, and readable at least MPSI_PARTICLES_PADDING values
  * past the end, where zeros stand: vector loops may load there, and store there only zeros.
@@ -194,9 +190,6 @@ mps_status mpsi_particles_check_free(const mps_particles *particles, const char 
 
 /* Number of particles that the set ever had: ids lie below it. */
 int64_t mpsi_particles_made(const mps_particles *particles);
-
-/* Whether the ids are 0 to count - 1, as long as no particle was removed. */
-bool mpsi_particles_dense(const mps_particles *particles);
 
 mps_context *mpsi_particles_context(const mps_particles *particles);
 

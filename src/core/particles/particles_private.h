@@ -82,20 +82,8 @@ static inline void *mpsi_field_column(const mpsi_field *field, int32_t component
 void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t capacity);
 /* The field lies in a block of mpsi_field_allocate from now on; nothing is copied or freed. */
 void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
-/* Makes room for so many particles; false: no memory, and nothing has changed. The columns have
- * then moved, and their former memory is kept until mpsi_particles_finish_columns, which frees it
- * or moves the columns back: then the caller's views are valid again. */
-bool mpsi_particles_reserve(mps_particles *p, int64_t capacity);
-void mpsi_particles_finish_columns(mps_particles *p, bool moved);
-/* Moves a field of `count` particles into a block of mpsi_field_allocate. */
-void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
-                     int64_t capacity);
 
 /* ---- edit.c ---------------------------------------------------------------------------------- */
-
-/* MPS_ERROR_ARGUMENT unless `value` is in the field's range. */
-mps_status mpsi_field_check_value(const mps_particles *particles, const char *function,
-                                  const mpsi_field *field, double value);
 
 /* ---- population.c ---------------------------------------------------------------------------- */
 
@@ -109,10 +97,8 @@ mps_status mpsi_particles_arrive(mps_particles *particles, const char *function,
 
 /* Destroys the set when neither the caller nor a holder needs it. */
 void mpsi_particles_free_if_unused(mps_particles *particles);
-/* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
-mps_status mpsi_particles_extend(mps_particles *particles, const char *function, int64_t count);
-/* The same for a set in parts: `here` of them, whose ids the caller enters with
- * mpsi_particles_number once they are in the field, from index `first` on. */
+/* Adds `here` particles to a set in parts, whose ids the caller enters with mpsi_particles_number
+ * once they are in the field, from index `first` on. */
 mps_status mpsi_particles_extend_part(mps_particles *particles, const char *function, int64_t count,
                                       int64_t here);
 void mpsi_particles_number(mps_particles *particles, int64_t first);

@@ -33,7 +33,10 @@ mps_status mpsi_particles_check_free(const mps_particles *p, const char *functio
       "the particle set is held by %s, which takes no more particles: destroy it first", holder);
 }
 
-bool mpsi_particles_reserve(mps_particles *p, int64_t capacity) {
+/* Makes room for so many particles; false: no memory, and nothing has changed. The columns have
+ * then moved, and their former memory is kept until finish_columns, which frees it or moves the
+ * columns back: then the caller's views are valid again. */
+static bool reserve(mps_particles *p, int64_t capacity) {
   mps_context *context = p->context;
   mpsi_column_place *places = mpsi_alloc(context, p->field_count, sizeof *places);
   bool good = places != NULL;
@@ -58,7 +61,7 @@ bool mpsi_particles_reserve(mps_particles *p, int64_t capacity) {
   return true;
 }
 
-void mpsi_particles_finish_columns(mps_particles *p, bool moved) {
+static void finish_columns(mps_particles *p, bool moved) {
   if (!p->former) return;
   for (int32_t f = 0; f < p->field_count; f++) {
     mpsi_field *field = p->fields[f];
@@ -91,7 +94,7 @@ mps_status mpsi_particles_extend_part(mps_particles *p, const char *function, in
   if (needed > p->capacity) {
     /* The first fill gets exactly its size; later growth is by half at least. */
     const int64_t half_more = p->capacity + p->capacity / 2;
-    if (!mpsi_particles_reserve(p, needed > half_more ? needed : half_more))
+    if (!reserve(p, needed > half_more ? needed : half_more))
       return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                        "could not allocate %d fields of %lld particles", p->field_count,
                        (long long)needed);
@@ -103,7 +106,8 @@ mps_status mpsi_particles_extend_part(mps_particles *p, const char *function, in
   return MPS_OK;
 }
 
-mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t count) {
+/* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
+static mps_status extend(mps_particles *p, const char *function, int64_t count) {
   const int64_t first = p->count, next = p->next_id;
   const mps_status status = mpsi_particles_extend_part(p, function, count, count);
   if (status != MPS_OK) return status;
@@ -141,7 +145,7 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, const c
     if (!p->former) clear_tail(p, count);
   }
   p->came = 0;
-  mpsi_particles_finish_columns(p, status == MPS_OK);
+  finish_columns(p, status == MPS_OK);
   renew_holders(p);
   return status;
 }
@@ -196,7 +200,7 @@ mps_status mps_particles_append(mps_particles *particles, int64_t count, const d
   if (status == MPS_OK) status = check_positions(particles, __func__, count, positions);
   if (mpsi_particles_deals(particles))
     return append_part(particles, __func__, status, count, positions);
-  if (status == MPS_OK) status = mpsi_particles_extend(particles, __func__, count);
+  if (status == MPS_OK) status = extend(particles, __func__, count);
   for (int32_t c = 0; status == MPS_OK && c < dim; c++) {
     double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
     for (int64_t i = 0; i < count; i++) x[first + i] = positions[i * dim + c];
@@ -261,8 +265,8 @@ void mpsi_particles_take_out(mps_particles *p, const uint8_t *gone) {
 mps_status mpsi_particles_hold_room(mps_particles *p, const char *function, int64_t count) {
   const bool ids = mpsi_ids_reserve(p->context, &p->ids, p->next_id, p->next_id, count);
   if (ids && count <= p->capacity) return MPS_OK;
-  if (ids && mpsi_particles_reserve(p, count + count / 8)) {
-    mpsi_particles_finish_columns(p, true);
+  if (ids && reserve(p, count + count / 8)) {
+    finish_columns(p, true);
     return MPS_OK;
   }
   return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
@@ -377,8 +381,8 @@ mps_status mpsi_particles_fit(mps_particles *p, const char *function) {
   if (!mpsi_ids_fit(p->context, &p->ids, wanted))
     return mpsi_fail_memory(p->context, function, (size_t)wanted * 16);
   if (p->capacity <= wanted) return MPS_OK;
-  if (mpsi_particles_reserve(p, wanted)) {
-    mpsi_particles_finish_columns(p, true);
+  if (reserve(p, wanted)) {
+    finish_columns(p, true);
     return MPS_OK;
   }
   return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,

@@ -55,10 +55,7 @@ typedef struct mpsi_state mpsi_state; /* a list */
  * Copied out and in. In a file all are float64 or int64. */
 void mpsi_state_f64(mpsi_state *state, const char *name, double *values, int64_t count);
 void mpsi_state_i64(mpsi_state *state, const char *name, int64_t *values, int64_t count);
-void mpsi_state_i32(mpsi_state *state, const char *name, int32_t *values, int64_t count);
 void mpsi_state_bool(mpsi_state *state, const char *name, bool *value);
-/* Bytes in the caller's or the machine's own form, unchanged in a file. */
-void mpsi_state_bytes(mpsi_state *state, const char *name, void *values, int64_t count);
 
 /* The members of a reaction. */
 void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction);

@@ -40,16 +40,8 @@ void mpsi_state_i64(mpsi_state *state, const char *name, int64_t *values, int64_
   add_at(state, name, MPSI_STATE_I64, MPSI_STATE_WIDE, values, count);
 }
 
-void mpsi_state_i32(mpsi_state *state, const char *name, int32_t *values, int64_t count) {
-  add_at(state, name, MPSI_STATE_I64, MPSI_STATE_INT32, values, count);
-}
-
 void mpsi_state_bool(mpsi_state *state, const char *name, bool *value) {
   add_at(state, name, MPSI_STATE_I64, MPSI_STATE_BOOL, value, 1);
-}
-
-void mpsi_state_bytes(mpsi_state *state, const char *name, void *values, int64_t count) {
-  add_at(state, name, MPSI_STATE_BYTES, MPSI_STATE_WIDE, values, count);
 }
 
 void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction) {
@@ -157,8 +149,6 @@ void mpsi_state_read_item(const mpsi_state_item *from, void *to) {
     if (count > 0) from->table->get(from->owner, to);
   } else if (from->agrees) {
     memcpy(to, &from->own, (size_t)(count * mpsi_state_size(from->type)));
-  } else if (from->width == MPSI_STATE_INT32) {
-    for (int64_t k = 0; k < count; k++) integer[k] = ((const int32_t *)from->data)[k];
   } else if (from->width == MPSI_STATE_BOOL) {
     for (int64_t k = 0; k < count; k++) integer[k] = ((const bool *)from->data)[k];
   } else if (count > 0) {
@@ -172,8 +162,6 @@ void mpsi_state_write_item(const mpsi_state_item *to, const mpsi_value *from) {
   if (to->agrees) return;
   if (to->table) {
     to->table->set(to->owner, from->rows, from->data);
-  } else if (to->width == MPSI_STATE_INT32) {
-    for (int64_t k = 0; k < count; k++) ((int32_t *)to->data)[k] = (int32_t)integer[k];
   } else if (to->width == MPSI_STATE_BOOL) {
     for (int64_t k = 0; k < count; k++) ((bool *)to->data)[k] = integer[k] != 0;
   } else if (count > 0) {

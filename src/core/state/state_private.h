@@ -10,7 +10,6 @@
 /* Address and form of a value. */
 typedef enum mpsi_state_width { /* WIDE: as in mpsi_value */
                                 MPSI_STATE_WIDE,
-                                MPSI_STATE_INT32,
                                 MPSI_STATE_BOOL
 } mpsi_state_width;
 

@@ -9,11 +9,7 @@
 #define LEAST_BLOCKS 8  /* a batch */
 #define MOST_BATCHES 64 /* so that going through all bounds for each costs little */
 
-/* Particles begin to end - 1 of the local ones, of one block and near one another. */
-typedef struct mpsi_dynamics_piece {
-  int64_t block, begin, end;
-  double lo[2], hi[2]; /* m */
-} piece;
+typedef mpsi_dynamics_piece piece;
 
 static int64_t number(const mpsi_dynamics_source *s, int64_t k) { return s->near ? s->near[k] : k; }
 

@@ -16,6 +16,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "dynamics/dynamics_private.h"
+#include "dynamics/pairs/batch.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -30,11 +31,8 @@ typedef struct item {
   int64_t key, id, index;
 } item;
 
-/* Bounds of a block's particles in one strip. */
-typedef struct piece {
-  int64_t block, begin, end; /* present indices on its rank */
-  double lo[2], hi[2];       /* m */
-} piece;
+/* Bounds of a block's particles in one strip, by present indices on its rank. */
+typedef mpsi_dynamics_piece piece;
 
 /* A particle of another rank. */
 typedef struct neighbour {
@@ -210,15 +208,8 @@ static piece nothing(void) {
   return (piece){.lo = {INFINITY, INFINITY}, .hi = {-INFINITY, -INFINITY}};
 }
 
-/* Whether some points of both may be within reach, or within that of a copy a period away. */
 static bool within_reach(const dealing *d, const piece *a, const piece *b) {
-  if (a->lo[1] - b->hi[1] > d->reach || b->lo[1] - a->hi[1] > d->reach) return false;
-  for (int copy = -1; copy <= 1; copy++) {
-    const double shift = copy * d->period;
-    if (a->lo[0] + shift - b->hi[0] <= d->reach && b->lo[0] - a->hi[0] - shift <= d->reach)
-      return true;
-  }
-  return false;
+  return mpsi_dynamics_within_reach(a, b, d->reach, d->period);
 }
 
 /* `out` NULL: how many. */

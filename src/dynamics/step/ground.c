@@ -71,7 +71,8 @@ mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *func
   return status;
 }
 
-mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function) {
+/* Reads the material fields. */
+static mps_status read_ground(mps_dynamics *dynamics, const char *function) {
   mps_domain *domain = dynamics->domain;
   double before = 0.0, after = 0.0;
   mps_status status = mpsi_dynamics_check_ground(dynamics->particles, function);
@@ -214,7 +215,7 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
     status = mpsi_domain_agree(dynamics->domain, __func__, status);
   }
   /* values of other particles, or of another rank, may be out of range */
-  if (status == MPS_OK) status = mpsi_dynamics_read_ground(dynamics, __func__);
+  if (status == MPS_OK) status = read_ground(dynamics, __func__);
   if (status != MPS_OK && agreed) put_velocities_back(dynamics, kept);
   mpsi_free(dynamics->context, kept);
   return status;
@@ -265,7 +266,7 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   if (position) status = check_positions(dynamics, function);
   if (of_ground && !mpsi_domain_many(dynamics->domain) &&
       mpsi_dynamics_check_ground(dynamics->particles, function) == MPS_OK)
-    status = mpsi_dynamics_read_ground(dynamics, function);
+    status = read_ground(dynamics, function);
   else if (of_ground)
     dynamics->unread = true; /* a field consistent with it may be edited next: the step checks */
   if (of_motion && !dynamics->broken) dynamics->rewritten = which;
@@ -305,7 +306,7 @@ mps_status mpsi_dynamics_reread_ground(mps_dynamics *dynamics, const char *funct
                        dynamics->rewritten);
   status = mpsi_domain_agree_max(dynamics->domain, function, status, 3, edited);
   if (status == MPS_OK) dynamics->cautious = edited[2] != 0.0;
-  if (status == MPS_OK && edited[0] != 0.0) status = mpsi_dynamics_read_ground(dynamics, function);
+  if (status == MPS_OK && edited[0] != 0.0) status = read_ground(dynamics, function);
   if (status != MPS_OK) return status;
   dynamics->unread = false;
   dynamics->begins = edited[1] != 0.0;

@@ -8,7 +8,8 @@
 
 #define PROMPT_WORK 5000000 /* particle-steps between calls of the cancel hook: some 0.1 s */
 
-mps_status mpsi_dynamics_prepare_run(mps_dynamics *dynamics, const char *function) {
+/* Before steps: reads edited material fields and allocates the budget's arrays. */
+static mps_status prepare_run(mps_dynamics *dynamics, const char *function) {
   mps_status status = mpsi_particles_ready(dynamics->particles, function);
   if (status == MPS_OK && mpsi_particles_column(dynamics->particles, "external_force", 0) &&
       !mpsi_dynamics_reserve_accounts(dynamics))
@@ -32,7 +33,7 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
     return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                      "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore recovers "
                      "it, mps_dynamics_restart begins a new one");
-  status = mpsi_dynamics_prepare_run(dynamics, function);
+  status = prepare_run(dynamics, function);
   if (status != MPS_OK) return status;
   return mpsi_dynamics_choose_dt(dynamics, function);
 }
@@ -132,8 +133,7 @@ static mps_status march(const run *r) {
                call = r->callback && (last || !((done + n) % r->every));
     const bool look = last || (done + n) % r->report == 0;
     done += n;
-    if (r->callback)
-      status = mpsi_dynamics_prepare_run(dynamics, function); /* it may have edited */
+    if (r->callback) status = prepare_run(dynamics, function); /* it may have edited */
     if (status == MPS_OK)
       status = mpsi_dynamics_advance(dynamics, function, n, r->length, call || last);
     if (last && status == MPS_OK) {

@@ -122,7 +122,7 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
 
 /* ---- one joint ------------------------------------------------------------------------------- */
 
-mpsi_joint_law mpsi_elastic_joint_law(const mps_elastic *e, const mpsi_joint *q) {
+static mpsi_joint_law joint_law(const mps_elastic *e, const mpsi_joint *q) {
   const double l1 = e->lambda[q->low], l2 = e->lambda[q->high];
   const double m1 = e->mu[q->low], m2 = e->mu[q->high], half = 0.5 * e->spacing;
   const double normal = half / (l1 + 2.0 * m1 + l2 + 2.0 * m2);
@@ -133,7 +133,7 @@ mpsi_joint_law mpsi_elastic_joint_law(const mps_elastic *e, const mpsi_joint *q)
 
 /* Coefficient of the face value on side `up` of `axis` in the gradient of cell i: 1/h, or 2/h where
  * the cell has no other face neighbour and its own value stands for the surface. */
-double mpsi_elastic_face_weight(const mps_elastic *e, int64_t i, int axis, int up) {
+static double face_weight(const mps_elastic *e, int64_t i, int axis, int up) {
   const double weight = (e->faces[i] >> 2 * axis & 3) == 3 ? 1.0 : 2.0;
   return (up ? weight : -weight) / e->spacing;
 }
@@ -163,7 +163,7 @@ static void find_delta(void *task, int64_t k) {
   const mps_elastic *e = t->e;
   const int d = e->dim;
   const mpsi_joint *q = &e->joints[k];
-  const mpsi_joint_law law = mpsi_elastic_joint_law(e, q);
+  const mpsi_joint_law law = joint_law(e, q);
   const double *g1 = t->tensor + mpsi_elastic_slot(e, q->low) * d * d;
   const double *g2 = t->tensor + mpsi_elastic_slot(e, q->high) * d * d;
   const double *u1 = t->u + q->low * d, *u2 = t->u + q->high * d;
@@ -185,7 +185,7 @@ static void add_delta(void *task, int64_t i) {
   for (int face = 0; face < 2 * d; face++) {
     const int64_t k = joint_at(e, i, face);
     if (k < 0) continue;
-    const double weight = mpsi_elastic_face_weight(e, i, face / 2, face % 2);
+    const double weight = face_weight(e, i, face / 2, face % 2);
     for (int c = 0; c < d; c++)
       t->tensor[(mpsi_elastic_slot(e, i) * d + c) * d + face / 2] +=
           weight * e->joint_scratch[k * d + c];
@@ -205,8 +205,8 @@ static void find_pull(void *task, int64_t k) {
   const mps_elastic *e = t->e;
   const int d = e->dim;
   const mpsi_joint *q = &e->joints[k];
-  const double w1 = mpsi_elastic_face_weight(e, q->low, q->axis, 1);
-  const double w2 = mpsi_elastic_face_weight(e, q->high, q->axis, 0);
+  const double w1 = face_weight(e, q->low, q->axis, 1);
+  const double w2 = face_weight(e, q->high, q->axis, 0);
   const double *p1 = t->tensor + mpsi_elastic_slot(e, q->low) * d * d;
   const double *p2 = t->tensor + mpsi_elastic_slot(e, q->high) * d * d;
   for (int c = 0; c < d; c++)
@@ -222,7 +222,7 @@ static void add_pull(void *task, int64_t i) {
   for (int face = 0; face < 2 * d; face++) {
     const int64_t k = joint_at(e, i, face);
     if (k < 0) continue;
-    const mpsi_joint_law law = mpsi_elastic_joint_law(e, &e->joints[k]);
+    const mpsi_joint_law law = joint_law(e, &e->joints[k]);
     const double *pull = e->joint_scratch + k * d, side = face % 2 ? -1.0 : 1.0;
     const int a = face / 2;
     f[a] += side * law.normal * pull[a] / e->spacing;
@@ -266,7 +266,7 @@ static void add_derivative(const mps_elastic *e, int64_t i, int axis, int from, 
 
 /* Adds scale * delta of joint q to column `axis` of the gradient. */
 static void add_joint(const mps_elastic *e, const mpsi_joint *q, double scale, mpsi_wide *w) {
-  const mpsi_joint_law law = mpsi_elastic_joint_law(e, q);
+  const mpsi_joint_law law = joint_law(e, q);
   const int d = e->dim, a = q->axis;
   for (int c = 0; c < d; c++) {
     const double normal = scale * (c == a ? law.normal : law.shear) / e->spacing;
@@ -291,6 +291,6 @@ void mpsi_elastic_wide_gradient(const mps_elastic *e, int64_t i, mpsi_wide *w) {
   for (int face = 0; e->joint_at && face < 2 * d; face++) {
     const int64_t k = joint_at(e, i, face);
     if (k < 0) continue;
-    add_joint(e, &e->joints[k], mpsi_elastic_face_weight(e, i, face / 2, face % 2), w);
+    add_joint(e, &e->joints[k], face_weight(e, i, face / 2, face % 2), w);
   }
 }

@@ -176,9 +176,9 @@ static mps_status agree_on_body(const mps_elastic_def *def, const char *function
                           : status;
 }
 
-mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
-                               const mps_elastic_def *user_def, bool published, bool constant,
-                               mps_elastic **out) {
+static mps_status create(mps_context *context, const char *function, mps_particles *particles,
+                         const mps_elastic_def *user_def, bool published, bool constant,
+                         mps_elastic **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
@@ -238,13 +238,13 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
 
 mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
                               const mps_elastic_def *def, mps_elastic **out) {
-  return mpsi_elastic_create(context, __func__, particles, def, false, false, out);
+  return create(context, __func__, particles, def, false, false, out);
 }
 
 mps_status mps_experimental_elastic_published(mps_context *context, mps_particles *particles,
                                               const mps_elastic_def *def, int32_t constant,
                                               mps_elastic **out) {
-  return mpsi_elastic_create(context, __func__, particles, def, true, constant != 0, out);
+  return create(context, __func__, particles, def, true, constant != 0, out);
 }
 
 mps_status mps_elastic_get_def_sized(const mps_elastic *e, mps_elastic_def *out, size_t size) {

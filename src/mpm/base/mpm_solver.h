@@ -82,7 +82,7 @@ static inline void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double
 
 /* Coordinate of x in cells from the origin along axis c. */
 static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
-  return (x - mpm->def.origin[c]) * mpm->grid.inverse;
+  return mpsi_grid_at(&mpm->grid, c, x);
 }
 
 /* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
@@ -109,7 +109,7 @@ static inline size_t mpsi_worker_bytes(const mps_mpm *mpm) {
 }
 
 static inline int64_t mpsi_first_node(const mps_mpm *mpm, int64_t g) {
-  return g * mpm->grid.block_nodes;
+  return mpsi_grid_first_node(&mpm->grid, g);
 }
 
 /* Position x[3] of the node `local` of the block at `at`. */

@@ -162,9 +162,10 @@ static void surround_block(void *data, int64_t unit, int32_t worker) {
     for (int k = 0; k < nodes_around(mpm, 4); k++) {
       int at[3];
       const double weight = node_around(&nodes, k, at);
-      mpsi_area *area = mpm->partition
-                            ? mpsi_mpm_shared_area(mpm, block->at, at, constraint->body)
-                            : area_under(mpm, &mpm->grid.cells[block->cells], at, constraint->body);
+      mpsi_area *area =
+          mpm->partition
+              ? mpsi_mpm_shared_area(&mpm->contact.exchange, block->at, at, constraint->body)
+              : area_under(mpm, &mpm->grid.cells[block->cells], at, constraint->body);
       if (area && area->area > 0.0 && weight > 0.0)
         all->around[n * nodes_around(mpm, 4) + constraint->areas++] =
             (mpsi_area_share){area, weight};

@@ -247,7 +247,8 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
   if (status == MPS_OK)
     status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
-  if (status == MPS_OK) status = mpsi_mpm_begin_partners(mpm, __func__);
+  if (status == MPS_OK && mpm->partition)
+    status = mpsi_mpm_begin_partners(&mpm->contact.partners, mpm->partition->domain, __func__);
   status = compare_ranks(mpm, __func__, status, contact);
   if (status != MPS_OK) {
     give_up(contact);

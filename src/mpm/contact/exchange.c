@@ -226,7 +226,9 @@ static void take_areas(exchange *m, const head *h, const char *from) {
     int32_t at[3];
     memcpy(&named, from, sizeof named);
     place_of(h->at, named.place, at);
-    mpsi_mpm_shared_node(m->mpm, at, MPSI_SHARED_AREA + named.body, none)->area.area += named.area;
+    mpsi_mpm_shared_node(&m->mpm->contact.exchange, &m->mpm->grid, at,
+                         MPSI_SHARED_AREA + named.body, none)
+        ->area.area += named.area;
   }
 }
 
@@ -250,7 +252,8 @@ static void take_entry(exchange *m, const entry *e, int64_t first) {
       place_of(e->h.at, place, at);
       double *weight = all->weight[n * all->stride + i] + MPSI_VECTOR;
       all->node[n * all->stride + i] =
-          mpsi_mpm_shared_node(m->mpm, at, across ? MPSI_SHARED_ACROSS : MPSI_SHARED_NODE,
+          mpsi_mpm_shared_node(&m->mpm->contact.exchange, &m->mpm->grid, at,
+                               across ? MPSI_SHARED_ACROSS : MPSI_SHARED_NODE,
                                named[index[i]].value)
               ->value;
       weight[-MPSI_VECTOR] = 1.0 / named[index[i]].value[MPSI_MASS];
@@ -370,7 +373,7 @@ static int32_t address(exchange *m, mps_domain_message *list) {
   m->own = own;
   m->own_bytes = write_blocks(mpm, false, own + bytes) - own;
   for (int32_t r = 0; r < mps_domain_size(domain) && bytes > 0; r++)
-    if (r != mps_domain_rank(domain) && mpsi_mpm_is_partner(mpm, r))
+    if (r != mps_domain_rank(domain) && mpsi_mpm_is_partner(&mpm->contact.partners, r))
       list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = own};
   return count;
 }
@@ -381,7 +384,8 @@ mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_st
   mps_domain_message *list = NULL;
   int64_t constraints = 0;
   if (status == MPS_OK) status = make_room_for_message(&m, &list);
-  status = mpsi_mpm_find_partners(mpm, function, status, &constraints);
+  status = mpsi_mpm_find_partners(&mpm->contact, &mpm->grid, mpm->partition, function, status,
+                                  &constraints);
   mpm->contact.exchange.nodes = 0;
   mpm->contact.exchange.constraints = constraints;
   if (status == MPS_OK && constraints > 0) {

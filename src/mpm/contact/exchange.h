@@ -10,7 +10,10 @@
 
 #include "impulses.h"
 
+#include <mps/domain.h>
 #include <mps/mpm.h>
+
+struct mpsi_grid;
 
 /* Replica of a node that some constraint uses, updated identically on all partners; or the
  * area that soil covers there (area.c). */
@@ -33,9 +36,10 @@ typedef struct mpsi_contact_exchange {
 
 /* warm_start.c: what contacts keep of the particles of any rank is on all, before particles change
  * ranks or a checkpoint is written. `status`: of the call so far on this rank. Collective. */
-mps_status mpsi_mpm_share_warm_start(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_warm_start(mpsi_impulses *impulses, const mps_particles *particles,
+                                     mps_domain *domain, const char *function, mps_status status);
 /* warm_start.c: the same in an order of its own, on any number of ranks. Not collective. */
-void mpsi_mpm_order_warm_start(mps_mpm *mpm);
+void mpsi_mpm_order_warm_start(mpsi_impulses *impulses);
 /* The constraints of all partners take the place of this rank's in contact.impulses, in the order
  * of one rank, until the next step finds its own. First all agree on `status`. Collective. */
 mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_status status);
@@ -43,12 +47,13 @@ mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_st
 void mpsi_mpm_end_contact_exchange(mps_mpm *mpm);
 /* shared_nodes.c: the node of all ranks at `at`; where none is yet, one with these values, for
  * which there is room. Not collective. */
-mpsi_shared_node *mpsi_mpm_shared_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
-                                       const double *value);
+mpsi_shared_node *mpsi_mpm_shared_node(mpsi_contact_exchange *exchange,
+                                       const struct mpsi_grid *grid, const int32_t *at,
+                                       int32_t kind, const double *value);
 /* shared_nodes.c: the area at the node `at` under the tile of a block of cells, or NULL: soil
  * covers nothing there. Not collective. */
-mpsi_area *mpsi_mpm_shared_area(const mps_mpm *mpm, const int32_t *block, const int *at,
-                                int32_t body);
+mpsi_area *mpsi_mpm_shared_area(const mpsi_contact_exchange *exchange, const int32_t *block,
+                                const int *at, int32_t body);
 void mpsi_mpm_free_contact_exchange(mps_mpm *mpm);
 
 #endif

@@ -5,84 +5,85 @@
  * with constraints. SPDX-License-Identifier: BSD-3-Clause */
 #include "partners.h"
 
-#include "mpm/base/mpm_solver.h"
+#include "mpm/grid/blocks.h"
+#include "mpm/ranks/partition.h"
+#include "pairs.h"
+
+#include "domain/domain_internal.h"
 
 #include <string.h>
 
 enum { FAILED, CONSTRAINTS, HEAD };
 
-static int32_t ranks_of(const mps_mpm *mpm) { return mps_domain_size(mpm->partition->domain); }
-
-static int32_t words_of(const mps_mpm *mpm) { return (ranks_of(mpm) + 63) / 64; }
+static int32_t words_of(const mps_domain *domain) { return (mps_domain_size(domain) + 63) / 64; }
 
 /* Some body moves freely, and is in contact with all blocks at once. */
-static bool has_free_bodies(const mps_mpm *mpm) {
+static bool has_free_bodies(const mpsi_contacts *contacts) {
   bool found = false;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    found = found || mpm->contact.body[b]->def.motion != MPS_BODY_MOTION_DRIVEN;
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    found = found || contacts->body[b]->def.motion != MPS_BODY_MOTION_DRIVEN;
   return found;
 }
 
 /* Two for each rank, or one. */
-static int32_t rows_of(const mps_mpm *mpm) {
-  return has_free_bodies(mpm) || ranks_of(mpm) > MPSI_MOST_PARTNERS ? 1 : 2 * ranks_of(mpm);
+static int32_t rows_of(const mpsi_contacts *contacts, const mps_domain *domain) {
+  const int32_t ranks = mps_domain_size(domain);
+  return has_free_bodies(contacts) || ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
 }
 
 static bool has_bit(const uint64_t *row, int32_t bit) { return row[bit / 64] >> (bit % 64) & 1; }
 
 static void set_bit(uint64_t *row, int32_t bit) { row[bit / 64] |= UINT64_C(1) << (bit % 64); }
 
-mps_status mpsi_mpm_begin_partners(mps_mpm *mpm, const char *function) {
-  if (!mpm->partition) return MPS_OK;
-  mpsi_contact_partners *m = &mpm->contact.partners;
-  const int64_t words = words_of(mpm), ranks = ranks_of(mpm);
+mps_status mpsi_mpm_begin_partners(mpsi_contact_partners *m, mps_domain *domain,
+                                   const char *function) {
+  mps_context *context = mpsi_domain_context(domain);
+  const int64_t words = words_of(domain), ranks = mps_domain_size(domain);
   const int64_t rows = ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
   const bool good =
-      mpsi_room_ensure(mpm->context, &m->words_room, HEAD + rows * words, sizeof *m->words) &&
-      mpsi_room_ensure(mpm->context, &m->own_room, 2 * words, sizeof *m->own);
+      mpsi_room_ensure(context, &m->words_room, HEAD + rows * words, sizeof *m->words) &&
+      mpsi_room_ensure(context, &m->own_room, 2 * words, sizeof *m->own);
   m->words = m->words_room.item;
   m->own = m->own_room.item;
   return good ? MPS_OK
-              : mpsi_fail_memory(mpm->context, function,
+              : mpsi_fail_memory(context, function,
                                  (size_t)(HEAD + (rows + 2) * words) * sizeof *m->words);
 }
 
-void mpsi_mpm_free_partners(mps_mpm *mpm) {
-  mpsi_free(mpm->context, mpm->contact.partners.words_room.item);
-  mpsi_free(mpm->context, mpm->contact.partners.own_room.item);
+void mpsi_mpm_free_partners(mpsi_contact_partners *m, mps_context *context) {
+  mpsi_free(context, m->words_room.item);
+  mpsi_free(context, m->own_room.item);
 }
 
-bool mpsi_mpm_is_partner(const mps_mpm *mpm, int32_t rank) {
-  return has_bit(mpm->contact.partners.own, rank);
+bool mpsi_mpm_is_partner(const mpsi_contact_partners *m, int32_t rank) {
+  return has_bit(m->own, rank);
 }
 
 /* ---- this rank's blocks ---------------------------------------------------------------------- */
 
-void mpsi_mpm_mark_contact_blocks(mps_mpm *mpm) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    mpsi_cell_block *cells = &mpm->grid.cells[b];
+void mpsi_mpm_mark_contact_blocks(const mpsi_contacts *contacts, mpsi_grid *grid) {
+  const mpsi_impulses *all = &contacts->impulses;
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    mpsi_cell_block *cells = &grid->cells[b];
     cells->in_contact = cells->sent = false;
     for (int32_t q = 0; q < cells->pairs && all->areas && !cells->ghost; q++)
-      if (mpsi_has_strength(
-              mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + q].body]))
+      if (mpsi_has_strength(contacts->handle[contacts->cell_pair[cells->first_pair + q].body]))
         cells->in_contact = true;
   }
-  for (int64_t k = 0; k < all->block_count; k++)
-    mpm->grid.cells[all->block[k].cells].in_contact = true;
+  for (int64_t k = 0; k < all->block_count; k++) grid->cells[all->block[k].cells].in_contact = true;
 }
 
 /* Marks spread over blocks with constraints over one block of nodes. Returns whether some were
  * marked. */
-static bool spread(mps_mpm *mpm) {
+static bool spread(mpsi_grid *grid) {
   bool changed = false;
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    const mpsi_node_block *nodes = &grid->nodes[g];
     bool sent = false;
-    for (int q = 0; q < 1 << mpm->dim; q++)
-      sent = sent || (nodes->from[q] >= 0 && mpm->grid.cells[nodes->from[q]].sent);
-    for (int q = 0; q < 1 << mpm->dim && sent; q++) {
-      mpsi_cell_block *cells = nodes->from[q] >= 0 ? &mpm->grid.cells[nodes->from[q]] : NULL;
+    for (int q = 0; q < 1 << grid->dim; q++)
+      sent = sent || (nodes->from[q] >= 0 && grid->cells[nodes->from[q]].sent);
+    for (int q = 0; q < 1 << grid->dim && sent; q++) {
+      mpsi_cell_block *cells = nodes->from[q] >= 0 ? &grid->cells[nodes->from[q]] : NULL;
       if (!cells || !cells->in_contact || cells->ghost || cells->sent) continue;
       cells->sent = changed = true;
     }
@@ -92,14 +93,15 @@ static bool spread(mps_mpm *mpm) {
 
 /* Own blocks beside ghosts are sent; ranks of ghosts with constraints go to `linked` where an own
  * block has constraints too, else to `readers`. */
-static void find_links(mps_mpm *mpm, uint64_t *linked, uint64_t *readers) {
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+static void find_links(mpsi_grid *grid, const int32_t *ghost_rank, uint64_t *linked,
+                       uint64_t *readers) {
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    const mpsi_node_block *nodes = &grid->nodes[g];
     mpsi_cell_block *over[MPSI_CORNERS];
     int count = 0;
     bool own = false, in_contact = false, ghost = false;
-    for (int q = 0; q < 1 << mpm->dim; q++)
-      if (nodes->from[q] >= 0) over[count++] = &mpm->grid.cells[nodes->from[q]];
+    for (int q = 0; q < 1 << grid->dim; q++)
+      if (nodes->from[q] >= 0) over[count++] = &grid->cells[nodes->from[q]];
     for (int i = 0; i < count; i++) {
       own = own || !over[i]->ghost;
       ghost = ghost || over[i]->ghost;
@@ -110,16 +112,15 @@ static void find_links(mps_mpm *mpm, uint64_t *linked, uint64_t *readers) {
       if (!over[i]->ghost)
         over[i]->sent = true;
       else
-        set_bit(in_contact ? linked : readers, mpm->partition->ghost_rank[over[i]->parcel]);
+        set_bit(in_contact ? linked : readers, ghost_rank[over[i]->parcel]);
     }
   }
 }
 
 /* All constraints are sent to all ranks. */
-static void send_rows(mps_mpm *mpm, uint64_t *row) {
-  const int32_t rank = mps_domain_rank(mpm->partition->domain);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    mpsi_cell_block *cells = &mpm->grid.cells[b];
+static void send_rows(mpsi_grid *grid, int32_t rank, uint64_t *row) {
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    mpsi_cell_block *cells = &grid->cells[b];
     if (!cells->in_contact) continue;
     cells->sent = !cells->ghost;
     set_bit(row, rank); /* ghosts are beside own blocks */
@@ -129,13 +130,14 @@ static void send_rows(mps_mpm *mpm, uint64_t *row) {
 /* ---- all ranks ------------------------------------------------------------------------------- */
 
 /* From this rank on along the rows of linked ranks; then the readers of any of them. */
-static void follow(mps_mpm *mpm, const uint64_t *linked, const uint64_t *readers) {
-  const int32_t words = words_of(mpm);
-  uint64_t *own = mpm->contact.partners.own, *all = own + words;
+static void follow(mpsi_contact_partners *m, int32_t ranks, const uint64_t *linked,
+                   const uint64_t *readers) {
+  const int32_t words = (ranks + 63) / 64;
+  uint64_t *own = m->own, *all = own + words;
   bool changed = true;
   while (changed) {
     changed = false;
-    for (int32_t r = 0; r < ranks_of(mpm); r++)
+    for (int32_t r = 0; r < ranks; r++)
       for (int32_t w = 0; has_bit(own, r) && w < words; w++) {
         const uint64_t more = linked[(int64_t)r * words + w] & ~own[w];
         own[w] |= more;
@@ -143,47 +145,48 @@ static void follow(mps_mpm *mpm, const uint64_t *linked, const uint64_t *readers
       }
   }
   memcpy(all, own, (size_t)words * sizeof *own);
-  for (int32_t r = 0; r < ranks_of(mpm); r++)
+  for (int32_t r = 0; r < ranks; r++)
     for (int32_t w = 0; w < words; w++)
       if (readers[(int64_t)r * words + w] & own[w]) set_bit(all, r);
   memcpy(own, all, (size_t)words * sizeof *own);
 }
 
-static void take_rows(mps_mpm *mpm, const uint64_t *rows, int32_t count) {
-  mpsi_contact_partners *m = &mpm->contact.partners;
-  const int32_t words = words_of(mpm);
+static void take_rows(mpsi_contact_partners *m, const mps_domain *domain, const uint64_t *rows,
+                      int32_t count) {
+  const int32_t words = words_of(domain);
   int64_t bits = 0;
   for (int64_t w = 0; w < (int64_t)count * words; w++) bits += __builtin_popcountll(rows[w]);
   m->any = count > 1 ? bits > 0 : bits > 1;
   memset(m->own, 0, (size_t)words * sizeof *m->own);
-  set_bit(m->own, mps_domain_rank(mpm->partition->domain));
+  set_bit(m->own, mps_domain_rank(domain));
   if (count > 1)
-    follow(mpm, rows, rows + (int64_t)(count / 2) * words);
+    follow(m, mps_domain_size(domain), rows, rows + (int64_t)(count / 2) * words);
   else
     for (int32_t w = 0; w < words; w++) m->own[w] |= rows[w];
 }
 
-mps_status mpsi_mpm_find_partners(mps_mpm *mpm, const char *function, mps_status status,
-                                  int64_t *constraints) {
-  mpsi_contact_partners *m = &mpm->contact.partners;
-  const int32_t words = words_of(mpm), rows = rows_of(mpm);
+mps_status mpsi_mpm_find_partners(mpsi_contacts *contacts, mpsi_grid *grid,
+                                  const mpsi_partition *partition, const char *function,
+                                  mps_status status, int64_t *constraints) {
+  mpsi_contact_partners *m = &contacts->partners;
+  mps_domain *domain = partition->domain;
+  const int32_t words = words_of(domain), rows = rows_of(contacts, domain);
   uint64_t *row = (uint64_t *)m->words + HEAD;
   memset(m->words, 0, (size_t)(HEAD + rows * words) * sizeof *m->words);
   m->words[FAILED] = status != MPS_OK;
-  m->words[CONSTRAINTS] = mpm->contact.impulses.constraint_count;
+  m->words[CONSTRAINTS] = contacts->impulses.constraint_count;
   if (status == MPS_OK && rows == 1)
-    send_rows(mpm, row);
+    send_rows(grid, mps_domain_rank(domain), row);
   else if (status == MPS_OK) {
-    uint64_t *linked = row + (int64_t)mps_domain_rank(mpm->partition->domain) * words;
-    find_links(mpm, linked, linked + (int64_t)(rows / 2) * words);
-    while (spread(mpm)) {
+    uint64_t *linked = row + (int64_t)mps_domain_rank(domain) * words;
+    find_links(grid, partition->ghost_rank, linked, linked + (int64_t)(rows / 2) * words);
+    while (spread(grid)) {
     }
   }
-  const mps_status lost =
-      mpsi_domain_sum(mpm->partition->domain, function, HEAD + rows * words, m->words);
+  const mps_status lost = mpsi_domain_sum(domain, function, HEAD + rows * words, m->words);
   if (lost != MPS_OK) return lost;
-  if (m->words[FAILED] > 0) return mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (m->words[FAILED] > 0) return mpsi_domain_agree(domain, function, status);
   *constraints = m->words[CONSTRAINTS];
-  take_rows(mpm, row, rows);
+  take_rows(m, domain, row, rows);
   return MPS_OK;
 }

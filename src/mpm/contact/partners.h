@@ -10,9 +10,14 @@
 
 #include "core/base/room.h"
 
+#include <mps/domain.h>
 #include <mps/mpm.h>
 
-#define MPSI_MOST_PARTNERS 256 /* most ranks for which the matrix of links is kept */
+struct mpsi_contacts;
+struct mpsi_grid;
+struct mpsi_partition;
+
+#define MPSI_MOST_PARTNERS 256 /* ranks up to which it is known who is linked to whom */
 
 typedef struct mpsi_contact_partners {
   int64_t *words; /* the sums that ranks reduce: partners.c */
@@ -21,17 +26,19 @@ typedef struct mpsi_contact_partners {
   mpsi_room words_room, own_room;
 } mpsi_contact_partners;
 
-/* For the ranks of the solver's domain, if it has several, before there are contacts. Not
+/* For the ranks of a domain, before there are contacts. Not
  * collective, nor is the next. */
-mps_status mpsi_mpm_begin_partners(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_begin_partners(mpsi_contact_partners *partners, mps_domain *domain,
+                                   const char *function);
 /* Marks this rank's blocks of cells that have constraints or areas, before their tiles are sent. */
-void mpsi_mpm_mark_contact_blocks(mps_mpm *mpm);
+void mpsi_mpm_mark_contact_blocks(const struct mpsi_contacts *contacts, struct mpsi_grid *grid);
 /* Finds the partners, and which of the blocks are sent to them (mpsi_cell_block.sent).
  * `constraints`: number on all ranks. First all agree on `status`. Collective. */
-mps_status mpsi_mpm_find_partners(mps_mpm *mpm, const char *function, mps_status status,
-                                  int64_t *constraints);
+mps_status mpsi_mpm_find_partners(struct mpsi_contacts *contacts, struct mpsi_grid *grid,
+                                  const struct mpsi_partition *partition, const char *function,
+                                  mps_status status, int64_t *constraints);
 /* Whether it is a partner, or this rank itself. */
-bool mpsi_mpm_is_partner(const mps_mpm *mpm, int32_t rank);
-void mpsi_mpm_free_partners(mps_mpm *mpm);
+bool mpsi_mpm_is_partner(const mpsi_contact_partners *partners, int32_t rank);
+void mpsi_mpm_free_partners(mpsi_contact_partners *partners, mps_context *context);
 
 #endif

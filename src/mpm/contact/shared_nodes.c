@@ -2,17 +2,16 @@
  * place on the grid (exchange.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 
-#include "mpm/base/mpm_solver.h"
+#include "mpm/grid/blocks.h"
 
 #include <string.h>
 
 /* The node here, or NULL. */
-static double *find_home(const mps_mpm *mpm, const int32_t *at, bool across) {
-  const mpsi_grid *grid = &mpm->grid;
+static double *find_home(const mpsi_grid *grid, const int32_t *at, bool across) {
   int32_t block[3], local = 0;
   for (int c = 2; c >= 0; c--) {
     block[c] =
-        c < mpm->dim ? at[c] >= 0 ? at[c] / MPSI_SIDE : -((MPSI_SIDE - 1 - at[c]) / MPSI_SIDE) : 0;
+        c < grid->dim ? at[c] >= 0 ? at[c] / MPSI_SIDE : -((MPSI_SIDE - 1 - at[c]) / MPSI_SIDE) : 0;
     local = local * MPSI_SIDE + (at[c] - block[c] * MPSI_SIDE);
   }
   int64_t low = 0, high = grid->node_count;
@@ -28,7 +27,7 @@ static double *find_home(const mps_mpm *mpm, const int32_t *at, bool across) {
   }
   if (low == grid->node_count || memcmp(grid->nodes[low].at, block, sizeof block) != 0) return NULL;
   if (across && grid->nodes[low].across < 0) return NULL;
-  return grid->node[mpsi_first_node(mpm, across ? grid->nodes[low].across : low) + local];
+  return grid->node[mpsi_grid_first_node(grid, across ? grid->nodes[low].across : low) + local];
 }
 
 /* Where in the lookup the node is, or would be. */
@@ -44,9 +43,8 @@ static int64_t slot_of(const mpsi_contact_exchange *r, const int32_t *at, int32_
   return slot;
 }
 
-mpsi_shared_node *mpsi_mpm_shared_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
-                                       const double *value) {
-  mpsi_contact_exchange *r = &mpm->contact.exchange;
+mpsi_shared_node *mpsi_mpm_shared_node(mpsi_contact_exchange *r, const mpsi_grid *grid,
+                                       const int32_t *at, int32_t kind, const double *value) {
   mpsi_shared_node *shared = r->shared.item;
   int32_t *lookup = r->lookup.item;
   const int64_t slot = slot_of(r, at, kind);
@@ -55,14 +53,13 @@ mpsi_shared_node *mpsi_mpm_shared_node(mps_mpm *mpm, const int32_t *at, int32_t 
   memcpy(node->at, at, sizeof node->at);
   memcpy(node->value, value, sizeof node->value);
   node->kind = kind;
-  node->home = kind < MPSI_SHARED_AREA ? find_home(mpm, at, kind == MPSI_SHARED_ACROSS) : NULL;
+  node->home = kind < MPSI_SHARED_AREA ? find_home(grid, at, kind == MPSI_SHARED_ACROSS) : NULL;
   lookup[slot] = (int32_t)r->nodes++;
   return node;
 }
 
-mpsi_area *mpsi_mpm_shared_area(const mps_mpm *mpm, const int32_t *block, const int *at,
+mpsi_area *mpsi_mpm_shared_area(const mpsi_contact_exchange *r, const int32_t *block, const int *at,
                                 int32_t body) {
-  const mpsi_contact_exchange *r = &mpm->contact.exchange;
   int32_t place[3];
   for (int c = 0; c < 3; c++) place[c] = block[c] * MPSI_SIDE + at[c];
   const int32_t found =

@@ -1,28 +1,28 @@
 /* warm_start.c - warm-start impulses on several ranks: after a step each rank has those of its own
  * particles and of its contact partners' (partners.h). SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "exchange.h"
+
+#include "core/particles/particles_internal.h"
+#include "domain/domain_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* Those of particles that are here; returns how many. */
-static int64_t keep_own(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+static int64_t keep_own(mpsi_impulses *all, const mps_particles *particles) {
   int64_t count = 0;
   for (int64_t k = 0; k < all->warm_count; k++)
-    if (mps_particles_index(mpm->particles, all->warm[k].id) >= 0)
-      all->warm[count++] = all->warm[k];
+    if (mps_particles_index(particles, all->warm[k].id) >= 0) all->warm[count++] = all->warm[k];
   return all->warm_count = count;
 }
 
-static mps_status take(mps_mpm *mpm, const char *function, const mpsi_mailbox *box) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+static mps_status take(mpsi_impulses *all, const char *function, const mpsi_mailbox *box) {
   const int64_t size = (int64_t)sizeof *all->warm;
   int64_t count = all->warm_count;
   for (int32_t k = 0; k < box->count; k++) count += box->mail[k].bytes / size;
   if (count > all->warm_room.capacity) {
-    if (!mpsi_grow(mpm->context, &all->warm_room.item, all->warm_count, count, sizeof *all->warm))
-      return mpsi_fail_memory(mpm->context, function, (size_t)(count * size));
+    if (!mpsi_grow(box->context, &all->warm_room.item, all->warm_count, count, sizeof *all->warm))
+      return mpsi_fail_memory(box->context, function, (size_t)(count * size));
     all->warm_room.capacity = count;
     all->warm = all->warm_room.item;
   }
@@ -33,28 +33,27 @@ static mps_status take(mps_mpm *mpm, const char *function, const mpsi_mailbox *b
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_share_warm_start(mps_mpm *mpm, const char *function, mps_status status) {
-  if (mpm->contact.bodies == 0) return status;
-  mps_domain *domain = mpm->partition->domain;
+mps_status mpsi_mpm_share_warm_start(mpsi_impulses *all, const mps_particles *particles,
+                                     mps_domain *domain, const char *function, mps_status status) {
+  mps_context *context = mpsi_particles_context(particles);
   const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
-  mpsi_mailbox box = {.context = mpm->context};
-  double any = (double)keep_own(mpm);
-  mps_domain_message *list = mpsi_alloc(mpm->context, ranks, sizeof *list);
+  mpsi_mailbox box = {.context = context};
+  double any = (double)keep_own(all, particles);
+  mps_domain_message *list = mpsi_alloc(context, ranks, sizeof *list);
   if (!list && status == MPS_OK)
-    status = mpsi_fail_memory(mpm->context, function, (size_t)ranks * sizeof *list);
+    status = mpsi_fail_memory(context, function, (size_t)ranks * sizeof *list);
   status = mpsi_domain_agree_max(domain, function, status, 1, &any);
   if (status == MPS_OK && any > 0.0) {
-    const mpsi_impulses *all = &mpm->contact.impulses;
     const int64_t bytes = all->warm_count * (int64_t)sizeof *all->warm;
     int32_t count = 0;
     for (int32_t r = 0; r < ranks && bytes > 0; r++)
       if (r != rank)
         list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = all->warm};
     status = mpsi_domain_exchange(domain, function, count, list, &box);
-    if (status == MPS_OK) status = mpsi_domain_agree(domain, function, take(mpm, function, &box));
+    if (status == MPS_OK) status = mpsi_domain_agree(domain, function, take(all, function, &box));
   }
   mpsi_domain_free_mail(&box);
-  mpsi_free(mpm->context, list);
+  mpsi_free(context, list);
   return status;
 }
 
@@ -64,7 +63,6 @@ static int by_owner(const void *left, const void *right) {
   return (a->body > b->body) - (a->body < b->body);
 }
 
-void mpsi_mpm_order_warm_start(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+void mpsi_mpm_order_warm_start(mpsi_impulses *all) {
   if (all->warm_count > 1) qsort(all->warm, (size_t)all->warm_count, sizeof *all->warm, by_owner);
 }

@@ -20,6 +20,7 @@
 #define MPSI_MPM_BLOCKS_H
 
 #include "pass.h"
+#include "mpm/base/columns.h"
 #include "mpm/life/restart.h"
 #include "core/base/room.h"
 
@@ -143,7 +144,9 @@ static inline double mpsi_own_mass(double mass, double excess) {
 }
 
 typedef struct mpsi_grid {
-  bool apart;                      /* a query needs the forces apart from the momenta everywhere */
+  int32_t dim, spline;             /* of the definition, as the next two */
+  double origin[3], cell;          /* m */
+  bool apart;                      /* a reader wants the forces apart from the momenta everywhere */
   int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
   double inverse;                  /* 1/m, 1/h */
   int64_t low[3], high[3];         /* first and last node of the domain */
@@ -206,9 +209,19 @@ static inline bool mpsi_block_before(const int32_t *a, const int32_t *b) {
   return a[0] < b[0];
 }
 
+/* Coordinate of x in cells from the origin along axis c. */
+static inline double mpsi_grid_at(const mpsi_grid *grid, int c, double x) {
+  return (x - grid->origin[c]) * grid->inverse;
+}
+
+static inline int64_t mpsi_grid_first_node(const mpsi_grid *grid, int64_t g) {
+  return g * grid->block_nodes;
+}
+
 /* order.c: keys and indices of the particles in their order, the block above `own_bits` bits; NULL
  * when out of memory. */
-mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);
+mpsi_radix *mpsi_mpm_find_order(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                                int32_t *own_bits);
 /* ready.c: sorts the particles by blocks and builds the lists of blocks; layout.c: where there are
  * no other ranks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);

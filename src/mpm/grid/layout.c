@@ -219,7 +219,7 @@ static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {
 
 static mps_status find_cells(mps_mpm *mpm, const char *function) {
   key_chunks chunks = {.mpm = mpm};
-  mpm->grid.sorted = mpsi_mpm_find_order(mpm, &mpm->grid.own_bits);
+  mpm->grid.sorted = mpsi_mpm_find_order(mpm->context, &mpm->grid, &mpm->p, &mpm->grid.own_bits);
   if (!mpm->grid.sorted) return no_room(mpm, function, mpm->p.count / mpm->grid.block_nodes + 1);
   const int64_t cells = count_cells(&chunks);
   if (!mpsi_mpm_ensure_cells(mpm, cells)) return no_room(mpm, function, cells);

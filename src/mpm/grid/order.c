@@ -6,7 +6,8 @@
  * Where the blocks are so far apart that their coordinates do not fit one word, the particles are
  * sorted by two words, the lower first, and blocks are then counted through.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "blocks.h"
+#include "core/internal.h"
 
 #include <string.h>
 
@@ -18,7 +19,8 @@
 /* ---- chunks ---------------------------------------------------------------------------------- */
 
 typedef struct sorter {
-  const mps_mpm *mpm;
+  mps_context *context;
+  const mpsi_grid *grid;
   const mpsi_columns *p;
   int64_t chunk; /* particles in a unit of work */
   int32_t chunks;
@@ -49,13 +51,13 @@ static void run_chunk(void *data, int64_t chunk, int32_t worker) {
 
 static void for_chunks(sorter *s, chunk_fn work) {
   chunk_task task = {s, work};
-  mpsi_parallel_for(s->mpm->context, s->chunks, run_chunk, &task);
+  mpsi_parallel_for(s->context, s->chunks, run_chunk, &task);
 }
 
 /* ---- keys ------------------------------------------------------------------------------------ */
 
 static void find_extent(sorter *s, int32_t chunk, int64_t begin, int64_t end) {
-  for (int c = 0; c < s->mpm->dim; c++) {
+  for (int c = 0; c < s->grid->dim; c++) {
     const double *x = s->p->x[c];
     double least = x[begin], most = x[begin];
     for (int64_t k = begin + 1; k < end; k++) {
@@ -72,22 +74,22 @@ static int32_t bits_of(uint64_t range) {
   return bits;
 }
 
-static int64_t block_at(const mps_mpm *mpm, int c, double x) {
-  return mpsi_block_of((int64_t)mpsi_base(mpm->def.spline, mpsi_grid_coordinate(mpm, c, x)));
+static int64_t block_at(const mpsi_grid *grid, int c, double x) {
+  return mpsi_block_of((int64_t)mpsi_base(grid->spline, mpsi_grid_at(grid, c, x)));
 }
 
 /* First block and number of bits of each axis; whether one word holds them all. */
 static void find_range(sorter *s) {
   for_chunks(s, find_extent);
   int32_t bits = s->own_bits;
-  for (int c = 0; c < s->mpm->dim; c++) {
+  for (int c = 0; c < s->grid->dim; c++) {
     double least = s->least[0][c], most = s->most[0][c];
     for (int32_t k = 1; k < s->chunks; k++) {
       least = s->least[k][c] < least ? s->least[k][c] : least;
       most = s->most[k][c] > most ? s->most[k][c] : most;
     }
-    s->low[c] = block_at(s->mpm, c, least);
-    s->bits[c] = bits_of((uint64_t)(block_at(s->mpm, c, most) - s->low[c]));
+    s->low[c] = block_at(s->grid, c, least);
+    s->bits[c] = bits_of((uint64_t)(block_at(s->grid, c, most) - s->low[c]));
     bits += s->bits[c];
   }
   s->two_words = bits > 64;
@@ -101,11 +103,11 @@ static inline int64_t whole(double x) {
 
 /* Blocks from the first along each axis, and the stencil's place within its block. */
 static inline uint64_t block_of_particle(const sorter *s, int64_t k, uint64_t *block) {
-  const mps_mpm *mpm = s->mpm;
+  const mpsi_grid *grid = s->grid;
   uint64_t within = 0;
-  for (int c = mpm->dim - 1; c >= 0; c--) {
-    const double X = mpsi_grid_coordinate(mpm, c, s->p->x[c][k]);
-    const int64_t n = mpm->def.spline == 3 ? whole(X) - 2 : whole(X - 0.5) - 1;
+  for (int c = grid->dim - 1; c >= 0; c--) {
+    const double X = mpsi_grid_at(grid, c, s->p->x[c][k]);
+    const int64_t n = grid->spline == 3 ? whole(X) - 2 : whole(X - 0.5) - 1;
     const int64_t from = n - s->low[c] * MPSI_SIDE; /* not negative */
     block[c] = (uint64_t)from / MPSI_SIDE;
     within = within * MPSI_SIDE + (uint64_t)from % MPSI_SIDE;
@@ -177,16 +179,16 @@ static void number_blocks(sorter *s) {
   }
 }
 
-mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits) {
-  sorter s = {.mpm = mpm, .p = &mpm->p, .own_bits = mpm->dim == 3 ? 9 : 6};
-  s.chunk = (mpm->p.count + MOST_CHUNKS - 1) / MOST_CHUNKS;
+mpsi_radix *mpsi_mpm_find_order(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                                int32_t *own_bits) {
+  sorter s = {.context = context, .grid = grid, .p = p, .own_bits = grid->dim == 3 ? 9 : 6};
+  s.chunk = (p->count + MOST_CHUNKS - 1) / MOST_CHUNKS;
   if (s.chunk < CHUNK) s.chunk = CHUNK;
-  s.chunks = (int32_t)((mpm->p.count + s.chunk - 1) / s.chunk);
-  if (!mpsi_room_ensure(mpm->context, &mpm->grid.digits_room, (int64_t)s.chunks * DIGITS,
-                        sizeof(int32_t)))
+  s.chunks = (int32_t)((p->count + s.chunk - 1) / s.chunk);
+  if (!mpsi_room_ensure(context, &grid->digits_room, (int64_t)s.chunks * DIGITS, sizeof(int32_t)))
     return NULL;
-  s.place = mpm->grid.digits_room.item;
-  s.from = mpm->grid.radix, s.to = mpm->grid.radix + mpm->p.count;
+  s.place = grid->digits_room.item;
+  s.from = grid->radix, s.to = grid->radix + p->count;
   find_range(&s);
   for_chunks(&s, make_keys);
   const int32_t along = s.bits[0] + s.own_bits, across = s.bits[1] + s.bits[2];

@@ -440,6 +440,9 @@ static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
   mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
   mpm->p.count = mps_particles_count(mpm->particles);
   mpm->grid.inverse = 1.0 / def->cell;
+  mpm->grid.dim = mpm->dim, mpm->grid.spline = mpm->def.spline;
+  mpm->grid.cell = mpm->def.cell;
+  memcpy(mpm->grid.origin, mpm->def.origin, sizeof mpm->grid.origin);
   memcpy(mpm->grid.low, low, sizeof mpm->grid.low);
   memcpy(mpm->grid.high, high, sizeof mpm->grid.high);
 }
@@ -554,7 +557,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   free_rooms(mpm);
   mpsi_mpm_free_impulses(mpm);
   mpsi_mpm_free_contact_exchange(mpm);
-  mpsi_mpm_free_partners(mpm);
+  mpsi_mpm_free_partners(&mpm->contact.partners, context);
   mpsi_mpm_drop_loads(mpm);
   mpsi_mpm_drop_boundaries(mpm);
   for (int32_t k = 0; k < mpm->laws.count; k++) {

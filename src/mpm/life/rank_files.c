@@ -92,8 +92,11 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
   mps_domain *domain = mpm->partition->domain;
   mps_snapshot state = {.context = mpm->context};
   const mpsi_checkpoint_request request = {of, function, path, info, &state.state};
-  mps_status status = mpsi_mpm_share_warm_start(mpm, function, MPS_OK);
-  mpsi_mpm_order_warm_start(mpm);
+  mps_status status = MPS_OK;
+  if (mpm->contact.bodies > 0)
+    status =
+        mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->particles, domain, function, status);
+  mpsi_mpm_order_warm_start(&mpm->contact.impulses);
   if (status == MPS_OK)
     status = mpsi_domain_agree(domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(mpm, function, &state.state);

@@ -464,7 +464,7 @@ mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *in
   mps_status status = mpsi_mpm_agree(mpm, __func__, make_whole(mpm, __func__));
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) {
-    mpsi_mpm_order_warm_start(mpm);
+    mpsi_mpm_order_warm_start(&mpm->contact.impulses);
     status = mpm->partition ? mpsi_mpm_save_on_ranks(mpm, &of, __func__, path, info)
                             : mpsi_checkpoint_save(&of, __func__, path, info);
   }

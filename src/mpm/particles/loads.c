@@ -11,7 +11,7 @@
 
 /* ---- forces of a step ------------------------------------------------------------------------ */
 
-mps_status mpsi_mpm_make_forces(mps_mpm *mpm, const char *function) {
+static mps_status make_forces(mps_mpm *mpm, const char *function) {
   if (mpm->rooms.force.item || mpsi_mpm_force_room(mpm, mpm->p.count)) return MPS_OK;
   return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof(double));
 }
@@ -54,7 +54,7 @@ mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
     loads->external_force[c] = mpsi_particles_column(mpm->particles, "external_force", c);
   }
   if (loads->body_acceleration[0] || loads->external_force[0]) {
-    const mps_status status = mpsi_mpm_make_forces(mpm, function);
+    const mps_status status = make_forces(mpm, function);
     if (status != MPS_OK) return status;
   }
   if (!mpm->rooms.force.item) return MPS_OK;
@@ -196,7 +196,7 @@ mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t 
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
   status = compare_ranks(mpm, __func__, status, -1, &def);
   status = check_list(mpm, __func__, status, &def);
-  if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
+  if (status == MPS_OK) status = make_forces(mpm, __func__);
   if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);
   if (status == MPS_OK) status = find_number(mpm, __func__, &at);
   status = mpsi_mpm_agree(mpm, __func__, status);

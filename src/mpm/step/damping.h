@@ -25,8 +25,6 @@ typedef struct mpsi_settling {
   mpsi_room nodes_room;
 } mpsi_settling;
 
-/* settle.c: before a step of another kind the particles of a cut mps_mpm_settle stop. */
-void mpsi_mpm_leave_settling(mps_mpm *mpm);
 /* Before a step, where settling: room, and what is applied to the particles, of which some may
  * leave in the step. */
 mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function);

@@ -78,7 +78,8 @@ static void stop_particles(mps_mpm *mpm) {
 
 /* ---- settling -------------------------------------------------------------------------------- */
 
-void mpsi_mpm_leave_settling(mps_mpm *mpm) {
+/* Before a step of another kind the particles of a cut mps_mpm_settle stop. */
+static void leave_settling(mps_mpm *mpm) {
   if (!mpm->settling.cut) return;
   mpm->settling.cut = false;
   stop_particles(mpm);
@@ -121,7 +122,7 @@ mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, doubl
   const mpsi_energy energy = mpm->energy;
   double *motion = NULL;
   if (!mpm->partition && !(motion = keep_motion(mpm, function))) return MPS_ERROR_MEMORY;
-  mpsi_mpm_leave_settling(mpm);
+  leave_settling(mpm);
   const mps_status status = mpsi_mpm_take_step(mpm, function, dt);
   if (motion && status != MPS_OK && mpm->run.steps == steps && !mpm->run.broken) {
     put_motion_back(mpm, motion);

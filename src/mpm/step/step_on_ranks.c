@@ -85,7 +85,7 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
   status = mpsi_mpm_find_constraints(mpm, function);
-  if (mpm->contact.bodies > 0) mpsi_mpm_mark_contact_blocks(mpm);
+  if (mpm->contact.bodies > 0) mpsi_mpm_mark_contact_blocks(&mpm->contact, &mpm->grid);
   status = transfer(mpm, function, dt, status);
   if (status != MPS_OK) return status;
   mpsi_step_after_gather(mpm);
