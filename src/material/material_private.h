@@ -44,11 +44,6 @@ typedef struct mpsi_law_table {
   mpsi_law_fn apply[MPSI_LAW_COUNT][MPSI_GEOMETRIES];
 } mpsi_law_table;
 
-extern const mpsi_law_table mpsi_laws_v1;
-#ifdef MPSI_X86_LEVELS
-extern const mpsi_law_table mpsi_laws_v3;
-extern const mpsi_law_table mpsi_laws_v4;
-#endif
 /* x86-64 level: 0 the best that processor and build have, 1 the plain build; NULL if missing. */
 const mpsi_law_table *mpsi_laws_select(int32_t isa);
 

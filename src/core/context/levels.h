@@ -21,4 +21,20 @@ static inline int32_t mpsi_level(int32_t wanted) {
   return wanted == 0 || wanted == 1 ? 1 : 0;
 }
 
+/* Defines `const type *function(int32_t wanted)`: of the tables of loops `table`_v1, _v3 and _v4,
+ * one for each level that the build has, that of mpsi_level(wanted); NULL when what is asked for is
+ * missing. */
+#ifdef MPSI_X86_LEVELS
+#define MPSI_DISPATCH(type, function, table)                                                       \
+  extern const type table##_v1, table##_v3, table##_v4;                                            \
+  const type *function(int32_t wanted) {                                                           \
+    const int32_t level = mpsi_level(wanted);                                                      \
+    return level == 4 ? &table##_v4 : level == 3 ? &table##_v3 : level == 1 ? &table##_v1 : NULL;  \
+  }
+#else
+#define MPSI_DISPATCH(type, function, table)                                                       \
+  extern const type table##_v1;                                                                    \
+  const type *function(int32_t wanted) { return mpsi_level(wanted) == 1 ? &table##_v1 : NULL; }
+#endif
+
 #endif

@@ -4,10 +4,4 @@
 
 #include "core/context/levels.h"
 
-const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t level) {
-#ifdef MPSI_X86_LEVELS
-  if (level == 4) return &mpsi_dynamics_kernels_v4;
-  if (level == 3) return &mpsi_dynamics_kernels_v3;
-#endif
-  return level == 1 ? &mpsi_dynamics_kernels_v1 : NULL;
-}
+MPSI_DISPATCH(mpsi_dynamics_kernels, mpsi_dynamics_kernels_select, mpsi_dynamics_kernels)

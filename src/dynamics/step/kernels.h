@@ -79,10 +79,4 @@ typedef struct mpsi_dynamics_kernels {
 /* The loops of an x86-64 level, as given by mpsi_context_level. */
 const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t level);
 
-extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v1;
-#ifdef MPSI_X86_LEVELS
-extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v3;
-extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v4;
-#endif
-
 #endif
