@@ -96,6 +96,7 @@ if [ -x "$programs/mps-seawall" ]; then
 fi
 
 # Pressed again and again: it ends, and says so.
+rm -f "$work/out"
 "$programs/mps-tank" --duration 100 --threads 1 --out "$work/again" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -s "$work/out" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done
