@@ -76,7 +76,7 @@ static double runout(const settings *s, const column_case *c) {
   return has_ended(c) ? c->front[c->rows - 1] / s->width - 1.0 : NAN;
 }
 
-/* Of all but the foremost two hundredths of the mass. */
+/* Of all but the foremost 2 % of the particles. */
 static double runout_98(const settings *s, const column_case *c) {
   return has_ended(c) ? c->reach / s->width - 1.0 : NAN;
 }

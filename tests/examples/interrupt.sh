@@ -70,6 +70,7 @@ interrupt box 0.5 mps-sliding-box --h 0.0025
 wrote box forces.csv summary.json
 interrupt disc 0.5 mps-rolling-disc --h 0.002
 wrote disc motion.csv summary.json
+has "$work/disc/summary.json" '"x_error_05": null'
 interrupt footing 1 mps-footing
 wrote footing pressure.csv particles.csv summary.json
 interrupt pile 1 mps-pile --soil 0.4x2
