@@ -67,12 +67,22 @@ static double law_runout(double a) {
 
 static double law_height(double a) { return a <= 1.0 ? a : pow(a, 0.4); }
 
+/* It rests, or has had its time. One that Ctrl-C has stopped has no run-out yet. */
+static bool has_ended(const column_case *c) {
+  return !isnan(c->time_at_rest) || c->rows == SAMPLES + 1;
+}
+
 static double runout(const settings *s, const column_case *c) {
-  return c->front[c->rows - 1] / s->width - 1.0;
+  return has_ended(c) ? c->front[c->rows - 1] / s->width - 1.0 : NAN;
+}
+
+/* Of all but the foremost 2 % of the particles. */
+static double runout_98(const settings *s, const column_case *c) {
+  return has_ended(c) ? c->reach / s->width - 1.0 : NAN;
 }
 
 static double final_height(const settings *s, const column_case *c) {
-  return c->height[c->rows - 1] / s->width;
+  return has_ended(c) ? c->height[c->rows - 1] / s->width : NAN;
 }
 
 /* ---- building -------------------------------------------------------------------------------- */
@@ -274,8 +284,8 @@ static bool write_cases(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
   if (!output_open(&f, a, s->out, "cases.csv")) return false;
-  csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout,runout_law,height,height_law,"
-                 "time_at_rest_s?,volume_ratio_max,runout_98");
+  csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law,height?,height_law,"
+                 "time_at_rest_s?,volume_ratio_max,runout_98?");
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
     const double row[] = {c->aspect,
@@ -287,7 +297,7 @@ static bool write_cases(app *a, const simulation *sim) {
                           law_height(c->aspect),
                           c->time_at_rest,
                           c->volume_ratio,
-                          c->reach / s->width - 1.0};
+                          runout_98(s, c)};
     csv_named_row(&f, c->name, 10, row);
   }
   return output_close(&f);
@@ -400,10 +410,10 @@ static bool draw_law(app *a, const simulation *sim) {
 static void summarise(output *f, const simulation *sim) {
   const settings *s = &sim->s;
   const column_case *c = &sim->column[sim->count - 1];
-  double worst = 0.0;
+  double worst = NAN;
   for (int k = 0; k < sim->count; k++) {
     const double d = runout(s, &sim->column[k]) / law_runout(sim->column[k].aspect) - 1.0;
-    if (fabs(d) > fabs(worst)) worst = d;
+    if (isnan(worst) || fabs(d) > fabs(worst)) worst = d;
   }
   json_integer(f, "columns", sim->count);
   json_number(f, "h", s->h);
@@ -414,7 +424,7 @@ static void summarise(output *f, const simulation *sim) {
   json_number(f, "runout_law", law_runout(c->aspect));
   json_number(f, "runout_error", runout(s, c) / law_runout(c->aspect) - 1.0);
   json_number(f, "runout_error_worst", worst);
-  json_number(f, "runout_98", c->reach / s->width - 1.0);
+  json_number(f, "runout_98", runout_98(s, c));
   json_number(f, "height", final_height(s, c));
   json_number(f, "height_law", law_height(c->aspect));
   json_number(f, "time_at_rest", c->time_at_rest);
@@ -439,6 +449,11 @@ static bool finish(app *a, void *user) {
   app_tell_results(a, s->out);
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
+    if (!has_ended(c)) {
+      printf("%-12s a = %-4g stopped at %.3g s, before its end\n", c->name, c->aspect,
+             c->t[c->rows - 1]);
+      continue;
+    }
     printf("%-12s a = %-4g run-out %.3f (law %.3f)  height %.3f (law %.3f)  %s %.3g s\n", c->name,
            c->aspect, runout(s, c), law_runout(c->aspect), final_height(s, c),
            law_height(c->aspect), isnan(c->time_at_rest) ? "still moves at" : "at rest after",

@@ -152,7 +152,7 @@ class Edit:
     """A field open for writing: `array`, or the value of a `with` block, whose end commits; left by
     an exception it abandons, and the values are those from before. Where a value is out of range
     commit() raises and the field stays open: mend it and commit again, or abandon(). After that the
-    array is stale, and so are all parts of it. An edit that is let go of is abandoned, with a warning."""
+    array is stale, and so are all parts of it. An edit that is dropped is abandoned, with a warning."""
 
     def __init__(self, owner, name):
         self._owner, self._edit = owner, ffi.new("mps_edit *")
@@ -164,7 +164,7 @@ class Edit:
         array = getattr(self, "array", None)
         if array is None or array.stale or self._owner.context.pointer is None:
             return
-        warnings.warn(f"the edit of {self._name!r} was let go of without commit(), and is abandoned",
+        warnings.warn(f"the edit of {self._name!r} was dropped without commit(), and is abandoned",
                       RuntimeWarning, stacklevel=2)
         self.abandon()
 

@@ -70,6 +70,7 @@ interrupt box 0.5 mps-sliding-box --h 0.0025
 wrote box forces.csv summary.json
 interrupt disc 0.5 mps-rolling-disc --h 0.002
 wrote disc motion.csv summary.json
+has "$work/disc/summary.json" '"x_error_05": null'
 interrupt footing 1 mps-footing
 wrote footing pressure.csv particles.csv summary.json
 interrupt pile 1 mps-pile --soil 0.4x2
@@ -78,6 +79,10 @@ interrupt dam 1 mps-dam-break
 wrote dam front.csv particles.csv summary.json
 interrupt collapse 1 mps-column-collapse --compare
 wrote collapse cases.csv front_sand.csv particles_sand.csv summary.json
+has "$work/out" "before its end"
+for key in runout runout_error runout_98 height time_at_rest; do
+  has "$work/collapse/summary.json" "\"$key\": null"
+done
 interrupt cone 2 mps-penetrometer --soil 3x3x3
 wrote cone force.csv section.csv summary.json
 interrupt wave 0.5 mps-wave --radius 1 --duration 3000
@@ -96,6 +101,7 @@ if [ -x "$programs/mps-seawall" ]; then
 fi
 
 # Pressed again and again: it ends, and says so.
+rm -f "$work/out"
 "$programs/mps-tank" --duration 100 --threads 1 --out "$work/again" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -s "$work/out" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done

@@ -237,12 +237,12 @@ class Errors(unittest.TestCase):
             density.setflags(write=True)
         self.assertEqual(sand["density"][0], 1800.0)
 
-    def test_an_edit_let_go_of_is_abandoned(self):
+    def test_a_dropped_edit_is_abandoned(self):
         context = mps.Context()
         sand = block(context)
         edit = sand.edit("density")
         edit.array[:] = 1.0
-        with self.assertWarnsRegex(RuntimeWarning, "the edit of 'density' was let go of"):
+        with self.assertWarnsRegex(RuntimeWarning, "the edit of 'density' was dropped"):
             del edit
             gc.collect()
         self.assertEqual(sand["density"][0], 1800.0)
