@@ -300,6 +300,16 @@ void api_print_counts(void);
     (void)api_end(a, status);                                                                      \
   } while (0)
 
+/* static void name(api *a): the result `type` of a handle, by get(handle, out, size). */
+#define API_GETTER(name, get, kind, object, type)                                                  \
+  static void name(api *a) {                                                                       \
+    api_begin(a, #get);                                                                            \
+    object *handle = api_any(a, kind)->handle;                                                     \
+    API_SIZED(a, type, size, out);                                                                 \
+    const mps_status status = get(handle, api_null(a, "out") ? NULL : out, size);                  \
+    API_SIZED_END(a, status, size, out, true);                                                     \
+  }
+
 #define API_TABLE(calls)                                                                           \
   { calls, (int)(sizeof calls / sizeof *calls) }
 #define API_COUNT(array) ((int)(sizeof array / sizeof *array))

@@ -48,29 +48,31 @@ static void made_elastic(api *a, mps_status status, const mps_elastic_def *def, 
       a->objects[API_ELASTIC][k].loose = residual;
 }
 
-static void elastic_create(api *a) {
-  api_begin(a, "mps_elastic_create");
+static void create(api *a, bool published) {
   mps_elastic *made = NULL;
   mps_elastic_def def;
   mps_context *context = api_context(a);
   mps_particles *set = api_any(a, API_SET)->handle;
   draw_def(a, &def);
-  const mps_status status =
-      mps_elastic_create(context, set, a->wrong == 0 && api_chance(a, 5) ? NULL : &def,
-                         api_null(a, "out") ? NULL : &made);
+  mps_status status;
+  if (published) {
+    status =
+        mps_experimental_elastic_published(context, set, &def, (int32_t)api_below(a, 2), &made);
+  } else {
+    const mps_elastic_def *given = a->wrong == 0 && api_chance(a, 5) ? NULL : &def;
+    status = mps_elastic_create(context, set, given, api_null(a, "out") ? NULL : &made);
+  }
   made_elastic(a, status, &def, made);
+}
+
+static void elastic_create(api *a) {
+  api_begin(a, "mps_elastic_create");
+  create(a, false);
 }
 
 static void experimental_published(api *a) {
   api_begin(a, "mps_experimental_elastic_published");
-  mps_elastic *made = NULL;
-  mps_elastic_def def;
-  mps_context *context = api_context(a);
-  mps_particles *set = api_any(a, API_SET)->handle;
-  draw_def(a, &def);
-  const mps_status status =
-      mps_experimental_elastic_published(context, set, &def, (int32_t)api_below(a, 2), &made);
-  made_elastic(a, status, &def, made);
+  create(a, true);
 }
 
 static void elastic_update_material(api *a) {
@@ -307,13 +309,8 @@ static void elastic_solve_cases(api *a) {
   (void)api_end(a, status);
 }
 
-static void elastic_get_report_sized(api *a) {
-  api_begin(a, "mps_elastic_get_report_sized");
-  mps_elastic *e = api_any(a, API_ELASTIC)->handle;
-  API_SIZED(a, mps_elastic_report, size, out);
-  const mps_status status = mps_elastic_get_report_sized(e, api_null(a, "out") ? NULL : out, size);
-  API_SIZED_END(a, status, size, out, true);
-}
+API_GETTER(elastic_get_report_sized, mps_elastic_get_report_sized, API_ELASTIC, mps_elastic,
+           mps_elastic_report)
 
 static void elastic_stress(api *a) {
   api_begin(a, "mps_elastic_update_stress");

@@ -278,14 +278,8 @@ static void fluid_abandon_step(api *a) {
   (void)api_end(a, mps_fluid_abandon_step(api_any(a, API_FLUID)->handle));
 }
 
-static void fluid_get_report_sized(api *a) {
-  api_begin(a, "mps_fluid_get_report_sized");
-  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
-  API_SIZED(a, mps_fluid_report, size, out);
-  const mps_status status =
-      mps_fluid_get_report_sized(fluid, api_null(a, "out") ? NULL : out, size);
-  API_SIZED_END(a, status, size, out, true);
-}
+API_GETTER(fluid_get_report_sized, mps_fluid_get_report_sized, API_FLUID, mps_fluid,
+           mps_fluid_report)
 
 /* ---- a foreign solver, which does not solve -------------------------------------------------- */
 

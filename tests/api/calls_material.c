@@ -57,6 +57,19 @@ static void material_von_mises(api *a) {
       a, mps_material_create_von_mises(context, api_null(a, "def") ? NULL : &def, &made), &made);
 }
 
+/* Angles and strengths, by which the two laws of soil are alike. */
+#define DRAW_SOIL(a, def)                                                                          \
+  do {                                                                                             \
+    (def)->young = api_real(a, "young", YOUNG);                                                    \
+    (def)->poisson = api_real(a, "poisson", POISSON);                                              \
+    (def)->friction = api_real(a, "friction", 0.0, 1.5707963, 0.5);                                \
+    (def)->dilation = api_real(a, "dilation", 0.0, 1.5707963, api_chance(a, 50) ? 0.0 : 0.2);      \
+    (def)->cohesion = api_real(a, "cohesion", 0.0, 1e18, 100.0);                                   \
+    if (api_chance(a, 20)) (def)->tension = api_real(a, "tension", 0.0, INFINITY, 10.0);           \
+    const double beyond = nextafter(1.5707963, 2.0); /* below a right angle still */               \
+    if ((def)->friction == beyond || (def)->dilation == beyond) (a)->wrong = 0;                    \
+  } while (0)
+
 static void material_drucker_prager(api *a) {
   api_begin(a, "mps_material_create_drucker_prager");
   mps_material *made = NULL;
@@ -65,17 +78,9 @@ static void material_drucker_prager(api *a) {
   mps_material_drucker_prager_def_init(&def, sizeof def);
   def.struct_size = api_struct_size(a, sizeof def);
   def.cone = api_choice(a, "cone", 4);
-  def.young = api_real(a, "young", YOUNG);
-  def.poisson = api_real(a, "poisson", POISSON);
-  def.friction = api_real(a, "friction", 0.0, 1.5707963, 0.5);
-  def.dilation = api_real(a, "dilation", 0.0, 1.5707963, api_chance(a, 50) ? 0.0 : 0.2);
-  def.cohesion = api_real(a, "cohesion", 0.0, 1e18, 100.0);
-  if (api_chance(a, 20)) def.tension = api_real(a, "tension", 0.0, INFINITY, 10.0);
-  if (def.friction == nextafter(1.5707963, 2.0) || def.dilation == nextafter(1.5707963, 2.0))
-    a->wrong = 0;
-  (void)made_material(
-      a, mps_material_create_drucker_prager(context, &def, api_null(a, "out") ? NULL : &made),
-      &made);
+  DRAW_SOIL(a, &def);
+  mps_material **out = api_null(a, "out") ? NULL : &made;
+  (void)made_material(a, mps_material_create_drucker_prager(context, &def, out), &made);
 }
 
 static void material_mohr_coulomb(api *a) {
@@ -85,16 +90,9 @@ static void material_mohr_coulomb(api *a) {
   mps_material_mohr_coulomb_def def;
   mps_material_mohr_coulomb_def_init(&def, sizeof def);
   def.struct_size = api_struct_size(a, sizeof def);
-  def.young = api_real(a, "young", YOUNG);
-  def.poisson = api_real(a, "poisson", POISSON);
-  def.friction = api_real(a, "friction", 0.0, 1.5707963, 0.5);
-  def.dilation = api_real(a, "dilation", 0.0, 1.5707963, api_chance(a, 50) ? 0.0 : 0.2);
-  def.cohesion = api_real(a, "cohesion", 0.0, 1e18, 100.0);
-  if (api_chance(a, 20)) def.tension = api_real(a, "tension", 0.0, INFINITY, 10.0);
-  if (def.friction == nextafter(1.5707963, 2.0) || def.dilation == nextafter(1.5707963, 2.0))
-    a->wrong = 0;
-  (void)made_material(
-      a, mps_material_create_mohr_coulomb(context, &def, api_null(a, "out") ? NULL : &made), &made);
+  DRAW_SOIL(a, &def);
+  mps_material **out = api_null(a, "out") ? NULL : &made;
+  (void)made_material(a, mps_material_create_mohr_coulomb(context, &def, out), &made);
 }
 
 static void material_newtonian(api *a) {

@@ -181,21 +181,8 @@ static void mpm_set_load(api *a) {
 
 /* ---- sums and equilibrium -------------------------------------------------------------------- */
 
-static void mpm_get_usage_sized(api *a) {
-  api_begin(a, "mps_mpm_get_usage_sized");
-  mps_mpm *mpm = api_any(a, API_MPM)->handle;
-  API_SIZED(a, mps_mpm_usage, size, out);
-  const mps_status status = mps_mpm_get_usage_sized(mpm, api_null(a, "out") ? NULL : out, size);
-  API_SIZED_END(a, status, size, out, true);
-}
-
-static void mpm_get_losses_sized(api *a) {
-  api_begin(a, "mps_mpm_get_losses_sized");
-  mps_mpm *mpm = api_any(a, API_MPM)->handle;
-  API_SIZED(a, mps_mpm_losses, size, out);
-  const mps_status status = mps_mpm_get_losses_sized(mpm, api_null(a, "out") ? NULL : out, size);
-  API_SIZED_END(a, status, size, out, true);
-}
+API_GETTER(mpm_get_usage_sized, mps_mpm_get_usage_sized, API_MPM, mps_mpm, mps_mpm_usage)
+API_GETTER(mpm_get_losses_sized, mps_mpm_get_losses_sized, API_MPM, mps_mpm, mps_mpm_losses)
 
 static void mpm_settle_sized(api *a) {
   api_begin(a, "mps_mpm_settle_sized");

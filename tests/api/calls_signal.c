@@ -9,41 +9,25 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void signal_ricker(api *a) {
-  api_begin(a, "mps_signal_create_ricker");
-  mps_signal *made = NULL;
-  mps_context *context = api_context(a);
-  const double frequency = api_real(a, "frequency", 1e-9, 1e9, 20.0);
-  const double peak = api_real(a, "peak_time", 0.0, DBL_MAX, 0.05);
-  const double amplitude = api_near(a, "amplitude", 0.0, 1.0);
-  const mps_status status = mps_signal_create_ricker(context, frequency, peak, amplitude,
-                                                     api_null(a, "out") ? NULL : &made);
-  (void)api_end_made(a, status, API_SIGNAL, made, NULL);
-}
-
-static void signal_sine(api *a) {
-  api_begin(a, "mps_signal_create_sine");
-  mps_signal *made = NULL;
-  mps_context *context = api_context(a);
-  const double frequency = api_real(a, "frequency", 1e-9, 1e9, 10.0);
-  const double amplitude = api_near(a, "amplitude", 0.0, 0.01);
-  const double phase = api_near(a, "phase", 0.0, 3.0);
-  const mps_status status = mps_signal_create_sine(context, frequency, amplitude, phase,
-                                                   api_null(a, "out") ? NULL : &made);
-  (void)api_end_made(a, status, API_SIGNAL, made, NULL);
-}
-
-static void signal_ramp(api *a) {
-  api_begin(a, "mps_signal_create_ramp");
-  mps_signal *made = NULL;
-  mps_context *context = api_context(a);
-  const double start = api_near(a, "start", 0.0, 0.1);
-  const double duration = api_real(a, "duration", 5e-324, DBL_MAX, 0.5);
-  const double amplitude = api_near(a, "amplitude", 0.0, 0.01);
-  const mps_status status = mps_signal_create_ramp(context, start, duration, amplitude,
-                                                   api_null(a, "out") ? NULL : &made);
-  (void)api_end_made(a, status, API_SIGNAL, made, NULL);
-}
+/* A signal of three numbers, each drawn by `draw_...`. */
+#define SIGNAL_OF_THREE(name, x, draw_x, y, draw_y, z, draw_z)                                     \
+  static void signal_##name(api *a) {                                                              \
+    api_begin(a, "mps_signal_create_" #name);                                                      \
+    mps_signal *made = NULL;                                                                       \
+    mps_context *context = api_context(a);                                                         \
+    const double x = draw_x, y = draw_y, z = draw_z;                                               \
+    mps_signal **out = api_null(a, "out") ? NULL : &made;                                          \
+    const mps_status status = mps_signal_create_##name(context, x, y, z, out);                     \
+    (void)api_end_made(a, status, API_SIGNAL, made, NULL);                                         \
+  }
+SIGNAL_OF_THREE(ricker, frequency, api_real(a, "frequency", 1e-9, 1e9, 20.0), peak,
+                api_real(a, "peak_time", 0.0, DBL_MAX, 0.05), amplitude,
+                api_near(a, "amplitude", 0.0, 1.0))
+SIGNAL_OF_THREE(sine, frequency, api_real(a, "frequency", 1e-9, 1e9, 10.0), amplitude,
+                api_near(a, "amplitude", 0.0, 0.01), phase, api_near(a, "phase", 0.0, 3.0))
+SIGNAL_OF_THREE(ramp, start, api_near(a, "start", 0.0, 0.1), duration,
+                api_real(a, "duration", 5e-324, DBL_MAX, 0.5), amplitude,
+                api_near(a, "amplitude", 0.0, 0.01))
 
 static void signal_table(api *a) {
   api_begin(a, "mps_signal_create_table");
@@ -214,14 +198,8 @@ static void coupling_accept(api *a) {
   (void)api_end(a, mps_coupling_accept(api_any(a, API_COUPLING)->handle));
 }
 
-static void coupling_get_report_sized(api *a) {
-  api_begin(a, "mps_coupling_get_report_sized");
-  const mps_coupling *coupling = api_any(a, API_COUPLING)->handle;
-  API_SIZED(a, mps_coupling_report, size, out);
-  const mps_status status =
-      mps_coupling_get_report_sized(coupling, api_null(a, "out") ? NULL : out, size);
-  API_SIZED_END(a, status, size, out, true);
-}
+API_GETTER(coupling_get_report_sized, mps_coupling_get_report_sized, API_COUPLING,
+           const mps_coupling, mps_coupling_report)
 
 /* The memory of one coupling is set in another, perhaps damaged. */
 static void coupling_memory(api *a) {

@@ -159,14 +159,20 @@ static void add_totals(look *l, mps_status status, const mps_totals *t) {
 
 /* ---- solvers --------------------------------------------------------------------------------- */
 
+/* What all solvers tell alike: time, steps, dt, totals. */
+#define LOOK_RUN(l, type, solver)                                                                  \
+  do {                                                                                             \
+    mps_totals totals;                                                                             \
+    add_real(l, "time", type##_time(solver));                                                      \
+    add_whole(l, "steps", type##_steps(solver));                                                   \
+    add_real(l, "dt", type##_dt(solver));                                                          \
+    const mps_status status = type##_get_totals(solver, &totals);                                  \
+    add_totals(l, status, &totals);                                                                \
+  } while (0)
+
 static void look_mpm(look *l, mps_mpm *mpm) {
-  mps_totals totals;
-  add_real(l, "time", mps_mpm_time(mpm));
-  add_whole(l, "steps", mps_mpm_steps(mpm));
-  add_real(l, "dt", mps_mpm_dt(mpm));
+  LOOK_RUN(l, mps_mpm, mpm);
   add_real(l, "limit", mps_mpm_limit(mpm));
-  const mps_status status = mps_mpm_get_totals(mpm, &totals);
-  add_totals(l, status, &totals);
   LOOK_REACTIONS(mps_mpm_get_reaction, mpm, "reaction", 10)
   look_lent(l, mps_mpm_particles(mpm));
 }
@@ -186,26 +192,16 @@ static void look_dynamics(look *l, mps_dynamics *dynamics) {
 }
 
 static void look_elastic(look *l, mps_elastic *elastic) {
-  mps_totals totals;
-  add_real(l, "time", mps_elastic_time(elastic));
-  add_whole(l, "steps", mps_elastic_steps(elastic));
-  add_real(l, "dt", mps_elastic_dt(elastic));
+  LOOK_RUN(l, mps_elastic, elastic);
   add_whole(l, "facets", mps_elastic_facet_count(elastic));
-  const mps_status status = mps_elastic_get_totals(elastic, &totals);
-  add_totals(l, status, &totals);
   LOOK_REACTIONS(mps_elastic_get_reaction, elastic, "reaction", 4)
   look_lent(l, mps_elastic_particles(elastic));
 }
 
 static void look_fluid(look *l, mps_fluid *fluid) {
-  mps_totals totals;
   mps_fluid_report r;
-  add_real(l, "time", mps_fluid_time(fluid));
-  add_whole(l, "steps", mps_fluid_steps(fluid));
-  add_real(l, "dt", mps_fluid_dt(fluid));
+  LOOK_RUN(l, mps_fluid, fluid);
   add_real(l, "limit", mps_fluid_limit(fluid));
-  const mps_status status = mps_fluid_get_totals(fluid, &totals);
-  add_totals(l, status, &totals);
   if (mps_fluid_get_report(fluid, &r) == MPS_OK) {
     const int64_t counts[] = {r.surface, r.apart, r.collisions, r.limited, r.pushed};
     uint64_t hash = 0;

@@ -1,6 +1,7 @@
 /* test_domain_odd.c - one rank of three that gives another value than the others: constants of
  * definitions, weight functions, the next motion of a body, states to roll back to. All ranks get
- * the same error, which names what differs, and none computes a third result.
+ * the same error, which names what differs, and none computes a third result. And a rank that sends
+ * nothing more: all end.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "ranks_team.h"
 
@@ -175,6 +176,7 @@ static mps_status run_mpm(mps_context *own, mps_domain *domain, int what, int32_
   settle.max_steps = odd ? 3 : 2, settle.tolerance = 0.99;
   if (what == MPM_SETTLE) TRY(mps_mpm_settle(mpm, &settle, NULL));
   if (what >= MPM_SWEEPS && what <= MPM_BODY_MOTION) TRY(with_body(own, mpm, what, odd));
+  if (what == MPM_CASES) TRY(with_body(own, mpm, what, false));
   if (what == MPM_POINTS || what == MPM_COMPONENT) TRY(ask_grid(mpm, what, odd));
   if (what == MPM_END) TRY(mps_mpm_run(mpm, odd ? 0.01 : 0.02, 1, NULL, NULL));
   if (what >= MPM_SNAPSHOT && what <= MPM_FILE) TRY(back(mpm, what, odd));
@@ -239,7 +241,8 @@ static mps_status step_fluid(mps_fluid *fluid, int what, bool odd) {
     if (what >= FLUID_SNAPSHOT) TRY(mps_fluid_snapshot(fluid, &state[k]));
   }
   if (what >= FLUID_SNAPSHOT)
-    TRY(mps_fluid_rollback(fluid, odd && what == FLUID_NO_SNAPSHOT ? NULL : state[odd]));
+    TRY(mps_fluid_rollback(
+        fluid, odd && what == FLUID_NO_SNAPSHOT ? NULL : state[odd && what == FLUID_SNAPSHOT]));
   TRY(mps_fluid_step(fluid, 1));
   for (int k = 0; k < 2; k++) mps_snapshot_destroy(&state[k]);
   return status;
@@ -359,11 +362,41 @@ static void test_dynamics(void **state) {
   meet_troubles(run_dynamics, of_dynamics, DYNAMICS_CASES);
 }
 
+/* ---- a rank that falls silent ---------------------------------------------------------------- */
+
+/* At one call of the transport after the other, until it makes no more: every rank ends, with an
+ * error. `run` makes no other trouble. */
+static void lose_partner(trouble_fn *run, int what) {
+  int lost = 0;
+  for (int64_t deaf = 2;; deaf += 5) {
+    troubled s = {.run = run, .what = what};
+    team t;
+    team_begin(&t, 3);
+    t.member[1].deaf_at = deaf;
+    team_run(&t, run_troubled, &s);
+    team_end(&t);
+    if (s.status[0] == MPS_OK && s.status[1] == MPS_OK && s.status[2] == MPS_OK) break;
+    for (int32_t r = 0; r < 3; r++)
+      if (s.status[r] != MPS_ERROR_IO)
+        fail_msg("call %d, rank %d: %d %s", (int)deaf, (int)r, (int)s.status[r], s.message[r]);
+    lost++;
+  }
+  assert_true(lost > 5);
+}
+
+static void test_lost_partner(void **state) {
+  (void)state;
+  lose_partner(run_mpm, MPM_CASES);
+  lose_partner(run_fluid, FLUID_CASES);
+  lose_partner(run_dynamics, DYNAMICS_CASES);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_mpm),
       cmocka_unit_test(test_fluid),
       cmocka_unit_test(test_dynamics),
+      cmocka_unit_test(test_lost_partner),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

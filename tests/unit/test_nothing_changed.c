@@ -520,11 +520,37 @@ typedef struct row {
   bool sorts; /* views may be stale afterwards: the header allows another order of the particles */
 } row;
 
+static mps_status everywhere(void *user, const double *x, int32_t *inside) {
+  (void)user, (void)x;
+  *inside = 1;
+  return MPS_OK;
+}
+
+static mps_status fill_where(scene *s) {
+  const double lo[2] = {0.0, 0.4}, hi[2] = {0.8, 0.8};
+  return mps_particles_fill_where(s->set, lo, hi, everywhere, NULL, NULL);
+}
+
+/* What is taken away may need memory too: lists and matrices are made anew. */
+static mps_status mpm_remove_boundary(scene *s) {
+  return mps_mpm_remove_boundary(s->mpm, s->number);
+}
+static mps_status mpm_remove_load(scene *s) { return mps_mpm_remove_load(s->mpm, 0); }
+static mps_status elastic_remove_boundary(scene *s) {
+  return mps_elastic_remove_boundary(s->elastic, s->number);
+}
+static mps_status elastic_remove_load(scene *s) { return mps_elastic_remove_load(s->elastic, 0); }
+static mps_status fluid_remove_boundary(scene *s) { return mps_fluid_remove_boundary(s->fluid, 1); }
+static mps_status fluid_remove_load(scene *s) { return mps_fluid_remove_load(s->fluid, 0); }
+static mps_status fluid_solve(scene *s) { return mps_fluid_solve_pressure(s->fluid); }
+static mps_status fluid_end(scene *s) { return mps_fluid_end_step(s->fluid); }
+
 static const row rows[] = {
     {make_bare, append, "mps_particles_append", false},
     {make_bare, fill_box, "mps_particles_fill_box", false},
     {make_bare, fill_ball, "mps_particles_fill_ball", false},
     {make_bare, fill_polygon, "mps_particles_fill_polygon", false},
+    {make_bare, fill_where, "mps_particles_fill_where", false},
     {make_bare, remove_some, "mps_particles_remove", false},
     {make_bare, add_field, "mps_particles_add_field", false},
     {make_bare, set_field, "mps_particles_set", false},
@@ -560,6 +586,8 @@ static const row rows[] = {
     {make_mpm, mpm_set_side, "mps_mpm_set_boundary", false},
     {make_mpm, mpm_add_load, "mps_mpm_add_load", false},
     {make_mpm, mpm_set_load, "mps_mpm_set_load", false},
+    {make_mpm, mpm_remove_boundary, "mps_mpm_remove_boundary", false},
+    {make_mpm, mpm_remove_load, "mps_mpm_remove_load", false},
     {make_mpm, mpm_add_contact, "mps_mpm_add_contact", false},
     {make_mpm, mpm_set_material, "mps_mpm_set_material", false},
     {make_mpm, fields_of_material, "mps_particles_set_material", false},
@@ -606,6 +634,9 @@ static const row rows[] = {
     {make_solved_elastic, elastic_set_boundary, "mps_elastic_set_boundary", false},
     {make_solved_elastic, elastic_add_load, "mps_elastic_add_load", false},
     {make_solved_elastic, elastic_set_load, "mps_elastic_set_load", false},
+    {make_solved_elastic, elastic_remove_boundary, "mps_elastic_remove_boundary", false},
+    {make_solved_elastic, elastic_remove_load, "mps_elastic_remove_load", false},
+    {make_moving_elastic, elastic_remove_boundary, "mps_elastic_remove_boundary", false},
     {make_solved_elastic, remove_some, "mps_particles_remove", false},
     {make_moving_elastic, elastic_start, "mps_elastic_start", false},
     {make_edited_elastic, elastic_start, "mps_elastic_start", false},
@@ -630,6 +661,10 @@ static const row rows[] = {
     {make_fluid, fluid_add_load, "mps_fluid_add_load", false},
     {make_fluid, fluid_set_load, "mps_fluid_set_load", false},
     {make_fluid, fluid_set_material, "mps_fluid_set_material", false},
+    {make_fluid, fluid_remove_boundary, "mps_fluid_remove_boundary", false},
+    {make_fluid, fluid_remove_load, "mps_fluid_remove_load", false},
+    {make_open_fluid, fluid_solve, "mps_fluid_solve_pressure", false},
+    {make_open_fluid, fluid_end, "mps_fluid_end_step", true},
     {make_fluid, fluid_add_body, "mps_fluid_add_body", false},
     {make_fluid, fluid_pressure, "mps_fluid_get_pressure", true},
     {make_fluid, fluid_wall, "mps_fluid_get_wall", true},
