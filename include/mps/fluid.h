@@ -221,10 +221,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
 /** `floats` 1: from now on the fluid moves the body in each of its steps, such that the water's
  *  pressure, the body's mass, gravity and load (mps_body_set_load), and the impulses of other
- *  solvers since its last step are in balance, however light the body is. Its draft is right to 1 %,
- *  its height to .02 l0, as the level of the water. No boundary acts on it: keep it off the ground.
- *  0 (as after mps_fluid_add_body): the caller or another solver moves it, by the forces of the
- *  last step, which is unstable where it is lighter than the water that it accelerates.
+ *  solvers since its last step are in balance, however light the body is. Its draft is right to 1
+ * %, its height to .02 l0, as the level of the water. No boundary acts on it: keep it off the
+ * ground. 0 (as after mps_fluid_add_body): the caller or another solver moves it, by the forces of
+ * the last step, which is unstable where it is lighter than the water that it accelerates.
  *  MPS_ERROR_ARGUMENT: the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE: another solver
  *  moves it. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, int32_t number,
@@ -371,9 +371,9 @@ MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
  *  to round-off, with mps_fluid_get_reaction and mps_fluid_get_body_reaction. impulse_scheme is the
  *  momentum error of the scheme: pressures along walls are fits, which differ slightly from the sum
  *  of the gradients that move the particles; smoothing is symmetric in a pair where the flow is
- *  steep, and shifts, limited velocities and smoothing of gentle flow are not. It is some hundredths
- *  of the terms (4 % in a dam break with 15 particles over the height of the column, 1 % with 30).
- *  MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
+ *  steep, and shifts, limited velocities and smoothing of gentle flow are not. It is some
+ * hundredths of the terms (4 % in a dam break with 15 particles over the height of the column, 1 %
+ * with 30). MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(const mps_fluid *fluid, mps_totals *out,
                                                             size_t size);
 static inline mps_status mps_fluid_get_totals(const mps_fluid *fluid, mps_totals *out) {
