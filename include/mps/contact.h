@@ -2,7 +2,8 @@
  * part of the surface, and the particles in contact. By impulses at the surface
  * (docs/theory/contact.md), or by penalty springs at the particles (Nakamura 5).
  *
- * A solver makes it (mps_mpm_add_contact, mps/mpm.h). A body may be in contact with several solvers
+ * A solver makes it (mps_mpm_add_contact, mps_fluid_add_contact, which has a definition of its own).
+ * A body may be in contact with several solvers
  * at once; it receives the sum of their forces. One of the solvers advances it, or the caller by
  * mps_body_advance (`mover`).
  *

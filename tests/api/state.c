@@ -213,7 +213,6 @@ static void look_fluid(look *l, mps_fluid *fluid) {
     add(l, "report", hash);
   }
   LOOK_REACTIONS(mps_fluid_get_reaction, fluid, "reaction", 5)
-  LOOK_REACTIONS(mps_fluid_get_body_reaction, fluid, "body reaction", 3)
   look_lent(l, mps_fluid_particles(fluid));
 }
 

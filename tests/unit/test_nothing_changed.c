@@ -489,8 +489,8 @@ static mps_status fluid_set_load(scene *s) {
 static mps_status fluid_set_material(scene *s) {
   return mps_fluid_set_material(s->fluid, s->second, 0, NULL);
 }
-static mps_status fluid_add_body(scene *s) {
-  return mps_fluid_add_body(s->fluid, s->other, MPS_BOUNDARY_ROLLER, NULL);
+static mps_status fluid_add_contact(scene *s) {
+  return mps_fluid_add_contact(s->fluid, s->other, NULL, NULL);
 }
 static mps_status fluid_pressure(scene *s) {
   const double x[3] = {0.4, 0.0, 0.0};
@@ -630,7 +630,7 @@ static const row rows[] = {
     {make_fluid, fluid_add_load, "mps_fluid_add_load", false},
     {make_fluid, fluid_set_load, "mps_fluid_set_load", false},
     {make_fluid, fluid_set_material, "mps_fluid_set_material", false},
-    {make_fluid, fluid_add_body, "mps_fluid_add_body", false},
+    {make_fluid, fluid_add_contact, "mps_fluid_add_contact", false},
     {make_fluid, fluid_pressure, "mps_fluid_get_pressure", true},
     {make_fluid, fluid_wall, "mps_fluid_get_wall", true},
     {make_edited_fluid, fluid_pressure, "mps_fluid_get_pressure", false},
