@@ -137,7 +137,7 @@ CALL(fluid_set_boundary, mps_fluid_set_boundary(s->fluid, 0, NULL))
 CALL(fluid_set_load, mps_fluid_set_load(s->fluid, 0, NULL))
 CALL(fluid_remove_load, mps_fluid_remove_load(s->fluid, 0))
 CALL(fluid_set_material, mps_fluid_set_material(s->fluid, s->material, 0, NULL))
-CALL(fluid_add_body, mps_fluid_add_body(s->fluid, s->body, 0, NULL))
+CALL(fluid_add_contact, mps_fluid_add_contact(s->fluid, s->body, NULL, NULL))
 CALL(elastic_set_boundary, mps_elastic_set_boundary(s->elastic, 0, NULL))
 CALL(elastic_set_load, mps_elastic_set_load(s->elastic, 0, NULL))
 CALL(elastic_set_dt, mps_elastic_set_dt(s->elastic, 0.1))
@@ -237,7 +237,7 @@ static const struct {
     ROW(fluid_set_load),
     ROW(fluid_remove_load),
     ROW(fluid_set_material),
-    ROW(fluid_add_body),
+    ROW(fluid_add_contact),
 
     ROW(elastic_set_boundary),
     ROW(elastic_set_load),

@@ -20,10 +20,12 @@ typedef struct scene {
   mps_fluid *fluid;
   mps_body *body;
   mps_signal *piston;
+  mps_contact *contact; /* of the body and the fluid */
 } scene;
 
 static inline void drop_scene(scene *s) {
   mps_fluid_destroy(&s->fluid);
+  mps_contact_destroy(&s->contact);
   mps_body_destroy(&s->body);
   mps_signal_destroy(&s->piston);
   mps_particles_destroy(&s->set);
@@ -50,7 +52,7 @@ static inline mps_status add_float(mps_context *own, scene *s) {
   mps_domain *domain = def_domain(s);
   mps_body_def body = mps_body_defaults();
   const double xy[] = {-0.2, -0.1, 0.2, -0.1, 0.2, 0.1, -0.2, 0.1};
-  int32_t number = 0;
+  mps_fluid_contact_def afloat = mps_fluid_contact_defaults();
   body.motion = MPS_BODY_MOTION_FREE;
   body.position[0] = 1.6, body.position[1] = 0.9;
   body.mass = 40.0, body.inertia[2] = 1.0;
@@ -60,8 +62,8 @@ static inline mps_status add_float(mps_context *own, scene *s) {
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, s->piston));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 4.0, 0.0, -1.0, 0.0, NULL));
-  TRY(mps_fluid_add_body(s->fluid, s->body, MPS_BOUNDARY_ROLLER, &number));
-  TRY(mps_fluid_float_body(s->fluid, number, 1));
+  afloat.kind = MPS_BOUNDARY_ROLLER, afloat.floats = 1;
+  TRY(mps_fluid_add_contact(s->fluid, s->body, &afloat, &s->contact));
   mps_fluid_load_def load = mps_fluid_load_defaults();
   load.kind = MPS_FLUID_LOAD_PRESSURE;
   load.pressure = 200.0;
@@ -133,7 +135,7 @@ static inline mps_status tell(scene *s, int what, result *r) {
   mps_fluid_report report;
   mps_status status = mps_fluid_get_totals(s->fluid, &r->totals);
   for (int b = 0; b < 3; b++) TRY(mps_fluid_get_reaction(s->fluid, b, &r->reaction[b]));
-  if (what == AFLOAT) TRY(mps_fluid_get_body_reaction(s->fluid, 0, &r->reaction[3]));
+  if (what == AFLOAT) TRY(mps_contact_get_reaction(s->contact, -1, &r->reaction[3]));
   if (what != CLASSICAL) TRY(mps_fluid_get_levels(s->fluid, 4, station, r->other));
   double points[12] = {0.1, 0.0, 0.0, 0.5, 0.0, 0.0, 1.1, 0.0, 0.0, 1.7, 0.0, 0.0};
   TRY(mps_fluid_get_pressure(s->fluid, 0, 4, points, r->other + 4));

@@ -47,9 +47,10 @@ static inline void read_wall(mps_context *c, mps_fluid *fluid, int32_t number, c
   for (int k = 0; k < 60; k++) reading(r, p[k]);
 }
 
-/* `right`: x of the right wall, which is boundary 2; NAN: there is none. Bodies: their number. */
-static inline void read_all(mps_context *c, mps_fluid *fluid, double right, int32_t bodies,
-                            readings *r) {
+/* `right`: x of the right wall, which is boundary 2; NAN: there is none. `contact`: with a body, or
+ * NULL. */
+static inline void read_all(mps_context *c, mps_fluid *fluid, double right,
+                            const mps_contact *contact, readings *r) {
   const double points[3][3] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {right, 0.0, 1.0}};
   double station[60], level[60];
   mps_reaction force;
@@ -64,8 +65,8 @@ static inline void read_all(mps_context *c, mps_fluid *fluid, double right, int3
     read_reaction(r, &force);
     if (b < 2 || !isnan(right)) read_wall(c, fluid, b, points[b], r);
   }
-  for (int32_t b = 0; b < bodies; b++) {
-    mps_assert_ok(c, mps_fluid_get_body_reaction(fluid, b, &force));
+  if (contact) {
+    mps_assert_ok(c, mps_contact_get_reaction(contact, -1, &force));
     read_reaction(r, &force);
   }
   mps_assert_ok(c, mps_fluid_get_totals(fluid, &totals));

@@ -70,6 +70,23 @@ static inline tank tank_make(mps_context *c, double length, double depth, double
   return tank_of(c, length, depth, l0, dt, piston, NULL, NULL);
 }
 
+/* Puts a body with a slippery surface into the water. */
+static inline mps_contact *tank_body(mps_context *c, mps_fluid *fluid, mps_body *body,
+                                     int32_t floats) {
+  mps_fluid_contact_def def = mps_fluid_contact_defaults();
+  mps_contact *contact = NULL;
+  def.kind = MPS_BOUNDARY_ROLLER, def.floats = floats;
+  mps_assert_ok(c, mps_fluid_add_contact(fluid, body, &def, &contact));
+  return contact;
+}
+
+/* The same, and the water moves it; the contact is the fluid's alone. */
+static inline void tank_float(mps_context *c, mps_fluid *fluid, mps_body *body) {
+  mps_fluid_contact_def def = mps_fluid_contact_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER, def.floats = 1;
+  mps_assert_ok(c, mps_fluid_add_contact(fluid, body, &def, NULL));
+}
+
 static inline void tank_free(tank *t) {
   mps_fluid_destroy(&t->fluid);
   mps_particles_destroy(&t->water);

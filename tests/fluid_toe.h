@@ -78,13 +78,13 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
   mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
   const int32_t bed = tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(t.fluid, body, MPS_BOUNDARY_ROLLER, NULL));
+  mps_contact *contact = tank_body(context, t.fluid, body, 0);
   double mean[3] = {0.0, 0.0, 0.0}, square = 0.0;
   int samples = 0;
   while (mps_fluid_time(t.fluid) < duration) {
     mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
     if (mps_fluid_time(t.fluid) < 0.5 * duration) continue;
-    mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &r));
+    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
     for (int c = 0; c < 2; c++) mean[c] += r.force[c];
     square += r.force[0] * r.force[0];
     mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, bed, &r));
@@ -110,6 +110,7 @@ static inline void toe_check(const toe *s, double duration, double bar, double s
   mps_assert_near(mean[2], exact[2], 0.02 * exact[2]);
   assert_true(deviation < scatter * unit);
   tank_free(&t);
+  mps_contact_destroy(&contact);
   mps_body_destroy(&body);
 }
 

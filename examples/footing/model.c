@@ -69,7 +69,8 @@ static mps_status add_contact(const settings *s, simulation *sim) {
 
 /* Ground at rest under its own weight, (57). */
 static mps_status set_stress(mps_particles *set, const settings *s) {
-  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
+  const mps_geostatic_layer layer = {
+      .thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson), .density = NAN};
   mps_geostatic_def def = mps_geostatic_defaults();
   def.layers = &layer, def.layer_count = 1;
   def.gravity = s->gravity;

@@ -91,7 +91,8 @@ static double lower_of(const penetrometer *p, const pen_run *r, int c) {
 /* The weight above, and nu/(1 - nu) of it sideways. */
 static mps_status set_stress(const penetrometer *p, pen_run *r) {
   const pen_settings *s = &p->s;
-  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
+  const mps_geostatic_layer layer = {
+      .thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson), .density = NAN};
   mps_geostatic_def def = mps_geostatic_defaults();
   if (s->gravity == 0.0) return MPS_OK;
   def.layers = &layer, def.layer_count = 1;

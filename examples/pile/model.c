@@ -60,7 +60,7 @@ const char *pile_check(pile_settings *s) {
 static mps_status set_stress(pile *p) {
   const pile_settings *s = &p->s;
   p->k0 = isnan(s->k0) ? s->poisson / (1.0 - s->poisson) : s->k0;
-  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = p->k0};
+  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = p->k0, .density = NAN};
   mps_geostatic_def def = mps_geostatic_defaults();
   def.layers = &layer, def.layer_count = 1;
   def.gravity = PILE_GRAVITY;

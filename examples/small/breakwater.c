@@ -50,7 +50,7 @@ static const double nodes[6] = {LENGTH, 0.0, 0.0, LENGTH, FOOT + HEIGHT, 0.0}; /
 
 static mps_status make_sand(mps_context *context, sea *s) {
   const double lo[] = {LENGTH - 0.25, -SAND}, hi[] = {LENGTH + 0.4, 0.0};
-  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.43};
+  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.43, .density = NAN};
   mps_particles_def set = mps_particles_defaults();
   mps_geostatic_def rest = mps_geostatic_defaults();
   mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();

@@ -33,9 +33,9 @@ mps_status tank_make_box(mps_context *context, tank_model *m) {
 /* A weight on the box from the start, which lets it heave by the amplitude about its new rest. */
 mps_status tank_launch(tank_model *m) {
   const double load[3] = {0.0, -m->s.amplitude * tank_float_stiffness(&m->s), 0.0};
-  int32_t number;
-  mps_status status = mps_fluid_add_body(m->fluid, m->box, MPS_BOUNDARY_ROLLER, &number);
-  if (status == MPS_OK) status = mps_fluid_float_body(m->fluid, number, 1);
+  mps_fluid_contact_def def = mps_fluid_contact_defaults();
+  def.kind = MPS_BOUNDARY_ROLLER, def.floats = 1;
+  const mps_status status = mps_fluid_add_contact(m->fluid, m->box, &def, NULL);
   return status == MPS_OK ? mps_body_set_load(m->box, load, NULL) : status;
 }
 

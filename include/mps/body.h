@@ -12,7 +12,7 @@
  *
  * A prescribed body follows signals, or the motion of mps_body_set_motion; a free body moves by the
  * forces on it. Solvers exert forces on it by contacts (mps/contact.h) and as a fluid around it
- * (mps_fluid_add_body). At most one solver advances the body; otherwise the caller does, by
+ * (mps_fluid_add_contact). At most one solver advances the body; otherwise the caller does, by
  * mps_body_advance. Thread rule: one thread at a time per body (and context).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_BODY_H
@@ -40,10 +40,11 @@ typedef struct mps_body_def {
                          time 0; 2D: [2] is the angle, anticlockwise */
   double velocity[3]; /* m/s at time 0; free bodies only */
   double spin[3];     /* rad/s, in space, at time 0; free bodies only */
-  double mass;        /* kg, of the whole body, 1e-30 to 1e30; free bodies only */
+  double mass;        /* kg, of the whole body, 1e-30 to 1e30; free bodies only. NaN (default), or
+                         0 of a driven one: none */
   double inertia[3];  /* kg m2, of the whole body about the reference point, 1e-30 to 1e30,
                          principal: the body's axes are the principal axes. 2D: [2]. Free bodies
-                         only */
+                         only; NaN (default) and 0 as of the mass */
   double gravity[3];  /* m/s2; free bodies only */
   double damping[2];  /* 1/s, >= 0, of velocity and of spin: dv/dt = ... - damping v; free bodies
                          only */

@@ -2,9 +2,9 @@
  * part of the surface, and the particles in contact. By impulses at the surface
  * (docs/theory/contact.md), or by penalty springs at the particles (Nakamura 5).
  *
- * A solver makes it (mps_mpm_add_contact, mps/mpm.h). A body may be in contact with several solvers
- * at once; it receives the sum of their forces. One of the solvers advances it, or the caller by
- * mps_body_advance (`mover`).
+ * A solver makes it (mps_mpm_add_contact, mps_fluid_add_contact, which has a definition of its
+ * own). A body may be in contact with several solvers at once; it receives the sum of their forces.
+ * One of the solvers advances it, or the caller by mps_body_advance (`mover`).
  *
  * The handle is the caller's; destroying it ends the contact. When the solver is destroyed first,
  * the contact has ended, and its queries return their last values. Thread rule: as of its solver.

@@ -37,7 +37,7 @@
 #ifndef LIBMPS_FLUID_H
 #define LIBMPS_FLUID_H
 
-#include "body.h"
+#include "contact.h"
 #include "domain.h"
 #include "io.h"
 #include "kernel.h"
@@ -221,42 +221,55 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, in
 
 /* ---- bodies ---------------------------------------------------------------------------------- */
 
+typedef struct mps_fluid_contact_def {
+  uint32_t struct_size;
+  int32_t kind;   /* mps_boundary_kind of the body's surface: HELD (no slip, default) or ROLLER */
+  int32_t floats; /* 1: the fluid moves the body, see mps_fluid_float_body; 0 (default): the caller
+                     or another solver */
+  int32_t reserved;
+} mps_fluid_contact_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown
+ *  to this library. */
+MPS_API mps_status mps_fluid_contact_def_init(mps_fluid_contact_def *def, size_t size);
+static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
+  mps_fluid_contact_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_fluid_contact_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
 /** Adds a rigid body to the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
- *  together may have 16 edges. `kind` is that of its surface, HELD (no slip) or ROLLER (slip). The
- *  caller moves it (mps_body_advance, mps_body_set_motion), or another solver does: its position
- *  and velocity when a step is made, or solved for in parts, are those of the end of that step. At
- *  the end of each step it receives the water's forces (mps_body_get_reaction; a free body moves by
- *  them). It is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3
- *  l0; less than 15 degrees of fluid between an edge and the boundary that it stands on (a body
- *  that rolls there later is a warning in the log, once). MPS_ERROR_STATE: a step is open, or a
- *  callback of the solver is running. MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
-                                                    int32_t *number);
-/** Removes body `number`, between steps. MPS_ERROR_ARGUMENT: no body `number`; MPS_ERROR_STATE: a
- *  step is open, or a callback of the solver is running. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
+ *  together may have 16 edges. `def` NULL: the defaults. The caller moves it (mps_body_advance,
+ *  mps_body_set_motion), or another solver does: its pose and velocity when a step is made, or
+ *  solved for in parts, are those of the end of that step. At the end of each step it receives
+ *  the water's forces (mps_body_get_reaction; a free body moves by them), in addition to those of
+ * other solvers that it is in contact with. It is kept alive.
+ *
+ *  `out` (may be NULL) receives the handle (mps/contact.h): mps_contact_destroy removes the body
+ *  from the water, between steps; mps_contact_get_reaction gives the water's action on it, by
+ *  parts, in an open step of the last solution: moments about its reference point, moment_impulse
+ *  about its present position; `count` is that of wetted points. Force and moment are those of the
+ *  pressures, impulses include collisions and smoothing, as those of mps_body_get_reaction; they
+ * act on a floating body one step later. mps_contact_get_particles is MPS_ERROR_UNSUPPORTED.
+ *
+ *  MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less than 15 degrees
+ *  of fluid between an edge and the boundary that it stands on (a body that rolls there later has a
+ *  warning in the log, once); a fifth body. MPS_ERROR_STATE: the fluid has the body already. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_add_contact(mps_fluid *fluid, mps_body *body,
+                                                       const mps_fluid_contact_def *def,
+                                                       mps_contact **out);
 /** `floats` 1: from now on the fluid moves the body in each of its steps, such that the water's
  *  pressure, the body's mass, gravity and load (mps_body_set_load), and the impulses of other
  *  solvers since its last step are in balance, however light the body is. Its draft is right to 1
- * %, its height to .02 l0, as the level of the water. No boundary acts on it: keep it off the
- * ground. 0 (as after mps_fluid_add_body): the caller or another solver moves it, by the forces of
- * the last step, which is unstable where it is lighter than the water that it accelerates.
- *  MPS_ERROR_ARGUMENT: the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE: another solver
- *  moves it. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, int32_t number,
+ *  %, its height to .02 l0, as the level of the water. No boundary acts on it: keep it off the
+ *  ground. 0: the caller or another solver moves it, by the forces of the last step, which is
+ *  unstable where it is lighter than the water that it accelerates. MPS_ERROR_ARGUMENT: the contact
+ *  is none of this fluid's, or the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE:
+ *  another solver moves it. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, mps_contact *contact,
                                                       int32_t floats);
-/** Force, impulse and work of the fluid on a body; moments about its reference point,
- *  moment_impulse about the present one. Force and moment are those of the pressures, impulses
- *  include collisions and smoothing, as in mps_body_get_reaction; they act on a floating body one
- *  step later. MPS_ERROR_ARGUMENT: no body `number`, NULL, or a `size` unknown to this library. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_reaction_sized(const mps_fluid *fluid,
-                                                                   int32_t number,
-                                                                   mps_reaction *out, size_t size);
-static inline mps_status mps_fluid_get_body_reaction(const mps_fluid *fluid, int32_t number,
-                                                     mps_reaction *out) {
-  return mps_fluid_get_body_reaction_sized(fluid, number, out, sizeof *out);
-}
 
 /* ---- loads ----------------------------------------------------------------------------------- */
 
@@ -385,12 +398,12 @@ MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
  *
  *    change of linear = impulse_loads + impulses of the boundaries - of the bodies + impulse_scheme
  *
- *  to round-off, with mps_fluid_get_reaction and mps_fluid_get_body_reaction. impulse_scheme is the
+ *  to round-off, with mps_fluid_get_reaction and mps_contact_get_reaction. impulse_scheme is the
  *  momentum error of the scheme: pressures along walls are fits, which differ slightly from the sum
  *  of the gradients that move the particles; smoothing is symmetric in a pair where the flow is
  *  steep, and shifts, limited velocities and smoothing of gentle flow are not. It is some
- * hundredths of the terms (4 % in a dam break with 15 particles over the height of the column, 1 %
- * with 30). MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
+ *  hundredths of the terms (4 % in a dam break with 15 particles over the height of the column, 1 %
+ *  with 30). MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(const mps_fluid *fluid, mps_totals *out,
                                                             size_t size);
 static inline mps_status mps_fluid_get_totals(const mps_fluid *fluid, mps_totals *out) {

@@ -14,13 +14,13 @@
 
 MPS_EXTERN_C_BEGIN
 
-/** A layer of ground. Layers follow the surface: depths are vertical ones below it. Frozen layout.
- */
+/** A layer of ground. Layers follow the surface: depths are vertical ones below it. An array of
+ *  them is told with the size of one, mps_geostatic_def.layer_size. */
 typedef struct mps_geostatic_layer {
   double thickness; /* m, 1e-9 to 1e9; infinite allowed for the lowest */
   double k0;        /* horizontal over vertical stress, >= 0; elastic ground held at its sides:
                        nu/(1 - nu) */
-  double density;   /* kg/m3, 1e-9 to 1e9; 0: that of the field `density` of the particles whose
+  double density;   /* kg/m3, 1e-9 to 1e9; NaN: that of the field `density` of the particles whose
                        centres lie in the layer, which must be one value */
 } mps_geostatic_layer;
 
@@ -44,7 +44,11 @@ typedef struct mps_geostatic_def {
   const double *surface_line; /* 2D: x0, y0, x1, y1, ..., x ascending; beyond the ends level. Not
                                  where x is the vertical */
   mps_geostatic_level_fn surface_level;
-  void *user; /* passed to `surface_level` */
+  void *user;         /* passed to `surface_level` */
+  int32_t layer_size; /* bytes from one of `layers` to the next: mps_geostatic_defaults writes
+                         sizeof(mps_geostatic_layer); 0 (of mps_geostatic_def_init): 24, that of
+                         0.3 */
+  int32_t reserved;
 } mps_geostatic_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
@@ -54,6 +58,7 @@ static inline mps_geostatic_def mps_geostatic_defaults(void) {
   mps_geostatic_def def;
   memset(&def, 0, sizeof def);
   if (mps_geostatic_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  def.layer_size = (int32_t)sizeof(mps_geostatic_layer);
   return def;
 }
 

@@ -167,13 +167,14 @@ typedef struct mps_material_user_def {
   const char *const *history; /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied; in a
                                  set the column is the field "<name>.<history>" */
   const double *history_initial; /* values before the first step; NULL: zero */
-  double wave_modulus; /* Pa, K + 4G/3 of the stiffest state, > 0; no default; 0: K + 4G/3 of the
-                          moduli below, where stated */
-  double viscosity;    /* Pa s, for the largest stable step, >= 0; default 0 */
+  double wave_modulus;       /* Pa, K + 4G/3 of the stiffest state, > 0; NaN (default): that of the
+                                moduli below; one of the two must be stated */
+  double viscosity;          /* Pa s, for the largest stable step, >= 0; default 0 */
   int32_t needs_deformation; /* 1: `deformation` is there; default 0 */
   int32_t turns_stress;      /* 1 (default): `stress` is already rotated by the spin increment */
   /** K > 0 and G >= 0 at zero strain, Pa. They give the elastic strain of a particle in contact
-   *  from its stress. Default 0, 0: not stated; then K + 4G/3 is the wave modulus, and nu 1/4. */
+   *  from its stress. NaN, NaN (default): not stated; then K + 4G/3 is the wave modulus, and nu
+   * 1/4. */
   double bulk_modulus, shear_modulus;
 } mps_material_user_def;
 
@@ -231,7 +232,7 @@ typedef struct mps_material_umat_def {
   int32_t keeps_strain; /* 1 (default): STRAN is the total strain, in six more columns of history;
                            0: zero */
   int32_t reserved;
-  double bulk_modulus, shear_modulus; /* Pa, at zero strain, as of a user's law; default 0, 0 */
+  double bulk_modulus, shear_modulus; /* Pa, at zero strain, as of a user's law; default NaN, NaN */
 } mps_material_umat_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to

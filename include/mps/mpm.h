@@ -137,7 +137,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_partic
  *  */
 MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 
-#define MPS_MPM_MAX_MATERIALS 16
+#define MPS_MPM_MAX_MATERIALS 256
 
 /** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the
  *  first step or between steps; at most 16 different materials in a solver, including that of

@@ -16,6 +16,9 @@
  *                          `number`, which may be NULL)
  *   mps_S_set_boundary, mps_S_set_load, mps_S_remove_boundary, mps_S_remove_load
  *                          by that number; MPS_ERROR_ARGUMENT where there is none of it
+ *   mps_S_add_contact      with a rigid body, a handle (mps/contact.h): WLS-MPM and the fluid.
+ *                          Explicit dynamics and implicit elasticity have no contact: a body
+ *                          drives their particles as a boundary of the kind DRIVEN
  *   mps_S_get_reaction     what a boundary exerts (mps_reaction)
  *   mps_S_step, mps_S_run  call the cancel hook: MPS_ERROR_CANCELLED, between two steps
  *   mps_S_time, mps_S_dt, mps_S_limit   s, 0 for NULL; mps_S_steps: taken so far, 0 for NULL

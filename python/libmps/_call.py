@@ -163,6 +163,10 @@ class Call:
             if status != 0:
                 raise Error(kind.cname + "_init", status)
         fields = dict(kind.fields)
+        for name in fields:  # bytes of one struct of an array: layer_size of layers
+            rows = fields.get(name[:-5] + "s") if name.endswith("_size") else None
+            if rows and rows.type.kind == "pointer" and rows.type.item.kind == "struct":
+                setattr(made, name, ffi.sizeof(rows.type.item))
         for name, value in members.items():
             if name not in fields:
                 known = ", ".join(f for f in fields if f not in ("struct_size", "reserved"))
@@ -245,6 +249,9 @@ class Call:
         """An array of structs from a list of dictionaries."""
         made = ffi.new(f"{kind.cname}[]", len(rows))
         for k, row in enumerate(rows):
+            for name, field in kind.fields:  # a real number that is not given is unset
+                if field.type.cname == "double" and name not in row:
+                    setattr(made[k], name, float("nan"))
             for name, value in row.items():
                 self.assign(made[k], name, dict(kind.fields)[name].type, value)
         self.alive.append(made)

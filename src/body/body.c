@@ -5,9 +5,11 @@
 #include "mesh.h"
 #include "core/base/digits.h"
 
+#include <math.h>
 #include <string.h>
 
-static const mps_body_def body_defaults = {.struct_size = sizeof(mps_body_def)};
+static const mps_body_def body_defaults = {
+    .struct_size = sizeof(mps_body_def), .mass = NAN, .inertia = {NAN, NAN, NAN}};
 
 mps_status mps_body_def_init(mps_body_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_body_def, def, size, &body_defaults);
@@ -110,6 +112,15 @@ static mps_status check_motion(mps_context *context, const char *function, const
   return MPS_OK;
 }
 
+/* What is not there is 0 from here on: mass and inertia of a driven body, inertia about axes that
+ * 2D does not have. */
+static void drop_unset(mps_body_def *d, int32_t dim) {
+  const bool free = d->motion == MPS_BODY_MOTION_FREE;
+  if (!free && isnan(d->mass)) d->mass = 0.0;
+  for (int c = 0; c < 3; c++)
+    if (isnan(d->inertia[c]) && (!free || (dim == 2 && c < 2))) d->inertia[c] = 0.0;
+}
+
 /* ---- life ------------------------------------------------------------------------------------ */
 
 void mpsi_body_release(mps_body *body) {
@@ -130,6 +141,7 @@ mps_status mpsi_body_new(mps_context *context, const char *function, const mps_b
   mps_body_def def = body_defaults;
   mps_status status = MPS_OK;
   if (user_def) status = MPSI_DEF_READ(context, function, mps_body_def, user_def, &def);
+  drop_unset(&def, dim);
   if (status == MPS_OK) status = check_numbers(context, function, &def);
   if (status == MPS_OK) status = check_vectors(context, function, &def, dim);
   if (status == MPS_OK) status = check_motion(context, function, &def, dim);

@@ -111,6 +111,22 @@ static mps_status check_numbers(mps_context *context, const char *function,
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
+mps_status mpsi_contact_make(mps_context *context, const char *function, mps_body *body,
+                             const mpsi_contact_owner *kind, void *owner, mps_contact **out) {
+  mps_contact *contact = mpsi_alloc(context, 1, sizeof *contact);
+  if (!contact) return mpsi_fail_memory(context, function, sizeof *contact);
+  contact->context = mpsi_context_retain(context);
+  contact->references = 2;
+  contact->def = contact_defaults;
+  contact->body = body;
+  contact->extent = mpsi_body_extent(body);
+  contact->kind = kind;
+  contact->owner = owner;
+  body->references++;
+  *out = contact;
+  return MPS_OK;
+}
+
 mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body *body,
                             const mps_contact_def *user, const mpsi_contact_owner *kind,
                             void *owner, mps_contact **out) {
@@ -123,19 +139,13 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
     status = mpsi_fail(context, function, MPS_ERROR_STATE,
                        "another solver moves the body: make this contact with mover 1 (other)");
   if (status != MPS_OK) return status;
-  mps_contact *contact = mpsi_alloc(context, 1, sizeof *contact);
-  if (!contact) return mpsi_fail_memory(context, function, sizeof *contact);
-  contact->context = mpsi_context_retain(context);
-  contact->references = 2;
+  mps_contact *contact = NULL;
+  status = mpsi_contact_make(context, function, body, kind, owner, &contact);
+  if (status != MPS_OK) return status;
   contact->def = def;
   if (isnan(def.tolerance)) contact->def.tolerance = 0.0;
   if (def.sweeps == 0) contact->def.sweeps = contact->def.tolerance > 0.0 ? SWEEPS_AT_MOST : SWEEPS;
-  contact->body = body;
-  contact->extent = mpsi_body_extent(body);
-  contact->kind = kind;
-  contact->owner = owner;
   contact->source.moves = def.mover == MPS_CONTACT_MOVER_SOLVER;
-  body->references++;
   *out = contact;
   return MPS_OK;
 }
@@ -173,9 +183,12 @@ mps_status mps_contact_get_reaction_sized(const mps_contact *contact, int32_t pa
                                           mps_reaction *out, size_t size) {
   static const char function[] = "mps_contact_get_reaction";
   if (!contact) return MPS_ERROR_ARGUMENT;
-  mps_reaction sum;
-  const mps_status status = mpsi_body_sum_reaction(
-      contact->context, function, contact->source.reaction, contact->body->parts, part, &sum);
+  mps_reaction sum, of_owner[MPS_BODY_MAX_PARTS];
+  const bool asks = contact->owner && contact->kind->reactions;
+  if (asks) contact->kind->reactions(contact->owner, contact, of_owner);
+  const mps_status status =
+      mpsi_body_sum_reaction(contact->context, function, asks ? of_owner : contact->source.reaction,
+                             contact->body->parts, part, &sum);
   if (status != MPS_OK) return status;
   return mpsi_out_write(contact->context, function, out, size, &sum, sizeof sum);
 }

@@ -13,6 +13,8 @@ typedef struct mpsi_contact_owner {
   void (*end)(void *owner, mps_contact *contact);
   mps_status (*particles)(void *owner, mps_contact *contact, int64_t capacity, int64_t *count,
                           int64_t *ids, double *gap, double *normal, double *force, double *foot);
+  /* Writes the reaction by each part of the body; NULL: those of `source` are these. */
+  void (*reactions)(const void *owner, const mps_contact *contact, mps_reaction *out);
 } mpsi_contact_owner;
 
 struct mps_contact {
@@ -33,6 +35,9 @@ struct mps_contact {
 mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body *body,
                             const mps_contact_def *def, const mpsi_contact_owner *kind, void *owner,
                             mps_contact **out);
+/* The same without a definition of WLS-MPM. */
+mps_status mpsi_contact_make(mps_context *context, const char *function, mps_body *body,
+                             const mpsi_contact_owner *kind, void *owner, mps_contact **out);
 /* Makes it a source of the body. */
 void mpsi_contact_join(mps_contact *contact);
 /* Releases the solver's reference; the contact ends. */

@@ -103,7 +103,8 @@ typedef struct mpsi_fluid_body {
   struct mps_body *body; /* NULL: none */
   int first, faces;      /* walls */
   mpsi_fluid_pose pose, next;
-  mpsi_body_source source;
+  struct mps_contact *contact;         /* the caller's handle of it */
+  mpsi_body_source *source;            /* a member of that */
   mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the water, and its points on each part */
   mpsi_load
       owed[MPS_BODY_MAX_PARTS]; /* N s, N m s: of collisions, to be applied in the next step */
@@ -418,6 +419,12 @@ void mpsi_fluid_end_bodies(mps_fluid *fluid);
 /* m: rotations count as displacements at this radius. */
 double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *fluid);
 void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
+/* Of the body that a contact is with; -1: none of this fluid's, or it has ended. */
+int32_t mpsi_fluid_body_number(const mps_fluid *fluid, const mps_contact *contact);
+/* Whether the fluid may move a body (`contact`: that with it, NULL before there is one). */
+mps_status mpsi_fluid_check_floats(mps_fluid *fluid, const char *function, const mps_body *body,
+                                   const mps_contact *contact, int32_t floats);
+void mpsi_fluid_let_float(mps_fluid *fluid, int32_t number, int32_t floats);
 #define MPSI_FLUID_LEAST_ANGLE 15.0 /* degrees of fluid between a face and what it stands on */
 /* Degrees of fluid between a face and boundary number b; 180 where it does not stand there. */
 double mpsi_fluid_angle(const mps_fluid *fluid, const mpsi_fluid_wall *face, int b);

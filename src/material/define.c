@@ -4,13 +4,23 @@
 
 #include <stdio.h>
 
-static const mps_material_von_mises_def von_mises_defaults = {.poisson = 0.3};
+static const mps_material_von_mises_def von_mises_defaults = {
+    .young = NAN, .poisson = 0.3, .yield_stress = NAN};
 static const mps_material_drucker_prager_def drucker_prager_defaults = {
-    .cone = MPS_MATERIAL_CONE_PLANE_STRAIN, .poisson = 0.3, .friction = NAN, .tension = INFINITY};
+    .cone = MPS_MATERIAL_CONE_PLANE_STRAIN,
+    .young = NAN,
+    .poisson = 0.3,
+    .friction = NAN,
+    .tension = INFINITY};
 static const mps_material_mohr_coulomb_def mohr_coulomb_defaults = {
-    .poisson = 0.3, .friction = NAN, .tension = INFINITY};
-static const mps_material_newtonian_def newtonian_defaults = {.state = MPS_MATERIAL_STATE_TAIT};
-static const mps_material_user_def user_defaults = {.name = "user", .turns_stress = 1};
+    .young = NAN, .poisson = 0.3, .friction = NAN, .tension = INFINITY};
+static const mps_material_newtonian_def newtonian_defaults = {.state = MPS_MATERIAL_STATE_TAIT,
+                                                              .bulk_modulus = NAN};
+static const mps_material_user_def user_defaults = {.name = "user",
+                                                    .turns_stress = 1,
+                                                    .wave_modulus = NAN,
+                                                    .bulk_modulus = NAN,
+                                                    .shear_modulus = NAN};
 
 #define DEF_INIT(name)                                                                             \
   mps_status mps_material_##name##_def_init(mps_material_##name##_def *def, size_t size) {         \
@@ -92,7 +102,7 @@ mps_status mpsi_material_make_user(mps_context *context, const char *function,
   if (!material) return MPS_ERROR_MEMORY;
   material->law = law;
   material->wave_modulus =
-      def->wave_modulus > 0.0 ? def->wave_modulus : mpsi_law_wave_modulus(&law);
+      isnan(def->wave_modulus) ? mpsi_law_wave_modulus(&law) : def->wave_modulus;
   for (int32_t c = 0; c < def->history_count; c++) {
     strcpy(material->history_names[c], def->history[c]);
     (void)snprintf(material->history_fields[c], sizeof material->history_fields[c], "%s.%s",

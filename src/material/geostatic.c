@@ -16,6 +16,9 @@ mps_status mps_geostatic_def_init(mps_geostatic_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_geostatic_def, def, size, &geostatic_defaults);
 }
 
+/* Bytes of a layer: in 0.3; far beyond what any version will have. */
+enum { FIRST_LAYER = 24, MOST_LAYER = 65536 };
+
 static const char set_geostatic[] = "mps_particles_set_geostatic";
 
 /* Data of one call. */
@@ -33,6 +36,12 @@ typedef struct geostatic {
       *weight; /* of each layer: depth m, stress Pa at its top; unit weight N/m3 */
 } geostatic;
 
+/* Layer k of the caller's, whose layers may be longer than those of this library. */
+static const mps_geostatic_layer *layer_of(const geostatic *g, int32_t k) {
+  const int64_t size = g->def.layer_size ? g->def.layer_size : FIRST_LAYER;
+  return (const void *)((const char *)g->def.layers + k * size);
+}
+
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static mps_status check_layers(const geostatic *g) {
@@ -41,8 +50,14 @@ static mps_status check_layers(const geostatic *g) {
     return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
                      "layer_count is %d%s, must be >= 1", (int)d->layer_count,
                      d->layers ? "" : " and layers is NULL");
+  if (d->layer_size != 0 && (d->layer_size < FIRST_LAYER || d->layer_size > MOST_LAYER ||
+                             d->layer_size % (int32_t)sizeof(double) != 0))
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "layer_size is %d, must be sizeof(mps_geostatic_layer) (%d to %d, a multiple "
+                     "of 8), or 0",
+                     (int)d->layer_size, FIRST_LAYER, MOST_LAYER);
   for (int32_t k = 0; k < d->layer_count; k++) {
-    const mps_geostatic_layer *layer = &d->layers[k];
+    const mps_geostatic_layer *layer = layer_of(g, k);
     const bool lowest = k == d->layer_count - 1;
     if (!mpsi_in_range(MPSI_RANGE_LENGTH, layer->thickness) &&
         !(lowest && layer->thickness == INFINITY))
@@ -54,15 +69,15 @@ static mps_status check_layers(const geostatic *g) {
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
                        "layers: layer %d has k0 %s, must be 0 or 1e-9 to 1e6", (int)k,
                        mpsi_outside(layer->k0, 1e-9, 1e6).text);
-    if (layer->density != 0.0 && !mpsi_in_range(MPSI_RANGE_DENSITY, layer->density))
+    if (!isnan(layer->density) && !mpsi_in_range(MPSI_RANGE_DENSITY, layer->density))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layers: layer %d has density %g kg/m3, must be 1e-9 to 1e9, or 0 for the "
-                       "particles'",
+                       "layers: layer %d has density %g kg/m3, must be 1e-9 to 1e9, or NaN for "
+                       "that of the particles",
                        (int)k, layer->density);
-    if (layer->density == 0.0 && !g->density_field)
+    if (isnan(layer->density) && !g->density_field)
       return mpsi_fail(
           g->context, set_geostatic, MPS_ERROR_FIELD,
-          "layers: layer %d has density 0, but the set has no field 'density' to take it "
+          "layers: layer %d has density NaN, but the set has no field 'density' to take it "
           "from",
           (int)k);
   }
@@ -173,8 +188,8 @@ static mps_status find_depths(geostatic *g) {
 static int32_t layer_at(const geostatic *g, double depth) {
   const int32_t n = g->def.layer_count;
   int32_t k = 0;
-  while (k < n && depth >= g->top[k] + g->def.layers[k].thickness) k++;
-  if (k == n && depth <= g->top[n - 1] + g->def.layers[n - 1].thickness) k--;
+  while (k < n && depth >= g->top[k] + layer_of(g, k)->thickness) k++;
+  if (k == n && depth <= g->top[n - 1] + layer_of(g, n - 1)->thickness) k--;
   return k;
 }
 
@@ -183,7 +198,7 @@ static int32_t layer_at(const geostatic *g, double depth) {
 /* Density of the layers that take it from their particles: one value, or an error. */
 static mps_status take_densities(geostatic *g, double *density) {
   const int32_t n = g->def.layer_count;
-  for (int32_t k = 0; k < n; k++) density[k] = g->def.layers[k].density;
+  for (int32_t k = 0; k < n; k++) density[k] = layer_of(g, k)->density;
   for (int64_t k = 0; k < g->count; k++) {
     const int32_t layer = layer_at(g, g->depth[k]);
     if (layer == n)
@@ -191,14 +206,14 @@ static mps_status take_densities(geostatic *g, double *density) {
                        "particle %lld is %g m deep, the layers reach down to %g m (the lowest may "
                        "be infinite)",
                        (long long)g->id[k], g->depth[k],
-                       g->top[n - 1] + g->def.layers[n - 1].thickness);
-    if (g->def.layers[layer].density > 0.0) continue;
+                       g->top[n - 1] + layer_of(g, n - 1)->thickness);
+    if (!isnan(layer_of(g, layer)->density)) continue;
     const double rho = g->density_field[k];
     if (!mpsi_in_range(MPSI_RANGE_DENSITY, rho))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
                        "particle %lld has density %g kg/m3, must be 1e-9 to 1e9",
                        (long long)g->id[k], rho);
-    if (density[layer] == 0.0) density[layer] = rho;
+    if (isnan(density[layer])) density[layer] = rho;
     if (rho != density[layer])
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
                        "layer %d has particles of %g and of %g kg/m3 (particle %lld), must be one "
@@ -206,22 +221,22 @@ static mps_status take_densities(geostatic *g, double *density) {
                        (int)layer, density[layer], rho, (long long)g->id[k]);
   }
   for (int32_t k = 0; k < n; k++)
-    if (density[k] == 0.0 && k < n - 1)
+    if (isnan(density[k]) && k < n - 1)
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layers: layer %d has density 0 and no particle to take it from", (int)k);
+                       "layers: layer %d has density NaN and no particle to take it from", (int)k);
   return MPS_OK;
 }
 
 static mps_status weigh(geostatic *g) {
   const int32_t n = g->def.layer_count;
-  for (int32_t k = 1; k < n; k++) g->top[k] = g->top[k - 1] + g->def.layers[k - 1].thickness;
+  for (int32_t k = 1; k < n; k++) g->top[k] = g->top[k - 1] + layer_of(g, k - 1)->thickness;
   mps_status status = find_depths(g);
   if (status == MPS_OK) status = take_densities(g, g->weight);
   if (status != MPS_OK) return status;
   g->burden[0] = g->def.surcharge;
   for (int32_t k = 0; k < n; k++) {
-    g->weight[k] *= g->def.gravity;
-    if (k + 1 < n) g->burden[k + 1] = g->burden[k] + g->weight[k] * g->def.layers[k].thickness;
+    g->weight[k] = isnan(g->weight[k]) ? 0.0 : g->weight[k] * g->def.gravity; /* nothing there */
+    if (k + 1 < n) g->burden[k + 1] = g->burden[k] + g->weight[k] * layer_of(g, k)->thickness;
   }
   return MPS_OK;
 }
@@ -245,7 +260,7 @@ static void write_stress(const geostatic *g) {
     const int32_t layer = layer_at(g, g->depth[k]);
     const double vertical = -(g->burden[layer] + g->weight[layer] * (g->depth[k] - g->top[layer]));
     for (int32_t c = 0; c < 2 * g->dim; c++)
-      s[c][k] = c == g->up ? vertical : c < 3 ? g->def.layers[layer].k0 * vertical : 0.0;
+      s[c][k] = c == g->up ? vertical : c < 3 ? layer_of(g, layer)->k0 * vertical : 0.0;
   }
 }
 

@@ -26,8 +26,12 @@ typedef struct umat_law {
   double props[]; /* props_count, and behind them, for comparison, temperature and length */
 } umat_law;
 
-static const mps_material_umat_def umat_defaults = {
-    .name = "umat", .length = 1.0, .keeps_strain = 1};
+static const mps_material_umat_def umat_defaults = {.name = "umat",
+                                                    .wave_modulus = NAN,
+                                                    .length = 1.0,
+                                                    .keeps_strain = 1,
+                                                    .bulk_modulus = NAN,
+                                                    .shear_modulus = NAN};
 
 mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_material_umat_def, def, size, &umat_defaults);

@@ -60,22 +60,21 @@ static mps_status check_user_law(mps_context *context, const char *function,
 static mps_status check_moduli(mps_context *context, const char *function,
                                const mps_material_user_def *def) {
   const double least = def->bulk_modulus + 4.0 / 3.0 * def->shear_modulus;
-  if (def->bulk_modulus == 0.0 && def->shear_modulus == 0.0)
+  if (isnan(def->bulk_modulus) && isnan(def->shear_modulus))
     return mpsi_check_range(context, function, "wave_modulus: wave modulus", def->wave_modulus,
                             MPSI_RANGE_MODULUS);
   mps_status status = mpsi_check_range(context, function, "bulk_modulus: bulk modulus",
                                        def->bulk_modulus, MPSI_RANGE_MODULUS);
   if (status == MPS_OK)
-    status = mpsi_check_range_or_0(context, function, "shear modulus", def->shear_modulus,
-                                   MPSI_RANGE_MODULUS);
-  if (status == MPS_OK)
-    status = mpsi_check_range_or_0(context, function, "wave_modulus: wave modulus",
-                                   def->wave_modulus, MPSI_RANGE_MODULUS);
-  if (status != MPS_OK || def->wave_modulus == 0.0 || def->wave_modulus >= least * (1.0 - 1e-12))
-    return status;
+    status = mpsi_check_range_or_0(context, function, "shear_modulus: shear modulus",
+                                   def->shear_modulus, MPSI_RANGE_MODULUS);
+  if (status != MPS_OK || isnan(def->wave_modulus)) return status;
+  status = mpsi_check_range(context, function, "wave_modulus: wave modulus", def->wave_modulus,
+                            MPSI_RANGE_MODULUS);
+  if (status != MPS_OK || def->wave_modulus >= least * (1.0 - 1e-12)) return status;
   return mpsi_fail(
       context, function, MPS_ERROR_ARGUMENT,
-      "wave_modulus: wave modulus is %g Pa, must be 0 or at least K + 4G/3 of its moduli, %g Pa",
+      "wave_modulus: wave modulus is %g Pa, must be NaN or at least K + 4G/3 of its moduli, %g Pa",
       def->wave_modulus, least);
 }
 

@@ -95,7 +95,7 @@ mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, d
 
 bool mpsi_signal_may_fail(const mps_signal *signal) { return signal && signal->fn; }
 
-/* Goes on with a hash (core/hash.h) over what the signal is made of; of a function of the caller,
+/* Continues with a hash (core/hash.h) over what the signal is made of; of a function of the caller,
  * over that it is one. */
 static uint64_t hash_of(const mps_signal *signal, uint64_t hash) {
   const double kind = !signal ? 0.0 : signal->fn ? 1.0 : 2.0;

@@ -15,6 +15,7 @@ API_SOLVER(fluid, API_FLUID)
 API_INIT(fluid_def)
 API_INIT(fluid_boundary_def)
 API_INIT(fluid_load_def)
+API_INIT(fluid_contact_def)
 API_INIT(fluid_solver_def)
 
 static void fluid_create(api *a) {
@@ -170,36 +171,29 @@ static void fluid_get_levels(api *a) {
 
 /* ---- bodies and loads ------------------------------------------------------------------------ */
 
-static void fluid_add_body(api *a) {
-  api_begin(a, "mps_fluid_add_body");
-  int32_t number = -1;
-  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+static void fluid_add_contact(api *a) {
+  api_begin(a, "mps_fluid_add_contact");
+  mps_contact *made = NULL;
+  api_object *o = api_any(a, API_FLUID);
   mps_body *body = api_any(a, API_BODY)->handle;
-  int32_t kind = api_choice(a, "kind", 2); /* a body is HELD or ROLLER, not DRIVEN between them */
-  kind = kind == 1 ? MPS_BOUNDARY_ROLLER : kind == 2 ? MPS_BOUNDARY_DRIVEN : kind;
-  (void)api_end(a, mps_fluid_add_body(fluid, body, kind, &number));
-}
-
-static void fluid_remove_body(api *a) {
-  api_begin(a, "mps_fluid_remove_body");
-  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
-  (void)api_end(a, mps_fluid_remove_body(fluid, (int32_t)api_least(a, "number", 0, 1)));
+  mps_fluid_contact_def def = mps_fluid_contact_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.kind = api_choice(a, "kind", 2); /* a body is HELD or ROLLER, not DRIVEN between them */
+  def.kind = def.kind == 1 ? MPS_BOUNDARY_ROLLER : def.kind == 2 ? MPS_BOUNDARY_DRIVEN : def.kind;
+  if (api_chance(a, 20)) def.floats = (int32_t)api_below(a, 2);
+  const bool kept = api_chance(a, 80);
+  const mps_status status = mps_fluid_add_contact(
+      o->handle, body, a->wrong == 0 && api_chance(a, 10) ? NULL : &def, kept ? &made : NULL);
+  if (kept && (status == MPS_OK) != (made != NULL)) api_broken(a, "a contact, or none");
+  (void)api_adopt(a, API_CONTACT, made, a->context, o);
+  (void)api_end(a, status);
 }
 
 static void fluid_float_body(api *a) {
   api_begin(a, "mps_fluid_float_body");
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
-  const int32_t number = (int32_t)api_least(a, "number", 0, 1);
-  (void)api_end(a, mps_fluid_float_body(fluid, number, (int32_t)api_below(a, 2)));
-}
-
-static void fluid_get_body_reaction_sized(api *a) {
-  api_begin(a, "mps_fluid_get_body_reaction_sized");
-  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
-  const int32_t number = (int32_t)api_least(a, "number", 0, 1);
-  API_SIZED(a, mps_reaction, size, out);
-  const mps_status status = mps_fluid_get_body_reaction_sized(fluid, number, out, size);
-  API_SIZED_END(a, status, size, out, true);
+  mps_contact *contact = api_any(a, API_CONTACT)->handle;
+  (void)api_end(a, mps_fluid_float_body(fluid, contact, (int32_t)api_below(a, 2)));
 }
 
 static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t *ids) {
@@ -323,6 +317,7 @@ static const api_call calls[] = {
     {"mps_fluid_def_init", 1, API_NOTHING, init_fluid_def},
     {"mps_fluid_boundary_def_init", 1, API_NOTHING, init_fluid_boundary_def},
     {"mps_fluid_load_def_init", 1, API_NOTHING, init_fluid_load_def},
+    {"mps_fluid_contact_def_init", 1, API_NOTHING, init_fluid_contact_def},
     {"mps_fluid_solver_def_init", 1, API_NOTHING, init_fluid_solver_def},
     {"mps_fluid_create", 5, API_SET, fluid_create},
     {"mps_fluid_add_boundary", 4, API_FLUID, fluid_add_boundary},
@@ -332,10 +327,8 @@ static const api_call calls[] = {
     {"mps_fluid_get_pressure", 2, API_FLUID, fluid_get_pressure},
     {"mps_fluid_get_levels", 1, API_FLUID, fluid_get_levels},
     {"mps_fluid_set_material", 2, API_FLUID, fluid_set_material},
-    {"mps_fluid_add_body", 3, API_FLUID, fluid_add_body},
-    {"mps_fluid_remove_body", 1, API_FLUID, fluid_remove_body},
+    {"mps_fluid_add_contact", 3, API_FLUID, fluid_add_contact},
     {"mps_fluid_float_body", 2, API_FLUID, fluid_float_body},
-    {"mps_fluid_get_body_reaction_sized", 1, API_FLUID, fluid_get_body_reaction_sized},
     {"mps_fluid_add_load", 3, API_FLUID, fluid_add_load},
     {"mps_fluid_set_load", 2, API_FLUID, fluid_set_load},
     {"mps_fluid_begin_step", 4, API_FLUID, fluid_begin_step},

@@ -362,7 +362,7 @@ static void particles_set_geostatic(api *a) {
     if (isinf(layers[k].thickness)) a->wrong = 0;
     layers[k].k0 = api_real(a, "k0", 0.0, 1e300, 0.5);
     layers[k].density = api_real(a, "density", 1e-9, 1e9, 1000.0);
-    if (layers[k].density == 0.0) a->wrong = 0;
+    if (isnan(layers[k].density)) a->wrong = 0;
   }
   def.layers = layers;
   def.gravity = api_real(a, "gravity", 5e-324, 1e300, 9.81);

@@ -159,7 +159,7 @@ static void add_totals(look *l, mps_status status, const mps_totals *t) {
 
 /* ---- solvers --------------------------------------------------------------------------------- */
 
-/* What all solvers tell alike: time, steps, dt, totals. */
+/* What all solvers show alike: time, steps, dt, totals. */
 #define LOOK_RUN(l, type, solver)                                                                  \
   do {                                                                                             \
     mps_totals totals;                                                                             \
@@ -209,7 +209,6 @@ static void look_fluid(look *l, mps_fluid *fluid) {
     add(l, "report", hash);
   }
   LOOK_REACTIONS(mps_fluid_get_reaction, fluid, "reaction", 5)
-  LOOK_REACTIONS(mps_fluid_get_body_reaction, fluid, "body reaction", 3)
   look_lent(l, mps_fluid_particles(fluid));
 }
 

@@ -141,7 +141,7 @@ static mps_status define_otherwise(mps_context *own, scene *s, int what, int32_t
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.6, 0.0, -1.0, 0.0, signal));
   mps_signal_destroy(&signal);
   TRY(mps_body_create_polygon(own, &def, 4, corner, &body));
-  TRY(mps_fluid_add_body(s->fluid, body, MPS_BOUNDARY_ROLLER, NULL));
+  TRY(mps_fluid_add_contact(s->fluid, body, NULL, NULL));
   load.acceleration[0] = what == OTHER_LOAD ? 0.1 * rank : 0.1;
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));
   TRY(mps_fluid_add_load(s->fluid, &load, NULL));

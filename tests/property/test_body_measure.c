@@ -39,11 +39,10 @@ static mpm_scene make_soil(double measure, double x0, double x1, double y0, doub
 }
 
 /* A tank .6 x .2 m of water of `measure` with the box in it. */
-static tank make_water(double measure, mps_body *box) {
+static tank make_water(double measure, mps_body *box, mps_contact **contact) {
   tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  int32_t number;
   set.spacing = SPACING;
   def.level = 0.2, def.measure = measure, def.dt = 1e-3;
   mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
@@ -58,7 +57,7 @@ static tank make_water(double measure, mps_body *box) {
   tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(context, t.fluid, 0.6, 0.0, -1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(t.fluid, box, MPS_BOUNDARY_ROLLER, &number));
+  *contact = tank_body(context, t.fluid, box, 0);
   return t;
 }
 
@@ -153,22 +152,23 @@ static void a_box_in_water(void **state) {
     const double load[3] = {0.0, -60.0 * measures[k], 0.0};
     const double moment[3] = {0.0, 0.0, 0.5 * measures[k]};
     mps_reaction felt, given;
-    tank t = make_water(measures[k], box);
+    mps_contact *wet = NULL;
+    tank t = make_water(measures[k], box, &wet);
     mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
     mps_assert_ok(context, mps_body_get_reaction(box, -1, &felt));
-    mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &given));
+    mps_assert_ok(context, mps_contact_get_reaction(wet, -1, &given));
     assert_true(given.force[1] > 0.0 && felt.count == given.count);
     mps_assert_near(felt.force[1], given.force[1], 1e-12 * given.force[1]);
     mps_assert_near(felt.moment[2], given.moment[2], 1e-12 * given.force[1]);
     mps_assert_near(felt.impulse[1], given.impulse[1], 1e-12 * given.force[1]);
     held[k] = felt.force[1];
     mps_assert_ok(context, mps_body_set_load(box, load, moment));
-    mps_assert_ok(context, mps_fluid_float_body(t.fluid, 0, 1));
+    mps_assert_ok(context, mps_fluid_float_body(t.fluid, wet, 1));
     mps_assert_fails(context, mps_body_advance(box, 1e-3), MPS_ERROR_STATE, "moves this body");
     mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
     const mps_body_state now = state_of(box);
     mps_assert_ok(context, mps_body_get_reaction(box, -1, &felt));
-    mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &given));
+    mps_assert_ok(context, mps_contact_get_reaction(wet, -1, &given));
     print_message("measure %g m: held %.4f N, floats at %.6f m/s, %.4f rad/s, force on the body "
                   "%.4f N, by the water %.4f N\n",
                   measures[k], held[k], now.velocity[1], now.spin[2], felt.force[1],
@@ -178,6 +178,7 @@ static void a_box_in_water(void **state) {
     if (k == 0) first = now;
     assert_true(now.velocity[1] < -0.01 && now.spin[2] > 0.01);
     same_motion(&now, &first, 1e-6);
+    mps_contact_destroy(&wet);
     tank_free(&t);
     mps_body_destroy(&box);
   }
@@ -194,13 +195,14 @@ static void a_box_held_in_soil_and_water(void **state) {
       mps_body *box = make_box(MPS_BODY_MOTION_DRIVEN, 0.3, 0.19, 0.0);
       mpm_scene soil = make_soil(measures[a], 0.22, 0.38, 0.24, 0.0);
       mps_contact *contact = add_contact(&soil, box, MPS_CONTACT_MOVER_OTHER);
-      tank t = make_water(measures[b], box);
+      mps_contact *wet = NULL;
+      tank t = make_water(measures[b], box, &wet);
       mps_reaction by_soil, by_water, all;
       mps_assert_ok(context, mps_fluid_step(t.fluid, 3));
       mps_assert_ok(context, mps_mpm_run(soil.mpm, 3e-3, 1000, NULL, NULL));
       mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
       mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &by_soil));
-      mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &by_water));
+      mps_assert_ok(context, mps_contact_get_reaction(wet, -1, &by_water));
       mps_assert_ok(context, mps_body_get_reaction(box, -1, &all));
       if (a + b == 0) unit[0] = by_soil.force[1], unit[1] = by_water.force[1];
       assert_true(unit[0] < -1.0 && unit[1] > 1.0);
@@ -210,6 +212,7 @@ static void a_box_held_in_soil_and_water(void **state) {
       mps_assert_near(all.moment[2], by_soil.moment[2] + by_water.moment[2], 1e-9);
       assert_int_equal(all.count, by_soil.count + by_water.count);
       mps_contact_destroy(&contact);
+      mps_contact_destroy(&wet);
       tank_free(&t);
       mpm_scene_end(&soil);
       mps_body_destroy(&box);
@@ -226,13 +229,14 @@ static void both_move_a_box(bool water_moves) {
     mpm_scene soil = make_soil(measures[k], 0.26, 0.38, 0.26, 0.5);
     mps_contact *contact =
         add_contact(&soil, box, water_moves ? MPS_CONTACT_MOVER_OTHER : MPS_CONTACT_MOVER_SOLVER);
-    tank t = make_water(measures[k], box);
+    mps_contact *wet = NULL;
+    tank t = make_water(measures[k], box, &wet);
     mps_reaction by_soil, all;
     if (water_moves)
-      mps_assert_ok(context, mps_fluid_float_body(t.fluid, 0, 1));
+      mps_assert_ok(context, mps_fluid_float_body(t.fluid, wet, 1));
     else
-      mps_assert_fails(context, mps_fluid_float_body(t.fluid, 0, 1), MPS_ERROR_STATE,
-                       "another solver moves body 0");
+      mps_assert_fails(context, mps_fluid_float_body(t.fluid, wet, 1), MPS_ERROR_STATE,
+                       "another solver moves the body");
     for (int n = 1; n <= 40; n++) {
       mps_assert_ok(context, mps_mpm_run(soil.mpm, 1e-3 * n, 1000, NULL, NULL));
       mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
@@ -250,6 +254,7 @@ static void both_move_a_box(bool water_moves) {
     if (k == 0) first = now;
     same_motion(&now, &first, 1e-5);
     mps_contact_destroy(&contact);
+    mps_contact_destroy(&wet);
     tank_free(&t);
     mpm_scene_end(&soil);
     mps_body_destroy(&box);

@@ -25,7 +25,7 @@ static void add(balance *b, const double *term, double sign) {
 }
 
 /* Boundaries 0 to `walls` - 1 and bodies 0 to `bodies` - 1; `start`: momentum at creation. */
-static balance balance_of(mps_context *c, mps_fluid *fluid, int walls, int bodies,
+static balance balance_of(mps_context *c, mps_fluid *fluid, int walls, const mps_contact *body,
                           const double *start) {
   balance b = {.change = {0.0, 0.0}};
   mps_totals sum;
@@ -42,16 +42,16 @@ static balance balance_of(mps_context *c, mps_fluid *fluid, int walls, int bodie
     mps_assert_ok(c, mps_fluid_get_reaction(fluid, k, &r));
     add(&b, r.impulse, 1.0);
   }
-  for (int32_t k = 0; k < bodies; k++) {
-    mps_assert_ok(c, mps_fluid_get_body_reaction(fluid, k, &r));
+  if (body) {
+    mps_assert_ok(c, mps_contact_get_reaction(body, -1, &r));
     add(&b, r.impulse, -1.0);
   }
   return b;
 }
 
-static balance check(mps_context *c, mps_fluid *fluid, int walls, int bodies) {
+static balance check(mps_context *c, mps_fluid *fluid, int walls, const mps_contact *body) {
   const double rest[2] = {0.0, 0.0};
-  const balance b = balance_of(c, fluid, walls, bodies, rest);
+  const balance b = balance_of(c, fluid, walls, body, rest);
   for (int k = 0; k < 2; k++) mps_assert_near(b.error[k], 0.0, ROUNDING * b.terms[k]);
   return b;
 }
@@ -90,7 +90,7 @@ static void breaking_dam(mps_context *c) {
   mps_reaction right;
   mps_assert_ok(c, mps_fluid_get_report(t.fluid, &report));
   mps_assert_ok(c, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &right));
-  const balance b = check(c, t.fluid, 3, 0);
+  const balance b = check(c, t.fluid, 3, NULL);
   print_message("dam: momentum %.2f, %.2f N s, of the wall %.2f, of the scheme %.2f, %.2f; error "
                 "%.1e, %.1e; collisions %d\n",
                 b.change[0], b.change[1], right.impulse[0], b.scheme[0], b.scheme[1], b.error[0],
@@ -128,7 +128,7 @@ static void closed_tank(mps_context *c) {
   mps_assert_ok(c, mps_fluid_step(fluid, 60));
   mps_totals sum;
   mps_assert_ok(c, mps_fluid_get_totals(fluid, &sum));
-  const balance b = check(c, fluid, 4, 0);
+  const balance b = check(c, fluid, 4, NULL);
   print_message("box: loads %.3f N s, scheme %.2e, %.2e; error %.1e, %.1e\n", sum.impulse_loads[0],
                 b.scheme[0], b.scheme[1], b.error[0], b.error[1]);
   mps_assert_near(sum.impulse_loads[1], -TANK_G * sum.mass * mps_fluid_time(fluid),
@@ -149,18 +149,16 @@ static void floating_box(mps_context *c) {
   mps_body *body;
   mps_reaction felt, fluid;
   mps_body_totals own;
-  int32_t number;
   def.motion = MPS_BODY_MOTION_FREE, def.mass = 12.0, def.inertia[2] = 0.05;
   def.gravity[1] = -TANK_G, def.position[0] = 0.35, def.position[1] = 0.37;
   def.rotation[2] = 0.1, def.velocity[1] = -1.0;
   mps_assert_ok(c, mps_body_create_polygon(c, &def, 4, xy, &body));
-  mps_assert_ok(c, mps_fluid_add_body(t.fluid, body, MPS_BOUNDARY_ROLLER, &number));
-  mps_assert_ok(c, mps_fluid_float_body(t.fluid, number, 1));
+  mps_contact *contact = tank_body(c, t.fluid, body, 1);
   mps_assert_ok(c, mps_fluid_step(t.fluid, test_quick() ? 60 : 200));
-  const balance b = check(c, t.fluid, 3, 1);
+  const balance b = check(c, t.fluid, 3, contact);
   mps_assert_ok(c, mps_body_get_totals(body, &own));
   mps_assert_ok(c, mps_body_get_reaction(body, -1, &felt));
-  mps_assert_ok(c, mps_fluid_get_body_reaction(t.fluid, number, &fluid));
+  mps_assert_ok(c, mps_contact_get_reaction(contact, -1, &fluid));
   const double weight = def.mass * TANK_G * mps_fluid_time(t.fluid);
   mps_assert_near(own.linear[0], felt.impulse[0], ROUNDING * weight);
   mps_assert_near(own.linear[1], -def.mass + felt.impulse[1] - weight, ROUNDING * weight);
@@ -169,6 +167,7 @@ static void floating_box(mps_context *c) {
                 own.linear[1], felt.impulse[1], fluid.impulse[1], b.scheme[0], b.scheme[1],
                 b.error[0], b.error[1]);
   mps_assert_near(felt.impulse[1], fluid.impulse[1], 0.01 * weight);
+  mps_contact_destroy(&contact);
   mps_body_destroy(&body);
   tank_free(&t);
 }
@@ -266,13 +265,13 @@ static void a_body_gets_what_a_particle_loses(void **state) {
   def.motion = MPS_BODY_MOTION_FREE, def.mass = 40.0, def.inertia[2] = 1.0;
   def.position[0] = -0.1, def.position[1] = 0.5;
   mps_assert_ok(context, mps_body_create_polygon(context, &def, 4, xy, &body));
-  mps_assert_ok(context, mps_fluid_add_body(s.fluid, body, MPS_BOUNDARY_ROLLER, NULL));
+  mps_contact *contact = tank_body(context, s.fluid, body, 0);
   for (int k = 0; k < 40; k++) {
     mps_assert_ok(context, mps_fluid_step(s.fluid, 1));
     mps_assert_ok(context, mps_body_advance(body, 5e-4));
   }
   mps_assert_ok(context, mps_body_get_reaction(body, -1, &felt));
-  mps_assert_ok(context, mps_fluid_get_body_reaction(s.fluid, 0, &fluid));
+  mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &fluid));
   mps_assert_ok(context, mps_body_get_totals(body, &own));
   mps_assert_ok(context, mps_fluid_get_totals(s.fluid, &sum));
   assert_true(own.linear[0] < -0.9 * s.mass);
@@ -280,6 +279,7 @@ static void a_body_gets_what_a_particle_loses(void **state) {
   mps_assert_near(fluid.impulse[0], own.linear[0], 1e-12);
   mps_assert_near(own.linear[0] + sum.linear[0], -s.mass, 1e-12);
   mps_assert_near(sum.impulse_scheme[0], 0.0, 1e-12);
+  mps_contact_destroy(&contact);
   mps_body_destroy(&body);
   drop_strike(&s);
 }

@@ -432,27 +432,35 @@ static void bodies_come_and_go(void **state) {
   mps_body_def at = mps_body_defaults();
   mps_body *box = NULL, *disc = NULL, *small = NULL, *corner = NULL;
   mps_snapshot *snapshot = NULL;
-  mps_reaction r[2];
-  int32_t number = -1;
+  mps_contact *contact = NULL;
+  mps_fluid_contact_def driven = mps_fluid_contact_defaults();
+  mps_reaction r[2], part;
+  int64_t count = 0;
   const double xy[8] = {0.0, 0.0, 0.1, 0.0, 0.02, 0.02, 0.0, 0.1};
-  at.position[0] = 0.3, at.position[1] = 0.5;
+  at.position[0] = 0.3, at.position[1] = 0.5, driven.kind = MPS_BOUNDARY_DRIVEN;
   mps_assert_ok(context, mps_body_create_disc(context, &at, 0.1, &disc));
   mps_assert_ok(context, mps_body_create_box(context, &at, 0.2, 0.02, &small));
   mps_assert_ok(context, mps_body_create_polygon(context, &at, 4, xy, &corner));
   mps_assert_ok(context, mps_body_create_box(context, &at, 0.2, 0.2, &box));
-  mps_assert_fails(context, mps_fluid_add_body(t.fluid, NULL, 0, NULL), MPS_ERROR_ARGUMENT, "NULL");
-  mps_assert_fails(context, mps_fluid_add_body(t.fluid, disc, 0, NULL), MPS_ERROR_ARGUMENT,
-                   "no polygon");
-  mps_assert_fails(context, mps_fluid_add_body(t.fluid, small, 0, NULL), MPS_ERROR_ARGUMENT,
-                   "edge 1 of the body");
-  mps_assert_fails(context, mps_fluid_add_body(t.fluid, corner, 0, NULL), MPS_ERROR_ARGUMENT,
-                   "edge 1 of the body");
-  mps_assert_fails(context, mps_fluid_add_body(t.fluid, box, MPS_BOUNDARY_DRIVEN, NULL),
+  mps_assert_fails(context, mps_fluid_add_contact(t.fluid, NULL, NULL, &contact),
+                   MPS_ERROR_ARGUMENT, "NULL");
+  mps_assert_fails(context, mps_fluid_add_contact(t.fluid, disc, NULL, &contact),
+                   MPS_ERROR_ARGUMENT, "no polygon");
+  mps_assert_fails(context, mps_fluid_add_contact(t.fluid, small, NULL, &contact),
+                   MPS_ERROR_ARGUMENT, "edge 1 of the body");
+  mps_assert_fails(context, mps_fluid_add_contact(t.fluid, corner, NULL, &contact),
+                   MPS_ERROR_ARGUMENT, "edge 1 of the body");
+  mps_assert_fails(context, mps_fluid_add_contact(t.fluid, box, &driven, &contact),
                    MPS_ERROR_ARGUMENT, "kind of the body");
-  mps_assert_ok(context, mps_fluid_add_body(t.fluid, box, 0, &number));
-  assert_int_equal(number, 0);
-  mps_assert_fails(context, mps_fluid_get_body_reaction(t.fluid, 1, &r[0]), MPS_ERROR_ARGUMENT,
-                   "no body of number 1");
+  assert_null(contact);
+  mps_assert_ok(context, mps_body_name_part(box, "bottom", 0, 1, NULL));
+  mps_assert_ok(context, mps_fluid_add_contact(t.fluid, box, NULL, &contact));
+  assert_true(mps_contact_body(contact) == box);
+  mps_assert_fails(context, mps_contact_get_reaction(contact, 2, &r[0]), MPS_ERROR_ARGUMENT,
+                   "part");
+  mps_assert_fails(context,
+                   mps_contact_get_particles(contact, 0, &count, NULL, NULL, NULL, NULL, NULL),
+                   MPS_ERROR_UNSUPPORTED, "contact is that of a fluid");
   /* it dips into the water at 1 m/s */
   mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &snapshot));
   for (int run = 0; run < 2; run++) {
@@ -463,15 +471,18 @@ static void bodies_come_and_go(void **state) {
       mps_assert_ok(context, mps_body_set_motion(box, &motion));
       mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
     }
-    mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &r[run]));
+    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r[run]));
   }
   assert_true(r[0].force[1] > 0.5 * 1000.0 * TANK_G * 0.2 * 0.05);
   assert_true(r[0].work > 0.0 && r[0].impulse[1] > 0.0);
   assert_memory_equal(&r[0], &r[1], sizeof r[0]);
+  /* all but the sides' level forces acts on the part that is under water */
+  mps_assert_ok(context, mps_contact_get_reaction(contact, 1, &part));
+  mps_assert_near(part.force[1], r[1].force[1], 1e-9 * r[1].force[1]);
   mps_body_destroy(&box); /* the fluid keeps it */
   mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
-  mps_assert_fails(context, mps_fluid_remove_body(t.fluid, 3), MPS_ERROR_ARGUMENT, "number 3");
-  mps_assert_ok(context, mps_fluid_remove_body(t.fluid, 0));
+  mps_contact_destroy(&contact);
+  assert_null(contact);
   mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
   mps_assert_fails(context, mps_fluid_rollback(t.fluid, snapshot), MPS_ERROR_STATE, "");
   mps_snapshot_destroy(&snapshot);

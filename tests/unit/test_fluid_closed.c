@@ -153,7 +153,7 @@ static void a_body_moves_in_a_full_box(void **state) {
   tank_wall(context, t.fluid, LENGTH, 0.0, -1.0, 0.0, NULL);
   tank_wall(context, t.fluid, 0.0, DEPTH, 0.0, -1.0, NULL);
   mps_assert_ok(context, mps_body_create_box(context, &at, 0.12, 0.08, &body));
-  mps_assert_ok(context, mps_fluid_add_body(t.fluid, body, MPS_BOUNDARY_ROLLER, NULL));
+  mps_contact *contact = tank_body(context, t.fluid, body, 0);
   mps_body_motion motion = mps_body_motion_defaults();
   motion.position[0] = 0.2, motion.position[1] = 0.1;
   for (int k = 1; k <= 100; k++) {
@@ -165,13 +165,14 @@ static void a_body_moves_in_a_full_box(void **state) {
   }
   mps_reaction r;
   double bed, left, right, lid;
-  mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &r));
+  mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
   forces(&t, &bed, &left, &right, &lid);
   print_message(
       "body in the full box: lift %.3f N (exact %.3f), bed less lid %.3f N (exact %.3f)\n",
       r.force[1], 9810.0 * 0.12 * 0.08, bed - lid, 9810.0 * LENGTH * DEPTH);
   mps_assert_near(r.force[1], 9810.0 * 0.12 * 0.08, 0.02 * weight);
   mps_assert_near(bed - lid, weight, 0.02 * weight);
+  mps_contact_destroy(&contact);
   mps_body_destroy(&body);
   tank_free(&t);
 }

@@ -14,6 +14,7 @@ enum { CLOSED, SPILLS, AFLOAT };
 typedef struct scene {
   tank t;
   mps_body *body;
+  mps_contact *contact; /* of the body and the water */
   double right;
 } scene;
 
@@ -28,7 +29,6 @@ static void push_some(mps_particles *water) {
 static void add_box(scene *s) {
   mps_body_def def = mps_body_defaults();
   int64_t ids[200], count = 0;
-  int32_t number;
   mps_view id, x;
   mps_assert_ok(context, mps_particles_view(s->t.water, "id", &id));
   mps_assert_ok(context, mps_particles_view(s->t.water, "position", &x));
@@ -40,8 +40,7 @@ static void add_box(scene *s) {
   def.position[0] = 0.3, def.position[1] = 0.4;
   def.mass = 12.0, def.inertia[2] = 0.04;
   mps_assert_ok(context, mps_body_create_box(context, &def, 0.1, 0.2, &s->body));
-  mps_assert_ok(context, mps_fluid_add_body(s->t.fluid, s->body, MPS_BOUNDARY_ROLLER, &number));
-  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, number, 1));
+  s->contact = tank_body(context, s->t.fluid, s->body, 1);
 }
 
 static scene make(int kind) {
@@ -70,11 +69,12 @@ static scene make(int kind) {
 
 static void drop_scene(scene *s) {
   tank_free(&s->t);
+  mps_contact_destroy(&s->contact);
   mps_body_destroy(&s->body);
 }
 
 static void read_scene(scene *s, readings *r) {
-  read_all(context, s->t.fluid, s->right, s->body != NULL, r);
+  read_all(context, s->t.fluid, s->right, s->contact, r);
 }
 
 /* At every step, those after which the set is sorted too. */

@@ -102,7 +102,6 @@ static void lower_box(mps_context *own, double to, int steps) {
   mps_body_motion motion = mps_body_motion_defaults();
   tank t = {NULL, NULL};
   mps_body *box;
-  int32_t number;
   tilt(17.0, at.position, &at.rotation[2]);
   mps_assert_ok(own, mps_body_create_box(own, &at, WIDE, HIGH, &box));
   set.spacing = L0, def.dt = 2e-3, def.level = hi[1];
@@ -118,13 +117,14 @@ static void lower_box(mps_context *own, double to, int steps) {
   tank_wall(own, t.fluid, lo[0], 0.0, 1.0, 0.0, NULL);
   tank_wall(own, t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
   tank_wall(own, t.fluid, 0.0, lo[1], 0.0, 1.0, NULL);
-  mps_assert_ok(own, mps_fluid_add_body(t.fluid, box, MPS_BOUNDARY_ROLLER, &number));
+  mps_contact *contact = tank_body(own, t.fluid, box, 0);
   for (int k = 1; k <= steps; k++) {
     tilt(17.0 + (to - 17.0) * k / steps, motion.position, &motion.rotation[2]);
     motion.spin[2] = (to - 17.0) * TANK_PI / 180.0 / (steps * 2e-3);
     mps_assert_ok(own, mps_body_set_motion(box, &motion));
     mps_assert_ok(own, mps_fluid_step(t.fluid, 1));
   }
+  mps_contact_destroy(&contact);
   mps_body_destroy(&box);
   tank_free(&t);
 }

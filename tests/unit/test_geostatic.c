@@ -111,12 +111,12 @@ static void layers_carry_what_lies_above(void **state) {
 
 static void layers_take_their_particles_density(void **state) {
   (void)state;
-  static const mps_geostatic_layer from_field[] = {{1.0, 0.4, 0.0}, {4.0, 0.6, 0.0}};
+  static const mps_geostatic_layer from_field[] = {{1.0, 0.4, NAN}, {4.0, 0.6, NAN}};
   mps_particles *set = ground(context, 2, 3.0);
   mps_geostatic_def def = two_layers();
   def.layers = from_field;
   mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_FIELD,
-                   "layer 0 has density 0, but the set has no field 'density'");
+                   "layer 0 has density NaN, but the set has no field 'density'");
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 2000.0));
   const mps_view x = view_of(set, "position");
   double *rho = mpsi_particles_column(set, "density", 0); /* past the set's own check */
@@ -135,6 +135,25 @@ static void layers_take_their_particles_density(void **state) {
   def.surface = NAN;
   mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_ARGUMENT,
                    "particle 7 has density nan");
+  mps_particles_destroy(&set);
+}
+
+/* Layers of a program that was built with a longer struct: what lies behind the members that this
+ * library knows is passed over. */
+static void layers_may_be_longer(void **state) {
+  (void)state;
+  struct longer {
+    mps_geostatic_layer layer;
+    double more[2];
+  } layers[2];
+  memset(layers, 0xff, sizeof layers);
+  for (int k = 0; k < 2; k++) layers[k].layer = two[k];
+  mps_particles *set = ground(context, 2, 3.0);
+  mps_geostatic_def def = two_layers();
+  assert_int_equal(def.layer_size, sizeof(mps_geostatic_layer));
+  def.layers = &layers[0].layer, def.layer_size = (int32_t)sizeof *layers;
+  mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+  expect_two_layers(set, 1, at_three);
   mps_particles_destroy(&set);
 }
 
@@ -160,6 +179,9 @@ static void bad_layers_are_refused_and_nothing_is_changed(void **state) {
   REFUSED(layers[1].thickness = NAN, "layer 1 has thickness nan");
   REFUSED(layers[1].thickness = 1.0, "the layers reach down to 2 m");
   REFUSED(layers[1].k0 = -0.1, "layer 1 has k0 -0.1");
+  REFUSED(layers[0].density = 0.0, "layer 0 has density 0 kg/m3");
+  REFUSED(def.layer_size = 20, "layer_size is 20, must be sizeof(mps_geostatic_layer)");
+  REFUSED(def.layer_size = 1 << 20, "layer_size is 1048576");
   REFUSED(layers[0].density = -1.0, "layer 0 has density -1 kg/m3");
   REFUSED(def.gravity = -9.81, "gravity is -9.81 m/s2");
   REFUSED(def.surcharge = NAN, "surcharge is nan Pa");
@@ -267,6 +289,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(layers_carry_what_lies_above),
       cmocka_unit_test(layers_take_their_particles_density),
+      cmocka_unit_test(layers_may_be_longer),
       cmocka_unit_test(bad_layers_are_refused_and_nothing_is_changed),
       cmocka_unit_test(a_function_sets_the_stress),
       cmocka_unit_test(an_open_edit_is_respected),

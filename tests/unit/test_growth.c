@@ -461,6 +461,21 @@ static mps_status use_record(const void *def) {
   return status;
 }
 
+static mps_status use_fluid_contact(const void *def) {
+  mps_particles *set = square();
+  mps_fluid *fluid = NULL;
+  mps_body *box = NULL;
+  mps_body_def at = mps_body_defaults();
+  at.position[0] = 1.0, at.position[1] = 4.0;
+  mps_assert_ok(context, mps_fluid_create(context, set, NULL, &fluid));
+  mps_assert_ok(context, mps_body_create_box(context, &at, 1.0, 1.0, &box));
+  const mps_status status = mps_fluid_add_contact(fluid, box, def, NULL);
+  mps_fluid_destroy(&fluid);
+  mps_body_destroy(&box);
+  mps_particles_destroy(&set);
+  return status;
+}
+
 static mps_status use_fluid_load(const void *def) {
   mps_particles *set = square();
   mps_fluid *fluid = NULL;
@@ -541,6 +556,7 @@ static const user users[] = {
     {"mps_elastic_def", need_nothing, use_elastic},
     {"mps_fluid_def", need_nothing, use_fluid},
     {"mps_fluid_load_def", need_nothing, use_fluid_load},
+    {"mps_fluid_contact_def", need_nothing, use_fluid_contact},
     {"mps_fluid_solver_def", need_fluid_solver, use_fluid_solver},
     {"mps_geostatic_def", need_geostatic, use_geostatic},
     {"mps_material_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},

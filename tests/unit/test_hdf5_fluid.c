@@ -30,8 +30,8 @@ static void same(mps_context *a, const tank *x, mps_context *b, const tank *y) {
   const mps_reaction p = on_left(a, x), q = on_left(b, y);
   assert_true(p.force[0] == q.force[0] && p.impulse[0] == q.impulse[0] && p.work == q.work);
   static readings told, again;
-  read_all(a, x->fluid, 0.6, 0, &told);
-  read_all(b, y->fluid, 0.6, 0, &again);
+  read_all(a, x->fluid, 0.6, NULL, &told);
+  read_all(b, y->fluid, 0.6, NULL, &again);
   same_readings(&told, &again);
 }
 
@@ -65,7 +65,6 @@ static tank make_afloat(mps_context *c, mps_body **box) {
   mps_body_def def = mps_body_defaults();
   const double load[3] = {1.0, -10.0, 0.0};
   tank t = make(c, 0.3);
-  int32_t number;
   int64_t ids[4 * 4], count = 0;
   mps_view id, x;
   mps_assert_ok(c, mps_particles_view(t.water, "id", &id));
@@ -80,8 +79,7 @@ static tank make_afloat(mps_context *c, mps_body **box) {
   def.mass = 10.0, def.inertia[2] = 0.04;
   mps_assert_ok(c, mps_body_create_box(c, &def, 0.1, 0.2, box));
   mps_assert_ok(c, mps_body_set_load(*box, load, NULL));
-  mps_assert_ok(c, mps_fluid_add_body(t.fluid, *box, MPS_BOUNDARY_ROLLER, &number));
-  mps_assert_ok(c, mps_fluid_float_body(t.fluid, number, 1));
+  tank_float(c, t.fluid, *box);
   return t;
 }
 

@@ -152,7 +152,10 @@ static void moduli_of_users_laws_are_checked(void **state) {
   static const struct {
     double bulk, shear, wave;
     const char *text;
-  } wrong[] = {{0.0, 0.0, 0.0, "wave modulus is 0"},
+  } wrong[] = {{NAN, NAN, 0.0, "wave modulus is 0"},
+               {NAN, NAN, NAN, "wave modulus is nan"},
+               {0.0, 0.0, 1e6, "bulk modulus is 0"},
+               {1e6, 3e5, 0.0, "wave modulus is 0"},
                {0.0, 1e5, 1e6, "bulk modulus is 0"},
                {-1.0, 0.0, 1e6, "bulk modulus is -1"},
                {NAN, 1e5, 0.0, "bulk modulus is nan"},
@@ -173,7 +176,7 @@ static void moduli_of_users_laws_are_checked(void **state) {
     mps_assert_fails(context, mps_material_create_umat(context, &umat, &material),
                      MPS_ERROR_ARGUMENT, wrong[k].text);
   }
-  def.bulk_modulus = 1e6, def.shear_modulus = 3e5, def.wave_modulus = 0.0;
+  def.bulk_modulus = 1e6, def.shear_modulus = 3e5, def.wave_modulus = NAN;
   mps_assert_ok(context, mps_material_create_user(context, &def, &material));
   mps_assert_near(mps_material_wave_modulus(material), 1.4e6, 1e-8);
   mps_assert_ok(context, mps_material_get_moduli(material, 2e3, &m));
@@ -184,7 +187,7 @@ static void moduli_of_users_laws_are_checked(void **state) {
   mps_assert_near(mps_material_wave_modulus(material), 5e6, 0.0);
   mps_assert_near(mpsi_material_rest_modulus(material), 1.4e6, 1e-8);
   mps_material_destroy(&material);
-  def.bulk_modulus = def.shear_modulus = 0.0;
+  def.bulk_modulus = def.shear_modulus = NAN;
   mps_assert_ok(context, mps_material_create_user(context, &def, &material));
   assert_int_equal(mps_material_get_moduli(material, 2e3, &m), MPS_ERROR_UNSUPPORTED);
   mps_material_destroy(&material);

@@ -489,8 +489,8 @@ static mps_status fluid_set_load(scene *s) {
 static mps_status fluid_set_material(scene *s) {
   return mps_fluid_set_material(s->fluid, s->second, 0, NULL);
 }
-static mps_status fluid_add_body(scene *s) {
-  return mps_fluid_add_body(s->fluid, s->other, MPS_BOUNDARY_ROLLER, NULL);
+static mps_status fluid_add_contact(scene *s) {
+  return mps_fluid_add_contact(s->fluid, s->other, NULL, NULL);
 }
 static mps_status fluid_pressure(scene *s) {
   const double x[3] = {0.4, 0.0, 0.0};
@@ -531,7 +531,7 @@ static mps_status fill_where(scene *s) {
   return mps_particles_fill_where(s->set, lo, hi, everywhere, NULL, NULL);
 }
 
-/* What is taken away may need memory too: lists and matrices are made anew. */
+/* What is taken away may need memory too: lists and matrices are rebuilt. */
 static mps_status mpm_remove_boundary(scene *s) {
   return mps_mpm_remove_boundary(s->mpm, s->number);
 }
@@ -665,7 +665,7 @@ static const row rows[] = {
     {make_fluid, fluid_remove_load, "mps_fluid_remove_load", false},
     {make_open_fluid, fluid_solve, "mps_fluid_solve_pressure", false},
     {make_open_fluid, fluid_end, "mps_fluid_end_step", true},
-    {make_fluid, fluid_add_body, "mps_fluid_add_body", false},
+    {make_fluid, fluid_add_contact, "mps_fluid_add_contact", false},
     {make_fluid, fluid_pressure, "mps_fluid_get_pressure", true},
     {make_fluid, fluid_wall, "mps_fluid_get_wall", true},
     {make_edited_fluid, fluid_pressure, "mps_fluid_get_pressure", false},

@@ -9,6 +9,7 @@
 typedef struct scene {
   tank t;
   mps_body *body;
+  mps_contact *contact;
   double l0, length, depth, width, draft;
   double lightness; /* mass over that of the water displaced; 0: 1 */
   double damping;   /* 1/s */
@@ -19,7 +20,6 @@ static void launch(scene *s) {
   mps_fluid_def def = mps_fluid_defaults();
   mps_body_def at = mps_body_defaults();
   const double height = 2.0 * s->draft;
-  int32_t number;
   at.motion = MPS_BODY_MOTION_FREE;
   at.position[0] = 0.5 * s->length, at.position[1] = s->depth - s->draft + 0.5 * height;
   at.mass = 1000.0 * s->width * s->draft * (s->lightness > 0.0 ? s->lightness : 1.0);
@@ -42,8 +42,7 @@ static void launch(scene *s) {
   tank_wall(context, s->t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, s->t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(context, s->t.fluid, s->length, 0.0, -1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(s->t.fluid, s->body, MPS_BOUNDARY_ROLLER, &number));
-  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, number, 1));
+  s->contact = tank_body(context, s->t.fluid, s->body, 1);
 }
 
 /* ---- linear potential theory ----------------------------------------------------------------- */
@@ -137,6 +136,7 @@ static double heave_period(const scene *s, double sinks) {
 
 static void drop_scene(scene *s) {
   tank_free(&s->t);
+  mps_contact_destroy(&s->contact);
   mps_body_destroy(&s->body);
 }
 
@@ -262,16 +262,16 @@ static double pushed(scene *s, double a) {
   const double dt = mps_fluid_dt(s->t.fluid);
   mps_body_motion motion = mps_body_motion_defaults();
   mps_reaction r;
-  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, 0, 0));
+  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, s->contact, 0));
   mps_assert_ok(context, mps_fluid_begin_step(s->t.fluid, dt));
   motion.velocity[1] = a * dt;
   mps_assert_ok(context, mps_body_set_motion(s->body, &motion));
   mps_assert_ok(context, mps_fluid_solve_pressure(s->t.fluid));
-  mps_assert_ok(context, mps_fluid_get_body_reaction(s->t.fluid, 0, &r));
+  mps_assert_ok(context, mps_contact_get_reaction(s->contact, -1, &r));
   mps_assert_ok(context, mps_fluid_abandon_step(s->t.fluid));
   motion.velocity[1] = 0.0;
   mps_assert_ok(context, mps_body_set_motion(s->body, &motion));
-  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, 0, 1));
+  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, s->contact, 1));
   return r.force[1];
 }
 
@@ -295,8 +295,7 @@ static void a_light_box_starts_with_its_added_mass(void **state) {
     mps_assert_ok(context, mps_fluid_end_step(s.t.fluid));
     mps_assert_ok(context, mps_body_get_state(s.body, &b));
     const double a = b.velocity[1] / dt, linear = (still - mass * TANK_G) / (mass + added);
-    mps_body_destroy(&s.body);
-    tank_free(&s.t);
+    drop_scene(&s);
     launch(&s); /* the same place again */
     const double force = pushed(&s, a) - mass * TANK_G;
     print_message("mass %.2f of the displaced water's, added mass %.2f: starts with %.4f m/s2, "
@@ -340,17 +339,28 @@ static void bad_bodies_are_refused(void **state) {
   (void)state;
   scene s = {.l0 = 0.02, .length = 0.8, .depth = 0.4, .width = 0.4, .draft = 0.1};
   launch(&s);
-  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, 1, 1), MPS_ERROR_ARGUMENT, "body is 1");
-  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, 0, 2), MPS_ERROR_ARGUMENT, "floats 2");
-  mps_assert_ok(context, mps_fluid_remove_body(s.t.fluid, 0));
+  mps_contact *gone = s.contact, *contact = NULL;
+  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, NULL, 1), MPS_ERROR_ARGUMENT,
+                   "contact is NULL");
+  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, s.contact, 2), MPS_ERROR_ARGUMENT,
+                   "floats is 2");
+  mps_assert_fails(context, mps_fluid_add_contact(s.t.fluid, s.body, NULL, &contact),
+                   MPS_ERROR_STATE, "in contact with the body already");
+  mps_contact_destroy(&s.contact);
+  assert_true(gone != NULL && s.contact == NULL);
   mps_body_def def = mps_body_defaults();
+  mps_fluid_contact_def floating = mps_fluid_contact_defaults();
   mps_body *held = NULL;
-  int32_t number;
   def.position[0] = 0.4, def.position[1] = 0.4;
   mps_assert_ok(context, mps_body_create_box(context, &def, 0.4, 0.2, &held));
-  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, held, MPS_BOUNDARY_ROLLER, &number));
-  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, number, 1), MPS_ERROR_ARGUMENT,
+  floating.floats = 1;
+  mps_assert_fails(context, mps_fluid_add_contact(s.t.fluid, held, &floating, &contact),
+                   MPS_ERROR_ARGUMENT, "must be free");
+  assert_null(contact);
+  contact = tank_body(context, s.t.fluid, held, 0);
+  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, contact, 1), MPS_ERROR_ARGUMENT,
                    "must be free");
+  mps_contact_destroy(&contact);
   mps_body_destroy(&held);
   drop_scene(&s);
 }

@@ -10,18 +10,18 @@
 typedef struct scene {
   tank t;
   mps_body *body;
+  mps_contact *contact;
 } scene;
 
 /* A tank 1.2 x .4 m with a box about (x, y), turned by `angle`, and the particles of a lattice
  * outside of it, each displaced by up to `part` of half the spacing. */
 static scene make_scene(double x, double y, double width, double height, double angle,
                         double part) {
-  scene s = {{NULL, NULL}, NULL};
+  scene s = {{NULL, NULL}, NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   mps_body_def at = mps_body_defaults();
   uint64_t seed = 5;
-  int32_t number;
   at.position[0] = x, at.position[1] = y, at.rotation[2] = angle;
   mps_assert_ok(context, mps_body_create_box(context, &at, width, height, &s.body));
   set.spacing = L0;
@@ -42,13 +42,13 @@ static scene make_scene(double x, double y, double width, double height, double 
   tank_wall(context, s.t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, s.t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
   tank_wall(context, s.t.fluid, 1.2, 0.0, -1.0, 0.0, NULL);
-  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, s.body, MPS_BOUNDARY_ROLLER, &number));
-  assert_int_equal(number, 0);
+  s.contact = tank_body(context, s.t.fluid, s.body, 0);
   return s;
 }
 
 static void free_scene(scene *s) {
   tank_free(&s->t);
+  mps_contact_destroy(&s->contact);
   mps_body_destroy(&s->body);
 }
 
@@ -71,7 +71,7 @@ static void look_at(const place *p, double part, double bar, double scatter) {
   for (int k = 0; k < SAMPLES; k++) {
     mps_reaction r;
     mps_assert_ok(context, mps_fluid_step(s.t.fluid, 4));
-    mps_assert_ok(context, mps_fluid_get_body_reaction(s.t.fluid, 0, &r));
+    mps_assert_ok(context, mps_contact_get_reaction(s.contact, -1, &r));
     mps_assert_ok(context, mps_fluid_get_levels(s.t.fluid, 2, at, spot));
     level += 0.5 * (spot[0] + spot[1]) / SAMPLES;
     for (int c = 0; c < 2; c++) mean[c] += r.force[c] / SAMPLES;
@@ -170,7 +170,7 @@ static void start_box(const place *p, int axis, double a, double *force) {
     motion.position[axis] += dt * motion.velocity[axis];
     mps_assert_ok(context, mps_body_set_motion(s.body, &motion));
     mps_assert_ok(context, mps_fluid_solve_pressure(s.t.fluid));
-    mps_assert_ok(context, mps_fluid_get_body_reaction(s.t.fluid, 0, &r));
+    mps_assert_ok(context, mps_contact_get_reaction(s.contact, -1, &r));
     mps_assert_ok(context, mps_fluid_end_step(s.t.fluid));
     force[n] = r.force[axis];
   }

@@ -27,8 +27,7 @@ static void a_face_almost_flat_on_the_bed_is_refused(void **state) {
   mps_body *body;
   tank t = tank_make(context, 2.0, 0.1, 0.02, NULL, 2e-3);
   mps_assert_ok(context, mps_body_create_polygon(context, &at, 4, xy, &body));
-  assert_int_equal(mps_fluid_add_body(t.fluid, body, MPS_BOUNDARY_ROLLER, NULL),
-                   MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_fluid_add_contact(t.fluid, body, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_non_null(strstr(mps_context_error(context)->message, "enclose 14 degrees of fluid"));
   mps_body_destroy(&body);
   tank_free(&t);

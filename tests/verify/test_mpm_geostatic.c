@@ -18,7 +18,7 @@ typedef struct part_changes {
 /* 0.8 m of 1500 kg/m3 over 2000 kg/m3; K0 is that of elastic ground. */
 static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_t floor) {
   const double k0 = 0.3 / 0.7;
-  const mps_geostatic_layer layers[] = {{0.8, k0, 0.0}, {INFINITY, k0, 0.0}};
+  const mps_geostatic_layer layers[] = {{0.8, k0, NAN}, {INFINITY, k0, NAN}};
   const double full = GRAVITY * (1500.0 * 0.8 + 2000.0 * 1.2);
   mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 2e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.4, HEIGHT);

@@ -26,10 +26,11 @@
   X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.3", 96) \
   X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.3", 40) \
   X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.3", 88) \
+  X(mps_fluid_contact_def, mps_fluid_contact_def_init, "0.3", 16) \
   X(mps_fluid_def, mps_fluid_def_init, "0.3", 112) \
   X(mps_fluid_load_def, mps_fluid_load_def_init, "0.3", 152) \
   X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.3", 56) \
-  X(mps_geostatic_def, mps_geostatic_def_init, "0.3", 72) \
+  X(mps_geostatic_def, mps_geostatic_def_init, "0.3", 80) \
   X(mps_material_block, mps_material_block_init, "0.3", 312) \
   X(mps_material_drucker_prager_def, mps_material_drucker_prager_def_init, "0.3", 56) \
   X(mps_material_mohr_coulomb_def, mps_material_mohr_coulomb_def_init, "0.3", 56) \

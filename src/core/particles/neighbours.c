@@ -297,8 +297,8 @@ static void find_pairs(void *data, int64_t block, int32_t worker) {
 
 /* ---- the object ------------------------------------------------------------------------------ */
 
-static const mps_neighbours_def neighbours_defaults = {.struct_size = sizeof(mps_neighbours_def),
-                                                       .dim = 2};
+static const mps_neighbours_def neighbours_defaults = {
+    .struct_size = sizeof(mps_neighbours_def), .dim = 2, .radius = NAN};
 
 mps_status mps_neighbours_def_init(mps_neighbours_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_neighbours_def, def, size, &neighbours_defaults);

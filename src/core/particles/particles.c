@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const mps_particles_def particles_defaults = {.struct_size = sizeof(mps_particles_def),
-                                                     .dim = 2};
+static const mps_particles_def particles_defaults = {
+    .struct_size = sizeof(mps_particles_def), .dim = 2, .spacing = NAN};
 
 mps_status mps_particles_def_init(mps_particles_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_particles_def, def, size, &particles_defaults);

@@ -21,6 +21,9 @@ static double edge_factor(const mps_dynamics_predict_def *def) {
 static const mps_dynamics_predict_def predict_defaults = {
     .struct_size = sizeof(mps_dynamics_predict_def),
     .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
+    .spacing = NAN,
+    .shear_velocity = NAN,
+    .pressure_velocity = NAN,
     .f1 = 1.0,
     .f2 = 14.0,
     .radius_ratio = 1.5};

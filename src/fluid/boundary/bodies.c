@@ -6,7 +6,7 @@
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
 
-#include "body/body_internal.h"
+#include "body/contact_internal.h"
 
 #include <string.h>
 
@@ -165,14 +165,14 @@ static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
   mpsi_load struck[MPS_BODY_MAX_PARTS] = {0};
   find_struck(f, own, own->next.x, struck);
   if (!own->floats) mpsi_fluid_load_body(f, own, own->next.x);
-  mpsi_body_react(own->body, &own->source, f->dt, own->water, own->wetted);
-  mpsi_body_strike(own->body, &own->source, own->owed);
+  mpsi_body_react(own->body, own->source, f->dt, own->water, own->wetted);
+  mpsi_body_strike(own->body, own->source, own->owed);
   memset(own->owed, 0, sizeof own->owed);
   if (own->floats) {
     memcpy(own->owed, struck, sizeof struck);
     mpsi_body_advance(own->body, f->dt);
   } else {
-    mpsi_body_strike(own->body, &own->source, struck);
+    mpsi_body_strike(own->body, own->source, struck);
   }
   own->pose = own->floats ? pose_of(own->body) : own->next;
 }
@@ -214,8 +214,20 @@ bool mpsi_fluid_inside_body(const mps_fluid *f, int besides, const double *x) {
 
 /* ---- the caller's bodies --------------------------------------------------------------------- */
 
+static const mps_fluid_contact_def contact_defaults = {.struct_size = sizeof(mps_fluid_contact_def),
+                                                       .kind = MPS_BOUNDARY_HELD};
+
+mps_status mps_fluid_contact_def_init(mps_fluid_contact_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_fluid_contact_def, def, size, &contact_defaults);
+}
+
 static mps_status check_body(mps_fluid *f, const char *function, const mps_body *body,
                              int32_t kind) {
+  if (!body) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "body is NULL");
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+    if (f->body[b].body == body)
+      return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                       "the fluid is in contact with the body already");
   if (body->context != f->context || body->dim != 2 || body->shape != MPSI_POLYGON)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the body is no polygon in the plane of the fluid's context");
@@ -273,9 +285,41 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
   return MPS_OK;
 }
 
+/* What the fluid exerts on each part of the body: pressures of its faces, and impulses that it has
+ * felt or is owed. */
+static void find_reactions(const mpsi_fluid_body *own, const mps_fluid *f, mps_reaction *out) {
+  const mps_body *body = own->body;
+  const double *at = own->pose.x;
+  double sum[MPS_BODY_MAX_PARTS][2] = {{0.0}};
+  memset(out, 0, MPS_BODY_MAX_PARTS * sizeof *out);
+  for (int32_t part = 0; part < body->parts; part++)
+    for (int c = 0; c < 2; c++)
+      out[part].impulse[c] = own->source->reaction[part].impulse[c] + own->owed[part].force[c];
+  for (int k = 0; k < own->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[own->first + k];
+    const int32_t part = body->part_of[body->face_of[k]];
+    mps_reaction *r = &out[part];
+    for (int c = 0; c < 2; c++) r->force[c] -= w->load.force[c], sum[part][c] -= w->impulse[c];
+    r->moment[2] -= w->load.moment;
+    r->moment_impulse[2] -= w->moment_impulse;
+    r->work += w->work;
+    r->count += w->load.wetted;
+  }
+  for (int32_t part = 0; part < body->parts; part++) {
+    mps_reaction *r = &out[part];
+    r->moment[2] -= at[0] * r->force[1] - at[1] * r->force[0];
+    r->moment_impulse[2] -= at[0] * sum[part][1] - at[1] * sum[part][0];
+  }
+}
+
 void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
   for (int k = 0; k < body->faces; k++) mpsi_fluid_drop_wall(f, &f->wall[body->first + k]);
-  if (body->body) mpsi_body_leave(body->body, &body->source);
+  if (body->contact) {
+    mps_reaction last[MPS_BODY_MAX_PARTS]; /* which the handle still answers */
+    find_reactions(body, f, last);
+    memcpy(body->contact->source.reaction, last, sizeof last);
+    mpsi_contact_leave(body->contact);
+  }
   mps_body_destroy(&body->body);
   *body = (mpsi_fluid_body){0};
 }
@@ -292,23 +336,29 @@ static int free_faces(const mps_fluid *f, int64_t faces) {
 
 /* Status of all ranks, and a check that all have the same body (NULL: none) of this number. */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
-                         int32_t kind, const mps_body *body) {
+                         const mps_fluid_contact_def *def, const mps_body *body) {
   if (!f->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "number", number);
-  mpsi_give(&given, "kind", kind);
+  mpsi_give(&given, "kind", def->kind);
+  mpsi_give(&given, "floats", def->floats);
   if (status == MPS_OK) mpsi_body_give(&given, body);
   return mpsi_domain_agree_given(f->def.domain, function, status, &given);
 }
 
 /* Walls of the faces of body number `b`, from `first` on. */
-static mps_status make_faces(mps_fluid *f, const char *function, mps_body *body, int32_t kind,
+static mps_status make_faces(mps_fluid *f, const char *function, mps_contact *contact, int32_t kind,
                              int32_t b, int first) {
+  mps_body *body = contact->body;
   mpsi_fluid_body *own = &f->body[b];
   mps_status status = MPS_OK;
   body->references++;
-  *own = (mpsi_fluid_body){.body = body, .first = first, .faces = (int)body->edges};
+  *own = (mpsi_fluid_body){.body = body,
+                           .contact = contact,
+                           .source = &contact->source,
+                           .first = first,
+                           .faces = (int)body->edges};
   own->pose = own->next = pose_of(body);
   const double ends[6] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0}; /* along the normal (0, -1) */
   for (int k = 0; k < own->faces && status == MPS_OK; k++) {
@@ -322,72 +372,112 @@ static mps_status make_faces(mps_fluid *f, const char *function, mps_body *body,
   return status == MPS_OK ? check_place(f, function, own) : status;
 }
 
-mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_t *number) {
+/* ---- the handle ------------------------------------------------------------------------------ */
+
+int32_t mpsi_fluid_body_number(const mps_fluid *f, const mps_contact *contact) {
+  for (int32_t b = 0; b < MPSI_FLUID_BODIES; b++)
+    if (contact && f->body[b].contact == contact) return b;
+  return -1;
+}
+
+mps_status mpsi_fluid_check_floats(mps_fluid *f, const char *function, const mps_body *body,
+                                   const mps_contact *contact, int32_t floats) {
+  const mpsi_body_source *mover = mpsi_body_mover(body);
+  if (floats < 0 || floats > 1)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "floats is %d, must be 0 or 1",
+                     floats);
+  if (floats && body->def.motion != MPS_BODY_MOTION_FREE)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "floats is 1 and the body prescribed: a body that floats must be free");
+  if (floats && mover && !(contact && mover == &contact->source))
+    return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                     "another solver moves the body: make its contact with mover 1 (other)");
+  return MPS_OK;
+}
+
+void mpsi_fluid_let_float(mps_fluid *f, int32_t number, int32_t floats) {
+  mpsi_fluid_body *own = &f->body[number];
+  if (floats && !own->floats) memset(&own->body->pending, 0, sizeof own->body->pending);
+  own->floats = own->source->moves = floats;
+  memset(own->mass, 0, sizeof own->mass);
+  memset(own->rate, 0, sizeof own->rate);
+}
+
+static mps_status check_owner(void *owner, const char *function) {
+  return mpsi_fluid_ready(owner, function);
+}
+
+static void end(void *owner, mps_contact *contact) {
+  mps_fluid *f = owner;
+  mpsi_fluid_drop_body(f, &f->body[mpsi_fluid_body_number(f, contact)]);
+  f->stale = true, f->unknown = 1;
+}
+
+/* The water presses on faces, not by particles. */
+static mps_status list_particles(void *owner, mps_contact *contact, int64_t capacity,
+                                 int64_t *count, int64_t *ids, double *gap, double *normal,
+                                 double *force, double *foot) {
+  (void)owner, (void)capacity, (void)count, (void)ids, (void)gap, (void)normal, (void)force,
+      (void)foot;
+  return mpsi_fail(contact->context, "mps_contact_get_particles", MPS_ERROR_UNSUPPORTED,
+                   "contact is that of a fluid, whose pressure on a body belongs to no particles: "
+                   "mps_contact_get_reaction gives it by parts");
+}
+
+static void reactions(const void *owner, const mps_contact *contact, mps_reaction *out) {
+  const mps_fluid *f = owner;
+  find_reactions(&f->body[mpsi_fluid_body_number(f, contact)], f, out);
+}
+
+static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_particles, reactions};
+
+/* Number of the body, and the first wall of its faces. */
+static mps_status find_room(mps_fluid *f, const char *function, const mps_body *body,
+                            int32_t *number, int *first) {
+  *number = 0;
+  while (*number < MPSI_FLUID_BODIES && f->body[*number].body) ++*number;
+  *first = free_faces(f, body->edges);
+  if (*number < MPSI_FLUID_BODIES && *first >= 0) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                   "the body has %lld edges: the fluid has room for %d of all bodies together, and "
+                   "for %d bodies",
+                   (long long)body->edges, MPSI_FLUID_WALLS - MPS_FLUID_MAX_BOUNDARIES,
+                   MPSI_FLUID_BODIES);
+}
+
+mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_contact_def *user,
+                                 mps_contact **out) {
   if (!f) return MPS_ERROR_ARGUMENT;
+  if (out) *out = NULL;
+  mps_fluid_contact_def def = contact_defaults;
+  mps_contact *contact = NULL;
+  int32_t b = 0;
+  int first = 0;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = body ? check_body(f, __func__, body, kind)
-                : mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "body is NULL");
-  int32_t b = 0;
-  while (b < MPSI_FLUID_BODIES && f->body[b].body) b++;
-  const int first = status == MPS_OK ? free_faces(f, body->edges) : 0;
-  if (status == MPS_OK && (b == MPSI_FLUID_BODIES || first < 0))
-    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                       "the body has %lld edges: the fluid has room for %d of all bodies together",
-                       (long long)body->edges, MPSI_FLUID_WALLS - MPS_FLUID_MAX_BOUNDARIES);
-  const bool begun = status == MPS_OK;
-  if (begun) status = make_faces(f, __func__, body, kind, b, first);
-  status = settle(f, __func__, status, b, kind, body);
+  if (user) status = MPSI_DEF_READ(f->context, __func__, mps_fluid_contact_def, user, &def);
+  if (status == MPS_OK) status = check_body(f, __func__, body, def.kind);
+  if (status == MPS_OK) status = find_room(f, __func__, body, &b, &first);
+  if (status == MPS_OK) status = mpsi_fluid_check_floats(f, __func__, body, NULL, def.floats);
+  if (status == MPS_OK)
+    status = mpsi_contact_make(f->context, __func__, body, &owner_of_contacts, f, &contact);
+  if (status == MPS_OK) status = make_faces(f, __func__, contact, def.kind, b, first);
+  status = settle(f, __func__, status, b, &def, body);
   if (status != MPS_OK) {
-    if (begun) mpsi_fluid_drop_body(f, &f->body[b]);
+    if (contact && f->body[b].contact == contact)
+      mpsi_fluid_drop_body(f, &f->body[b]);
+    else if (contact)
+      mpsi_contact_release(contact);
+    if (contact) mpsi_contact_release(contact);
     return status;
   }
-  mpsi_body_join(body, &f->body[b].source);
+  mpsi_contact_join(contact);
+  mpsi_fluid_let_float(f, b, def.floats);
   f->warned &= ~((uint32_t)MPSI_FLUID_WARNED_ANGLE << b);
   f->stale = true, f->unknown = 1;
-  if (number) *number = b;
+  if (out)
+    *out = contact;
+  else
+    mpsi_contact_release(contact);
   return MPS_OK;
-}
-
-static mps_status check_number(mps_fluid *f, const char *function, int32_t number) {
-  if (number >= 0 && number < MPSI_FLUID_BODIES && f->body[number].body) return MPS_OK;
-  return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "the fluid has no body of number %d",
-                   number);
-}
-
-mps_status mps_fluid_remove_body(mps_fluid *f, int32_t number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_domain_agree_same(f->def.domain, __func__, check_number(f, __func__, number),
-                                  "number", number);
-  if (status != MPS_OK) return status;
-  mpsi_fluid_drop_body(f, &f->body[number]);
-  f->stale = true, f->unknown = 1;
-  return MPS_OK;
-}
-
-mps_status mps_fluid_get_body_reaction_sized(const mps_fluid *handle, int32_t number,
-                                             mps_reaction *out, size_t size) {
-  mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
-  if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_number(f, "mps_fluid_get_body_reaction", number);
-  if (status != MPS_OK) return status;
-  const mpsi_fluid_body *body = &f->body[number];
-  const mps_reaction *felt = body->source.reaction;
-  mps_reaction r = {0};
-  double sum[2] = {0.0, 0.0};
-  for (int32_t part = 0; part < body->body->parts; part++)
-    for (int c = 0; c < 2; c++) r.impulse[c] += felt[part].impulse[c] + body->owed[part].force[c];
-  for (int k = 0; k < body->faces; k++) {
-    const mpsi_fluid_wall *w = &f->wall[body->first + k];
-    for (int c = 0; c < 2; c++) r.force[c] -= w->load.force[c], sum[c] -= w->impulse[c];
-    r.moment[2] -= w->load.moment;
-    r.moment_impulse[2] -= w->moment_impulse;
-    r.work += w->work;
-    r.count += w->load.wetted;
-  }
-  r.moment[2] -= body->pose.x[0] * r.force[1] - body->pose.x[1] * r.force[0];
-  r.moment_impulse[2] -= body->pose.x[0] * sum[1] - body->pose.x[1] * sum[0];
-  return mpsi_out_write(f->context, "mps_fluid_get_body_reaction", out, size, &r, sizeof r);
 }

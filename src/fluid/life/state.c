@@ -73,7 +73,7 @@ static void list_state(mpsi_state *s, void *solver) {
       mpsi_state_leave(s);
       continue;
     }
-    mpsi_body_list_source(s, f->body[b].body, &f->body[b].source);
+    mpsi_body_list_source(s, f->body[b].body, f->body[b].source);
     for (int32_t part = 0; part < f->body[b].body->parts; part++) {
       mpsi_state_enter(s, "owed%d", part);
       mpsi_state_f64(s, "force", f->body[b].owed[part].force, 3);

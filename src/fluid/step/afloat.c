@@ -21,34 +21,24 @@
 #define FLOOR 2e-5      /* of gravity */
 #define FIRST_ADDED 1.0 /* of the displaced mass: initial added mass */
 
-mps_status mps_fluid_float_body(mps_fluid *f, int32_t number, int32_t floats) {
+mps_status mps_fluid_float_body(mps_fluid *f, mps_contact *contact, int32_t floats) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
+  const int32_t number = mpsi_fluid_body_number(f, contact);
   mpsi_given given;
   mpsi_given_begin(&given);
-  mpsi_give(&given, "number", number);
+  mpsi_give(&given, "the number of the contact", number);
   mpsi_give(&given, "floats", floats);
   status = mpsi_domain_agree_given(f->def.domain, __func__, status, &given);
   if (status != MPS_OK) return status;
-  if (number < 0 || number >= MPSI_FLUID_BODIES || !f->body[number].body || floats < 0 ||
-      floats > 1)
+  if (number < 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "body is %d and floats %d: must be one of the fluid's, and 0 or 1", number,
-                     floats);
-  mpsi_fluid_body *own = &f->body[number];
-  if (floats && own->body->def.motion != MPS_BODY_MOTION_FREE)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "body %d is prescribed: a body that floats must be free", number);
-  const mpsi_body_source *mover = mpsi_body_mover(own->body);
-  if (floats && mover && mover != &own->source)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
-                     "another solver moves body %d: make its contact with mover 1 (other)", number);
-  if (floats && !own->floats) memset(&own->body->pending, 0, sizeof own->body->pending);
-  own->floats = own->source.moves = floats;
-  memset(own->mass, 0, sizeof own->mass);
-  memset(own->rate, 0, sizeof own->rate);
-  return MPS_OK;
+                     "contact is %s, must be one of this fluid's that has not ended",
+                     contact ? "another" : "NULL");
+  status = mpsi_fluid_check_floats(f, __func__, f->body[number].body, contact, floats);
+  if (status == MPS_OK) mpsi_fluid_let_float(f, number, floats);
+  return status;
 }
 
 bool mpsi_fluid_any_afloat(const mps_fluid *f) {

@@ -36,7 +36,7 @@ void mpsi_fluid_warn_of_guards(mps_fluid *f) {
       (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
 }
 
-/* A rolling body may develop acute corners, which mps_fluid_add_body does not accept. */
+/* A rolling body may develop acute corners, which mps_fluid_add_contact does not accept. */
 void mpsi_fluid_warn_of_angles(mps_fluid *f) {
   for (int number = 0; f->faces && number < MPSI_FLUID_BODIES; number++) {
     const mpsi_fluid_body *body = &f->body[number];

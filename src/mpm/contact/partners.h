@@ -17,7 +17,7 @@ struct mpsi_contacts;
 struct mpsi_grid;
 struct mpsi_partition;
 
-#define MPSI_MOST_PARTNERS 256 /* ranks up to which it is known who is linked to whom */
+#define MPSI_MOST_PARTNERS 256 /* most ranks for which the matrix of links is kept */
 
 typedef struct mpsi_contact_partners {
   int64_t *words; /* the sums that ranks reduce: partners.c */

@@ -19,6 +19,7 @@
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .spline = 0,
+                                         .cell = NAN,
                                          .lower = {-INFINITY, -INFINITY, -INFINITY},
                                          .upper = {INFINITY, INFINITY, INFINITY},
                                          .measure = NAN,

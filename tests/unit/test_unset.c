@@ -1,0 +1,141 @@
+/* test_unset.c - one rule for what a definition does not say: a real number is NaN, whether the
+ * library finds it or the caller has to give it; 0 is a value. The table has every real number that
+ * is NaN by default; a NaN that it lacks, in any definition struct, fails.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "core/internal.h"
+
+#include <mps/elastic_solver.h>
+#include <mps/fluid_solver.h>
+#include <mps/mps.h>
+#include <mps/mpm_settle.h>
+
+typedef struct number {
+  const char *type, *member;
+  size_t at, bytes;
+} number;
+
+#define NUMBER(type, member)                                                                       \
+  { #type, #member, offsetof(type, member), sizeof(((type *)NULL)->member) }
+
+static const number unset[] = {
+    NUMBER(mps_body_def, mass),
+    NUMBER(mps_body_def, inertia),
+    NUMBER(mps_body_motion, position),
+    NUMBER(mps_body_motion, rotation),
+    NUMBER(mps_contact_def, penalty),
+    NUMBER(mps_contact_def, xi),
+    NUMBER(mps_contact_def, offset),
+    NUMBER(mps_contact_def, depth),
+    NUMBER(mps_contact_def, strength),
+    NUMBER(mps_contact_def, tolerance),
+    NUMBER(mps_dynamics_boundary_def, lower),
+    NUMBER(mps_dynamics_boundary_def, upper),
+    NUMBER(mps_dynamics_boundary_def, density),
+    NUMBER(mps_dynamics_boundary_def, shear_velocity),
+    NUMBER(mps_dynamics_boundary_def, pressure_velocity),
+    NUMBER(mps_dynamics_def, dt),
+    NUMBER(mps_dynamics_def, period_x),
+    NUMBER(mps_dynamics_load_def, lower),
+    NUMBER(mps_dynamics_load_def, upper),
+    NUMBER(mps_dynamics_load_def, area),
+    NUMBER(mps_dynamics_predict_def, spacing),
+    NUMBER(mps_dynamics_predict_def, shear_velocity),
+    NUMBER(mps_dynamics_predict_def, pressure_velocity),
+    NUMBER(mps_elastic_boundary_def, lower),
+    NUMBER(mps_elastic_boundary_def, upper),
+    NUMBER(mps_elastic_def, radius_ratio),
+    NUMBER(mps_elastic_def, memory_limit),
+    NUMBER(mps_elastic_def, bending),
+    NUMBER(mps_elastic_motion_def, beta),
+    NUMBER(mps_elastic_motion_def, gamma),
+    NUMBER(mps_elastic_motion_def, ratio),
+    NUMBER(mps_elastic_motion_def, frequency),
+    NUMBER(mps_fluid_def, density),
+    NUMBER(mps_fluid_def, viscosity),
+    NUMBER(mps_fluid_def, level),
+    NUMBER(mps_fluid_def, dt),
+    NUMBER(mps_fluid_load_def, lower),
+    NUMBER(mps_fluid_load_def, upper),
+    NUMBER(mps_geostatic_def, surface),
+    NUMBER(mps_material_drucker_prager_def, young),
+    NUMBER(mps_material_drucker_prager_def, friction),
+    NUMBER(mps_material_mohr_coulomb_def, young),
+    NUMBER(mps_material_mohr_coulomb_def, friction),
+    NUMBER(mps_material_newtonian_def, bulk_modulus),
+    NUMBER(mps_material_umat_def, wave_modulus),
+    NUMBER(mps_material_umat_def, bulk_modulus),
+    NUMBER(mps_material_umat_def, shear_modulus),
+    NUMBER(mps_material_user_def, wave_modulus),
+    NUMBER(mps_material_user_def, bulk_modulus),
+    NUMBER(mps_material_user_def, shear_modulus),
+    NUMBER(mps_material_von_mises_def, young),
+    NUMBER(mps_material_von_mises_def, yield_stress),
+    NUMBER(mps_mpm_def, cell),
+    NUMBER(mps_mpm_def, measure),
+    NUMBER(mps_mpm_def, dt),
+    NUMBER(mps_mpm_settle_def, tolerance),
+    NUMBER(mps_neighbours_def, radius),
+    NUMBER(mps_particles_def, spacing),
+};
+
+typedef mps_status (*init_fn)(void *def, size_t size);
+
+typedef struct definition {
+  const char *type;
+  init_fn init;
+  size_t size;
+} definition;
+
+/* The init functions take the type of their struct: one of void * for each. */
+#define WRAPPED(type, init, version, size)                                                         \
+  static mps_status unset_##init(void *def, size_t bytes) { return init((type *)def, bytes); }
+#include "core/context/released_sizes.h"
+MPSI_RELEASED_SIZES(WRAPPED)
+
+#define ROW(type, init, version, size) {#type, unset_##init, sizeof(type)},
+static const definition definitions[] = {MPSI_RELEASED_SIZES(ROW)};
+
+/* Whether the table has the eight bytes at `at`. */
+static bool is_listed(const char *type, size_t at) {
+  for (size_t k = 0; k < sizeof unset / sizeof *unset; k++)
+    if (strcmp(unset[k].type, type) == 0 && at >= unset[k].at && at < unset[k].at + unset[k].bytes)
+      return true;
+  return false;
+}
+
+static void unset_real_numbers_are_nan(void **state) {
+  (void)state;
+  for (size_t d = 0; d < sizeof definitions / sizeof *definitions; d++) {
+    const definition *def = &definitions[d];
+    double *words = calloc(1, def->size + sizeof *words);
+    mps_assert_ok(context, def->init(words, def->size));
+    for (size_t at = 0; at + sizeof *words <= def->size; at += sizeof *words) {
+      const bool nan = isnan(words[at / sizeof *words]);
+      if (nan != is_listed(def->type, at))
+        fail_msg("%s: the number at byte %zu is %g by default, and the table of this test says %s",
+                 def->type, at, words[at / sizeof *words], nan ? "nothing of it" : "NaN");
+    }
+    free(words);
+  }
+}
+
+/* Each row is of a definition struct that there is. */
+static void the_table_names_definitions(void **state) {
+  (void)state;
+  for (size_t k = 0; k < sizeof unset / sizeof *unset; k++) {
+    bool found = false;
+    for (size_t d = 0; d < sizeof definitions / sizeof *definitions; d++)
+      found |= strcmp(definitions[d].type, unset[k].type) == 0;
+    if (!found) fail_msg("%s has no init function", unset[k].type);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(unset_real_numbers_are_nan),
+      cmocka_unit_test(the_table_names_definitions),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
