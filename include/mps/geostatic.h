@@ -14,8 +14,8 @@
 
 MPS_EXTERN_C_BEGIN
 
-/** A layer of ground. Layers follow the surface: depths are vertical ones below it. An array of
- *  them is told with the size of one, mps_geostatic_def.layer_size. */
+/** A layer of ground. Layers follow the surface: depths are vertical ones below it. The
+ *  size of one in an array is mps_geostatic_def.layer_size. */
 typedef struct mps_geostatic_layer {
   double thickness; /* m, 1e-9 to 1e9; infinite allowed for the lowest */
   double k0;        /* horizontal over vertical stress, >= 0; elastic ground held at its sides:

@@ -8,7 +8,8 @@
 
 /* ---- reactions ------------------------------------------------------------------------------- */
 
-/* Puts the force on one part in a step of dt into its account: `count` particles touch it. */
+/* Puts the force on one part in a step of dt into its account: `count` particles are in contact
+ * with it. */
 static void add_to_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
                            mps_reaction *r) {
   r->work -= dt * (mpsi_dot3(load->force, pose->v) + mpsi_dot3(load->moment, pose->spin));

@@ -225,7 +225,8 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
   return MPS_OK;
 }
 
-static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_particles};
+static const mpsi_contact_owner owner_of_contacts = {
+    .check = check_owner, .end = end, .particles = list_particles};
 
 /* ---- making and ending ----------------------------------------------------------------------- */
 
