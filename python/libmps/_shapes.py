@@ -57,6 +57,7 @@ FUNCTIONS = {
     "mps_fluid_get_pressure": {"x": "3 * count", "pressure": "count"},
     "mps_fluid_get_levels": {"station": "count", "level": "count"},
     "mps_mpm_set_material": {"ids": "count"},
+    "mps_fluid_set_material": {"ids": "count"},
     "mps_grid_get_nodes": {"position": "3 * capacity", "mass": "capacity",
                            "velocity": "3 * capacity", "force": "3 * capacity"},
     "mps_grid_evaluate": {"points": "3 * count", "states": "count",

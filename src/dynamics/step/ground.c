@@ -103,10 +103,11 @@ static mps_status check_velocities(mps_particles *particles, const char *functio
   const double density = mpsi_particles_column(particles, "density", 0)[k];
   *vs = sqrt(modulus->shear / density), *vp = sqrt(modulus->wave / density);
   if (density >= LEAST && density <= MOST && *vs >= LEAST && *vp <= MOST) return MPS_OK;
-  (void)mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                  "particle %lld has density %g kg/m3 and so wave velocities of %g and %g m/s: all "
-                  "must be in 1e-6..1e9",
-                  (long long)mpsi_particles_integers(particles, "id")[k], density, *vs, *vp);
+  (void)mpsi_fail(
+      context, function, MPS_ERROR_ARGUMENT,
+      "material: particle %lld has density %g kg/m3 and so wave velocities of %g and %g m/s: all "
+      "must be in 1e-6..1e9",
+      (long long)mpsi_particles_integers(particles, "id")[k], density, *vs, *vp);
   return fail_particle(particles, k);
 }
 

@@ -5,7 +5,7 @@
  *
  * the first part a .12 dt s0 near the surface but in breakers, and the second times 10 dt s0 <= 1
  * at walls. This is not the same from both sides of a pair. Where the flow is steep,
- * s = 10 |G|^2/(.05 s0^2) - .1 within [0, 1], as in breakers, pairs exchange momentum instead:
+ * s = 10 |G|^2/(.05 s0^2) - 2 within [0, 1], as in breakers, pairs exchange momentum instead:
  *
  *   u_i += sum w 1/2 (b_i + b_j) (u_j - u_i - 1/2 (G_i + G_j) dx),
  *   b = s (1.8 dt s0 + 2 |v|^2/(...))/n, the sum <= .5.
@@ -30,7 +30,7 @@
 #define BREAKING 0.05    /* g/l0: |G|^2 where all of smoothing and shift is left there */
 #define MOST_SMOOTH 0.5
 #define PAIRED 10.0       /* times the steepness: share of smoothing between pairs */
-#define PAIRED_FROM 0.1   /* of that, where it begins */
+#define PAIRED_FROM 2.0   /* of that, where it begins */
 #define PAIRED_SMOOTH 3.0 /* times the first part of a, between pairs */
 #define LONGEST_STEP 0.1  /* (l0/g)^1/2: the limit of a fluid at rest */
 
