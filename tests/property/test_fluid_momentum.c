@@ -75,7 +75,9 @@ static void jitter(void *user, double *x, double *u) {
   }
 }
 
-#define UNOWNED 0.04 /* of the wall's impulse: what the scheme gives along x, without an owner */
+#define UNOWNED                                                                                    \
+  0.04 /* of the momentum or the wall's impulse: what the scheme gives along x, without an owner   \
+        */
 
 /* A column that falls, strikes a wall and plunges. In breakers smoothing conserves momentum in
  * pairs: one-sided it had given -11.5 N s, 3 % of the wall's impulse. */
