@@ -13,7 +13,7 @@ static const char help[] =
     "Usage: mps-info [--json] FILE...\n"
     "Shows what is in result files of libmps. Of a series for ParaView: frames, times, particles,\n"
     "fields and their units. Of a checkpoint: the program and its options, solver, time, step,\n"
-    "fields, and how a run goes on from it. Files are read only; a damaged checkpoint is told.\n"
+    "fields, and how a run goes on from it. No file is changed; a damaged checkpoint is an error.\n"
     "\n"
     "  --json      one JSON list with an object a file; names carry the unit (time_s)\n"
     "  --help      show this text\n"

@@ -24,7 +24,7 @@ void report_text(report *r, const char *title, const char *text);
 void report_number(report *r, const char *title, double value, const char *unit);
 void report_integer(report *r, const char *title, int64_t value);
 
-/* Rows under a title: each has a name, and a text or a number. */
+/* Rows under a title, or an object of JSON: each has a name and a text. */
 void report_list(report *r, const char *title);
 void report_row(report *r, const char *name, const char *text);
 void report_list_end(report *r);

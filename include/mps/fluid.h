@@ -402,8 +402,8 @@ MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
  *  momentum error of the scheme: pressures along walls are fits, which differ slightly from the sum
  *  of the gradients that move the particles; smoothing is symmetric in a pair where the flow is
  *  steep, and shifts, limited velocities and smoothing of gentle flow are not. It is some
- *  hundredths of the terms (4 % in a dam break with 15 particles over the height of the column, 1 %
- *  with 30). MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
+ *  hundredths of the terms (5 % in a dam break with 15 particles over the height of the column, 1.5
+ *  % with 30). MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(const mps_fluid *fluid, mps_totals *out,
                                                             size_t size);
 static inline mps_status mps_fluid_get_totals(const mps_fluid *fluid, mps_totals *out) {

@@ -3,22 +3,13 @@
 #include "core/particles/particles_internal.h"
 #include "core/state/state.h"
 #include "domain_private.h"
+#include "row_heads.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- a share as a message: head, runs of rows, then for each field its head and columns ------ */
-
-typedef struct head {
-  int64_t particles, fields, dim, runs, made; /* made: ids lie below it */
-  double spacing;
-} head;
-
-typedef struct field_head {
-  char name[MPSI_STATE_NAME];
-  int64_t columns, integer;
-} field_head;
 
 /* Fields to send: those of the list, id and position; NULL: all. */
 typedef struct choice {
@@ -48,11 +39,8 @@ static mps_status check_choice(const mps_domain *domain, const char *function,
 static mps_status pack(mps_domain *domain, const char *function, mps_particles *particles,
                        const choice *chosen, char **out, int64_t *bytes) {
   const int32_t all = mps_particles_field_count(particles);
-  head h = {.particles = mps_particles_count(particles),
-            .dim = mps_particles_dim(particles),
-            .runs = mpsi_particles_runs(particles, domain->def.rank, NULL),
-            .made = mpsi_particles_made(particles),
-            .spacing = mps_particles_spacing(particles)};
+  mpsi_rows_head h = mpsi_rows_head_of(particles, domain->def.rank);
+  h.fields = 0; /* of those chosen */
   mps_particles_field_info info;
   mps_view view;
   mps_status status = check_choice(domain, function, particles, chosen);
@@ -61,7 +49,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
     status = mpsi_as(domain->context, function, mps_particles_get_field_info(particles, f, &info));
     if (status != MPS_OK || !is_chosen(chosen, f, info.name)) continue;
     h.fields++;
-    *bytes += (int64_t)sizeof(field_head) + info.components * h.particles * 8;
+    *bytes += (int64_t)sizeof(mpsi_field_head) + info.components * h.particles * 8;
   }
   if (status != MPS_OK) return status;
   char *at = *out = mpsi_alloc(domain->context, *bytes, 1);
@@ -76,8 +64,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
     if (status == MPS_OK)
       status = mpsi_as(domain->context, function, mps_particles_view(particles, info.name, &view));
     if (status != MPS_OK) return status;
-    field_head field = {.columns = info.components, .integer = info.dtype.code == 0};
-    snprintf(field.name, sizeof field.name, "%s", info.name);
+    const mpsi_field_head field = mpsi_field_head_of(&info);
     memcpy(at, &field, sizeof field);
     at += sizeof field;
     for (int32_t c = 0; c < info.components; c++, at += 8 * h.particles)
@@ -90,7 +77,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
 
 /* Offsets of the columns of each field in a message. */
 typedef struct share {
-  head h;
+  mpsi_rows_head h;
   const mpsi_row_run *run;
   const int64_t *id;
   const char *field; /* the next field's head */
@@ -124,7 +111,8 @@ static bool open_shares(assembly *a) {
     memcpy(&s->h, a->box->mail[r].data, sizeof s->h);
     s->run = (const mpsi_row_run *)((const char *)a->box->mail[r].data + sizeof s->h);
     s->field = (const char *)(s->run + s->h.runs);
-    s->id = (const int64_t *)(s->field + sizeof(field_head)); /* the first field of every set */
+    s->id =
+        (const int64_t *)(s->field + sizeof(mpsi_field_head)); /* the first field of every set */
     a->pieces += s->h.runs;
     if (s->h.made > a->ids) a->ids = s->h.made;
   }
@@ -133,9 +121,8 @@ static bool open_shares(assembly *a) {
 
 static int by_place(const void *left, const void *right) {
   const piece *a = left, *b = right;
-  for (int c = 2; c >= 0; c--)
-    if (a->run.at[c] != b->run.at[c]) return a->run.at[c] < b->run.at[c] ? -1 : 1;
-  return a->number < b->number ? -1 : a->number > b->number;
+  const int order = mpsi_row_run_order(&a->run, &b->run);
+  return order ? order : a->number < b->number ? -1 : a->number > b->number;
 }
 
 static bool list_pieces(assembly *a) {
@@ -171,7 +158,7 @@ static bool find_owners(assembly *a) {
 /* Columns of a piece to the rows from `row` on; returns how many. */
 static int64_t put_piece(const assembly *a, const piece *p, mpsi_value *to, int64_t row) {
   const share *s = &a->share[p->rank];
-  const char *data = s->field + sizeof(field_head);
+  const char *data = s->field + sizeof(mpsi_field_head);
   int64_t kept = 0;
   for (int64_t k = p->first; k < p->first + p->run.rows; k++) {
     if (a->owner[s->id[k]] != p->rank) continue;
@@ -187,7 +174,7 @@ static int64_t put_piece(const assembly *a, const piece *p, mpsi_value *to, int6
 static mps_status assemble_field(assembly *a, int32_t f) {
   mps_context *context = a->domain->context;
   mpsi_value *to = &a->whole.fields.item[f];
-  field_head first;
+  mpsi_field_head first;
   memcpy(&first, a->share[0].field, sizeof first);
   memcpy(to->name, first.name, sizeof to->name);
   to->type = first.integer ? MPSI_STATE_I64 : MPSI_STATE_F64;
@@ -197,7 +184,7 @@ static mps_status assemble_field(assembly *a, int32_t f) {
     return mpsi_fail_memory(context, a->function, (size_t)(a->count * to->columns) * 8);
   for (int32_t r = 0; r < a->box->count; r++) {
     const share *s = &a->share[r];
-    field_head own;
+    mpsi_field_head own;
     memcpy(&own, s->field, sizeof own);
     if (memcmp(&own, &first, sizeof own) != 0)
       return mpsi_fail(context, a->function, MPS_ERROR_FIELD,

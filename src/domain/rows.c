@@ -7,6 +7,7 @@
 #include "core/state/row_source.h"
 #include "core/state/state.h"
 #include "domain_private.h"
+#include "row_heads.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,16 +17,6 @@
 #define LEAST_ROWS 64                  /* of one rank in a piece */
 
 /* ---- a rank's description of its rows: head, runs, heads of fields ------------------------- */
-
-typedef struct head {
-  int64_t particles, fields, dim, runs, made; /* made: ids lie below it */
-  double spacing;
-} head;
-
-typedef struct field_head {
-  char name[MPSI_STATE_NAME];
-  int64_t columns, integer;
-} field_head;
 
 /* Rows of a rank that come one after the other in the whole. */
 typedef struct piece {
@@ -56,50 +47,43 @@ typedef struct stream {
 
 static mps_status describe(stream *s, char **out, int64_t *bytes) {
   mps_particles *set = s->source.set;
-  const head h = {.particles = mps_particles_count(set),
-                  .fields = mps_particles_field_count(set),
-                  .dim = mps_particles_dim(set),
-                  .runs = mpsi_particles_runs(set, s->domain->def.rank, NULL),
-                  .made = mpsi_particles_made(set),
-                  .spacing = mps_particles_spacing(set)};
+  const mpsi_rows_head h = mpsi_rows_head_of(set, s->domain->def.rank);
   mps_status status = MPS_OK;
   *bytes = (int64_t)sizeof h + h.runs * (int64_t)sizeof(mpsi_row_run) +
-           h.fields * (int64_t)sizeof(field_head);
+           h.fields * (int64_t)sizeof(mpsi_field_head);
   char *to = *out = mpsi_alloc(s->domain->context, *bytes, 1);
   if (!to) return mpsi_fail_memory(s->domain->context, s->function, (size_t)*bytes);
   memcpy(to, &h, sizeof h);
   to += sizeof h;
   mpsi_particles_runs(set, s->domain->def.rank, (mpsi_row_run *)to);
   to += h.runs * (int64_t)sizeof(mpsi_row_run);
-  for (int32_t f = 0; f < h.fields && status == MPS_OK; f++, to += sizeof(field_head)) {
+  for (int32_t f = 0; f < h.fields && status == MPS_OK; f++, to += sizeof(mpsi_field_head)) {
     mps_particles_field_info info;
-    field_head field = {.columns = 0};
     status = mpsi_as(s->domain->context, s->function, mps_particles_get_field_info(set, f, &info));
     if (status != MPS_OK) break;
-    field.columns = info.components, field.integer = info.dtype.code == 0;
-    snprintf(field.name, sizeof field.name, "%s", info.name);
+    const mpsi_field_head field = mpsi_field_head_of(&info);
     memcpy(to, &field, sizeof field);
     s->columns += info.components;
   }
   return status;
 }
 
-static head head_of(const stream *s, int32_t rank) {
-  head h;
+static mpsi_rows_head head_of(const stream *s, int32_t rank) {
+  mpsi_rows_head h;
   memcpy(&h, s->heads.mail[rank].data, sizeof h);
   return h;
 }
 
 static const mpsi_row_run *runs_of(const stream *s, int32_t rank) {
-  return (const mpsi_row_run *)((const char *)s->heads.mail[rank].data + sizeof(head));
+  return (const mpsi_row_run *)((const char *)s->heads.mail[rank].data + sizeof(mpsi_rows_head));
 }
 
 /* Have all ranks the same fields? On rank 0. */
 static mps_status compare(const stream *s) {
-  const head first = head_of(s, 0);
+  const mpsi_rows_head first = head_of(s, 0);
   const char *fields = (const char *)(runs_of(s, 0) + first.runs);
   for (int32_t r = 1; r < s->heads.count; r++) {
-    const head h = head_of(s, r);
+    const mpsi_rows_head h = head_of(s, r);
     const char *own = (const char *)(runs_of(s, r) + h.runs);
     if (h.fields != first.fields || h.dim != first.dim || h.spacing != first.spacing)
       return mpsi_fail(s->domain->context, s->function, MPS_ERROR_FIELD,
@@ -108,9 +92,9 @@ static mps_status compare(const stream *s) {
                        (long long)first.fields, (long long)first.dim, first.spacing,
                        (long long)h.fields, (long long)h.dim, h.spacing, (int)r);
     for (int64_t f = 0; f < h.fields; f++) {
-      const char *a = fields + f * (int64_t)sizeof(field_head),
-                 *b = own + f * (int64_t)sizeof(field_head);
-      if (memcmp(a, b, sizeof(field_head)) == 0) continue;
+      const char *a = fields + f * (int64_t)sizeof(mpsi_field_head),
+                 *b = own + f * (int64_t)sizeof(mpsi_field_head);
+      if (memcmp(a, b, sizeof(mpsi_field_head)) == 0) continue;
       return mpsi_fail(s->domain->context, s->function, MPS_ERROR_FIELD,
                        "field %lld is '%.90s' on rank 0 and '%.90s' on rank %d: all ranks must "
                        "have the same fields",
@@ -124,7 +108,7 @@ static mps_status list_pieces(stream *s) {
   const int32_t ranks = s->heads.count;
   mps_context *context = s->domain->context;
   for (int32_t r = 0; r < ranks; r++) {
-    const head h = head_of(s, r);
+    const mpsi_rows_head h = head_of(s, r);
     s->pieces += h.runs;
     if (h.made > s->ids) s->ids = h.made;
   }
@@ -200,9 +184,8 @@ static mps_status choose_rows(stream *s) {
 
 static int by_place(const void *left, const void *right) {
   const piece *a = left, *b = right;
-  for (int c = 2; c >= 0; c--)
-    if (a->run.at[c] != b->run.at[c]) return a->run.at[c] < b->run.at[c] ? -1 : 1;
-  return a->number < b->number ? -1 : a->number > b->number;
+  const int order = mpsi_row_run_order(&a->run, &b->run);
+  return order ? order : a->number < b->number ? -1 : a->number > b->number;
 }
 
 static int by_number(const void *left, const void *right) {

@@ -29,10 +29,10 @@ static void same(mps_context *a, const tank *x, mps_context *b, const tank *y) {
   assert_int_equal(mps_fluid_steps(x->fluid), mps_fluid_steps(y->fluid));
   const mps_reaction p = on_left(a, x), q = on_left(b, y);
   assert_true(p.force[0] == q.force[0] && p.impulse[0] == q.impulse[0] && p.work == q.work);
-  static readings told, again;
-  read_all(a, x->fluid, 0.6, NULL, &told);
+  static readings before, again;
+  read_all(a, x->fluid, 0.6, NULL, &before);
   read_all(b, y->fluid, 0.6, NULL, &again);
-  same_readings(&told, &again);
+  same_readings(&before, &again);
 }
 
 static void goes_on_from_a_file(void **state) {
