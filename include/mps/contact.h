@@ -95,7 +95,8 @@ static inline mps_contact_def mps_contact_defaults(void) {
 }
 
 /** Ends the contact, releases the handle and nulls it; accepts NULL. In a callback of the solver it
- *  only records MPS_ERROR_STATE. */
+ *  only records MPS_ERROR_STATE. In an open step of a fluid (mps_fluid_begin_step) the body stays
+ * in the water until that step is ended or abandoned. */
 MPS_API void mps_contact_destroy(mps_contact **contact);
 
 /** The body; NULL for NULL. Lives at least as long as the contact. */

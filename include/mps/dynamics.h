@@ -317,8 +317,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_refresh(mps_dynamics *dynamics);
 /** Keeps the state of the solver and its set (fields, order) in memory. *snapshot is created when
  *  it is NULL; a snapshot of this solver is filled again. Edited fields are read as by a step, and
  *  not read on an error. Allowed in a callback of mps_dynamics_run. MPS_ERROR_ARGUMENT: a snapshot
- *  of another solver; MPS_ERROR_STATE: a step is running, or a field is being edited;
- *  MPS_ERROR_MEMORY. */
+ *  of another solver; MPS_ERROR_STATE: a step is running, a field is being edited, or the run has
+ * diverged; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_snapshot(mps_dynamics *dynamics,
                                                        mps_snapshot **snapshot);
 /** Restores a snapshot, bit for bit, also after a run that has diverged or particles that were
@@ -329,7 +329,7 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_rollback(mps_dynamics *dynamics,
 /** Writes the state to a file, as mps_dynamics_snapshot; of `info` (NULL: nothing) user_key and
  *  user_data are written too. After a failure while writing (a full disk; on several ranks any
  *  failure on rank 0), edited fields may have been read. MPS_ERROR_IO: the file cannot be written;
- *  MPS_ERROR_STATE: a step is running, or a field is being edited; MPS_ERROR_UNSUPPORTED: no HDF5.
+ *  MPS_ERROR_STATE: as mps_dynamics_snapshot; MPS_ERROR_UNSUPPORTED: no HDF5.
  *  */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path,
                                                    const mps_checkpoint *info);

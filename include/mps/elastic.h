@@ -67,10 +67,10 @@ typedef struct mps_elastic_def {
   int32_t solver;      /* mps_elastic_solver */
   int32_t ordering;    /* mps_elastic_ordering */
   double radius_ratio; /* re / spacing of the stabilising pairs, in (1, 4]; NaN (default): 1.5 */
-  double alpha;        /* weight of the stabilising pairs, in [0.03, 100]; default 1 */
-  double measure;      /* 2D: thickness, m, 1e-30 to 1e30; default 1. Not read in 3D */
+  double alpha;        /* weight of the stabilising pairs, in [0.03, 100]; default 1, NaN too */
+  double measure;      /* 2D: thickness, m, 1e-30 to 1e30; default 1, NaN too. Not read in 3D */
   double memory_limit; /* bytes the factor may take, >= 0; NaN (default): no limit */
-  double tolerance;    /* CG: |residual| / |load| to reach, in [1e-14, 1e-2]; default 1e-10 */
+  double tolerance; /* CG: |residual| / |load| to reach, in [1e-14, 1e-2]; default 1e-10, NaN too */
   int64_t iterations;  /* CG: most iterations; 0 (default): ten times the unknowns */
   int32_t refinements; /* steps of iterative refinement after a direct solution, 0..10; default 1 */
   int32_t blas_threads;   /* most threads of BLAS, up to 1024; 0 (default): the context's. LLT gives
@@ -370,13 +370,16 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(const mps_elastic *e, do
 /** Sums over the body: since the motion began, or of the last static solution, taken as loaded
  *  proportionally from rest, so that the work of the loads is half of load times displacement.
  *  Works in a step are means of the forces before and after it times the displacement, plus the
- *  kinetic energy that driven particles gain; the budget of mps/solver.h closes to rounding (1e-10)
- *  with Newmark's average acceleration, or to 1e-14 C if that is more: C is the greatest Young's
- *  modulus over the lesser of the least one and 4 density spacing^2 / dt^2 (above a ratio of moduli
- *  of 1e8 a warning says so). `dissipated` is that of Rayleigh damping and `scheme`, which for
- *  other members of the family is the numerical dissipation, computed as the remainder of the
- *  budget. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library; MPS_ERROR_STATE: a step
- *  is running. */
+ *  kinetic energy that driven particles gain; the budget of mps/solver.h closes to rounding
+ *  (1e-10). `dissipated` is that of Rayleigh damping and `scheme`. With Newmark's average
+ *  acceleration, and in statics, `scheme` is the work of the forces that solutions leave
+ *  unbalanced: of conjugate gradients and foreign solvers, of |residual| up to `tolerance` times
+ *  that of the step's equations; of direct ones rounding, at most 1e-14 C of the largest term of
+ *  the budget, where C is the greatest Young's modulus (times 1 + 2 stiffness_damping/dt) over the
+ *  lesser of the least one and 4 density spacing^2 / dt^2 (above a ratio of moduli of 1e8 a warning
+ *  says so). For other members of the family it is the numerical dissipation, computed as the
+ *  remainder of the budget. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library;
+ * MPS_ERROR_STATE: a step is running. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(const mps_elastic *e, mps_totals *out,
                                                               size_t size);
 static inline mps_status mps_elastic_get_totals(const mps_elastic *e, mps_totals *out) {

@@ -248,11 +248,12 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
  * other solvers that it is in contact with. It is kept alive.
  *
  *  `out` (may be NULL) receives the handle (mps/contact.h): mps_contact_destroy removes the body
- *  from the water, between steps; mps_contact_get_reaction gives the water's action on it, by
- *  parts, in an open step of the last solution: moments about its reference point, moment_impulse
- *  about its present position; `count` is that of wetted points. Force and moment are those of the
- *  pressures, impulses include collisions and smoothing, as those of mps_body_get_reaction; they
- * act on a floating body one step later. mps_contact_get_particles is MPS_ERROR_UNSUPPORTED.
+ *  from the water, in an open step at the end of that step; mps_contact_get_reaction gives the
+ * water's action on it, by parts, in an open step of the last solution: moments about its reference
+ * point, moment_impulse about its present position; `count` is that of wetted points. Force and
+ * moment are those of the pressures, impulses include collisions and smoothing, as those of
+ * mps_body_get_reaction; they act on a floating body one step later. mps_contact_get_particles is
+ * MPS_ERROR_UNSUPPORTED.
  *
  *  MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less than 15 degrees
  *  of fluid between an edge and the boundary that it stands on (a body that rolls there later has a

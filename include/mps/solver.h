@@ -98,8 +98,8 @@ typedef struct mps_totals {
                           WLS-MPM: work of the stresses that the laws keep, since creation */
   double dissipated;   /* J, since creation: plasticity, viscosity, damping, friction, and numerical
                           dissipation (`scheme`) */
-  double scheme; /* J, since creation: numerical part of `dissipated`, by the time integration and
-                    the transfers; negative where they add energy */
+  double scheme; /* J, since creation: numerical part of `dissipated`, by the time integration, the
+                    transfers and equations solved to a tolerance; negative where they add energy */
   double work_loads;        /* J, since creation: gravity, tractions, forces on particles */
   double work_boundaries;   /* J, since creation */
   double work_bodies;       /* J, since creation: by the bodies in contact */

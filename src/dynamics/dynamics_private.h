@@ -348,6 +348,8 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
 /* Chooses dt where the definition does not give it, and warns of one above the limit. */
 mps_status mpsi_dynamics_choose_dt(mps_dynamics *dynamics, const char *function);
+/* run.c: MPS_ERROR_STATE when the run has diverged. */
+mps_status mpsi_dynamics_check_diverged(const mps_dynamics *dynamics, const char *function);
 /* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; reads edited material
  * fields and chooses dt if need be. */
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);

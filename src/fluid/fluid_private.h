@@ -110,6 +110,7 @@ typedef struct mpsi_fluid_body {
       owed[MPS_BODY_MAX_PARTS]; /* N s, N m s: of collisions, to be applied in the next step */
   int64_t wetted[MPS_BODY_MAX_PARTS];
   bool floats;             /* see afloat.c */
+  bool leaves; /* its handle was destroyed in the open step: it leaves the water when that ends */
   double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
   double rate_before[3], mass_before[9]; /* before the step being made */
 } mpsi_fluid_body;
@@ -419,6 +420,7 @@ void mpsi_fluid_end_bodies(mps_fluid *fluid);
 /* m: rotations count as displacements at this radius. */
 double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *fluid);
 void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
+void mpsi_fluid_drop_leaving(mps_fluid *fluid); /* once no step is open */
 /* Of the body that a contact is with; -1: none of this fluid's, or it has ended. */
 int32_t mpsi_fluid_body_number(const mps_fluid *fluid, const mps_contact *contact);
 /* Whether the fluid may move a body (`contact`: that with it, NULL before there is one). */

@@ -211,7 +211,7 @@ static mps_status take_densities(geostatic *g, double *density) {
     const double rho = g->density_field[k];
     if (!mpsi_in_range(MPSI_RANGE_DENSITY, rho))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "particle %lld has density %g kg/m3, must be 1e-9 to 1e9",
+                       "particles: particle %lld has density %g kg/m3, must be 1e-9 to 1e9",
                        (long long)g->id[k], rho);
     if (isnan(density[layer])) density[layer] = rho;
     if (rho != density[layer])

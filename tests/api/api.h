@@ -71,6 +71,7 @@ typedef struct api_object {
   uint64_t serial; /* of all objects ever made; the latest has the highest */
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
   double contrast; /* of an elastic body, the highest so far (state.c); 0: none */
+  bool exact;      /* an elastic body whose scheme has no energy but that of rounding */
   bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
   bool rewritten;  /* explicit dynamics: its set's motion has been edited, and restarts */
   bool drags;      /* nor need its momentum: it is damped, or driven by displacements */
@@ -158,7 +159,9 @@ double api_unit(api *a); /* in [0, 1) */
 void api_wrong(api *a, const char *name);
 /* In [lo, hi], `typical` being of ordinary size; outside in an absurd mood. */
 double api_real(api *a, const char *name, double lo, double hi, double typical);
-/* The same, or NaN, which stands for the default. */
+/* The same, and in an absurd mood NaN, which stands for the default and is not wrong. */
+double api_real_or_nan(api *a, const char *name, double lo, double hi, double typical);
+/* Mostly NaN, which stands for the default. */
 double api_optional(api *a, const char *name, double lo, double hi, double typical);
 /* Finite; ordinarily within `width` of `centre`. */
 double api_near(api *a, const char *name, double centre, double width);

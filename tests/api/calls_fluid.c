@@ -27,8 +27,8 @@ static void fluid_create(api *a) {
   def.struct_size = api_struct_size(a, sizeof def);
   def.iterations = (int32_t)api_least(a, "iterations", a->latest ? 500 : 1, 2000);
   if (def.iterations > 0) a->wrong = 0;
-  def.density = api_real(a, "density", 5e-324, 1e300, 1000.0);
-  def.viscosity = api_real(a, "viscosity", 0.0, 1e300, api_chance(a, 60) ? 0.0 : 1e-3);
+  def.density = api_real_or_nan(a, "density", 5e-324, 1e300, 1000.0);
+  def.viscosity = api_real_or_nan(a, "viscosity", 0.0, 1e300, api_chance(a, 60) ? 0.0 : 1e-3);
   if (api_chance(a, 10)) def.gravity[1] = 0.0;
   def.measure = api_real(a, "measure", 5e-324, 1e300, 1.0);
   if (api_chance(a, 40)) def.dt = api_real(a, "dt", 5e-324, DBL_MAX, 2e-3);

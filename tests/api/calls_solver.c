@@ -88,7 +88,7 @@ void api_add_impulse(api_account *account, mps_status status, const mps_reaction
   for (int c = 0; c < 3; c++) account->impulse[c] += reaction->impulse[c];
 }
 
-static void balance_energy(api *a, const mps_totals *x, const mps_totals *y, double contrast) {
+static void balance_energy(api *a, const api_object *o, const mps_totals *x, const mps_totals *y) {
   const double change[] = {y->kinetic - x->kinetic,
                            y->strain - x->strain,
                            y->dissipated - x->dissipated,
@@ -97,14 +97,17 @@ static void balance_energy(api *a, const mps_totals *x, const mps_totals *y, dou
                            x->work_bodies - y->work_bodies};
   const double sizes[] = {y->kinetic,    y->strain,          y->dissipated,
                           y->work_loads, y->work_boundaries, y->work_bodies};
-  double sum = 0.0, largest = 1e-12;
+  double sum = 0.0, largest = fmax(1e-12, fabs(y->scheme));
   for (int k = 0; k < API_COUNT(change); k++) {
     sum += change[k];
     largest = fmax(largest, fmax(fabs(change[k]), fabs(sizes[k])));
   }
   if (!(largest < 1e15) || isnan(sum)) return; /* not counted, or beyond what has digits left */
-  if (!(fabs(sum) <= fmax(1e-8, 1e-14 * contrast) * largest))
+  const double scheme = y->scheme - x->scheme;
+  if (!(fabs(sum) <= 1e-8 * largest))
     api_broken(a, "succeeds, and the energies miss %g of %g J", sum, largest);
+  else if (o->exact && !(fabs(scheme) <= fmax(1e-8, 1e-14 * o->contrast) * largest))
+    api_broken(a, "succeeds, and its scheme adds %g to %g J", -scheme, largest);
 }
 
 static void balance_momentum(api *a, const api_account *before, const api_account *after) {
@@ -133,7 +136,7 @@ void api_balance(api *a, const api_object *o, const api_account *before, const a
     api_broken(a, "succeeds, and the mass is %.17g, not %.17g less %.17g", y->mass, x->mass, gone);
   if (after->count != before->count) return;
   if (o->rewritten) return; /* prescribed particles are set to their boundary */
-  if (!o->loose) balance_energy(a, x, y, o->contrast);
+  if (!o->loose) balance_energy(a, o, x, y);
   if (momentum && !o->drags && !a->pushed && !before->pushed && !after->pushed)
     balance_momentum(a, before, after);
 }

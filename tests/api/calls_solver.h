@@ -26,8 +26,7 @@ void api_path(api *a, char path[300], const char *kind);
 /* In an absurd mood: damages the file. */
 void api_damage(api *a, const char *path);
 /* Before and after steps: what open sides have taken out is what the mass lacks. Where they took
- * nothing, the sum of mps_totals stays, to 1e-8 of its largest term, or to 1e-14 times the
- * contrast of moduli if that is more, as mps/elastic.h states (but of a solver that holds
+ * nothing, the sum of mps_totals stays, to 1e-8 of its largest term (but of a solver that holds
  * particles by ids, WLS-MPM: `loose`); and where there are only boundaries and gravity, the
  * momentum changes by their impulses, to 1e-9 of what has flowed (SOLVER_MOMENTUM: not of the
  * fluid, whose header states another bound). */

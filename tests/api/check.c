@@ -121,6 +121,11 @@ static bool same_name(const char *recorded, const char *called) {
          (strncmp(recorded, called, length) == 0 && recorded[length] == '\0');
 }
 
+/* Whether a law refused, which is armed but not counted as `faulted`. */
+static bool refused_by_law(const api *a, mps_status status) {
+  return a->fault == API_FAULT_STATUS && a->fault_status == status;
+}
+
 static void check_record(api *a, mps_status status, const mps_error *record) {
   if (record->status != status)
     api_broken(a, "returns %d, its record has %d", (int)status, (int)record->status);
@@ -128,7 +133,7 @@ static void check_record(api *a, mps_status status, const mps_error *record) {
     api_broken(a, "the record names %s", record->function);
   else if (strlen(record->message) < 8)
     api_broken(a, "the record's message is \"%s\"", record->message);
-  else if (status == MPS_ERROR_ARGUMENT && !a->faulted &&
+  else if (status == MPS_ERROR_ARGUMENT && !a->faulted && !refused_by_law(a, status) &&
            !api_names_argument(a->name, record->message))
     api_broken(a, "the record names no argument: %.200s", record->message);
   else if (status == MPS_ERROR_ARGUMENT && api_prints_allowed(record->message))
@@ -231,9 +236,8 @@ bool api_end(api *a, mps_status status) {
   api_count(a->name, status);
   check_status(a, status);
   if (record) check_record(a, status, record);
-  const bool by_law = a->fault == API_FAULT_STATUS && a->fault_status == status; /* not `faulted` */
   if (status == MPS_ERROR_MEMORY && atomic_load(&a->memory.refused) == 0 && !a->faulted &&
-      !by_law && a->mood == API_VALID)
+      !refused_by_law(a, status) && a->mood == API_VALID)
     api_broken(a, "finds no memory where none was refused");
   a->digest = api_mix(a->digest ^ (uint64_t)status);
   look_after(a, status);

@@ -78,6 +78,14 @@ double api_real(api *a, const char *name, double lo, double hi, double typical) 
   return value;
 }
 
+double api_real_or_nan(api *a, const char *name, double lo, double hi, double typical) {
+  const int before = a->wrong;
+  const double value = draw_real(a, name, lo, hi, typical);
+  if (isnan(value)) a->wrong = before;
+  say_real(a, name, value);
+  return value;
+}
+
 double api_optional(api *a, const char *name, double lo, double hi, double typical) {
   if (a->latest || api_chance(a, 60)) {
     if (a->mood != API_VALID) say_real(a, name, NAN);

@@ -77,6 +77,7 @@ static void refuses_bad_solids(void **state) {
   const double zero[3] = {0.0, 0.0, 0.0};
   const double crossing[] = {-0.1, 0.0, 1.0, 0.0, 1.0, 1.0};
   const double pinched[] = {0.0, 0.0, 1.0, -1.0, 1.0, 1.0};
+  const double twice[] = {0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 1.0};
   mps_assert_fails(context, mps_body_create_half_space(context, NULL, zero, &body),
                    MPS_ERROR_ARGUMENT, "normal is (0, 0, 0)");
   mps_assert_fails(context, mps_body_create_cylinder(context, NULL, 1.0, NAN, &body),
@@ -87,6 +88,8 @@ static void refuses_bad_solids(void **state) {
                    MPS_ERROR_ARGUMENT, "corner 0 has r = -0.1 m");
   mps_assert_fails(context, mps_body_create_revolution(context, NULL, 3, pinched, &body),
                    MPS_ERROR_ARGUMENT, "corner 0 is on the axis with neither of its edges");
+  mps_assert_fails(context, mps_body_create_revolution(context, NULL, 4, twice, &body),
+                   MPS_ERROR_ARGUMENT, "vertices: corners 1 and 2");
   assert_null(body);
 }
 

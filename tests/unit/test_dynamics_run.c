@@ -551,6 +551,11 @@ static void divergence_names_step_time_and_particle(void **state) {
     mps_assert_fails(context, mps_dynamics_run(d, 30.0, 1, NULL, NULL), MPS_ERROR_STATE,
                      "diverged");
     assert_int_equal(mps_dynamics_steps(d), steps);
+    mps_snapshot *snapshot = NULL; /* no state to come back to */
+    mps_assert_fails(context, mps_dynamics_snapshot(d, &snapshot), MPS_ERROR_STATE, "diverged");
+    mps_assert_fails(context, mps_dynamics_save(d, "test_dynamics_run.h5", NULL), MPS_ERROR_STATE,
+                     "diverged");
+    assert_null(snapshot);
     const char *const fields[] = {"displacement", "rotation", "velocity", "spin"};
     for (int f = 0; f < 4; f++) mps_assert_ok(context, mps_particles_set(set, fields[f], 0, 0.0));
     mps_assert_ok(context, mps_particles_set(set, "displacement", 1, 0.0));
@@ -561,6 +566,22 @@ static void divergence_names_step_time_and_particle(void **state) {
     mps_dynamics_destroy(&d);
     mps_particles_destroy(&set);
   }
+}
+
+/* A part of the limit too small for a number. */
+static void no_step_is_no_time_step(void **state) {
+  (void)state;
+  mps_particles *set;
+  mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, NAN);
+  def.courant = 4.9e-324;
+  mps_dynamics *d = shaken(context, &def, 0.0, &set);
+  mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_ARGUMENT, "dynamics: courant = ");
+  mps_assert_fails(context, mps_dynamics_run(d, 1.0, 1, NULL, NULL), MPS_ERROR_ARGUMENT, "give dt");
+  mps_assert_ok(context, mps_dynamics_set_dt(d, 1e-12));
+  mps_assert_fails(context, mps_dynamics_run(d, 1e6, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "t_end is");
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
 }
 
 static void an_infinite_acceleration_passes_no_limit(void **state) {
@@ -596,6 +617,7 @@ int main(void) {
       cmocka_unit_test(a_step_above_the_limit_is_warned_of),
       cmocka_unit_test(the_warning_is_right_off_a_lattice),
       cmocka_unit_test(divergence_names_step_time_and_particle),
+      cmocka_unit_test(no_step_is_no_time_step),
       cmocka_unit_test(an_infinite_acceleration_passes_no_limit),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

@@ -37,8 +37,8 @@ static mps_status check_corners(mps_context *context, const char *function, int6
     const long long next = (k + 1) % n;
     if (a[0] == b[0] && a[1] == b[1])
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "corners %lld and %lld of the polygon coincide at (%g, %g) m (it is closed "
-                       "without repeating the first)",
+                       "vertices: corners %lld and %lld of the polygon coincide at (%g, %g) m (it is "
+                       "closed without repeating the first)",
                        (long long)k, next, a[0], a[1]);
     if (turn(a, b, c) == 0.0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0)
       return mpsi_fail(

@@ -193,10 +193,12 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
 /* ---- what the caller does
  * ------------------------------------------------------------------------ */
 
-/* A state is kept between steps only, and of a set without an open edit, on all ranks. The guard is
- * checked on each rank alone, since a callback may run on one rank. */
+/* A state is kept between steps only, not of a run that has diverged, and of a set without an open
+ * edit, on all ranks. The guard is checked on each rank alone, since a callback may run on one
+ * rank. */
 static mps_status check_whole(const mps_dynamics *dynamics, const char *function) {
-  const mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
+  mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
+  if (status == MPS_OK) status = mpsi_dynamics_check_diverged(dynamics, function);
   if (status != MPS_OK) return status;
   return mpsi_domain_agree(dynamics->domain, function,
                            mpsi_particles_ready(dynamics->particles, function));

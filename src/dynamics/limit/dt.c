@@ -34,7 +34,12 @@ static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
     return mpsi_fail(
         dynamics->context, function, MPS_ERROR_ARGUMENT,
         "dynamics: no force between particles that can move limits the time step: give dt");
-  dynamics->dt = dynamics->def.courant * limit.dt;
+  const double dt = dynamics->def.courant * limit.dt;
+  if (!(dt > 0.0))
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
+                     "dynamics: courant = %g times the limit %g s is no time step: give dt",
+                     dynamics->def.courant, limit.dt);
+  dynamics->dt = dt;
   return MPS_OK;
 }
 

@@ -26,14 +26,18 @@ static mps_status take_motion(mps_dynamics *dynamics, const char *function, doub
   return mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
 }
 
+mps_status mpsi_dynamics_check_diverged(const mps_dynamics *dynamics, const char *function) {
+  if (!dynamics->diverged) return MPS_OK; /* on all ranks */
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
+                   "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore recovers "
+                   "it, mps_dynamics_restart begins a new one");
+}
+
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
   mps_status status = mpsi_dynamics_enter(dynamics, function);
   if (status != MPS_OK) return status;
-  if (dynamics->diverged)
-    return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
-                     "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore recovers "
-                     "it, mps_dynamics_restart begins a new one");
-  status = prepare_run(dynamics, function);
+  status = mpsi_dynamics_check_diverged(dynamics, function);
+  if (status == MPS_OK) status = prepare_run(dynamics, function);
   if (status != MPS_OK) return status;
   return mpsi_dynamics_choose_dt(dynamics, function);
 }
@@ -164,8 +168,8 @@ static mps_status check_run(const run *r, const char *function) {
                      (long long)r->every);
   if ((r->t_end - r->start) / r->dynamics->dt > 1e15)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "a run to %g s takes %g steps of dt = %g s: must be at most 1e15", r->t_end,
-                     (r->t_end - r->start) / r->dynamics->dt, r->dynamics->dt);
+                     "t_end is %g s, %g steps of dt = %g s from now: must be at most 1e15",
+                     r->t_end, (r->t_end - r->start) / r->dynamics->dt, r->dynamics->dt);
   return MPS_OK;
 }
 

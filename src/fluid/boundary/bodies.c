@@ -404,13 +404,28 @@ void mpsi_fluid_let_float(mps_fluid *f, int32_t number, int32_t floats) {
 }
 
 static mps_status check_owner(void *owner, const char *function) {
-  return mpsi_fluid_ready(owner, function);
+  return mpsi_fluid_free(owner, function);
 }
 
+static void drop(mps_fluid *f, mpsi_fluid_body *own) {
+  mpsi_fluid_drop_body(f, own);
+  f->stale = true, f->unknown = 1;
+}
+
+/* A destructor cannot be refused, nor tried again by an owner that runs out of scope: in an open
+ * step, whose matrix has the body, that step is the body's last. */
 static void end(void *owner, mps_contact *contact) {
   mps_fluid *f = owner;
-  mpsi_fluid_drop_body(f, &f->body[mpsi_fluid_body_number(f, contact)]);
-  f->stale = true, f->unknown = 1;
+  mpsi_fluid_body *own = &f->body[mpsi_fluid_body_number(f, contact)];
+  if (f->stage == MPSI_FLUID_BETWEEN)
+    drop(f, own);
+  else
+    own->leaves = true;
+}
+
+void mpsi_fluid_drop_leaving(mps_fluid *f) {
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+    if (f->body[b].leaves) drop(f, &f->body[b]);
 }
 
 /* The water presses on faces, not by particles. */

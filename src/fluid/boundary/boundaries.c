@@ -49,7 +49,7 @@ static mps_status check_boundary(mps_fluid *f, const char *function,
   for (int64_t k = 0; k < 3 * d->node_count; k++)
     if (!(fabs(d->nodes[k]) <= 1e12))
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "node %lld of the boundary is at %g m: must be within 1e12 m",
+                       "nodes: node %lld has a coordinate of %g m, must be within 1e12 m",
                        (long long)(k / 3), d->nodes[k]);
   return MPS_OK;
 }

@@ -93,6 +93,7 @@ static void abandon(mps_fluid *f) {
   }
   f->stage = MPSI_FLUID_BETWEEN;
   f->stale = true;
+  mpsi_fluid_drop_leaving(f);
 }
 
 /* A step is made in three parts. They read and write the cloud; the fields change when all is done.
@@ -148,6 +149,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   f->steps++;
   mpsi_fluid_warn_of_guards(f);
   mpsi_fluid_warn_of_angles(f);
+  mpsi_fluid_drop_leaving(f);
   mpsi_fluid_remove_outflow(f);
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
   f->stale = true;

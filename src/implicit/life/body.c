@@ -77,7 +77,7 @@ static mps_status read_material(mps_elastic *e, const char *function) {
 }
 
 /* The equations of a soft body with hard inclusions are solved to the rounding of the hard ones'
- * forces: the remaining digits of the soft body. */
+ * forces: the remaining digits of the soft body. The energy that this adds is `scheme`. */
 static void warn_of_contrast(const mps_elastic *e) {
   double least = INFINITY, most = 0.0;
   for (int64_t i = 0; i < e->n; i++) {
@@ -87,9 +87,9 @@ static void warn_of_contrast(const mps_elastic *e) {
   if (!(most > MOST_CONTRAST * (1.0 + 1e-9) * least)) return; /* rounding */
   mpsi_log(
       e->context, MPS_CONTEXT_LOG_WARNING,
-      "Young's modulus is %g to %g Pa in one body, a contrast of %.3g: above %g the budget of "
-      "energies closes to %.1g of its largest term only; particles that are to be rigid can be "
-      "held by a boundary, or be 1e4 times as stiff as the others",
+      "Young's modulus is %g to %g Pa in one body, a contrast of %.3g: above %g rounding "
+      "may add energies of %.1g of the largest term of the budget; particles that are to be rigid "
+      "can be held by a boundary, or be 1e4 times as stiff as the others",
       least, most, most / least, MOST_CONTRAST, 1e-14 * most / least);
 }
 

@@ -77,11 +77,12 @@ static void list_body(mpsi_state *s, mps_elastic *e) {
   mpsi_state_add_table(s, "mass", &table_of_mass);
   mpsi_state_add_table(s, "displacement", &table_of_displacement);
   mpsi_state_add_table(s, "reaction", &table_of_reaction);
-  double *works[] = {&l->loads,        &l->boundaries, &l->inner,
-                     &l->mass_damping, &l->kinetic,    &l->strain};
+  double *works[] = {&l->loads, &l->boundaries, &l->inner, &l->mass_damping,
+                     &l->left,  &l->kinetic,    &l->strain};
   static const char *const names[] = {"work_loads",   "work_boundaries", "work_inner",
-                                      "mass_damping", "kinetic_start",   "strain_start"};
-  for (int k = 0; k < 6; k++) mpsi_state_f64(s, names[k], works[k], 1);
+                                      "mass_damping", "work_left",       "kinetic_start",
+                                      "strain_start"};
+  for (int k = 0; k < 7; k++) mpsi_state_f64(s, names[k], works[k], 1);
   for (int32_t k = 0; k < e->boundary_count; k++) {
     if (!e->boundaries[k].used) continue;
     mpsi_state_enter(s, "boundary%d", k);

@@ -259,8 +259,8 @@ static mps_status find_right_side(mps_elastic *e, const char *function, double f
 /* The new state becomes the present one. */
 static void accept(mps_elastic *e, double dt, double time) {
   mpsi_elastic_motion *m = e->motion;
-  mpsi_elastic_count_step(e, m->next[MPSI_NEXT_U], m->next[MPSI_NEXT_V], m->next[MPSI_NEXT_INNER],
-                          m->next[MPSI_NEXT_HELD]);
+  mpsi_elastic_count_step(e, m->next[MPSI_NEXT_U], m->next[MPSI_NEXT_V], m->next[MPSI_NEXT_A],
+                          m->next[MPSI_NEXT_INNER], m->next[MPSI_NEXT_HELD]);
   exchange(&e->displacement, &m->next[MPSI_NEXT_U]);
   exchange(&m->velocity, &m->next[MPSI_NEXT_V]);
   exchange(&m->acceleration, &m->next[MPSI_NEXT_A]);

@@ -49,7 +49,7 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
     const int64_t k = place(mpm, ids, i);
     if (k >= 0 && J && !(J[k] >= 0.0 && J[k] < INFINITY))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "particle %lld has volume ratio %g, must be > 0, or 0 for 1",
+                       "ids: particle %lld has a volume_ratio of %g, must be > 0, or 0 for 1",
                        (long long)mpm->laws.ids[k], J[k]);
   }
   return MPS_OK;

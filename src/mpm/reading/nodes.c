@@ -31,9 +31,8 @@ static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
   return mpm->partition ? mpm->partition->lost : MPS_OK;
 }
 
-/* Sums of mass, momentum and force at the nodes. `status`: status of the call so far here;
- * collective. */
-static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status status) {
+/* The sums, after what the caller has edited. `status`: status of the call so far here. */
+static mps_status find_sums(mps_mpm *mpm, const char *function, mps_status status) {
   status = mpsi_mpm_agree(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_apply_edits(mpm, function);
   if (status == MPS_OK && mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
@@ -50,6 +49,15 @@ static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status statu
   if (mpm->partition) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status == MPS_OK) status = sum_nodes(mpm, function);
   mpm->grid.apart = false;
+  return status;
+}
+
+/* Sums of mass, momentum and force at the nodes; one that fails leaves the edits unread.
+ * Collective. */
+static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status status) {
+  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
+  status = find_sums(mpm, function, status);
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
   return status;
 }
 
@@ -149,9 +157,36 @@ static void write_columns(mps_particles *set, const char *name, int64_t count, i
   }
 }
 
+/* The nodes of `grid`, of which there are `count`, to `set`, with `memory` for 10 numbers each. */
+static mps_status fill(mps_grid *grid, const char *function, mps_particles *set, int64_t count,
+                       double *memory) {
+  mps_mpm *mpm = grid->mpm;
+  const int32_t fields = mps_particles_field_count(set);
+  double *x = memory, *v = x + 3 * count, *f = v + 3 * count, *mass = f + 3 * count;
+  mps_status status =
+      mpsi_as(mpm->context, function, mps_grid_get_nodes(grid, count, &count, x, mass, v, f));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "mass", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "velocity", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "force", mpm->dim));
+  if (status == MPS_OK) status = resize(mpm, function, set, count, x);
+  if (status != MPS_OK) {
+    mpsi_particles_drop_fields(set, fields);
+    return status;
+  }
+  write_columns(set, "position", count, 3, x);
+  write_columns(set, "velocity", count, 3, v);
+  write_columns(set, "force", count, 3, f);
+  write_columns(set, "mass", count, 1, mass);
+  return MPS_OK;
+}
+
 mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   mps_mpm *mpm = grid->mpm;
+  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
   int64_t count = 0;
   mps_status status = mpsi_mpm_agree(mpm, __func__, check_set(mpm, __func__, set));
   if (status == MPS_OK)
@@ -161,28 +196,9 @@ mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
   double *memory = mpsi_alloc(mpm->context, count * 10, sizeof *memory);
   if (!memory) status = mpsi_fail_memory(mpm->context, __func__, (size_t)count * 80);
   status = mpsi_mpm_agree(mpm, __func__, status);
-  if (status != MPS_OK) {
-    mpsi_free(mpm->context, memory);
-    return status;
-  }
-  const int32_t fields = mps_particles_field_count(set);
-  double *x = memory, *v = x + 3 * count, *f = v + 3 * count, *mass = f + 3 * count;
-  status = mpsi_as(mpm->context, __func__, mps_grid_get_nodes(grid, count, &count, x, mass, v, f));
   if (status == MPS_OK)
-    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "mass", 0));
-  if (status == MPS_OK)
-    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "velocity", 0));
-  if (status == MPS_OK)
-    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "force", mpm->dim));
-  if (status == MPS_OK) status = resize(mpm, __func__, set, count, x);
-  if (status == MPS_OK) {
-    write_columns(set, "position", count, 3, x);
-    write_columns(set, "velocity", count, 3, v);
-    write_columns(set, "force", count, 3, f);
-    write_columns(set, "mass", count, 1, mass);
-  } else {
-    mpsi_particles_drop_fields(set, fields);
-  }
+    status = mpsi_mpm_agree(mpm, __func__, fill(grid, __func__, set, count, memory));
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
   mpsi_free(mpm->context, memory);
-  return mpsi_mpm_agree(mpm, __func__, status);
+  return status;
 }
