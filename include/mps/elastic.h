@@ -454,7 +454,7 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_set_dt(mps_elastic *e, double dt);
 MPS_API MPS_NODISCARD mps_status mps_elastic_snapshot(mps_elastic *e, mps_snapshot **snapshot);
 /** Restores a snapshot, bit for bit. Loads, values and signals of boundaries, dt and moduli stay.
  *  On an error nothing has changed. MPS_ERROR_ARGUMENT: a snapshot of another solver;
- *  MPS_ERROR_STATE: no motion under way, or other boundaries. */
+ *  MPS_ERROR_STATE: no motion under way, or other boundaries or cuts. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot);
 /** Writes the state to a file, as mps_elastic_snapshot; of `info` (NULL: nothing) user_key and
  *  user_data are written too. MPS_ERROR_IO: the file cannot be written; MPS_ERROR_STATE: as

@@ -222,6 +222,38 @@ static void a_rollback_over_a_change_leads_to_the_same(void **state) {
   drop(&b);
 }
 
+/* Masses and forces of a state are those of its cells: over a cut there is no way back. */
+static void a_rollback_over_a_cut_is_refused(void **state) {
+  (void)state;
+  for (int removed = 0; removed < 2; removed++) {
+    static const char path[] = "test_elastic_change.h5";
+    beam b = make(0.0);
+    mps_snapshot *snapshot = NULL;
+    mps_elastic_motion_def motion = mps_elastic_motion_defaults();
+    int64_t ids[SIDE];
+    const int64_t last = SIDE * SIDE - 1;
+    for (int k = 0; k < SIDE; k++) ids[k] = k;
+    motion.dt = 1e-3;
+    OK(mps_elastic_snapshot(b.e, &snapshot));
+    OK(mps_elastic_save(b.e, path, NULL));
+    if (removed) OK(mps_particles_remove(b.set, 1, &last));
+    OK(mps_elastic_cut(b.e, 1, -1, SIDE, ids));
+    OK(mps_elastic_start(b.e, &motion));
+    OK(mps_elastic_step(b.e, 2));
+    const mps_totals before = totals_of(&b);
+    mps_assert_fails(context, mps_elastic_rollback(b.e, snapshot), MPS_ERROR_STATE,
+                     "particle 0 is cut on other sides");
+    mps_assert_fails(context, mps_elastic_restore(b.e, path, NULL), MPS_ERROR_ARGUMENT,
+                     "particle 0 is cut on other sides");
+    const mps_totals after = totals_of(&b);
+    assert_memory_equal(&before, &after, sizeof before);
+    assert_closes(&b, 3);
+    mps_snapshot_destroy(&snapshot);
+    drop(&b);
+    (void)remove(path);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_budget_closes_after_another_material),
@@ -230,6 +262,7 @@ int main(void) {
       cmocka_unit_test(a_second_start_has_the_present_densities),
       cmocka_unit_test(a_solution_weighs_the_present_densities),
       cmocka_unit_test(a_rollback_over_a_change_leads_to_the_same),
+      cmocka_unit_test(a_rollback_over_a_cut_is_refused),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

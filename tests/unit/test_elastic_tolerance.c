@@ -59,7 +59,7 @@ static void read_motion(mps_particles *set, double *out) {
     }
 }
 
-/* A beam that is let go under its load. In a step from u, v of dt the unknown correction w has the
+/* A beam released under its load. In a step from u, v of dt the unknown correction w has the
  * right side F - K (u + dt v + dt^2 a/4) of the average acceleration, which is 4 M w/dt^2 + K w: of
  * at most (4 m/dt^2 + k) |w|, k the largest eigenvalue of K, some 8 E of a 2D lattice. The force
  * that a solution leaves is at most the tolerance times that, and works over du at both ends. */

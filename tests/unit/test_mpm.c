@@ -461,8 +461,39 @@ static void variants_are_chosen_first(void **state) {
   mpm_scene_end(&s);
 }
 
+/* A part of the limit that is too small for a number, or lost in the rounding of the time: a run
+ * would not end. */
+static void a_step_advances_the_time(void **state) {
+  (void)state;
+  const double courants[] = {4.9e-324, 1e-20};
+  for (int k = 0; k < 2; k++) {
+    mpm_scene s = {.mpm = NULL};
+    const double lo[2] = {0.0, 0.0}, hi[2] = {0.4, 0.4};
+    mps_particles_def set = mps_particles_defaults();
+    mps_mpm_def def = mps_mpm_defaults();
+    set.spacing = 0.1, def.cell = 0.2, def.courant = courants[k];
+    mps_assert_ok(context, mps_particles_create(context, &set, &s.particles));
+    mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+    mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+    mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &s.material));
+    mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+    if (k == 1) { /* at 1 s */
+      mps_assert_ok(context, mps_mpm_set_dt(s.mpm, 1e-3));
+      mps_assert_ok(context, mps_mpm_step(s.mpm, 1000));
+      mps_assert_ok(context, mps_mpm_set_dt(s.mpm, NAN));
+    }
+    const int64_t steps = mps_mpm_steps(s.mpm);
+    mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "does not advance the time");
+    mps_assert_fails(context, mps_mpm_run(s.mpm, 2.0, 1, NULL, NULL), MPS_ERROR_STATE,
+                     "does not advance the time");
+    assert_int_equal(mps_mpm_steps(s.mpm), steps);
+    mpm_scene_end(&s);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(inverted_deformations_are_refused),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_step_advances_the_time),
+                                     cmocka_unit_test(inverted_deformations_are_refused),
                                      cmocka_unit_test(refuses_bad_definitions),
                                      cmocka_unit_test(refuses_bad_sets),
                                      cmocka_unit_test(owns_its_bodies),

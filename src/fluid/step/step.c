@@ -6,6 +6,7 @@
 
 #define SORT_EVERY 32   /* steps */
 #define EVEN_STEPS 32   /* at the end of a run */
+#define MOST_STEPS 1e15 /* of a run */
 #define LEAST_STEP 1e-4 /* of the step at rest */
 
 /* ---- fields and cloud ------------------------------------------------------------------------ */
@@ -275,6 +276,8 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
+  mpsi_fluid_load former[MPSI_FLUID_WALLS]; /* of the last solution, where this one fails */
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) former[b] = f->wall[b].load;
   mpsi_guard_enter(&f->guard, f->context, __func__);
   status = mpsi_fluid_agree(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
   if (status == MPS_OK) {
@@ -285,9 +288,11 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
     f->stage = status == MPS_OK ? MPSI_FLUID_SOLVED : MPSI_FLUID_BEGUN;
   }
   mpsi_guard_end(&f->guard);
-  if (status != MPS_OK) return status;
-  status = mpsi_fluid_load_walls(f, __func__);
-  if (status != MPS_OK) f->stage = MPSI_FLUID_BEGUN;
+  if (status == MPS_OK) {
+    status = mpsi_fluid_load_walls(f, __func__);
+    if (status != MPS_OK) f->stage = MPSI_FLUID_BEGUN;
+  }
+  for (int b = 0; b < MPSI_FLUID_WALLS && status != MPS_OK; b++) f->wall[b].load = former[b];
   return status;
 }
 
@@ -369,6 +374,10 @@ mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn
         mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                   "t_end is %g s and every %lld: allowed are times from now, %g s, on, and >= 1",
                   t_end, (long long)every, f->time);
+  if (status == MPS_OK && (t_end - f->time) / f->def.dt > MOST_STEPS) /* false where dt is NaN */
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "t_end is %g s, %g steps of dt = %g s from now: must be at most %g", t_end,
+                       (t_end - f->time) / f->def.dt, f->def.dt, MOST_STEPS);
   mps_domain *domain = f->def.domain;
   status = mpsi_domain_agree_same(domain, __func__, status, "t_end", t_end);
   if (status == MPS_OK)

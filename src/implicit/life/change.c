@@ -166,6 +166,17 @@ static bool read_former(const mps_elastic *e, const mps_snapshot *from, former *
   return good;
 }
 
+/* Forces and masses of a state are those of its cells: particle i of the body has to have the cuts
+ * of the k-th of the state. */
+static mps_status check_cut(const mps_elastic *e, int64_t i, const char *function, const former *f,
+                            int64_t k, const char *source, mps_status disagreement) {
+  if (e->cut[i] == f->cut[k]) return MPS_OK;
+  return mpsi_fail(e->context, function, disagreement,
+                   "in %s the cell of particle %lld is cut on other sides than in this solver "
+                   "(mps_elastic_cut)",
+                   source, (long long)e->id[i]);
+}
+
 /* Data by ids of the new body: from the present one where it has the particle. */
 static mps_status carry_all(mps_elastic *e, const char *function, const former *f,
                             const char *source, mps_status disagreement) {
@@ -183,6 +194,8 @@ static mps_status carry_all(mps_elastic *e, const char *function, const former *
                        "in %s the reference position of particle %lld is another than in this "
                        "solver",
                        source, (long long)e->id[i]);
+    const mps_status status = check_cut(e, i, function, f, k, source, disagreement);
+    if (status != MPS_OK) return status;
     carry(e, i, next, k);
   }
   /* present moduli, and former ones of restored particles */
@@ -250,6 +263,8 @@ mps_status mpsi_elastic_prepare_state(void *self, const char *function, const mp
                      "%s is malformed: values that are not of its particles", source);
   mps_status status = MPS_OK;
   if (!same_body(e, &f)) status = prepare_body(e, function, &f, source, disagreement);
+  for (int64_t k = 0; k < f.count && !e->change && status == MPS_OK; k++)
+    status = check_cut(e, k, function, &f, k, source, disagreement);
   if (status == MPS_OK)
     status =
         check_boundaries(e, e->change ? &e->change->next : e, function, from, source, disagreement);

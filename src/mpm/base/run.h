@@ -44,7 +44,9 @@ mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function);
 /* ready.c: that, but not in a callback of the solver. */
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
-/* ready.c: a step that follows the limit must have particles. */
+/* ready.c: the next step must change the time, in double precision. */
+mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function);
+/* ready.c: so must one that is not a run's, and where it follows the limit have particles. */
 mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function);
 /* block_results.c: what the blocks have found: the largest speed, or the error of a bad
  * particle. */

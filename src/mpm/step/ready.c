@@ -49,8 +49,17 @@ mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   return status == MPS_OK ? mpsi_mpm_apply_edits(mpm, function) : status;
 }
 
+mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function) {
+  const double dt = mps_mpm_dt(mpm), time = mpm->run.time;
+  if (time + dt > time) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "dt = %g s, courant = %g times the limit %g s, does not advance the time %g s: "
+                   "set dt",
+                   dt, mpm->def.courant, mps_mpm_limit(mpm), time);
+}
+
 mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function) {
-  if (isfinite(mps_mpm_dt(mpm))) return MPS_OK;
+  if (isfinite(mps_mpm_dt(mpm))) return mpsi_mpm_check_advance(mpm, function);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "the solver has no particles, and nothing bounds dt: set it, or run to a time");
 }

@@ -93,6 +93,7 @@ static mps_status march(mps_mpm *mpm, const char *function, const run *r) {
   while (status == MPS_OK && mpm->run.time < r->t_end) {
     if (called || mpm->run.edited)
       status = mpsi_mpm_apply_edits(mpm, function); /* some have left */
+    if (status == MPS_OK) status = mpsi_mpm_check_advance(mpm, function);
     if (status != MPS_OK) break;
     const int64_t steps = mpm->run.steps;
     status = mpsi_mpm_step_from_settling(mpm, function, next_step(mpm, r->t_end, &last));
