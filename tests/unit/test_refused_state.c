@@ -206,8 +206,31 @@ static void a_rollback_brings_back_what_a_free_side_shows(void **state) {
   mps_particles_destroy(&set);
 }
 
+/* Fields that a step writes are the caller's until there is one. */
+static void a_refused_run_writes_no_reaction(void **state) {
+  (void)state;
+  mps_particles *set = block(0.0);
+  mps_dynamics *dynamics = dynamics_on(set, MPS_DYNAMICS_INTEGRATOR_VERLET, 1e15);
+  mps_view reaction;
+  OK(mps_dynamics_set_dt(dynamics, 1e-4));
+  OK(mps_particles_add_field(set, "reaction", 0));
+  OK(mps_dynamics_step(dynamics, 1));
+  OK(mps_particles_set(set, "reaction", 0, 7.0));
+  mps_assert_fails(context, mps_dynamics_step(dynamics, -1), MPS_ERROR_ARGUMENT, "count is -1");
+  mps_assert_fails(context, mps_dynamics_run(dynamics, -1.0, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "t_end is -1");
+  OK(mps_particles_view(set, "reaction", &reaction));
+  mps_assert_near(*mps_view_f64(&reaction, 3, 0), 7.0, 0.0);
+  OK(mps_dynamics_step(dynamics, 1));
+  OK(mps_particles_view(set, "reaction", &reaction));
+  mps_assert_near(*mps_view_f64(&reaction, 3, 0), 0.0, 0.0);
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_refused_run_writes_no_reaction),
       cmocka_unit_test(explicit_dynamics_ends_with_divergence),
       cmocka_unit_test(mpm_ends_with_divergence),
       cmocka_unit_test(fluid_ends_with_divergence),

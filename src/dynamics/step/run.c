@@ -81,6 +81,7 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
   mpsi_guard_enter(&dynamics->guard, dynamics->context, "mps_dynamics_step");
   status = begin_steps(dynamics, __func__, count);
   if (status == MPS_OK) status = take_motion(dynamics, __func__, dynamics->dt);
+  const int64_t before = dynamics->steps;
   for (int64_t done = 0; status == MPS_OK && done < count;) {
     const int64_t n = count - done < prompt ? count - done : prompt;
     if (done > 0) status = cancelled(dynamics, __func__);
@@ -88,7 +89,7 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
     done += n;
   }
   mpsi_guard_end(&dynamics->guard);
-  mpsi_dynamics_publish(dynamics);
+  if (status == MPS_OK || dynamics->steps > before) mpsi_dynamics_publish(dynamics);
   return status;
 }
 
@@ -128,6 +129,7 @@ typedef struct run {
 static mps_status march(const run *r) {
   static const char *const function = "mps_dynamics_run";
   mps_dynamics *dynamics = r->dynamics;
+  const int64_t before = dynamics->steps;
   mps_status status = MPS_OK;
   for (int64_t done = 0; status == MPS_OK && done < r->total;) {
     int64_t n = r->every - done % r->every, m = r->report - done % r->report;
@@ -144,7 +146,7 @@ static mps_status march(const run *r) {
       dynamics->base_time = r->t_end; /* to the last bit */
       dynamics->base_step = dynamics->steps;
     }
-    if (call || last || status != MPS_OK) mpsi_dynamics_publish(dynamics);
+    if (status == MPS_OK ? call || last : dynamics->steps > before) mpsi_dynamics_publish(dynamics);
     if (status == MPS_OK && call) status = ask(dynamics, function, r->callback, r->user);
     if (look)
       mpsi_progress(dynamics->context, "dynamics", dynamics->steps,
