@@ -241,13 +241,12 @@ MPS_API MPS_NODISCARD mps_status mps_body_distance(mps_body *body, int64_t count
                                                    double *distance, double *normal, double *foot,
                                                    int64_t *face);
 
-#define MPS_BODY_MAX_PARTS 16
-
 /** Names the faces (2D: edges) first, ..., first + count - 1 (around the end of the list if need
  *  be) a part of the surface, whose reaction is reported separately: tip, inside, outside. `part`
  *  (may be NULL) receives its number: 1, 2, ... Part 0, "rest", has the faces in no part; a face
- *  belongs to the part that named it last. At most 15 parts; names as those of fields.
- *  MPS_ERROR_ARGUMENT: a name that is not allowed, faces out of range, or too many parts. */
+ *  belongs to the part that named it last. Up to 999999 parts; names as those of fields.
+ *  MPS_ERROR_ARGUMENT: a name that is not allowed, faces out of range, or too many parts.
+ *  MPS_ERROR_MEMORY: nothing is changed. */
 MPS_API MPS_NODISCARD mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first,
                                                     int64_t count, int32_t *part);
 /** Number of parts of the surface, "rest" included; 0 for NULL. */

@@ -391,10 +391,10 @@ MPS_API MPS_NODISCARD mps_status mps_material_update(mps_context *context,
                                                      const mps_material *material,
                                                      const mps_material_block *block);
 
-#define MPS_MATERIAL_POINT_HISTORY 32
+#define MPS_MATERIAL_POINT_HISTORY 1024
 
-/** One particle with its state, to drive a law of at most MPS_MATERIAL_POINT_HISTORY history
- *  columns along a strain path (laws with more: mps_material_update). Frozen layout. */
+/** One particle with its state, to drive a law along a strain path. The history has room for every
+ *  law: none has more than MPS_MATERIAL_POINT_HISTORY columns. Frozen layout. */
 typedef struct mps_material_point {
   double stress[6];      /* Pa; may be set before the first step */
   double deformation[9]; /* starts as the unit tensor */
@@ -404,15 +404,14 @@ typedef struct mps_material_point {
   double time;   /* s */
 } mps_material_point;
 
-/** Sets the state before the first step. MPS_ERROR_ARGUMENT: a law of more than
- *  MPS_MATERIAL_POINT_HISTORY columns. */
+/** Sets the state before the first step. MPS_ERROR_ARGUMENT: `material` or `point` is NULL. */
 MPS_API MPS_NODISCARD mps_status mps_material_point_init(mps_context *context,
                                                          const mps_material *material,
                                                          mps_material_point *point);
 /** `steps` (>= 1) steps of dt = duration/steps (s, > 0) with the constant velocity gradient[3 i +
  *  j] (1/s, finite), always in three dimensions. MPS_ERROR_ARGUMENT: `steps`, `duration` or
- *  `gradient` out of range, or too many history columns; MPS_ERROR_NUMERIC: a user's law leaves a
- *  value that is not finite; or the status of that law. */
+ *  `gradient` out of range; MPS_ERROR_NUMERIC: a user's law leaves a value that is not finite; or
+ *  the status of that law. */
 MPS_API MPS_NODISCARD mps_status mps_material_point_drive(mps_context *context,
                                                           const mps_material *material,
                                                           mps_material_point *point,

@@ -137,25 +137,20 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_partic
  *  */
 MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 
-#define MPS_MPM_MAX_MATERIALS 256
-
 /** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the
- *  first step or between steps; at most 16 different materials in a solver, including that of
- *  creation. The material is kept alive. Its history in these particles is set to the law's initial
- *  values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0: 1, and
- *  all 0: no deformation). Fields that only this law needs are added to the set; the field
- *  `material` has each particle's law. The Courant limit, and the stiffness of penalty contacts
- *  without a `penalty` of their own, follow at once. MPS_ERROR_ARGUMENT: an unknown id, a volume
- *  ratio below 0, or too many materials; MPS_ERROR_STATE: a step has failed, or a callback of the
+ *  first step or between steps. The material is kept alive. Its history in these particles is set
+ * to the law's initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as
+ * they are (0: 1, and all 0: no deformation). Fields that only this law needs are added to the set;
+ * the field `material` has each particle's law. The Courant limit, and the stiffness of penalty
+ * contacts without a `penalty` of their own, follow at once. MPS_ERROR_ARGUMENT: an unknown id or a
+ *  volume ratio below 0; MPS_ERROR_STATE: a step has failed, or a callback of the
  *  solver is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
                                                       int64_t count, const int64_t *ids);
 
-#define MPS_MPM_MAX_CONTACTS 32
-
 /** Adds contact of the particles with `body` (`def` NULL: the defaults) until mps_contact_destroy
  *  or the destruction of the solver. `contact`, which may be NULL, receives the caller's handle.
- *  The body keeps its own time. At most 32 contacts, each with another body, and bodies may not
+ *  The body keeps its own time. Each contact is with another body, and bodies may not
  *  overlap by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two cells
  *  or particles lie inside it, unless `def` allows it. A moving body limits the step: its surface
  *  moves at most `courant` cells in one. With MPS_CONTACT_METHOD_PENALTY a warning is logged for a
@@ -246,11 +241,9 @@ static inline mps_mpm_boundary_def mps_mpm_boundary_defaults(void) {
   return def;
 }
 
-#define MPS_MPM_MAX_BOUNDARIES 64 /* the six sides counted */
-
 /** Adds a box of nodes or a list of particles; `number` (may be NULL) receives the lowest free
- *  number from 6. MPS_ERROR_ARGUMENT: a member of `def` out of range, an unknown id, or too many
- *  boundaries; MPS_ERROR_STATE: a callback of the solver is running; MPS_ERROR_MEMORY. */
+ *  number from 6. MPS_ERROR_ARGUMENT: a member of `def` out of range, or an unknown id;
+ *  MPS_ERROR_STATE: a callback of the solver is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *def,
                                                       int32_t *number);
 /** Gives boundary `number` another definition, from the next step on; its impulse and work are

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#define FIRST_PARTS 4 /* room for so many parts at first */
+
 static const mps_body_def body_defaults = {
     .struct_size = sizeof(mps_body_def), .mass = NAN, .inertia = {NAN, NAN, NAN}};
 
@@ -132,6 +134,7 @@ void mpsi_body_release(mps_body *body) {
   mpsi_free(context, body->face_of);
   mpsi_free(context, body->part_of);
   mpsi_free(context, body->names);
+  mpsi_free(context, body->reaction);
   mpsi_free(context, body);
   mpsi_context_release(context);
 }
@@ -156,8 +159,10 @@ mps_status mpsi_body_new(mps_context *context, const char *function, const mps_b
   body->faces = faces;
   body->parts = 1;
   body->part_of = mpsi_alloc(context, faces, sizeof *body->part_of);
-  if (body->part_of) body->names = mpsi_alloc(context, MPS_BODY_MAX_PARTS, sizeof *body->names);
-  if (!body->names) {
+  body->part_room = FIRST_PARTS;
+  if (body->part_of) body->names = mpsi_alloc(context, FIRST_PARTS, sizeof *body->names);
+  if (body->names) body->reaction = mpsi_alloc(context, FIRST_PARTS, sizeof *body->reaction);
+  if (!body->reaction) {
     mpsi_body_release(body);
     return mpsi_fail_memory(context, function, (size_t)faces * sizeof *body->part_of);
   }

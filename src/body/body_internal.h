@@ -55,11 +55,19 @@ typedef struct mpsi_pose {
   double v[3], spin[3]; /* m/s, rad/s in space */
 } mpsi_pose;
 
+/* What a solver exerts on a part of the surface. */
+typedef struct mpsi_part_load {
+  mpsi_load force;   /* N, N m: of the step that ends */
+  mpsi_load impulse; /* N s, N m s: besides, that act at once or in the next step */
+  int64_t count;     /* particles, or points of its water, in contact */
+} mpsi_part_load;
+
 /* A solver's forces on a body: one of its contacts, or its water. The force on the body is the sum
  * of all sources. */
 typedef struct mpsi_body_source {
-  mps_reaction reaction[MPS_BODY_MAX_PARTS]; /* by this solver */
-  bool moves;                                /* the body, at the end of each of its steps */
+  mps_reaction *reaction; /* by this solver; one a part, as the next */
+  mpsi_part_load *part;
+  bool moves; /* the body, at the end of each of its steps */
   struct mpsi_body_source *next;
 } mpsi_body_source;
 
@@ -84,7 +92,7 @@ struct mps_body {
   mpsi_mesh *mesh;
   int32_t *part_of; /* one a face, in the caller's order */
   char (*names)[MPSI_PART_NAME];
-  int32_t parts;
+  int32_t parts, part_room;         /* part_room: as many have memory here and in all sources */
   mps_signal *signal[MPSI_MOTIONS]; /* of x and of the rotation vector */
   double factor[MPSI_MOTIONS];
   mpsi_load load;
@@ -98,7 +106,7 @@ struct mps_body {
    * of before it and after it, without damping */
   double middle_v[3], middle_spin[3];
   double work_contacts, work_loads, dissipated; /* J: see mps_body_totals */
-  mps_reaction reaction[MPS_BODY_MAX_PARTS];    /* by all sources */
+  mps_reaction *reaction;                       /* by all sources; one a part */
   mpsi_load pending; /* N s, N m s: impulses by all sources since the body last moved */
   mpsi_body_source *sources;
 };
@@ -165,6 +173,10 @@ void mpsi_body_begin(mps_body *body);
 /* Distance (m) of the furthest point of the surface from the reference point; 0 of half spaces. */
 double mpsi_body_extent(const mps_body *body);
 
+/* Memory of a source for all parts of the body; false: refused. Freed by the owner of the source.
+ */
+bool mpsi_body_make_source(mps_body *body, mpsi_body_source *source);
+void mpsi_body_free_source(mps_body *body, mpsi_body_source *source);
 /* Adds or removes one of the body's sources. */
 void mpsi_body_join(mps_body *body, mpsi_body_source *source);
 void mpsi_body_leave(mps_body *body, const mpsi_body_source *source);
@@ -174,17 +186,16 @@ static inline const mpsi_body_source *mpsi_body_mover(const mps_body *body) {
   while (s && !s->moves) s = s->next;
   return s;
 }
-/* Adds the forces (N, N m, of the whole body) of a step of dt by one source, load[] and number of
- * particles per part; the body's present forces become the sum over its sources. */
-void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const mpsi_load *load,
-                     const int64_t *count);
-/* Adds impulses (N s, N m s) per part that are no forces of a step: the body moves by them in its
- * next step. */
-void mpsi_body_strike(mps_body *body, mpsi_body_source *source, const mpsi_load *impulse);
-/* The sum of the reactions of all `parts` (part -1), or that of one. */
-mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
-                                  const mps_reaction *reaction, int32_t parts, int32_t part,
-                                  mps_reaction *out);
+/* Adds the forces (N, N m, of the whole body) of a step of dt by one source, those of its parts;
+ * the body's present forces become the sum over its sources. */
+void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt);
+/* Adds the impulses (N s, N m s) of its parts, which are no forces of a step, and clears them: the
+ * body moves by them in its next step. */
+void mpsi_body_strike(mps_body *body, mpsi_body_source *source);
+/* MPS_ERROR_ARGUMENT where the body has no such part; -1: all. */
+mps_status mpsi_body_check_part(const mps_body *body, const char *function, int32_t part);
+/* Adds the reaction of a part to `sum`. */
+void mpsi_body_add_reaction(mps_reaction *sum, const mps_reaction *r);
 /* Evaluates the signals of a prescribed body for the end of a step of dt that has not begun, so
  * that the body's advance at its end cannot fail. `number` names the body in a record; -1: it has
  * none.

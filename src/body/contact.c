@@ -122,7 +122,13 @@ mps_status mpsi_contact_make(mps_context *context, const char *function, mps_bod
   contact->extent = mpsi_body_extent(body);
   contact->kind = kind;
   contact->owner = owner;
+  contact->parts = body->parts;
   body->references++;
+  if (!mpsi_body_make_source(body, &contact->source)) {
+    contact->references = 1;
+    mpsi_contact_release(contact);
+    return mpsi_fail_memory(context, function, (size_t)body->part_room * sizeof(mps_reaction));
+  }
   *out = contact;
   return MPS_OK;
 }
@@ -161,6 +167,7 @@ void mpsi_contact_leave(mps_contact *contact) {
 void mpsi_contact_release(mps_contact *contact) {
   if (--contact->references > 0) return;
   mps_context *context = contact->context;
+  mpsi_body_free_source(contact->body, &contact->source);
   mpsi_body_release(contact->body);
   mpsi_free(context, contact);
   mpsi_context_release(context);
@@ -183,13 +190,16 @@ mps_status mps_contact_get_reaction_sized(const mps_contact *contact, int32_t pa
                                           mps_reaction *out, size_t size) {
   static const char function[] = "mps_contact_get_reaction";
   if (!contact) return MPS_ERROR_ARGUMENT;
-  mps_reaction sum, of_owner[MPS_BODY_MAX_PARTS];
-  const bool asks = contact->owner && contact->kind->reactions;
-  if (asks) contact->kind->reactions(contact->owner, contact, of_owner);
-  const mps_status status =
-      mpsi_body_sum_reaction(contact->context, function, asks ? of_owner : contact->source.reaction,
-                             contact->body->parts, part, &sum);
+  const mps_status status = mpsi_body_check_part(contact->body, function, part);
   if (status != MPS_OK) return status;
+  const bool asks = contact->owner && contact->kind->reaction;
+  mps_reaction sum = {0};
+  for (int32_t p = 0; p < contact->body->parts; p++) {
+    if (part >= 0 && p != part) continue;
+    mps_reaction r = contact->source.reaction[p];
+    if (asks) contact->kind->reaction(contact->owner, contact, p, &r);
+    mpsi_body_add_reaction(&sum, &r);
+  }
   return mpsi_out_write(contact->context, function, out, size, &sum, sizeof sum);
 }
 
@@ -210,9 +220,8 @@ mps_status mps_contact_get_particles(const mps_contact *handle, int64_t capacity
 
 /* ---- for solvers ----------------------------------------------------------------------------- */
 
-void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
-                        const int64_t *count, bool moves) {
-  mpsi_body_react(contact->body, &contact->source, dt, load, count);
+void mpsi_contact_react(mps_contact *contact, double dt, bool moves) {
+  mpsi_body_react(contact->body, &contact->source, dt);
   if (moves && contact->source.moves) mpsi_body_advance(contact->body, dt);
 }
 

@@ -13,8 +13,8 @@ typedef struct mpsi_contact_owner {
   void (*end)(void *owner, mps_contact *contact);
   mps_status (*particles)(void *owner, mps_contact *contact, int64_t capacity, int64_t *count,
                           int64_t *ids, double *gap, double *normal, double *force, double *foot);
-  /* Writes the reaction by each part of the body; NULL: those of `source` are these. */
-  void (*reactions)(const void *owner, const mps_contact *contact, mps_reaction *out);
+  /* Writes the reaction by one part of the body; NULL: that of `source` is this. */
+  void (*reaction)(const void *owner, const mps_contact *contact, int32_t part, mps_reaction *out);
 } mpsi_contact_owner;
 
 struct mps_contact {
@@ -25,6 +25,7 @@ struct mps_contact {
   double extent; /* m: see mpsi_body_extent */
   bool thin;     /* the solver separates both sides of a thin wall */
   bool convex;   /* whether the body is known to be */
+  int32_t parts; /* of the body's surface, in the step being made */
   const mpsi_contact_owner *kind;
   void *owner; /* the solver; NULL: the contact has ended */
   mpsi_body_source source;
@@ -45,10 +46,16 @@ void mpsi_contact_leave(mps_contact *contact);
 /* Releases one reference; the last frees. */
 void mpsi_contact_release(mps_contact *contact);
 
-/* Adds the forces of a step of dt to the body, `count` particles and load[] per part; advances the
- * body where this solver moves it and `moves` is true. */
-void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
-                        const int64_t *count, bool moves);
+/* The part that a face belongs to. One that a callback has named within the step is part 0 there.
+ */
+static inline int32_t mpsi_contact_part(const mps_contact *contact, int64_t face) {
+  const int32_t part = contact->body->part_of[face];
+  return part < contact->parts ? part : 0;
+}
+
+/* Adds the forces of a step of dt, in source.part, to the body; advances the body where this solver
+ * moves it and `moves` is true. */
+void mpsi_contact_react(mps_contact *contact, double dt, bool moves);
 
 /* Contact stiffness k (N/m, 2D per m of thickness) of Nakamura (28) or (58) against particles of
  * `modulus` K + 4G/3 (Pa) and `spacing` (m) in cells of size `cell` (m). In axisymmetry the caller

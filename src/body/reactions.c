@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#define MOST_PARTS 1000000
+
 /* ---- reactions ------------------------------------------------------------------------------- */
 
 /* Puts the force on one part in a step of dt into its account: `count` particles are in contact
@@ -49,22 +51,22 @@ static void sum_forces(mps_body *body, int32_t part) {
   }
 }
 
-void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const mpsi_load *load,
-                     const int64_t *count) {
+void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt) {
   for (int32_t part = 0; part < body->parts; part++) {
-    add_to_account(&body->pose, dt, &load[part], count[part], &source->reaction[part]);
-    add_to_account(&body->pose, dt, &load[part], count[part], &body->reaction[part]);
+    const mpsi_part_load *by = &source->part[part];
+    add_to_account(&body->pose, dt, &by->force, by->count, &source->reaction[part]);
+    add_to_account(&body->pose, dt, &by->force, by->count, &body->reaction[part]);
     if (body->sources->next) sum_forces(body, part);
     for (int c = 0; c < 3; c++) {
-      body->pending.force[c] += dt * load[part].force[c];
-      body->pending.moment[c] += dt * load[part].moment[c];
+      body->pending.force[c] += dt * by->force.force[c];
+      body->pending.moment[c] += dt * by->force.moment[c];
     }
   }
 }
 
-void mpsi_body_strike(mps_body *body, mpsi_body_source *source, const mpsi_load *impulse) {
+void mpsi_body_strike(mps_body *body, mpsi_body_source *source) {
   for (int32_t part = 0; part < body->parts; part++) {
-    const mpsi_load *J = &impulse[part];
+    mpsi_load *J = &source->part[part].impulse;
     mps_reaction *const account[2] = {&source->reaction[part], &body->reaction[part]};
     for (int k = 0; k < 2; k++) {
       account[k]->work -= mpsi_dot3(J->force, body->pose.v) + mpsi_dot3(J->moment, body->pose.spin);
@@ -77,45 +79,75 @@ void mpsi_body_strike(mps_body *body, mpsi_body_source *source, const mpsi_load 
       body->pending.force[c] += J->force[c];
       body->pending.moment[c] += J->moment[c];
     }
+    *J = (mpsi_load){{0.0}, {0.0}};
   }
 }
 
-mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
-                                  const mps_reaction *reaction, int32_t parts, int32_t part,
-                                  mps_reaction *out) {
-  if (part < -1 || part >= parts)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "part is %d, allowed are 0 to %d, and -1 for all", part, parts - 1);
-  mps_reaction sum = {0};
-  for (int32_t p = part < 0 ? 0 : part; p < (part < 0 ? parts : part + 1); p++) {
-    const mps_reaction *r = &reaction[p];
-    for (int c = 0; c < 3; c++) {
-      sum.force[c] += r->force[c];
-      sum.moment[c] += r->moment[c];
-      sum.impulse[c] += r->impulse[c];
-      sum.moment_impulse[c] += r->moment_impulse[c];
-    }
-    sum.count += r->count;
-    sum.work += r->work;
-    sum.removed += r->removed;
-    sum.removed_mass += r->removed_mass;
+mps_status mpsi_body_check_part(const mps_body *body, const char *function, int32_t part) {
+  if (part >= -1 && part < body->parts) return MPS_OK;
+  return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
+                   "part is %d, allowed are 0 to %d, and -1 for all", part, body->parts - 1);
+}
+
+void mpsi_body_add_reaction(mps_reaction *sum, const mps_reaction *r) {
+  for (int c = 0; c < 3; c++) {
+    sum->force[c] += r->force[c];
+    sum->moment[c] += r->moment[c];
+    sum->impulse[c] += r->impulse[c];
+    sum->moment_impulse[c] += r->moment_impulse[c];
   }
-  *out = sum;
-  return MPS_OK;
+  sum->count += r->count;
+  sum->work += r->work;
+  sum->removed += r->removed;
+  sum->removed_mass += r->removed_mass;
 }
 
 mps_status mps_body_get_reaction_sized(const mps_body *body, int32_t part, mps_reaction *out,
                                        size_t size) {
   static const char function[] = "mps_body_get_reaction";
   if (!body) return MPS_ERROR_ARGUMENT;
-  mps_reaction sum;
-  const mps_status status =
-      mpsi_body_sum_reaction(body->context, function, body->reaction, body->parts, part, &sum);
+  const mps_status status = mpsi_body_check_part(body, function, part);
   if (status != MPS_OK) return status;
+  mps_reaction sum = {0};
+  for (int32_t p = 0; p < body->parts; p++)
+    if (part < 0 || p == part) mpsi_body_add_reaction(&sum, &body->reaction[p]);
   return mpsi_out_write(body->context, function, out, size, &sum, sizeof sum);
 }
 
 /* ---- parts ----------------------------------------------------------------------------------- */
+
+static bool widen_source(mps_body *body, mpsi_body_source *source, int32_t room) {
+  return mpsi_grow(body->context, (void **)&source->reaction, body->parts, room,
+                   sizeof *source->reaction) &&
+         mpsi_grow(body->context, (void **)&source->part, body->parts, room, sizeof *source->part);
+}
+
+bool mpsi_body_make_source(mps_body *body, mpsi_body_source *source) {
+  source->reaction = mpsi_alloc(body->context, body->part_room, sizeof *source->reaction);
+  if (source->reaction)
+    source->part = mpsi_alloc(body->context, body->part_room, sizeof *source->part);
+  return source->part != NULL;
+}
+
+void mpsi_body_free_source(mps_body *body, mpsi_body_source *source) {
+  mpsi_free(body->context, source->reaction);
+  mpsi_free(body->context, source->part);
+}
+
+/* Memory for one more part, here and in all sources. */
+static mps_status ensure_part(mps_body *body, const char *function) {
+  if (body->parts < body->part_room) return MPS_OK;
+  const int32_t room = 2 * body->part_room;
+  bool good =
+      mpsi_grow(body->context, (void **)&body->names, body->parts, room, sizeof *body->names) &&
+      mpsi_grow(body->context, (void **)&body->reaction, body->parts, room, sizeof *body->reaction);
+  for (mpsi_body_source *s = body->sources; s && good; s = s->next)
+    good = widen_source(body, s, room);
+  if (!good)
+    return mpsi_fail_memory(body->context, function, (size_t)room * sizeof *body->reaction);
+  body->part_room = room;
+  return MPS_OK;
+}
 
 mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, int64_t count,
                               int32_t *part) {
@@ -132,10 +164,11 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
                      (long long)body->faces);
   int32_t number = mps_body_find_part(body, name);
   if (number < 0) {
-    if (body->parts == MPS_BODY_MAX_PARTS)
+    if (body->parts == MOST_PARTS)
       return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                       "the body has %d named parts, the most there can be",
-                       MPS_BODY_MAX_PARTS - 1);
+                       "the body has %d named parts, the most there can be", MOST_PARTS - 1);
+    const mps_status status = ensure_part(body, __func__);
+    if (status != MPS_OK) return status;
     number = body->parts++;
     strcpy(body->names[number], name);
   }

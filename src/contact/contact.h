@@ -47,7 +47,7 @@ static inline bool mpsi_contact_find(const mps_contact *contact, int dim,
     out->force[c] = -k * d * foot.normal[c];
     out->slip[c] = surface[c] - material;
   }
-  out->part = body->part_of[foot.face];
+  out->part = mpsi_contact_part(contact, foot.face);
   out->depth = -foot.distance;
   return true;
 }

@@ -103,15 +103,12 @@ typedef struct mpsi_fluid_body {
   struct mps_body *body; /* NULL: none */
   int first, faces;      /* walls */
   mpsi_fluid_pose pose, next;
-  struct mps_contact *contact;         /* the caller's handle of it */
-  mpsi_body_source *source;            /* a member of that */
-  mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the water, and its points on each part */
-  mpsi_load
-      owed[MPS_BODY_MAX_PARTS]; /* N s, N m s: of collisions, to be applied in the next step */
-  int64_t wetted[MPS_BODY_MAX_PARTS];
-  bool floats;             /* see afloat.c */
+  struct mps_contact *contact; /* the caller's handle of it */
+  mpsi_body_source *source; /* a member of that: by parts, forces of the water and its points, and
+                               impulses of collisions, to be applied in the next step */
+  bool floats;              /* see afloat.c */
   bool leaves; /* its handle was destroyed in the open step: it leaves the water when that ends */
-  double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
+  double rate[3], mass[9];  /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
   double rate_before[3], mass_before[9]; /* before the step being made */
 } mpsi_fluid_body;
 

@@ -8,10 +8,6 @@ mps_status mps_material_point_init(mps_context *context, const mps_material *mat
   if (!material || !point)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      material ? "point" : "material");
-  if (material->history_count > MPS_MATERIAL_POINT_HISTORY)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "the law %s has %d columns of history, a point has room for %d",
-                     material->name, material->history_count, MPS_MATERIAL_POINT_HISTORY);
   *point = (mps_material_point){.deformation = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0},
                                 .volume_ratio = 1.0};
   for (int32_t c = 0; c < material->history_count; c++)
@@ -31,10 +27,6 @@ static mps_status check_drive(mps_context *context, const char *function,
     if (!isfinite(gradient[c]))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "gradient[%d] is %g, must be finite",
                        c, gradient[c]);
-  if (material->history_count > MPS_MATERIAL_POINT_HISTORY)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the law %s has %d columns of history, a point has room for %d",
-                     material->name, material->history_count, MPS_MATERIAL_POINT_HISTORY);
   if (!isfinite(duration) || duration <= 0.0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "duration is %g s, must be finite and > 0", duration);
@@ -71,7 +63,7 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
     block.deformation[c] = &now.deformation[c];
   }
   for (int c = 0; c < 6; c++) block.stress[c] = &now.stress[c];
-  for (int c = 0; c < MPS_MATERIAL_POINT_HISTORY; c++) history[c] = &now.history[c];
+  for (int32_t c = 0; c < material->history_count; c++) history[c] = &now.history[c];
   for (int64_t step = 0; step < steps; step++) {
     block.time = point->time + duration * (double)(step + 1) / (double)steps;
     mps_status answer = mpsi_material_apply(material, &block);

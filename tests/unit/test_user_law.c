@@ -173,8 +173,10 @@ static void histories_may_be_long(void **state) {
   }
   mps_material *law = make_law(context, "long", MOST, names, NULL);
   mps_material_point point;
-  mps_assert_fails(context, mps_material_point_init(context, law, &point), MPS_ERROR_ARGUMENT,
-                   "has 40 columns of history, a point has room for 32");
+  const double rest[9] = {0.0};
+  mps_assert_ok(context, mps_material_point_init(context, law, &point));
+  mps_assert_ok(context, mps_material_point_drive(context, law, &point, rest, 1.0, 10));
+  mps_assert_near(point.history[MOST - 1], 400.0, 0.0); /* as in the solver below */
   mpm_scene s = begin(context, law, false);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
   mps_view last = mpm_scene_view(&s, "long.h39");

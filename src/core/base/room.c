@@ -18,3 +18,12 @@ bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size
   const int64_t wanted = room->capacity > 0 ? count + count / 4 : count;
   return mpsi_room_fit(context, room, wanted < LEAST_ROOM ? LEAST_ROOM : wanted, size);
 }
+
+bool mpsi_room_keep(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
+  if (count <= room->capacity) return true;
+  const int64_t twice = 2 * room->capacity > count ? 2 * room->capacity : count;
+  const int64_t wanted = twice < LEAST_ROOM ? LEAST_ROOM : twice;
+  if (!mpsi_grow(context, &room->item, room->capacity, wanted, size)) return false;
+  room->capacity = wanted;
+  return true;
+}

@@ -16,4 +16,7 @@ bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size
 /* The same, never more than `count`: for large arrays. */
 bool mpsi_room_fit(mps_context *context, mpsi_room *room, int64_t count, size_t size);
 
+/* The same, and what is there stays: for lists to which items are added. */
+bool mpsi_room_keep(mps_context *context, mpsi_room *room, int64_t count, size_t size);
+
 #endif

@@ -130,28 +130,28 @@ void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
 /* Forces of the water on a body whose reference point is at `about`, by parts. */
 void mpsi_fluid_load_body(const mps_fluid *f, mpsi_fluid_body *own, const double *about) {
   const mps_body *body = own->body;
-  memset(own->water, 0, sizeof own->water);
-  memset(own->wetted, 0, sizeof own->wetted);
+  mpsi_part_load *by = own->source->part;
+  for (int32_t part = 0; part < body->parts; part++)
+    by[part].force = (mpsi_load){{0.0}, {0.0}}, by[part].count = 0;
   for (int k = 0; k < own->faces; k++) {
     const mpsi_fluid_wall *w = &f->wall[own->first + k];
     if (!w->used) continue;
     const int32_t part = body->part_of[body->face_of[k]];
     const double *force = w->load.force;
-    for (int c = 0; c < 2; c++) own->water[part].force[c] -= force[c];
-    own->water[part].moment[2] -= w->load.moment - (about[0] * force[1] - about[1] * force[0]);
-    own->wetted[part] += w->load.wetted;
+    for (int c = 0; c < 2; c++) by[part].force.force[c] -= force[c];
+    by[part].force.moment[2] -= w->load.moment - (about[0] * force[1] - about[1] * force[0]);
+    by[part].count += w->load.wetted;
   }
 }
 
-/* The impulses (N s) of collisions and smoothing on the body in the step, by parts, about `about`.
- */
-static void find_struck(const mps_fluid *f, const mpsi_fluid_body *own, const double *about,
-                        mpsi_load *impulse) {
+/* Adds the impulses (N s) of collisions and smoothing on the body in the step to those of its
+ * parts, about `about`. */
+static void add_struck(const mps_fluid *f, mpsi_fluid_body *own, const double *about) {
   const mps_body *body = own->body;
   for (int k = 0; k < own->faces; k++) {
     const mpsi_fluid_wall *w = &f->wall[own->first + k];
     if (!w->used) continue;
-    mpsi_load *to = &impulse[body->part_of[body->face_of[k]]];
+    mpsi_load *to = &own->source->part[body->part_of[body->face_of[k]]].impulse;
     const double *of = w->struck.impulse;
     for (int c = 0; c < 2; c++) to->force[c] -= of[c];
     to->moment[2] -= w->struck.moment - (about[0] * of[1] - about[1] * of[0]);
@@ -162,18 +162,14 @@ static void find_struck(const mps_fluid *f, const mpsi_fluid_body *own, const do
  * Impulses of collisions and smoothing act in its next step, where the water around it takes part:
  * otherwise a light body would be unstable. */
 static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
-  mpsi_load struck[MPS_BODY_MAX_PARTS] = {0};
-  find_struck(f, own, own->next.x, struck);
   if (!own->floats) mpsi_fluid_load_body(f, own, own->next.x);
-  mpsi_body_react(own->body, own->source, f->dt, own->water, own->wetted);
-  mpsi_body_strike(own->body, own->source, own->owed);
-  memset(own->owed, 0, sizeof own->owed);
-  if (own->floats) {
-    memcpy(own->owed, struck, sizeof struck);
+  mpsi_body_react(own->body, own->source, f->dt);
+  mpsi_body_strike(own->body, own->source);
+  add_struck(f, own, own->next.x);
+  if (own->floats)
     mpsi_body_advance(own->body, f->dt);
-  } else {
-    mpsi_body_strike(own->body, own->source, struck);
-  }
+  else
+    mpsi_body_strike(own->body, own->source);
   own->pose = own->floats ? pose_of(own->body) : own->next;
 }
 
@@ -285,39 +281,38 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
   return MPS_OK;
 }
 
-/* What the fluid exerts on each part of the body: pressures of its faces, and impulses that it has
+/* What the fluid exerts on a part of the body: pressures of its faces, and impulses that it has
  * felt or is owed. */
-static void find_reactions(const mpsi_fluid_body *own, const mps_fluid *f, mps_reaction *out) {
+static void find_reaction(const mpsi_fluid_body *own, const mps_fluid *f, int32_t part,
+                          mps_reaction *r) {
   const mps_body *body = own->body;
   const double *at = own->pose.x;
-  double sum[MPS_BODY_MAX_PARTS][2] = {{0.0}};
-  memset(out, 0, MPS_BODY_MAX_PARTS * sizeof *out);
-  for (int32_t part = 0; part < body->parts; part++)
-    for (int c = 0; c < 2; c++)
-      out[part].impulse[c] = own->source->reaction[part].impulse[c] + own->owed[part].force[c];
+  double sum[2] = {0.0};
+  *r = (mps_reaction){.count = 0};
+  for (int c = 0; c < 2; c++)
+    r->impulse[c] =
+        own->source->reaction[part].impulse[c] + own->source->part[part].impulse.force[c];
   for (int k = 0; k < own->faces; k++) {
     const mpsi_fluid_wall *w = &f->wall[own->first + k];
-    const int32_t part = body->part_of[body->face_of[k]];
-    mps_reaction *r = &out[part];
-    for (int c = 0; c < 2; c++) r->force[c] -= w->load.force[c], sum[part][c] -= w->impulse[c];
+    if (body->part_of[body->face_of[k]] != part) continue;
+    for (int c = 0; c < 2; c++) r->force[c] -= w->load.force[c], sum[c] -= w->impulse[c];
     r->moment[2] -= w->load.moment;
     r->moment_impulse[2] -= w->moment_impulse;
     r->work += w->work;
     r->count += w->load.wetted;
   }
-  for (int32_t part = 0; part < body->parts; part++) {
-    mps_reaction *r = &out[part];
-    r->moment[2] -= at[0] * r->force[1] - at[1] * r->force[0];
-    r->moment_impulse[2] -= at[0] * sum[part][1] - at[1] * sum[part][0];
-  }
+  r->moment[2] -= at[0] * r->force[1] - at[1] * r->force[0];
+  r->moment_impulse[2] -= at[0] * sum[1] - at[1] * sum[0];
 }
 
 void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
   for (int k = 0; k < body->faces; k++) mpsi_fluid_drop_wall(f, &f->wall[body->first + k]);
   if (body->contact) {
-    mps_reaction last[MPS_BODY_MAX_PARTS]; /* which the handle still answers */
-    find_reactions(body, f, last);
-    memcpy(body->contact->source.reaction, last, sizeof last);
+    for (int32_t part = 0; part < body->body->parts; part++) { /* the handle still answers it */
+      mps_reaction last;
+      find_reaction(body, f, part, &last);
+      body->source->reaction[part] = last;
+    }
     mpsi_contact_leave(body->contact);
   }
   mps_body_destroy(&body->body);
@@ -439,12 +434,13 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
                    "mps_contact_get_reaction gives it by parts");
 }
 
-static void reactions(const void *owner, const mps_contact *contact, mps_reaction *out) {
+static void reaction(const void *owner, const mps_contact *contact, int32_t part,
+                     mps_reaction *out) {
   const mps_fluid *f = owner;
-  find_reactions(&f->body[mpsi_fluid_body_number(f, contact)], f, out);
+  find_reaction(&f->body[mpsi_fluid_body_number(f, contact)], f, part, out);
 }
 
-static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_particles, reactions};
+static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_particles, reaction};
 
 /* Number of the body, and the first wall of its faces. */
 static mps_status find_room(mps_fluid *f, const char *function, const mps_body *body,

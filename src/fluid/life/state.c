@@ -76,8 +76,9 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_body_list_source(s, f->body[b].body, f->body[b].source);
     for (int32_t part = 0; part < f->body[b].body->parts; part++) {
       mpsi_state_enter(s, "owed%d", part);
-      mpsi_state_f64(s, "force", f->body[b].owed[part].force, 3);
-      mpsi_state_f64(s, "moment", f->body[b].owed[part].moment, 3);
+      mpsi_load *owed = &f->body[b].source->part[part].impulse;
+      mpsi_state_f64(s, "force", owed->force, 3);
+      mpsi_state_f64(s, "moment", owed->moment, 3);
       mpsi_state_leave(s);
     }
     if (!f->body[b].floats) {

@@ -66,8 +66,9 @@ static void imbalance(const mpsi_fluid_body *own, const double *mass, double len
         body->load.force[c] + body->def.mass * body->def.gravity[c] + body->pending.force[c] / dt;
   g[2] = (body->load.moment[2] + body->pending.moment[2] / dt) / length;
   for (int32_t part = 0; part < body->parts; part++) {
-    for (int c = 0; c < 2; c++) g[c] += own->water[part].force[c] + own->owed[part].force[c] / dt;
-    g[2] += (own->water[part].moment[2] + own->owed[part].moment[2] / dt) / length;
+    const mpsi_part_load *by = &own->source->part[part];
+    for (int c = 0; c < 2; c++) g[c] += by->force.force[c] + by->impulse.force[c] / dt;
+    g[2] += (by->force.moment[2] + by->impulse.moment[2] / dt) / length;
   }
   for (int c = 0; c < 3; c++) g[c] -= mass[c] * own->rate[c];
 }
@@ -138,8 +139,8 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool 
   }
   const double g_size = hypot(own->body->def.gravity[0], own->body->def.gravity[1]);
   if (change <= AGREED * largest + FLOOR * fmax(g_size, f->g)) {
-    for (int c = 0; c < 2; c++) own->water[0].force[c] -= g[c];
-    own->water[0].moment[2] -= length * g[2];
+    for (int c = 0; c < 2; c++) own->source->part[0].force.force[c] -= g[c];
+    own->source->part[0].force.moment[2] -= length * g[2];
     return true;
   }
   memcpy(before->rate, own->rate, sizeof before->rate);

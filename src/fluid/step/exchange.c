@@ -139,7 +139,7 @@ void mpsi_fluid_book_momentum(mps_fluid *f) {
     for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
       const mpsi_fluid_body *body = &f->body[b];
       for (int32_t part = 0; body->body && part < body->body->parts; part++)
-        rest[c] += f->dt * body->water[part].force[c];
+        rest[c] += f->dt * body->source->part[part].force.force[c];
       for (int k = 0; body->body && k < body->faces; k++)
         if (f->wall[body->first + k].used) rest[c] -= f->wall[body->first + k].struck.impulse[c];
     }

@@ -47,7 +47,7 @@ static void give_state(const mps_mpm *mpm, mpsi_given *list) {
 
 /* What signals say of the step to be made. */
 static void give_signals(const mps_mpm *mpm, mpsi_given *list) {
-  for (int32_t k = 0; k < MPSI_HOLDS; k++)
+  for (int32_t k = 0; k < mpm->boundaries.holds; k++)
     if (mpm->boundaries.hold[k].kind != MPSI_BOUNDARY_NONE)
       mpsi_give_vector(list, "the velocity of a boundary", mpm->dim, mpm->boundaries.hold[k].v);
   for (int32_t k = 0; k < mpm->loads.count; k++)

@@ -104,8 +104,7 @@ static inline int32_t mpsi_reach(const mps_mpm *mpm, int c) { return c == 0 ? 3 
 
 /* Memory of one worker. */
 static inline size_t mpsi_worker_bytes(const mps_mpm *mpm) {
-  return (size_t)mpm->grid.tile_nodes * (2 * sizeof(mpsi_node) + sizeof(uint32_t) + 1) +
-         sizeof(uint64_t);
+  return (size_t)mpm->grid.tile_nodes * (2 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
 }
 
 static inline int64_t mpsi_first_node(const mps_mpm *mpm, int64_t g) {

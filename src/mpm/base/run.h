@@ -22,7 +22,6 @@ typedef struct mpsi_run {
   bool broken;          /* a step has given values that are no numbers */
   bool lost;            /* a particle has left the domain in the last step, which is whole */
   bool warned_about_dt; /* the log knows that dt is above the Courant limit */
-  uint32_t warned_about_chatter; /* bit b: ... that body b's contact is too stiff for dt */
 } mpsi_run;
 
 /* step_on_ranks.c: one step of dt, in one process (step.c) or on several ranks. On an error nothing

@@ -185,7 +185,9 @@ static bool make_sums(mps_mpm *mpm, mpsi_boundary *hold) {
 
 bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
   bool good = true;
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_BOUNDARY_NONE;
+  mpm->boundaries.hold = mpm->boundaries.hold_room.item;
+  mpm->boundaries.holds = MPSI_SIDES;
+  for (int32_t k = 0; k < MPSI_SIDES; k++) mpm->boundaries.hold[k].kind = MPSI_BOUNDARY_NONE;
   for (int32_t k = 0; k < MPSI_SIDES && good; k++) {
     if (!has_side(mpm, k)) continue;
     place_side(mpm, k, MPS_BOUNDARY_ROLLER);
@@ -228,10 +230,25 @@ static void drop(mps_mpm *mpm, mpsi_boundary *hold) {
 }
 
 void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
     drop(mpm, &mpm->boundaries.hold[k]);
     mpsi_free(mpm->context, mpm->boundaries.hold[k].sums);
   }
+  mpsi_free(mpm->context, mpm->boundaries.hold_room.item);
+}
+
+/* Number of the next boundary, the lowest free one, for which there is memory then. */
+static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *number) {
+  mpsi_boundaries *b = &mpm->boundaries;
+  int32_t at = MPSI_SIDES;
+  while (at < b->holds && b->hold[at].kind != MPSI_BOUNDARY_NONE) at++;
+  *number = at;
+  if (at < b->holds) return MPS_OK;
+  if (!mpsi_room_keep(mpm->context, &b->hold_room, at + 1, sizeof *b->hold))
+    return mpsi_fail_memory(mpm->context, function, (size_t)(at + 1) * sizeof *b->hold);
+  b->hold = b->hold_room.item;
+  b->hold[b->holds++].kind = MPSI_BOUNDARY_NONE;
+  return MPS_OK;
 }
 
 /* A box or list, in place of what the boundary was. */
@@ -307,14 +324,10 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
   mps_mpm_boundary_def def = boundary_defaults;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  int32_t at = MPSI_SIDES;
+  if (status == MPS_OK) status = find_number(mpm, __func__, &at);
   status = compare_ranks(mpm, __func__, status, -1, &def);
   if (status != MPS_OK) return status;
-  int32_t at = MPSI_SIDES;
-  while (at < MPSI_HOLDS && mpm->boundaries.hold[at].kind != MPSI_BOUNDARY_NONE) at++;
-  if (at == MPSI_HOLDS)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the solver has %d boundaries, the most there can be besides the sides",
-                     MPSI_HOLDS - MPSI_SIDES);
   status = take_prescribed(mpm, __func__, at, &def);
   if (status != MPS_OK) return status;
   mpsi_boundary *hold = &mpm->boundaries.hold[at];
@@ -330,7 +343,7 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
 static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
   const bool side = number >= 0 && number < MPSI_SIDES;
   if (side ? has_side(mpm, number)
-           : number >= 0 && number < MPSI_HOLDS &&
+           : number >= 0 && number < mpm->boundaries.holds &&
                  mpm->boundaries.hold[number].kind != MPSI_BOUNDARY_NONE)
     return MPS_OK;
   if (side)
@@ -393,7 +406,7 @@ void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, c
 
 void mpsi_mpm_boundary_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
   mpsi_exact_merge(sum, &mpm->boundaries.work);
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
     const mpsi_boundary_sums *sums = mpm->boundaries.hold[k].sums;
     if (!sums) continue;
     mpsi_exact_merge(sum, &sums->all[MPSI_BOUNDARY_WORK]);

@@ -71,7 +71,9 @@ typedef struct mpsi_held {
 } mpsi_held;
 
 typedef struct mpsi_boundaries {
-  mpsi_boundary hold[MPSI_HOLDS];
+  mpsi_boundary *hold; /* by number: the sides, then those added */
+  int32_t holds;       /* numbers in use, with those of boundaries that are no more */
+  mpsi_room hold_room;
   mpsi_held *held;
   mpsi_dashpot *dashpot;
   int64_t held_count, dashpot_count;
@@ -120,7 +122,7 @@ void mpsi_mpm_sum_boundaries(mps_mpm *mpm);
 /* walls.c: after G2P, the particles of the lists. */
 void mpsi_mpm_drive_particles(mps_mpm *mpm);
 /* boundaries.c: rollers on the sides of a new solver; frees all. */
-bool mpsi_mpm_begin_sides(mps_mpm *mpm); /* false: no memory */
+bool mpsi_mpm_begin_sides(mps_mpm *mpm); /* hold_room has room; false: no memory */
 void mpsi_mpm_drop_boundaries(mps_mpm *mpm);
 /* boundaries.c: sides hold the nodes beyond them too, where the standard method has some. */
 mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function);

@@ -233,7 +233,6 @@ static void copy_state(const mps_mpm *mpm, const side *s, const couple *at, int 
   mpsi_worker *worker = data;
   (void)mpm, (void)s, (void)layer;
   worker->state[at->ghost] = worker->state[at->partner];
-  worker->inside[at->ghost] = worker->inside[at->partner];
 }
 
 void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {

@@ -18,7 +18,7 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashpots) {
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[g];
     nodes->first_held = (int32_t)*count;
-    for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
       mpsi_range r;
       const int32_t kind = mpm->boundaries.hold[k].kind;
       if (kind == MPSI_BOUNDARY_NONE || kind == MPS_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
@@ -297,7 +297,7 @@ void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
 /* ---- a step ---------------------------------------------------------------------------------- */
 
 void mpsi_mpm_begin_boundaries(mps_mpm *mpm, double dt) {
-  for (int32_t k = 0; k < MPSI_HOLDS; k++)
+  for (int32_t k = 0; k < mpm->boundaries.holds; k++)
     if (mpm->boundaries.hold[k].finds) mpm->boundaries.hold[k].found += dt;
 }
 
@@ -313,7 +313,7 @@ static void begin_sums(mpsi_boundary *hold) {
 void mpsi_mpm_sum_boundaries(mps_mpm *mpm) {
   mpsi_boundary *hold = mpm->boundaries.hold;
   mpm->boundaries.dt = mpm->run.dt;
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
     begin_sums(&hold[k]);
     if (hold[k].found >= hold[k].settle) hold[k].finds = false;
   }
@@ -387,7 +387,7 @@ static void drive_particle(mps_mpm *mpm, mpsi_boundary *hold, int64_t k) {
 }
 
 void mpsi_mpm_drive_particles(mps_mpm *mpm) {
-  for (int32_t b = MPSI_SIDES; b < MPSI_HOLDS; b++) {
+  for (int32_t b = MPSI_SIDES; b < mpm->boundaries.holds; b++) {
     mpsi_boundary *hold = &mpm->boundaries.hold[b];
     for (int64_t i = 0; hold->ids && i < hold->id_count; i++) {
       const int64_t k = mps_particles_index(mpm->particles, hold->ids[i]);

@@ -212,8 +212,11 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   const int64_t candidates = share_candidates(mpm);
   const int32_t side = mpm->def.spline + 1;
   all->stride = mpm->dim == 3 ? side * side * side : side * side;
-  bool good = mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
-              mpsi_room_ensure(context, &all->block_room, mpm->grid.cell_count, sizeof *all->block);
+  bool good =
+      mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
+      mpsi_room_ensure(context, &all->block_room, mpm->grid.cell_count, sizeof *all->block) &&
+      mpsi_room_ensure(context, &all->body_room, mpm->contact.bodies, sizeof *all->body);
+  all->body = all->body_room.item;
   all->candidate = all->candidate_room.item;
   all->block = all->block_room.item;
   if (good && candidates > 0) {
@@ -264,7 +267,7 @@ static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *
   const mpsi_foot foot = bearing.foot;
   mpsi_impulse *c = &out->impulse;
   for (int a = 0; a < mpm->dim; a++) c->normal[a] = foot.normal[a];
-  out->part = contact->body->part_of[foot.face];
+  out->part = mpsi_contact_part(contact, foot.face);
   const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
   for (int a = 0; a < mpm->dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
   c->aim = mpsi_impulse_aim(foot.distance - bearing.half, mpm->run.dt,

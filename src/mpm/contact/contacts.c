@@ -20,9 +20,6 @@ static mps_status check_body(mps_mpm *mpm, const char *function, const mps_body 
   if (body->dim != mpm->dim)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
                      body->dim, mpm->dim);
-  if (mpm->contact.bodies == MPS_MPM_MAX_CONTACTS)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "the solver has %d contacts, the most there can be", MPS_MPM_MAX_CONTACTS);
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     if (mpm->contact.body[b] == body)
       return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
@@ -139,14 +136,13 @@ static mps_status check_owner(void *owner, const char *function) {
 /* Without bodies the lists of pairs are not made any more: they must be empty. */
 static void forget_pairs(mps_mpm *mpm) {
   mpm->contact.cell_pair_count = mpm->contact.node_pair_count = mpm->contact.mask_count = 0;
-  mpm->contact.thin = 0;
+  mpm->contact.thin = false;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->grid.cells[b].pairs = 0;
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[g];
     nodes->near = -1;
     nodes->inside = nodes->thin = false;
     nodes->across = -1;
-    nodes->bodies = 0;
     nodes->pairs = 0;
   }
 }
@@ -161,11 +157,12 @@ static void end(void *owner, mps_contact *contact) {
       continue;
     }
     all->handle[to] = all->handle[b];
-    all->body[to++] = all->body[b];
+    all->body[to] = all->body[b];
+    all->state[to++] = all->state[b];
   }
   all->bodies = to;
   mpsi_mpm_forget_impulses(mpm, ended);
-  mpm->run.warned_about_chatter = 0;
+  for (int32_t b = 0; b < to; b++) all->state[b].warned = false;
   forget_pairs(mpm);
   mpsi_contact_leave(contact);
 }
@@ -230,6 +227,20 @@ static const mpsi_contact_owner owner_of_contacts = {
 
 /* ---- making and ending ----------------------------------------------------------------------- */
 
+/* For one more than there are. */
+static mps_status ensure_contact(mps_mpm *mpm, const char *function) {
+  mpsi_contacts *all = &mpm->contact;
+  const int64_t count = (int64_t)all->bodies + 1;
+  const bool good = mpsi_room_keep(mpm->context, &all->handle_room, count, sizeof(mps_contact *)) &&
+                    mpsi_room_keep(mpm->context, &all->body_room, count, sizeof(mps_body *)) &&
+                    mpsi_room_keep(mpm->context, &all->state_room, count, sizeof *all->state);
+  all->handle = all->handle_room.item;
+  all->body = all->body_room.item;
+  all->state = all->state_room.item;
+  return good ? MPS_OK
+              : mpsi_fail_memory(mpm->context, function, (size_t)count * sizeof *all->state);
+}
+
 /* Both shares of a contact that is not made. */
 static void give_up(mps_contact *contact) {
   if (!contact) return;
@@ -248,6 +259,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
   if (status == MPS_OK)
     status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
+  if (status == MPS_OK) status = ensure_contact(mpm, __func__);
   if (status == MPS_OK && mpm->partition)
     status = mpsi_mpm_begin_partners(&mpm->contact.partners, mpm->partition->domain, __func__);
   status = compare_ranks(mpm, __func__, status, contact);
@@ -273,6 +285,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   }
   warn_of_areas(mpm, contact);
   mpsi_contact_join(contact);
+  mpm->contact.state[mpm->contact.bodies] = (mpsi_contact_state){.mass = 0.0};
   mpm->contact.handle[mpm->contact.bodies] = contact;
   mpm->contact.body[mpm->contact.bodies++] = body;
   if (out)

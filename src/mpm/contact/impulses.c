@@ -108,8 +108,9 @@ static void add_reaction(mps_mpm *mpm, const mpsi_constraint *constraint, const 
     arm[a] = constraint->impulse.at[a] - x[a];
   }
   pair->in_contact = true;
-  pair->contacts[constraint->part]++;
-  mpsi_contact_add_load(&pair->load[constraint->part], arm, force);
+  mpsi_pair_load *load = &mpm->contact.load[pair->first_load + constraint->part];
+  load->contacts++;
+  mpsi_contact_add_load(&load->by, arm, force);
 }
 
 /* Forces on the bodies, and the initial state of the next step. */
@@ -181,6 +182,6 @@ void mpsi_mpm_free_impulses(mps_mpm *mpm) {
   void *rooms[] = {all->constraint_room.item, all->block_room.item,     all->weight_room.item,
                    all->node_room.item,       all->candidate_room.item, all->warm_room.item,
                    all->next_room.item,       all->lookup_room.item,    all->area_room.item,
-                   all->around_room.item};
+                   all->around_room.item,     all->body_room.item};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]);
 }

@@ -62,8 +62,8 @@ typedef struct mpsi_impulses {
   int64_t constraint_count, block_count;
   int64_t colour[9]; /* first block of each in `block` */
   int32_t stride;
-  bool free_bodies; /* one of those in contact moves freely */
-  mpsi_impulse_body body[MPS_MPM_MAX_CONTACTS];
+  bool free_bodies;        /* one of those in contact moves freely */
+  mpsi_impulse_body *body; /* of each contact */
   mpsi_warm_impulse *warm; /* of the last step */
   int64_t warm_count;
   double warm_dt; /* s, of that step */
@@ -77,7 +77,7 @@ typedef struct mpsi_impulses {
   int64_t area_first; /* block of the colour in work */
   mpsi_area_share *around;
   mpsi_room constraint_room, block_room, weight_room, node_room, candidate_room, warm_room,
-      next_room, lookup_room, area_room, around_room;
+      next_room, lookup_room, area_room, around_room, body_room;
 } mpsi_impulses;
 
 /* constraints.c: before anything moves, candidates for contact in a step of mpm->run.dt, and room;

@@ -8,9 +8,8 @@
 
 /* ---- before a step --------------------------------------------------------------------------- */
 
-/* The node `place` of the block is inside body b. */
-static void note_inside(mpsi_node_block *nodes, const int *place, uint32_t *inside, int32_t b) {
-  *inside |= UINT32_C(1) << b;
+/* The node `place` of the block is inside a body. */
+static void note_inside(mpsi_node_block *nodes, const int *place) {
   nodes->inside = true;
   for (int c = 0; c < 3; c++) {
     if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
@@ -42,9 +41,13 @@ static int count_before(const mps_mpm *mpm, const mpsi_foot *foot, const int *pl
   return count;
 }
 
-/* Nodes of a block that lie inside body b. */
-static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b, uint32_t *inside) {
+/* Nodes of a block that lie inside the body of its pair t. */
+static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t t, uint8_t *inside) {
+  const int32_t b = mpm->contact.node_pair[t].body;
   const bool convex = mpm->contact.handle[b]->convex;
+  const unsigned state =
+      MPSI_INSIDE | (mpsi_by_impulses(mpm->contact.handle[b]) ? MPSI_IMPULSE : MPSI_PENALTY);
+  uint8_t *held = mpm->contact.held + (int64_t)t * mpm->grid.block_nodes;
   mpsi_foot foot = {.distance = 0.0};
   for (int k = 0, done; k < mpm->grid.block_nodes; k += done) {
     int place[3];
@@ -55,8 +58,11 @@ static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b, ui
     foot = mpsi_body_foot(mpm->contact.body[b], x);
     done = 1 + same_behind(mpm, fabs(foot.distance));
     if (done > MPSI_SIDE - place[0]) done = MPSI_SIDE - place[0];
-    for (int i = 0; i < done && foot.distance < 0.0; i++, place[0]++)
-      note_inside(nodes, place, &inside[k + i], b);
+    for (int i = 0; i < done && foot.distance < 0.0; i++, place[0]++) {
+      held[k + i] = 1;
+      inside[k + i] |= (uint8_t)state;
+      note_inside(nodes, place);
+    }
   }
 }
 
@@ -68,17 +74,18 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
   if (nodes->near < 0) return;
   mpsi_mpm_find_sight(mpm, g);
-  uint32_t *inside = mpm->contact.inside + mpsi_first_node(mpm, nodes->near);
-  memset(inside, 0, count * sizeof *inside);
+  uint8_t *inside = mpm->contact.inside + mpsi_first_node(mpm, nodes->near);
+  memset(inside, 0, count);
   memset((void *)(mpm->contact.reached + mpsi_first_node(mpm, nodes->near)), 0, count);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const int32_t b = mpm->contact.node_pair[t].body;
+    memset(mpm->contact.held + (int64_t)t * mpm->grid.block_nodes, 0, count);
     if (mpm->contact.penalty_bodies > 0)
       memset(mpm->contact.node + (int64_t)t * mpm->grid.block_nodes, 0,
              count * sizeof *mpm->contact.node);
-    if (mpm->contact.thin >> b & 1) continue; /* cuts no support: thin_bodies.h */
+    if (mpm->contact.state[b].parts) continue; /* cuts no support: thin_bodies.h */
     if (mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE))
-      find_inside_body(mpm, nodes, b, inside);
+      find_inside_body(mpm, nodes, t, inside);
   }
 }
 
@@ -134,15 +141,14 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
 
 /* Normals of the bodies that hold the node `local` of a block. */
 static void find_normals(const mps_mpm *mpm, const mpsi_node_block *nodes, int local) {
-  const uint32_t inside = mpm->contact.inside[mpsi_first_node(mpm, nodes->near) + local];
   double x[3];
   mpsi_node_place(mpm, nodes->at, local, x);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
-    const int32_t b = mpm->contact.node_pair[t].body;
-    double *normal = mpm->contact.normal[(int64_t)t * mpm->grid.block_nodes + local];
-    if (!(inside >> b & 1)) continue;
-    const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
-    for (int c = 0; c < 3; c++) normal[c] = c < mpm->dim ? foot.normal[c] : 0.0;
+    const int64_t at = (int64_t)t * mpm->grid.block_nodes + local;
+    if (!mpm->contact.held[at]) continue;
+    const mps_body *body = mpm->contact.body[mpm->contact.node_pair[t].body];
+    const mpsi_foot foot = mpsi_body_foot(body, x);
+    for (int c = 0; c < 3; c++) mpm->contact.normal[at][c] = c < mpm->dim ? foot.normal[c] : 0.0;
   }
 }
 
@@ -246,16 +252,14 @@ static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
         const int t = mpsi_tile_index(shift[0] + i, shift[1] + j, shift[2] + k);
         if (nodes->thin && mpm->contact.beside[at]) worker->state[t] |= MPSI_THIN;
         if (!mpm->contact.inside[at]) continue;
-        worker->inside[t] = mpm->contact.inside[at];
         const bool reached =
             atomic_load_explicit(&mpm->contact.reached[at], memory_order_relaxed) != 0;
-        worker->state[t] |= reached ? MPSI_INSIDE | MPSI_REACHED : MPSI_INSIDE;
+        worker->state[t] |= (uint8_t)(mpm->contact.inside[at] | (reached ? MPSI_REACHED : 0));
       }
 }
 
 void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
   mark_outside(mpm, cells, worker->state);
-  memset(worker->inside, 0, (size_t)mpm->grid.tile_nodes * sizeof *worker->inside);
   for (int q = 0; q < 1 << mpm->dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     if (nodes->inside || nodes->thin) mark_near(mpm, nodes, q, worker);

@@ -21,54 +21,77 @@ bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, 
   return mpsi_body_reaches(mpm->contact.body[body], x, half_diagonal(mpm, side) * mpm->def.cell);
 }
 
-/* The same in a loop over blocks; `last` of each body. */
-static uint32_t find_bodies(const mps_mpm *mpm, const int32_t *at, int side, double reach,
-                            mpsi_last_distance *last) {
-  uint32_t bodies = 0;
-  double x[3];
-  find_middle(mpm, at, side, x);
-  for (int32_t k = 0; k < mpm->contact.bodies; k++)
-    if (mpsi_body_reaches_next(mpm->contact.body[k], x, reach, &last[k]))
-      bodies |= UINT32_C(1) << k;
-  return bodies;
+/* Bits of bodies, 64 a word. */
+static int64_t words_of(const mps_mpm *mpm) { return (mpm->contact.bodies + 63) / 64; }
+
+static bool has_bit(const uint64_t *row, int32_t bit) { return row[bit / 64] >> (bit % 64) & 1; }
+
+static void set_bit(uint64_t *row, int32_t bit) { row[bit / 64] |= UINT64_C(1) << (bit % 64); }
+
+static uint64_t *near_row(const mps_mpm *mpm, int64_t g) {
+  return (uint64_t *)mpm->contact.near_room.item + g * words_of(mpm);
+}
+
+/* The same as mpsi_mpm_body_reaches in a loop over blocks, of which x is the middle. */
+static bool reaches_next(mps_mpm *mpm, int32_t body, const double *x, double reach) {
+  return mpsi_body_reaches_next(mpm->contact.body[body], x, reach, &mpm->contact.state[body].last);
+}
+
+static void begin_loop(mps_mpm *mpm) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    mpm->contact.state[b].last = (mpsi_last_distance){.distance = 0.0};
 }
 
 /* By the place of the block alone: so all ranks that have it know the same nodes to be inside, and
  * the same supports to be cut. */
 static void find_bodies_of_nodes(mps_mpm *mpm) {
   const double reach = half_diagonal(mpm, MPSI_SIDE) * mpm->def.cell;
-  mpsi_last_distance last[MPS_MPM_MAX_CONTACTS] = {{.distance = 0.0}};
+  begin_loop(mpm);
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
-    mpsi_node_block *nodes = &mpm->grid.nodes[g];
-    nodes->bodies = find_bodies(mpm, nodes->at, MPSI_SIDE, reach, last);
+    uint64_t *near = near_row(mpm, g);
+    double x[3];
+    memset(near, 0, (size_t)words_of(mpm) * sizeof *near);
+    find_middle(mpm, mpm->grid.nodes[g].at, MPSI_SIDE, x);
+    for (int32_t k = 0; k < mpm->contact.bodies; k++)
+      if (reaches_next(mpm, k, x, reach)) set_bit(near, k);
   }
+}
+
+/* What there is of the lists of pairs. */
+typedef struct pair_counts {
+  int64_t cells, loads, nodes, near;
+} pair_counts;
+
+static void add_cell_pair(mps_mpm *mpm, int64_t b, int32_t body, pair_counts *count) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int q = 0; q < 1 << mpm->dim; q++) set_bit(near_row(mpm, cells->to[q]), body);
+  if (count->cells < mpm->contact.cell_pair_room.capacity) {
+    mpsi_cell_pair *pair = (mpsi_cell_pair *)mpm->contact.cell_pair_room.item + count->cells;
+    pair->cells = (int32_t)b;
+    pair->body = body;
+    pair->first_load = count->loads;
+  }
+  count->cells++;
+  count->loads += mpm->contact.handle[body]->parts;
 }
 
 /* Lists the pairs of blocks of cells and bodies; false where there is no room for them all, `count`
  * says how many there are. */
-static bool list_cell_pairs(mps_mpm *mpm, int64_t *count) {
+static bool list_cell_pairs(mps_mpm *mpm, pair_counts *count) {
   const double reach = half_diagonal(mpm, MPSI_TILE_SIDE) * mpm->def.cell;
-  mpsi_last_distance last[MPS_MPM_MAX_CONTACTS] = {{.distance = 0.0}};
-  *count = 0;
+  count->cells = count->loads = 0;
   find_bodies_of_nodes(mpm);
+  begin_loop(mpm);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
-    const uint32_t near = find_bodies(mpm, cells->at, MPSI_TILE_SIDE, reach, last);
-    cells->first_pair = (int32_t)*count;
-    for (int32_t k = 0; near && k < mpm->contact.bodies; k++) {
-      if (!(near >> k & 1)) continue;
-      for (int q = 0; q < 1 << mpm->dim; q++)
-        mpm->grid.nodes[cells->to[q]].bodies |= UINT32_C(1) << k;
-      if (*count < mpm->contact.cell_pair_room.capacity) {
-        mpsi_cell_pair *pair = (mpsi_cell_pair *)mpm->contact.cell_pair_room.item + *count;
-        pair->cells = (int32_t)b;
-        pair->body = k;
-      }
-      (*count)++;
-    }
-    cells->pairs = (int32_t)*count - cells->first_pair;
+    double x[3];
+    cells->first_pair = (int32_t)count->cells;
+    find_middle(mpm, cells->at, MPSI_TILE_SIDE, x);
+    for (int32_t k = 0; k < mpm->contact.bodies; k++)
+      if (reaches_next(mpm, k, x, reach)) add_cell_pair(mpm, b, k, count);
+    cells->pairs = (int32_t)count->cells - cells->first_pair;
   }
-  return *count <= mpm->contact.cell_pair_room.capacity;
+  return count->cells <= mpm->contact.cell_pair_room.capacity;
 }
 
 /* Friction with a body that moves freely depends on the mass of all nodes in contact with it. */
@@ -79,24 +102,25 @@ static bool asks_for_mass(const mps_mpm *mpm, int32_t body) {
 }
 
 /* The pairs of blocks of nodes and bodies. The same in two goes: see list_cell_pairs. */
-static bool list_node_pairs(mps_mpm *mpm, int64_t *count, int64_t *near) {
-  *count = *near = 0;
+static bool list_node_pairs(mps_mpm *mpm, pair_counts *count) {
+  count->nodes = count->near = 0;
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[g];
-    nodes->first_pair = (int32_t)*count;
-    nodes->near = nodes->bodies ? (int32_t)(*near)++ : -1;
+    const uint64_t *near = near_row(mpm, g);
+    nodes->first_pair = (int32_t)count->nodes;
     nodes->waits = false;
-    for (int32_t k = 0; nodes->bodies && k < mpm->contact.bodies; k++) {
-      if (!(nodes->bodies >> k & 1)) continue;
+    for (int32_t k = 0; k < mpm->contact.bodies; k++) {
+      if (!has_bit(near, k)) continue;
       nodes->waits = nodes->waits || asks_for_mass(mpm, k);
-      if (*count < mpm->contact.node_pair_room.capacity)
-        ((mpsi_node_pair *)mpm->contact.node_pair_room.item)[*count] =
+      if (count->nodes < mpm->contact.node_pair_room.capacity)
+        ((mpsi_node_pair *)mpm->contact.node_pair_room.item)[count->nodes] =
             (mpsi_node_pair){(int32_t)g, k, 0.0};
-      (*count)++;
+      count->nodes++;
     }
-    nodes->pairs = (int32_t)*count - nodes->first_pair;
+    nodes->pairs = (int32_t)count->nodes - nodes->first_pair;
+    nodes->near = nodes->pairs > 0 ? (int32_t)count->near++ : -1;
   }
-  return *count <= mpm->contact.node_pair_room.capacity;
+  return count->nodes <= mpm->contact.node_pair_room.capacity;
 }
 
 /* Penalty contacts have sums at the nodes; all have normals there. */
@@ -111,52 +135,75 @@ static bool ensure_nodes(mps_mpm *mpm, int64_t nodes) {
   return true;
 }
 
+/* The lists, each in a second go where the first finds that they are longer than their room. */
+static bool make_lists(mps_mpm *mpm, pair_counts *count) {
+  mps_context *context = mpm->context;
+  mpsi_contacts *contact = &mpm->contact;
+  bool good = mpsi_room_ensure(context, &contact->near_room, mpm->grid.node_count * words_of(mpm),
+                               sizeof(uint64_t));
+  if (good && !list_cell_pairs(mpm, count)) {
+    good =
+        mpsi_room_ensure(context, &contact->cell_pair_room, count->cells, sizeof(mpsi_cell_pair));
+    if (good) list_cell_pairs(mpm, count);
+  }
+  if (good && !list_node_pairs(mpm, count)) {
+    good =
+        mpsi_room_ensure(context, &contact->node_pair_room, count->nodes, sizeof(mpsi_node_pair));
+    if (good) list_node_pairs(mpm, count);
+  }
+  return good;
+}
+
 mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function) {
   mps_context *context = mpm->context;
   mpsi_contacts *contact = &mpm->contact;
-  int64_t cell_pairs = 0, node_pairs = 0, near = 0;
-  bool good = true;
-  if (!list_cell_pairs(mpm, &cell_pairs)) {
-    good = mpsi_room_ensure(context, &contact->cell_pair_room, cell_pairs, sizeof(mpsi_cell_pair));
-    if (good) list_cell_pairs(mpm, &cell_pairs);
+  pair_counts count = {0};
+  contact->penalty_bodies = 0;
+  for (int32_t b = 0; b < contact->bodies; b++) {
+    contact->penalty_bodies += !mpsi_by_impulses(contact->handle[b]);
+    contact->handle[b]->parts = contact->body[b]->parts;
   }
-  if (good && !list_node_pairs(mpm, &node_pairs, &near)) {
-    good = mpsi_room_ensure(context, &contact->node_pair_room, node_pairs, sizeof(mpsi_node_pair));
-    if (good) list_node_pairs(mpm, &node_pairs, &near);
-  }
-  const int64_t nodes = node_pairs * mpm->grid.block_nodes, masks = near * mpm->grid.block_nodes;
-  good = good && ensure_nodes(mpm, nodes) && mpsi_mpm_load_room(mpm) &&
+  bool good = make_lists(mpm, &count);
+  const int64_t nodes = count.nodes * mpm->grid.block_nodes;
+  const int64_t masks = count.near * mpm->grid.block_nodes;
+  good = good && ensure_nodes(mpm, nodes) && mpsi_mpm_sum_room(mpm) &&
+         mpsi_room_ensure(context, &contact->load_room, count.loads, sizeof *contact->load) &&
+         mpsi_room_ensure(context, &contact->held_room, nodes, sizeof *contact->held) &&
          mpsi_room_ensure(context, &contact->inside_room, masks, sizeof *contact->inside) &&
          mpsi_room_ensure(context, &contact->reached_room, masks, sizeof *contact->reached);
   if (!good)
     return mpsi_fail_memory(context, function,
-                            (size_t)(cell_pairs + 1) * sizeof(mpsi_cell_pair) +
+                            (size_t)(count.cells + 1) * sizeof(mpsi_cell_pair) +
                                 (size_t)nodes * (sizeof *contact->normal + sizeof *contact->node));
   contact->cell_pair = contact->cell_pair_room.item;
   contact->node_pair = contact->node_pair_room.item;
+  contact->load = contact->load_room.item;
+  contact->held = contact->held_room.item;
   contact->inside = contact->inside_room.item;
   contact->reached = contact->reached_room.item;
-  contact->cell_pair_count = cell_pairs;
-  contact->node_pair_count = node_pairs;
-  contact->mask_count = near;
-  return MPS_OK;
+  contact->cell_pair_count = count.cells;
+  contact->node_pair_count = count.nodes;
+  contact->mask_count = count.near;
+  if (mpsi_mpm_penalty_room(mpm)) return MPS_OK;
+  return mpsi_fail_memory(context, function,
+                          (size_t)mpm->grid.tile_nodes * sizeof(mpsi_penalty_node));
 }
 
 void mpsi_mpm_find_contact_mass(mps_mpm *mpm) {
-  mpsi_exact sum[MPS_MPM_MAX_CONTACTS];
+  const mpsi_contacts *contact = &mpm->contact;
+  mpsi_exact *sum = contact->sum_room.item; /* a body has one part at least */
   bool any = false;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) any = any || asks_for_mass(mpm, b);
+  for (int32_t b = 0; b < contact->bodies; b++) any = any || asks_for_mass(mpm, b);
   if (!any) return;
-  memset(sum, 0, sizeof sum);
-  for (int64_t t = 0; t < mpm->contact.node_pair_count; t++) {
-    const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
+  memset(sum, 0, (size_t)contact->bodies * sizeof *sum);
+  for (int64_t t = 0; t < contact->node_pair_count; t++) {
+    const mpsi_node_pair *pair = &contact->node_pair[t];
     if (asks_for_mass(mpm, pair->body) &&
         (!mpm->partition || mpsi_mpm_counts_node_block(mpm, pair->nodes)))
       mpsi_exact_add(&sum[pair->body], pair->mass);
   }
   if (mpm->partition && mpm->partition->lost == MPS_OK)
     mpm->partition->lost =
-        mpsi_domain_sum_exact(mpm->partition->domain, "mps_mpm_step", mpm->contact.bodies, sum);
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    mpm->contact.mass[b] = mpsi_exact_value(&sum[b]);
+        mpsi_domain_sum_exact(mpm->partition->domain, "mps_mpm_step", contact->bodies, sum);
+  for (int32_t b = 0; b < contact->bodies; b++) contact->state[b].mass = mpsi_exact_value(&sum[b]);
 }

@@ -18,13 +18,18 @@
 /* A block of cells and a body near its particles. */
 typedef struct mpsi_cell_pair {
   int32_t cells, body;
-  bool in_contact; /* some particle is in contact */
-  double deepest;  /* m, >= 0, of a particle below the surface */
-  int64_t deep;    /* that particle */
-  mpsi_load load[MPS_BODY_MAX_PARTS];
-  int64_t contacts[MPS_BODY_MAX_PARTS];
+  bool in_contact;                     /* some particle is in contact */
+  double deepest;                      /* m, >= 0, of a particle below the surface */
+  int64_t deep;                        /* that particle */
+  int64_t first_load;                  /* of contact.load, one a part of the body */
   int64_t first_candidate, candidates; /* for contact by impulses: see constraints.c */
 } mpsi_cell_pair;
+
+/* Of the particles of a pair on one part of the body: forces, and how many are in contact. */
+typedef struct mpsi_pair_load {
+  mpsi_load by;
+  int64_t contacts;
+} mpsi_pair_load;
 
 /* A block of nodes and a body that may act on it; its nodes are contact.node[k * block_nodes]. */
 typedef struct mpsi_node_pair {
@@ -37,18 +42,29 @@ typedef struct mpsi_penalty_node {
   double mass, slip[3], force[3];
 } mpsi_penalty_node;
 
+/* What contact with each body has besides the handle, in the order of these. */
+typedef struct mpsi_contact_state {
+  double mass;             /* kg, of the nodes in contact with the body */
+  bool parts;              /* the body parts particles (thin_bodies.h), in the step being made */
+  bool warned;             /* the log knows that its penalty is too stiff for dt */
+  double v[3], spin[3];    /* m/s, rad/s: of the body, while it stands still (settle.c) */
+  mpsi_last_distance last; /* of a loop over blocks */
+} mpsi_contact_state;
+
 typedef struct mpsi_contacts {
-  mps_contact *handle[MPS_MPM_MAX_CONTACTS];
-  mps_body *body[MPS_MPM_MAX_CONTACTS]; /* of each */
-  int32_t bodies, penalty_bodies;       /* the latter: how many of them by penalty contact */
-  double least_mass;                 /* kg, of a particle; in axisymmetry over its radius, kg/m */
-  double mass[MPS_MPM_MAX_CONTACTS]; /* kg, of the nodes in contact with each body */
+  mps_contact **handle;
+  mps_body **body; /* of each */
+  mpsi_contact_state *state;
+  int32_t bodies, penalty_bodies; /* the latter: how many of them by penalty contact */
+  double least_mass;              /* kg, of a particle; in axisymmetry over its radius, kg/m */
   mpsi_cell_pair *cell_pair;
   mpsi_node_pair *node_pair;
-  mpsi_contact_node *node;  /* with penalty contact, of each node of each pair; */
-  double (*normal)[3];      /* of the surface there, where `inside` and `reached` */
-  uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
-  uint32_t thin;            /* bit b: body b parts particles (thin_bodies.h) */
+  mpsi_pair_load *load;     /* of each cell pair, by parts of its body */
+  mpsi_contact_node *node;  /* with penalty contact, of each node of each node pair; */
+  double (*normal)[3];      /* of the surface there, where `held` and `reached`; */
+  uint8_t *held;            /* whether it is in the pair's body */
+  uint8_t *inside;          /* MPSI_INSIDE and more, by all bodies; mask_count * block_nodes */
+  bool thin;                /* some body parts particles (thin_bodies.h) */
   mpsi_sight *sight;        /* as node, where there are such bodies; */
   mpsi_parted *across;      /* of each particle queried: mpsi_mpm_find_parted */
   uint8_t *beside;          /* as inside: beside or in one of them */
@@ -57,8 +73,11 @@ typedef struct mpsi_contacts {
   mpsi_impulses impulses;
   mpsi_contact_partners partners; /* of several ranks; none are before the first contact */
   mpsi_contact_exchange exchange; /* constraints of partners */
-  mpsi_room cell_pair_room, node_pair_room, node_room, normal_room, inside_room, reached_room,
-      sight_room, beside_room, across_room, penalty_room, load_room; /* load_room: sums of parts */
+  mpsi_room handle_room, body_room, state_room; /* kept as they grow: contacts.c */
+  mpsi_room near_room;                          /* by blocks of nodes, bit b: body b is near */
+  mpsi_room cell_pair_room, node_pair_room, load_room, node_room, normal_room, held_room,
+      inside_room, reached_room, sight_room, beside_room, across_room, penalty_room;
+  mpsi_room sum_room; /* exact sums by parts of all bodies: penalty_friction.c */
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and
@@ -71,12 +90,12 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
 mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function);
 bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side);
 void mpsi_mpm_find_contact_mass(mps_mpm *mpm);
-/* penalty.c: room for their tiles; whether a block has one for its pair number `pair`, that of a
- * body; emptied; added to the nodes; all of that with p2g in between. */
+/* penalty.c: room for their tiles, the pairs being listed; whether a block has one for its pair
+ * number `pair`; that one; emptied; added to the nodes; all of that with p2g in between. */
 bool mpsi_mpm_penalty_room(mps_mpm *mpm);
 bool mpsi_mpm_has_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair);
 mpsi_penalty_node *mpsi_mpm_penalty_tile(const mps_mpm *mpm, const mpsi_worker *worker,
-                                         int32_t body);
+                                         int32_t pair);
 void mpsi_mpm_clear_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker);
 void mpsi_mpm_add_penalty(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker);
@@ -90,7 +109,7 @@ mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool kn
 bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
 /* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; forces on the
  * bodies, and their motion, for which there is memory. */
-bool mpsi_mpm_load_room(mps_mpm *mpm);
+bool mpsi_mpm_sum_room(mps_mpm *mpm);
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_update_bodies(mps_mpm *mpm);

@@ -1,7 +1,7 @@
 /* penalty.c - penalty contact on its way to the nodes, Nakamura (29), (30): the particles of a
- * block are summed into tiles of the worker, one for each body, and these are added to the nodes in
- * the order of the colours. Those of other ranks come with the tiles of momentum (step/tiles.c).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * block are summed into tiles of the worker, one for each pair of the block and a body, and these
+ * are added to the nodes in the order of the colours. Those of other ranks come with the tiles of
+ * momentum (step/tiles.c). SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 
 #include <string.h>
@@ -13,23 +13,23 @@ bool mpsi_mpm_has_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells, int3
 }
 
 mpsi_penalty_node *mpsi_mpm_penalty_tile(const mps_mpm *mpm, const mpsi_worker *worker,
-                                         int32_t body) {
-  return worker->penalty_bodies + (int64_t)body * mpm->grid.tile_nodes;
+                                         int32_t pair) {
+  return worker->penalty + (int64_t)pair * mpm->grid.tile_nodes;
 }
 
 bool mpsi_mpm_penalty_room(mps_mpm *mpm) {
   mpsi_grid *grid = &mpm->grid;
   mpsi_contacts *contact = &mpm->contact;
-  const int64_t each = (int64_t)contact->bodies * grid->tile_nodes;
-  contact->penalty_bodies = 0;
-  for (int32_t b = 0; b < contact->bodies; b++)
-    contact->penalty_bodies += !mpsi_by_impulses(contact->handle[b]);
+  int32_t most = 0;
   if (contact->penalty_bodies == 0) return true;
+  for (int64_t b = 0; b < grid->cell_count; b++)
+    if (grid->cells[b].pairs > most) most = grid->cells[b].pairs;
+  const int64_t each = (int64_t)most * grid->tile_nodes;
   if (!mpsi_room_ensure(mpm->context, &contact->penalty_room, each * grid->worker_count,
                         sizeof(mpsi_penalty_node)))
     return false;
   for (int32_t k = 0; k < grid->worker_count; k++)
-    grid->workers[k].penalty_bodies = (mpsi_penalty_node *)contact->penalty_room.item + k * each;
+    grid->workers[k].penalty = (mpsi_penalty_node *)contact->penalty_room.item + k * each;
   return true;
 }
 
@@ -38,8 +38,7 @@ void mpsi_mpm_clear_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells,
   const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_penalty_node);
   for (int32_t q = 0; q < cells->pairs; q++) {
     if (!mpsi_mpm_has_penalty(mpm, cells, q)) continue;
-    mpsi_penalty_node *tile =
-        mpsi_mpm_penalty_tile(mpm, worker, mpm->contact.cell_pair[cells->first_pair + q].body);
+    mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(mpm, worker, q);
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
         memset(tile + mpsi_tile_index(cells->low[0], j, k), 0, bytes);
@@ -65,7 +64,7 @@ void mpsi_mpm_add_penalty(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
   for (int32_t q = 0; q < cells->pairs; q++) {
     if (!mpsi_mpm_has_penalty(mpm, cells, q)) continue;
     const int32_t body = mpm->contact.cell_pair[cells->first_pair + q].body;
-    const mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(mpm, worker, body);
+    const mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(mpm, worker, q);
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
         add_row(mpm, cells, body, j, k, tile + mpsi_tile_index(cells->low[0], j, k));

@@ -37,9 +37,9 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
       const double m = node[k][MPSI_MASS];
       double x[3], f[3];
       mpsi_node_place(mpm, nodes->at, k, x);
-      const bool frictional =
-          mpsi_contact_friction(mpm->contact.handle[b], mpm->dim, &at[k], mpm->contact.mass[b], x,
-                                node[k] + MPSI_VECTOR, side[k] + MPSI_VECTOR, m, mpm->run.dt, f);
+      const bool frictional = mpsi_contact_friction(
+          mpm->contact.handle[b], mpm->dim, &at[k], mpm->contact.state[b].mass, x,
+          node[k] + MPSI_VECTOR, side[k] + MPSI_VECTOR, m, mpm->run.dt, f);
       for (int c = 0; c < 3; c++) {
         at[k].slip[c] = frictional ? f[c] / at[k].mass : 0.0;
         if (frictional) node[k][MPSI_VECTOR + c] += mpm->run.dt * f[c] / m;
@@ -55,12 +55,12 @@ typedef mpsi_exact load_sums[SUMS];
 
 static int32_t all_parts(const mps_mpm *mpm) {
   int32_t parts = 0;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) parts += mpm->contact.body[b]->parts;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) parts += mpm->contact.handle[b]->parts;
   return parts;
 }
 
-bool mpsi_mpm_load_room(mps_mpm *mpm) {
-  return mpsi_room_ensure(mpm->context, &mpm->contact.load_room, all_parts(mpm), sizeof(load_sums));
+bool mpsi_mpm_sum_room(mps_mpm *mpm) {
+  return mpsi_room_ensure(mpm->context, &mpm->contact.sum_room, all_parts(mpm), sizeof(load_sums));
 }
 
 /* Of body b on this rank, to the sums of its parts. */
@@ -68,49 +68,51 @@ static void add_loads(const mps_mpm *mpm, int32_t b, load_sums *sum) {
   for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
     if (pair->body != b || !pair->in_contact || mpm->grid.cells[pair->cells].ghost) continue;
-    for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++) {
+    for (int32_t part = 0; part < mpm->contact.handle[b]->parts; part++) {
+      const mpsi_pair_load *load = &mpm->contact.load[pair->first_load + part];
       for (int c = 0; c < 3; c++) {
-        mpsi_exact_add(&sum[part][FORCE + c], pair->load[part].force[c]);
-        mpsi_exact_add(&sum[part][MOMENT + c], pair->load[part].moment[c]);
+        mpsi_exact_add(&sum[part][FORCE + c], load->by.force[c]);
+        mpsi_exact_add(&sum[part][MOMENT + c], load->by.moment[c]);
       }
-      mpsi_exact_add(&sum[part][CONTACTS], (double)pair->contacts[part]);
+      mpsi_exact_add(&sum[part][CONTACTS], (double)load->contacts);
     }
   }
 }
 
 static void react(mps_mpm *mpm, int32_t b, load_sums *sum) {
-  mpsi_load load[MPS_BODY_MAX_PARTS] = {{{0}, {0}}};
-  int64_t contacts[MPS_BODY_MAX_PARTS] = {0};
+  mps_contact *contact = mpm->contact.handle[b];
   const mps_body *body = mpm->contact.body[b];
   const bool moves = !mpm->settling.on;
-  for (int32_t part = 0; part < body->parts; part++) {
+  for (int32_t part = 0; part < contact->parts; part++) {
+    mpsi_part_load *load = &contact->source.part[part];
     for (int c = 0; c < 3; c++) {
-      load[part].force[c] = mpsi_exact_value(&sum[part][FORCE + c]);
-      load[part].moment[c] = mpsi_exact_value(&sum[part][MOMENT + c]);
+      load->force.force[c] = mpsi_exact_value(&sum[part][FORCE + c]);
+      load->force.moment[c] = mpsi_exact_value(&sum[part][MOMENT + c]);
     }
-    contacts[part] = (int64_t)mpsi_exact_value(&sum[part][CONTACTS]);
+    load->count = (int64_t)mpsi_exact_value(&sum[part][CONTACTS]);
   }
-  mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts, moves);
-  const bool moved = moves && mpm->contact.handle[b]->source.moves;
+  mpsi_contact_react(contact, mpm->run.dt, moves);
+  const bool moved = moves && contact->source.moves;
   const double *v = moved ? body->middle_v : body->pose.v;
   const double *spin = moved ? body->middle_spin : body->pose.spin;
-  for (int32_t part = 0; part < body->parts; part++)
-    mpm->energy.bodies -=
-        mpm->run.dt * (mpsi_dot3(load[part].force, v) + mpsi_dot3(load[part].moment, spin));
+  for (int32_t part = 0; part < contact->parts; part++) {
+    const mpsi_load *by = &contact->source.part[part].force;
+    mpm->energy.bodies -= mpm->run.dt * (mpsi_dot3(by->force, v) + mpsi_dot3(by->moment, spin));
+  }
 }
 
 /* Reactions to the bodies, by the sums over all blocks on all ranks: exact, independent of the
  * partition. Then the bodies move. */
 void mpsi_mpm_update_bodies(mps_mpm *mpm) {
-  load_sums *sum = mpm->contact.load_room.item, *of = sum;
+  load_sums *sum = mpm->contact.sum_room.item, *of = sum;
   const int32_t parts = all_parts(mpm);
   memset(sum, 0, (size_t)parts * sizeof *sum);
-  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.body[b++]->parts)
+  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.handle[b++]->parts)
     add_loads(mpm, b, of);
   if (mpm->partition && mpm->partition->lost == MPS_OK)
     mpm->partition->lost =
         mpsi_domain_sum_exact(mpm->partition->domain, "mps_mpm_step", parts * SUMS, sum[0]);
   of = sum;
-  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.body[b++]->parts)
+  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.handle[b++]->parts)
     react(mpm, b, of);
 }

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+enum { TAKEN = 1, BY_THIS }; /* marks of particles */
+
 static bool takes_away(const mps_contact *contact) {
   return contact->def.inside == MPS_CONTACT_INSIDE_REMOVE;
 }
@@ -34,60 +36,91 @@ static int64_t into_body(const mps_mpm *mpm, const mps_contact *contact, double 
   return count;
 }
 
+enum { MASS, COUNT, AMOUNTS };
+typedef mpsi_exact amounts[AMOUNTS];
+
 /* What the body has taken away, on all ranks. */
 static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *contact,
                             const uint8_t *gone, uint8_t mark) {
-  mpsi_exact mass[MPS_BODY_MAX_PARTS];
-  int64_t count[MPS_BODY_MAX_PARTS] = {0};
+  amounts *sum = mpm->contact.sum_room.item;
   const int32_t parts = contact->body->parts;
   mps_status status = MPS_OK;
-  memset(mass, 0, sizeof mass);
+  memset(sum, 0, (size_t)parts * sizeof *sum);
   for (int64_t k = 0; k < mpm->p.count; k++) {
     double x[3];
     if (gone[k] != mark) continue;
     const mpsi_foot foot = mpsi_body_foot(contact->body, place_of(mpm, k, x));
     const int32_t part = contact->body->part_of[foot.face];
-    mpsi_exact_add(&mass[part], mpm->p.m[k]);
-    count[part]++;
+    mpsi_exact_add(&sum[part][MASS], mpm->p.m[k]);
+    mpsi_exact_add(&sum[part][COUNT], 1.0);
   }
-  if (mpm->partition) status = mpsi_domain_sum(mpm->partition->domain, function, parts, count);
-  if (mpm->partition && status == MPS_OK)
-    status = mpsi_domain_sum_exact(mpm->partition->domain, function, parts, mass);
+  if (mpm->partition)
+    status = mpsi_domain_sum_exact(mpm->partition->domain, function, parts * AMOUNTS, sum[0]);
   for (int32_t part = 0; status == MPS_OK && part < parts; part++) {
-    contact->source.reaction[part].removed += count[part];
-    contact->source.reaction[part].removed_mass += mpsi_exact_value(&mass[part]);
+    mps_reaction *r = &contact->source.reaction[part];
+    r->removed += (int64_t)mpsi_exact_value(&sum[part][COUNT]);
+    r->removed_mass += mpsi_exact_value(&sum[part][MASS]);
   }
   return status;
 }
 
-/* Marks of particles in bodies: the number of the contact and 1. */
-static int64_t mark_inside(mps_mpm *mpm) {
-  uint8_t *gone = mpm->rooms.gone.item;
+/* Room for the sums of a contact, which need not be one of the solver's yet. */
+static mps_status ensure_amounts(mps_mpm *mpm, const char *function, const mps_contact *contact) {
+  const int32_t parts = contact->body->parts;
+  return mpsi_room_ensure(mpm->context, &mpm->contact.sum_room, parts, sizeof(amounts))
+             ? MPS_OK
+             : mpsi_fail_memory(mpm->context, function, (size_t)parts * sizeof(amounts));
+}
+
+/* Marks particles in the body, which no body before it has marked. */
+static int64_t mark_inside(mps_mpm *mpm, int32_t body, uint8_t mark) {
+  const mps_contact *contact = mpm->contact.handle[body];
   int64_t count = 0;
-  if (mpm->p.count > 0) memset(gone, 0, (size_t)mpm->p.count);
   for (int64_t t = 0; t < mpm->contact.cell_pair_count; t++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
-    const mps_contact *contact = mpm->contact.handle[pair->body];
     const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
-    if (!takes_away(contact)) continue;
-    count += into_body(mpm, contact, contact->def.depth, cells->begin, cells->end, gone,
-                       (uint8_t)(pair->body + 1));
+    if (pair->body == body)
+      count += into_body(mpm, contact, contact->def.depth, cells->begin, cells->end,
+                         mpm->rooms.gone.item, mark);
   }
   return count;
+}
+
+/* The same of all bodies, with the same mark. */
+static int64_t mark_all(mps_mpm *mpm) {
+  int64_t count = 0;
+  if (mpm->p.count > 0) memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    if (takes_away(mpm->contact.handle[b])) count += mark_inside(mpm, b, TAKEN);
+  return count;
+}
+
+/* What each body takes away, on all ranks. */
+static mps_status count_by_body(mps_mpm *mpm, const char *function) {
+  uint8_t *gone = mpm->rooms.gone.item;
+  mps_status status = MPS_OK;
+  if (mpm->p.count > 0) memset(gone, 0, (size_t)mpm->p.count);
+  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++) {
+    if (!takes_away(mpm->contact.handle[b])) continue;
+    mark_inside(mpm, b, BY_THIS);
+    status = count_out(mpm, function, mpm->contact.handle[b], gone, BY_THIS);
+    for (int64_t k = 0; k < mpm->p.count; k++)
+      if (gone[k]) gone[k] = TAKEN;
+  }
+  return status;
 }
 
 mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
                                  bool *cleared) {
   if (!mpsi_mpm_some_take_away(&mpm->contact)) return status;
-  const int64_t count = status == MPS_OK ? mark_inside(mpm) : 0;
+  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
+    status = ensure_amounts(mpm, function, mpm->contact.handle[b]);
+  const int64_t count = status == MPS_OK ? mark_all(mpm) : 0;
   double any = (double)count;
   if (mpm->partition)
     status = mpsi_domain_agree_max(mpm->partition->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
-  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
-    if (takes_away(mpm->contact.handle[b]))
-      status =
-          count_out(mpm, function, mpm->contact.handle[b], mpm->rooms.gone.item, (uint8_t)(b + 1));
+  status = count_by_body(mpm, function);
   if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
   *cleared = status == MPS_OK;
   return status;
@@ -98,11 +131,12 @@ mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *
   uint8_t *gone = mpsi_alloc(mpm->context, mpm->p.count, 1);
   mps_status status = MPS_OK;
   if (!gone) status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
+  if (status == MPS_OK) status = ensure_amounts(mpm, function, contact);
   status = mpsi_mpm_agree(mpm, function, status);
   int64_t count = 0;
   if (status == MPS_OK) {
-    count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, 1);
-    status = count_out(mpm, function, contact, gone, 1);
+    count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, TAKEN);
+    status = count_out(mpm, function, contact, gone, TAKEN);
   }
   if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, gone);
   mpsi_free(mpm->context, gone);

@@ -12,11 +12,12 @@ enum { MOST_STEPS = 200 };
 
 bool mpsi_mpm_begin_across(mps_mpm *mpm) {
   mpsi_contacts *contact = &mpm->contact;
-  contact->thin = 0;
-  for (int32_t b = 0; b < contact->bodies; b++)
-    if (contact->handle[b]->thin) contact->thin |= UINT32_C(1) << b;
-  for (int32_t b = 0; b < contact->bodies; b++)
-    if (!mpsi_by_impulses(contact->handle[b]) || mpm->standard) contact->thin = 0;
+  const bool can = contact->penalty_bodies == 0 && !mpm->standard;
+  contact->thin = false;
+  for (int32_t b = 0; b < contact->bodies; b++) {
+    contact->state[b].parts = can && contact->handle[b]->thin;
+    contact->thin = contact->thin || contact->state[b].parts;
+  }
   if (!contact->thin) return true;
   const int64_t block = mpm->grid.block_nodes;
   const bool good =
@@ -41,19 +42,26 @@ static mpsi_sight stand(const mps_mpm *mpm, const mpsi_foot *foot, const double 
   return out;
 }
 
+static bool near_thin(const mps_mpm *mpm, const mpsi_node_block *nodes) {
+  bool any = false;
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++)
+    any = any || mpm->contact.state[mpm->contact.node_pair[t].body].parts;
+  return any;
+}
+
 /* A body between two nodes of a stencil leads through one of its cells, and no point of a cell is
  * further from all its nodes than half the diagonal. */
 void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g) {
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
   nodes->thin = false;
-  if (!(nodes->bodies & mpm->contact.thin)) return;
+  if (!near_thin(mpm, nodes)) return;
   const double half = 0.5 * sqrt((double)mpm->dim) * mpm->def.cell * (1.0 + 1e-9);
   uint8_t *beside = mpm->contact.beside + mpsi_first_node(mpm, nodes->near);
   memset(beside, 0, (size_t)mpm->grid.block_nodes);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const int32_t b = mpm->contact.node_pair[t].body;
     mpsi_sight *sight = mpm->contact.sight + (int64_t)t * mpm->grid.block_nodes;
-    for (int k = 0; k < mpm->grid.block_nodes && mpm->contact.thin >> b & 1; k++) {
+    for (int k = 0; k < mpm->grid.block_nodes && mpm->contact.state[b].parts; k++) {
       double x[3];
       mpsi_node_place(mpm, nodes->at, k, x);
       const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
@@ -70,17 +78,10 @@ void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g) {
 /* Room for `count` blocks of nodes, keeping the present ones. */
 static bool keep_and_widen(mps_mpm *mpm, int64_t count) {
   mpsi_grid *grid = &mpm->grid;
-  if (count > grid->nodes_room.capacity) {
-    mpsi_room wider = {NULL, 0};
-    if (!mpsi_room_ensure(mpm->context, &wider, count + count / 8, sizeof *grid->nodes))
-      return false;
-    memcpy(wider.item, grid->nodes, (size_t)grid->node_count * sizeof *grid->nodes);
-    mpsi_free(mpm->context, grid->nodes_room.item);
-    grid->nodes_room = wider;
-    grid->nodes = wider.item;
-  }
-  const bool good = mpsi_room_ensure(mpm->context, &grid->node_room, count * grid->block_nodes,
+  const bool good = mpsi_room_keep(mpm->context, &grid->nodes_room, count, sizeof *grid->nodes) &&
+                    mpsi_room_ensure(mpm->context, &grid->node_room, count * grid->block_nodes,
                                      sizeof *grid->node);
+  grid->nodes = grid->nodes_room.item;
   grid->node = grid->node_room.item;
   return good;
 }
@@ -108,7 +109,6 @@ static void make_across(mps_mpm *mpm, const mpsi_node_block *nodes) {
   mpsi_node_block *across = &mpm->grid.nodes[nodes->across];
   *across = *nodes;
   across->across = across->near = -1;
-  across->bodies = 0;
   across->pairs = 0;
   across->inside = across->thin = across->waits = false;
   if (nodes->side >= 0) across->side = (int32_t)mpm->grid.side_count++;
@@ -263,7 +263,7 @@ mpsi_parted mpsi_mpm_find_parted(const mps_mpm *mpm, const mpsi_cell_block *cell
   mpsi_parted out = {0, 0};
   for (int32_t q = 0; q < cells->pairs; q++) {
     const int32_t b = mpm->contact.cell_pair[cells->first_pair + q].body;
-    if (mpm->contact.thin >> b & 1) add_parted_by(mpm, cells, b, base, x, &out);
+    if (mpm->contact.state[b].parts) add_parted_by(mpm, cells, b, base, x, &out);
   }
   return out;
 }

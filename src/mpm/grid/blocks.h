@@ -79,8 +79,8 @@ typedef struct mpsi_node_block {
   bool light;     /* some node's own mass is less than forces see: MPSI_LEAST_MASS */
   bool inside;    /* some node is in a body: */
   int32_t low[3], high[3];    /* they are within low to high - 1 */
-  uint32_t bodies;            /* bit b: a block of cells whose tile covers it is near body b */
-  int32_t first_pair, pairs;  /* bodies near it: of the list of mpsi_node_pair */
+  int32_t first_pair, pairs;  /* bodies near it, or near a block of cells whose tile covers it: of
+                                 the list of mpsi_node_pair */
   int32_t first_held, holds;  /* of the list of mpsi_held */
   int32_t from[MPSI_CORNERS]; /* blocks of cells whose tiles cover it, as corner q; -1: none */
   bool late;                  /* a ghost, or one that gives after one, gives to it (partition.h) */
@@ -98,11 +98,10 @@ enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
 /* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
 typedef struct mpsi_worker {
   void *memory;
-  mpsi_node *tile, *force;                  /* force, and excess mass: where they are apart */
-  mpsi_node *across_tile, *across_force;    /* the same of what thin bodies part (thin_bodies.h) */
-  struct mpsi_penalty_node *penalty_bodies; /* of each body: see penalty.c */
-  uint32_t *inside;                         /* bit b: in body b */
-  uint8_t *state;                           /* MPSI_... bits, 0: free */
+  mpsi_node *tile, *force;               /* force, and excess mass: where they are apart */
+  mpsi_node *across_tile, *across_force; /* the same of what thin bodies part (thin_bodies.h) */
+  struct mpsi_penalty_node *penalty;     /* of each pair of the block: see penalty.c */
+  uint8_t *state;                        /* MPSI_... bits, 0: free */
 } mpsi_worker;
 
 /* The fit of a particle beside bodies, from the scatter of a step to its gather
@@ -114,11 +113,13 @@ typedef struct mpsi_kept_fit {
 enum { MPSI_FITTED_CUT = 1, MPSI_FITTED_FULL = 2 };
 
 /* Bits of a state. */
-#define MPSI_OUTSIDE 1u /* not in the domain */
-#define MPSI_INSIDE 2u  /* in a body */
-#define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
-#define MPSI_PLAIN 8u   /* any node with the standard method, whose supports are cut everywhere */
-#define MPSI_THIN 16u   /* beside or in a thin body, which parts particles (thin_bodies.h) */
+#define MPSI_OUTSIDE 1u  /* not in the domain */
+#define MPSI_INSIDE 2u   /* in a body */
+#define MPSI_REACHED 4u  /* in a body, and corner of a cell that holds a particle */
+#define MPSI_PLAIN 8u    /* any node with the standard method, whose supports are cut everywhere */
+#define MPSI_THIN 16u    /* beside or in a thin body, which parts particles (thin_bodies.h) */
+#define MPSI_IMPULSE 32u /* in a body with contact by impulses, */
+#define MPSI_PENALTY 64u /* or with penalty contact; besides MPSI_INSIDE */
 
 /* A particle by its key, as it is sorted. */
 typedef struct mpsi_radix {

@@ -277,8 +277,7 @@ static mps_status make_workers(mps_mpm *mpm) {
     if (!memory) return mpsi_fail_memory(mpm->context, create, bytes);
     w->tile = (mpsi_node *)memory;
     w->force = w->tile + tile;
-    w->inside = (uint32_t *)(w->force + tile);
-    w->state = (uint8_t *)(w->inside + tile); /* and a little more: rows are read as four */
+    w->state = (uint8_t *)(w->force + tile); /* and a little more: rows are read as four */
   }
   return mpm->grid.workers ? MPS_OK
                            : mpsi_fail_memory(mpm->context, create, sizeof *mpm->grid.workers);
@@ -464,12 +463,15 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;
   mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
-  if (status == MPS_OK && !mpm) status = mpsi_fail_memory(context, __func__, sizeof *mpm);
+  if (status == MPS_OK && (!mpm || !mpsi_room_keep(context, &mpm->boundaries.hold_room, MPSI_SIDES,
+                                                   sizeof(mpsi_boundary))))
+    status = mpsi_fail_memory(context, __func__, sizeof *mpm + MPSI_SIDES * sizeof(mpsi_boundary));
   if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
     status = mpsi_particles_back_up(particles, __func__, &backup);
   status = mpsi_domain_agree(def.domain, __func__, status);
   if (status != MPS_OK) {
     if (backup.memory) mpsi_backup_drop(particles, &backup);
+    if (mpm) mpsi_free(context, mpm->boundaries.hold_room.item);
     mpsi_free(context, mpm);
     return status;
   }
@@ -525,6 +527,12 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->contact.beside_room.item,
                    mpm->contact.penalty_room.item,
                    mpm->contact.load_room.item,
+                   mpm->contact.held_room.item,
+                   mpm->contact.near_room.item,
+                   mpm->contact.sum_room.item,
+                   mpm->contact.handle_room.item,
+                   mpm->contact.body_room.item,
+                   mpm->contact.state_room.item,
                    mpm->grid.across_room.item,
                    mpm->mirrors.mirror_room.item,
                    mpm->mirrors.mass_room.item,
@@ -544,7 +552,8 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->undo.list_room.item,
                    mpm->undo.room.item,
                    mpm->undo.dashpot_room.item,
-                   mpm->undo.sums_room.item};
+                   mpm->undo.sums_room.item,
+                   mpm->undo.hold_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
 }
 
@@ -565,6 +574,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
     mps_material_destroy(&mpm->laws.law[k].material);
     mpsi_free(context, mpm->laws.law[k].history);
   }
+  mpsi_free(context, mpm->laws.room.item);
   mps_kernel_destroy(&mpm->weights);
   mpsi_mpm_partition_free(mpm);
   mps_domain_destroy(&mpm->def.domain);

@@ -239,15 +239,27 @@ static void list_settling(mpsi_state *s, mpsi_settling *settling) {
   mpsi_state_leave(s);
 }
 
+#define FILE_BOUNDARIES 64 /* numbers that every file has */
+
+/* Numbers of boundaries that a state has: up to the last in use. */
+static int32_t listed_boundaries(const mps_mpm *mpm) {
+  int32_t count = mpm->boundaries.holds;
+  while (count > FILE_BOUNDARIES && mpm->boundaries.hold[count - 1].kind == MPSI_BOUNDARY_NONE)
+    count--;
+  return count > FILE_BOUNDARIES ? count : FILE_BOUNDARIES;
+}
+
 static void list_state(mpsi_state *s, void *solver) {
   mps_mpm *mpm = solver;
   list_setting(s, mpm);
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    mpsi_boundary *hold = &mpm->boundaries.hold[k];
+  const int32_t numbers = listed_boundaries(mpm);
+  if (numbers > FILE_BOUNDARIES) mpsi_state_agree_integer(s, "boundaries", numbers);
+  for (int32_t k = 0; k < numbers; k++) {
+    mpsi_boundary *hold = k < mpm->boundaries.holds ? &mpm->boundaries.hold[k] : NULL;
     mpsi_state_enter(s, "boundary%d", k);
-    mpsi_state_agree_integer(s, "kind", hold->kind);
+    mpsi_state_agree_integer(s, "kind", hold ? hold->kind : MPSI_BOUNDARY_NONE);
     /* a side that has been set free still shows its last force and what it has done */
-    if (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums)) {
+    if (hold && (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums))) {
       mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_BOUNDARY_MASS * MPSI_EXACT_LIMBS);
       mpsi_state_i64(s, "all", hold->sums->all[0].limb,
                      (MPSI_BOUNDARY_MASS + 1) * MPSI_EXACT_LIMBS);

@@ -20,6 +20,5 @@ typedef struct mpsi_dashpot {
 enum { MPSI_DASH = 5 }; /* doubles */
 
 #define MPSI_SIDES 6 /* 2 axis + upper */
-#define MPSI_HOLDS MPS_MPM_MAX_BOUNDARIES
 
 #endif

@@ -30,8 +30,9 @@ typedef struct mpsi_refusal {
 } mpsi_refusal;
 
 typedef struct mpsi_laws {
-  mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
+  mpsi_law_use *law; /* 0: of creation */
   int32_t count;
+  mpsi_room room;   /* of these */
   bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
   bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
   bool some_open;   /* some law is frictional, */

@@ -42,9 +42,10 @@ static bool keeps_own_volume(const mps_mpm *mpm, const mps_material *material) {
 }
 
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
-  if (mpm->laws.count == MPS_MPM_MAX_MATERIALS)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "the solver has %d materials, the most there can be", MPS_MPM_MAX_MATERIALS);
+  if (!mpsi_room_keep(mpm->context, &mpm->laws.room, mpm->laws.count + 1, sizeof *mpm->laws.law))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)(mpm->laws.count + 1) * sizeof *mpm->laws.law);
+  mpm->laws.law = mpm->laws.room.item;
   mps_particles *set = mpm->particles;
   mpsi_law_use law = {.material = material,
                       .modulus = mps_material_wave_modulus(material),

@@ -23,6 +23,8 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->contact.node_pair_room.capacity, sizeof *mpm->contact.node_pair},
               {mpm->contact.node_room.capacity, sizeof *mpm->contact.node},
               {mpm->contact.normal_room.capacity, sizeof *mpm->contact.normal},
+              {mpm->contact.load_room.capacity, sizeof *mpm->contact.load},
+              {mpm->contact.held_room.capacity, sizeof *mpm->contact.held},
               {mpm->contact.inside_room.capacity, sizeof *mpm->contact.inside},
               {mpm->contact.reached_room.capacity, sizeof *mpm->contact.reached},
               {mpm->contact.sight_room.capacity, sizeof *mpm->contact.sight},

@@ -136,10 +136,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
-  if (!mpsi_mpm_penalty_room(mpm) && status == MPS_OK)
-    status = mpsi_fail_memory(mpm->context, function,
-                              (size_t)(mpm->contact.bodies * mpm->grid.tile_nodes) *
-                                  sizeof(mpsi_penalty_node));
+  mpm->contact.penalty_bodies = 0;
   static const mpsi_pass pass = {
       .update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached, .ghosts = true};
   if (mpm->contact.bodies > 0) {

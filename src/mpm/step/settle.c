@@ -21,10 +21,6 @@ mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
 
 /* ---- bodies stand still ---------------------------------------------------------------------- */
 
-typedef struct motions {
-  double v[MPS_MPM_MAX_CONTACTS][3], spin[MPS_MPM_MAX_CONTACTS][3];
-} motions;
-
 static mps_status check_bodies(mps_mpm *mpm, const char *function) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     if (mpm->contact.body[b]->def.motion == MPS_BODY_MOTION_FREE)
@@ -35,21 +31,23 @@ static mps_status check_bodies(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-static void stop_bodies(mps_mpm *mpm, motions *warm) {
+static void stop_bodies(mps_mpm *mpm) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_pose *pose = &mpm->contact.body[b]->pose;
-    memcpy(warm->v[b], pose->v, sizeof pose->v);
-    memcpy(warm->spin[b], pose->spin, sizeof pose->spin);
+    mpsi_contact_state *state = &mpm->contact.state[b];
+    memcpy(state->v, pose->v, sizeof pose->v);
+    memcpy(state->spin, pose->spin, sizeof pose->spin);
     memset(pose->v, 0, sizeof pose->v);
     memset(pose->spin, 0, sizeof pose->spin);
   }
 }
 
-static void let_bodies_go(mps_mpm *mpm, const motions *warm) {
+static void let_bodies_go(mps_mpm *mpm) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_pose *pose = &mpm->contact.body[b]->pose;
-    memcpy(pose->v, warm->v[b], sizeof pose->v);
-    memcpy(pose->spin, warm->spin[b], sizeof pose->spin);
+    const mpsi_contact_state *state = &mpm->contact.state[b];
+    memcpy(pose->v, state->v, sizeof pose->v);
+    memcpy(pose->spin, state->spin, sizeof pose->spin);
   }
 }
 
@@ -237,7 +235,6 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_settle_def def = settle_defaults;
   mps_mpm_settled now = {0};
-  motions warm;
   const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
   if (out && (size == 0 || size > MPSI_STRUCT_MOST)) /* refused before anything moves */
     return mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
@@ -263,7 +260,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   mpsi_settling *settling = &mpm->settling;
   const mpsi_settling former = *settling;
   const mpsi_energy energy = mpm->energy;
-  stop_bodies(mpm, &warm);
+  stop_bodies(mpm);
   if (!settling->cut) { /* else continues from the state of the cancellation */
     stop_particles(mpm);
     settling->from_rest = true;
@@ -277,7 +274,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   status = relax_until(mpm, function, &def, &now);
   mpsi_guard_end(&mpm->run.guard);
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
-  let_bodies_go(mpm, &warm);
+  let_bodies_go(mpm);
   settling->on = false;
   if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->partition &&
       !mpm->run.broken) { /* no step was made */

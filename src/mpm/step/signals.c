@@ -22,7 +22,7 @@ static mps_status evaluate_loads(mps_mpm *mpm, const char *function) {
 }
 
 static mps_status evaluate_boundaries(mps_mpm *mpm, const char *function, double dt) {
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
     mpsi_boundary *hold = &mpm->boundaries.hold[k];
     for (int c = 0; c < mpm->dim; c++) {
       const mpsi_signal_use use = {mpm->context, function, "boundary", k, c};
@@ -62,7 +62,7 @@ bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm) {
   for (int c = 0; c < mpm->dim; c++) {
     for (int32_t k = 0; k < mpm->loads.count; k++)
       may = may || mpsi_signal_may_fail(mpm->loads.traction[k].signal[c]);
-    for (int32_t k = 0; k < MPSI_HOLDS; k++)
+    for (int32_t k = 0; k < mpm->boundaries.holds; k++)
       may = may || mpsi_signal_may_fail(mpm->boundaries.hold[k].signal[c]);
   }
   return may;

@@ -33,8 +33,8 @@ static void warn_about_chatter(mps_mpm *mpm, double dt) {
                                                              mps_particles_spacing(mpm->particles),
                                                              mpm->def.cell, mpm->def.courant);
     const double ratio = k * dt * dt / mpm->contact.least_mass;
-    if (!(ratio > CHATTER) || (mpm->run.warned_about_chatter >> b & 1)) continue;
-    mpm->run.warned_about_chatter |= UINT32_C(1) << b;
+    if (!(ratio > CHATTER) || mpm->contact.state[b].warned) continue;
+    mpm->contact.state[b].warned = true;
     mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
              "contact with body %d will chatter: k dt^2/m = %.3g, above %g; use a penalty k of at "
              "most %.4g or a dt of at most %.4g s",

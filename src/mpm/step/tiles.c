@@ -61,10 +61,8 @@ static void copy_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
                          const mpsi_worker *worker, double *parcel, bool pack) {
   for (int32_t q = 0; q < cells->pairs; q++)
     if (mpsi_mpm_has_penalty(mpm, cells, q))
-      parcel = mpsi_mpm_copy_nodes(
-          cells,
-          mpsi_mpm_penalty_tile(mpm, worker, mpm->contact.cell_pair[cells->first_pair + q].body),
-          sizeof(mpsi_penalty_node), parcel, pack);
+      parcel = mpsi_mpm_copy_nodes(cells, mpsi_mpm_penalty_tile(mpm, worker, q),
+                                   sizeof(mpsi_penalty_node), parcel, pack);
 }
 
 static void pack(void *data, int64_t k, int32_t number) {

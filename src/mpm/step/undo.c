@@ -55,7 +55,7 @@ static void put_impulses_back(mps_mpm *mpm) {
 /* The sums of boundaries, to their copies or back. */
 static void copy_sums(mps_mpm *mpm, bool back) {
   mpsi_boundary_sums *warm = mpm->undo.sums_room.item;
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
     mpsi_boundary_sums *sums = mpm->boundaries.hold[k].sums;
     if (!sums) continue;
     if (back)
@@ -71,10 +71,11 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   u->on = some_law_may_refuse(mpm);
   if (!u->on) return MPS_OK;
   int64_t most = MPSI_UNDO_COLUMNS, holds = 0;
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) holds += b->hold[k].sums != NULL;
+  for (int32_t k = 0; k < b->holds; k++) holds += b->hold[k].sums != NULL;
   for (int32_t k = 0; k < mpm->laws.count; k++) most += mpm->laws.law[k].columns;
   bool good =
       mpsi_room_ensure(mpm->context, &u->list_room, most, sizeof *u->column) &&
+      mpsi_room_ensure(mpm->context, &u->hold_room, b->holds, sizeof *b->hold) &&
       mpsi_room_ensure(mpm->context, &u->sums_room, holds, sizeof(mpsi_boundary_sums)) &&
       mpsi_room_ensure(mpm->context, &u->dashpot_room, b->dashpot_count, sizeof *b->dashpot);
   u->column = u->list_room.item;
@@ -84,7 +85,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   if (!good)
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(u->columns * mpm->p.count) * sizeof(double));
-  memcpy(u->hold, b->hold, sizeof u->hold);
+  memcpy(u->hold_room.item, b->hold, (size_t)b->holds * sizeof *b->hold);
   u->holds_dt = b->dt;
   copy_sums(mpm, false);
   keep_impulses(mpm);
@@ -106,7 +107,7 @@ void mpsi_mpm_undo(mps_mpm *mpm) {
   mpsi_boundaries *b = &mpm->boundaries;
   for (int32_t c = 0; c < u->columns; c++)
     memcpy(u->column[c], warm(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
-  memcpy(b->hold, u->hold, sizeof u->hold);
+  memcpy(b->hold, u->hold_room.item, (size_t)b->holds * sizeof *b->hold);
   b->dt = u->holds_dt;
   copy_sums(mpm, true);
   put_impulses_back(mpm);

@@ -13,7 +13,7 @@ typedef struct mpsi_undo {
   double **column; /* that the step writes; room for MPSI_UNDO_COLUMNS and all histories */
   int32_t columns;
   mpsi_room list_room, room, dashpot_room;
-  mpsi_boundary hold[MPSI_HOLDS];
+  mpsi_room hold_room; /* mpsi_boundary, of each number */
   double holds_dt;
   mpsi_room sums_room; /* mpsi_boundary_sums, of each boundary that has some */
   void *kept_impulses; /* of contacts, in the step before */

@@ -80,12 +80,14 @@ static mpsi_parted find_parted(const mps_mpm *mpm, const mpsi_cell_block *cells,
   return out;
 }
 
-/* Weights of the active nodes; returns the bodies that hold any of the stencil's, bit by bit. */
+#define HELD (MPSI_IMPULSE | MPSI_PENALTY)
+
+/* Weights of the active nodes; returns what bodies hold any of the stencil's: HELD bits. */
 MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                     const mpsi_worker *worker, int dim, int spline,
                                     const support *s, const mpsi_parted *parted, double *w) {
   const mpsi_stencil *at = &s->at;
-  uint32_t bodies = 0;
+  uint32_t held = 0;
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const double across = at->w[1][j] * at->w[2][k];
@@ -98,7 +100,7 @@ MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *c
         mpsi_mask there = {-1, -1, -1, -1}; /* in a register: the row is read as a vector soon */
         MPSI_UNROLL for (int i = 0; i <= spline; i++) {
           if (state[i] == 0) continue;
-          bodies |= worker->inside[t + i];
+          held |= state[i];
           const bool in = (state[i] & MPSI_INSIDE) != 0;
           if (state[i] & MPSI_OUTSIDE || (in && !active(mpm, cells, state[i], s, i, j, k)))
             there[i] = 0;
@@ -108,7 +110,7 @@ MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *c
       mpsi_put(w + 16 * k + 4 * j, row);
     }
   for (uint64_t left = parted->cut; left != 0; left &= left - 1) w[__builtin_ctzll(left)] = 0.0;
-  return bodies;
+  return held & HELD;
 }
 
 /* ---- the fit --------------------------------------------------------------------------------- */
@@ -140,7 +142,7 @@ MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cell_block *cel
                                   const mpsi_worker *worker, int dim, int spline,
                                   const mpsi_stencil *at, mpsi_shape_values *out) {
   double slope[3][4] = {{0.0}};
-  uint32_t bodies = 0;
+  uint32_t held = 0;
   for (int c = 0; c < dim; c++) mpsi_slopes(spline, -at->s[c][0], slope[c]);
   const mpsi_quad x = mpsi_get(at->w[0]), by_x = mpm->grid.inverse * mpsi_get(slope[0]);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
@@ -153,13 +155,13 @@ MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cell_block *cel
       mpsi_put(out->gradient[1] + n, x * (mpm->grid.inverse * slope[1][j] * z));
       if (dim == 3) mpsi_put(out->gradient[2] + n, x * (mpm->grid.inverse * y * slope[2][k]));
       const int t = mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
-      for (int i = 0; i <= spline && cells->pairs > 0; i++) bodies |= worker->inside[t + i];
+      for (int i = 0; i <= spline && cells->pairs > 0; i++) held |= worker->state[t + i];
     }
   out->determinant = 1.0;
-  return bodies;
+  return held & HELD;
 }
 
-/* Returns the bodies that hold any of the stencil's nodes, or cut it. */
+/* Returns what bodies hold any of the stencil's nodes, or cut it: HELD bits. */
 MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
                          const mpsi_worker *worker, int dim, int spline, const support *s,
                          const mpsi_parted *parted, mpsi_shape_values *out) {
@@ -167,8 +169,8 @@ MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
   out->across = parted->across;
   if (mpm->standard) return take_splines(mpm, cells, worker, dim, spline, at, out);
   double q[4][4];
-  uint32_t bodies = active_weights(mpm, cells, worker, dim, spline, s, parted, out->w);
-  if (parted->cut != 0) bodies |= mpm->contact.thin;
+  uint32_t held = active_weights(mpm, cells, worker, dim, spline, s, parted, out->w);
+  if (parted->cut != 0) held |= MPSI_IMPULSE;
   moments(dim, spline, at, out->w, q);
   const double mass = q[0][0];
   out->determinant =
@@ -188,7 +190,7 @@ MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
           mpsi_put(out->gradient[r - 1] + n, value * mpm->grid.inverse);
       }
     }
-  return bodies;
+  return held;
 }
 
 /* ---- transfers ------------------------------------------------------------------------------- */
@@ -224,14 +226,13 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
 MPSI_INLINE bool is_across(const mpsi_shape_values *f, int n) { return f->across >> n & 1; }
 
 /* Momentum to the tile, force and excess mass to the tile of forces, as all particles of the block.
- * `bodies` hold nodes of the support. */
-MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                         const mpsi_worker *worker, int dim, int spline, int64_t p,
-                         const support *at, const mpsi_shape_values *f, uint32_t bodies) {
+ * `held`: what bodies hold nodes of the support. */
+MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+                         int64_t p, const support *at, const mpsi_shape_values *f, uint32_t held) {
   const bool by_weight = mpm->by_weight;
   const double m = mpm->p.m[p];
   source s = source_of(mpm, dim, p);
-  if (mpm->run.moments && mpsi_keeps_spin(mpm, cells, bodies)) {
+  if (mpm->run.moments && mpsi_keeps_spin(mpm, held)) {
     double second[4][4];
     moments(dim, spline, &at->at, f->phi, second);
     s.turns = !mpsi_give_spin(dim, spline, mpm->def.cell, second, s.L, s.turn);
@@ -275,26 +276,46 @@ static int tile_node_of(const mpsi_support *s, int i, int j, int k) {
                          (s->corner[2][k] ? side : 0) + s->local[2][k] / plane);
 }
 
+/* Whether the body of the block's pair `number` holds a node of the stencil, in the domain or not.
+ */
+static bool holds_some(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                       const mpsi_support *s, int32_t number) {
+  const int32_t body = mpm->contact.cell_pair[cells->first_pair + number].body;
+  bool any = false;
+  if (mpsi_by_impulses(mpm->contact.handle[body])) return false;
+  MPSI_FOR_NODES(dim, spline) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[mpsi_support_block(cells, s, i, j, k)];
+    if (!nodes->inside) continue;
+    int32_t t = nodes->first_pair;
+    while (mpm->contact.node_pair[t].body != body) t++;
+    any = any ||
+          mpm->contact.held[(int64_t)t * mpm->grid.block_nodes + mpsi_support_local(s, i, j, k)];
+    (void)n;
+  }
+  return any;
+}
+
 /* Normal force and slip of a particle against one body, Nakamura (28)-(30). */
 MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells,
                                  const mpsi_worker *worker, int dim, int spline, int64_t p,
-                                 const support *at, const mpsi_shape_values *f,
-                                 mpsi_cell_pair *pair) {
+                                 const support *at, const mpsi_shape_values *f, int32_t number) {
+  mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + number];
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
   if (mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
       !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
     return;
   pair->in_contact = true;
-  pair->contacts[c.part]++;
+  mpsi_pair_load *load = &mpm->contact.load[pair->first_load + c.part];
+  load->contacts++;
   if (c.depth > pair->deepest) pair->deepest = c.depth, pair->deep = p;
   double arm[3], reaction[3];
   for (int a = 0; a < 3; a++) arm[a] = c.x[a] - body->pose.x[a], reaction[a] = -c.force[a];
-  mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
+  mpsi_contact_add_load(&load->by, arm, reaction);
   MPSI_FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
     mpsi_penalty_node *to =
-        mpsi_mpm_penalty_tile(mpm, worker, pair->body) + tile_node_of(&at->nodes, i, j, k);
+        mpsi_mpm_penalty_tile(mpm, worker, number) + tile_node_of(&at->nodes, i, j, k);
     const double mass = mpm->p.m[p] * f->phi[n];
     double slip[3] = {0.0}, force[3] = {0.0};
     for (int a = 0; a < dim; a++) slip[a] = mass * c.slip[a], force[a] = f->phi[n] * c.force[a];
@@ -333,7 +354,7 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
     }
     mpsi_node_position(mpm, cells->at, local, arm);
     for (int a = 0; a < 3; a++) arm[a] -= body->pose.x[a], reaction[a] = -mass * slip[a];
-    mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
+    mpsi_contact_add_load(&mpm->contact.load[pair->first_load + c.part].by, arm, reaction);
   }
 }
 
@@ -346,13 +367,11 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   make_support(mpm, cells, dim, spline, particle, &at);
   const mpsi_parted parted = find_parted(mpm, cells, particle, &at.at);
   if (cells->thin) mpm->contact.across[particle] = parted; /* for the way back */
-  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &parted, &f);
-  scatter(mpm, cells, worker, dim, spline, particle, &at, &f, bodies);
-  for (int32_t q = 0; bodies && q < cells->pairs; q++) {
-    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (bodies >> pair->body & 1)
-      scatter_contact(mpm, cells, worker, dim, spline, particle, &at, &f, pair);
-  }
+  const uint32_t held = fit(mpm, cells, worker, dim, spline, &at, &parted, &f);
+  scatter(mpm, worker, dim, spline, particle, &at, &f, held);
+  for (int32_t q = 0; held & MPSI_PENALTY && q < cells->pairs; q++)
+    if (holds_some(mpm, cells, dim, spline, &at.nodes, q))
+      scatter_contact(mpm, cells, worker, dim, spline, particle, &at, &f, q);
 }
 
 /* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
@@ -432,7 +451,7 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   make_support(mpm, cells, dim, spline, particle, &at);
   const mpsi_parted none = {0, 0};
   const mpsi_parted *parted = cells->thin ? &mpm->contact.across[particle] : &none;
-  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, parted, &f);
+  const uint32_t held = fit(mpm, cells, worker, dim, spline, &at, parted, &f);
   mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum}, moment[3] = {sum, sum, sum};
   MPSI_FOR_NODES(dim, spline) {
     const int t = mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k);
@@ -454,15 +473,15 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
     }
   }
   for (int d = 0; d < dim; d++) mpsi_put(out->slope[d], by[d]), mpsi_put(out->derivative[d], by[d]);
-  if (!bodies && !mpm->standard)
+  if (!held && !mpm->standard)
     find_strain(mpm, cells, worker, dim, spline, &at, &f, out->derivative);
-  if (mpsi_keeps_spin(mpm, cells, bodies))
+  if (mpsi_keeps_spin(mpm, held))
     mpsi_take_spin(dim, spline, mpm->grid.inverse, moment, out->slope);
   if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, out->own);
-  for (int32_t q = 0; bodies && q < cells->pairs; q++) {
-    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (bodies >> pair->body & 1) share_friction(mpm, cells, dim, spline, particle, &at, &f, pair);
-  }
+  for (int32_t q = 0; held & MPSI_PENALTY && q < cells->pairs; q++)
+    if (holds_some(mpm, cells, dim, spline, &at.nodes, q))
+      share_friction(mpm, cells, dim, spline, particle, &at, &f,
+                     &mpm->contact.cell_pair[cells->first_pair + q]);
 }
 
 /* ---- variants -------------------------------------------------------------------------------- */

@@ -9,7 +9,7 @@
 /* Particles of one stencil; lanes without one have the place of the first, and no mass. */
 typedef struct batch {
   int at[3];                      /* lowest node in the tile */
-  uint32_t bodies;                /* that hold any of them */
+  uint32_t held;                  /* MPSI_IMPULSE where bodies hold any of them */
   mpsi_quad s[3][4], along[3][4]; /* cells, to the nodes of each axis; weights */
   mpsi_quad w[MPSI_STENCIL];      /* of the active nodes, else 0 */
   mpsi_quad q[4][4];              /* inverse of M; rows from 1 on over h */
@@ -112,7 +112,7 @@ MPSI_INLINE bool may_be_full(const mpsi_worker *worker, int dim, int spline, int
       uint32_t row;
       memcpy(&row, worker->state + first + mpsi_tile_index(0, j, k), sizeof row);
       row &= in * 0xffu;
-      other |= row & ~(in * (MPSI_INSIDE | MPSI_REACHED)); /* outside, ... */
+      other |= row & ~(in * (MPSI_INSIDE | MPSI_REACHED | MPSI_IMPULSE)); /* outside, ... */
       other |= (row / MPSI_INSIDE ^ row / MPSI_REACHED) & in;
     }
   return other == 0;
@@ -226,13 +226,13 @@ MPSI_INLINE void keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
 /* Particles from number k of the chunk on, `n` of them, the first of which is particle p: as
  * make_batch has made them for the scatter. */
 MPSI_INLINE void take_batch(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                            const mpsi_places *places, int k, int64_t p, int n, uint32_t bodies,
+                            const mpsi_places *places, int k, int64_t p, int n, uint32_t held,
                             batch *out) {
   const int64_t slot = cells->first_fit + (p - cells->begin);
   mpsi_quad all[12], upper[4][4];
   mpsi_mask active = {0};
   int count = 0;
-  out->bodies = bodies;
+  out->held = held;
   place_batch(dim, spline, places, k, n, out);
   for (int part = 0; part < (dim == 2 ? 8 : 12); part += 4) {
     for (int l = 0; l < 4; l++)
@@ -257,10 +257,10 @@ MPSI_INLINE void take_batch(const mps_mpm *mpm, const mpsi_cell_block *cells, in
 
 MPSI_INLINE void make_batch(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker, int dim, int spline,
-                            const mpsi_places *places, int k, int64_t p, int n, uint32_t bodies,
+                            const mpsi_places *places, int k, int64_t p, int n, uint32_t held,
                             batch *out) {
   mpsi_quad upper[4][4];
-  out->bodies = bodies;
+  out->held = held;
   place_batch(dim, spline, places, k, n, out);
   find_active(mpm, cells, worker, dim, spline, out);
   moments(dim, spline, out, out->w, upper);
@@ -269,17 +269,13 @@ MPSI_INLINE void make_batch(const mps_mpm *mpm, const mpsi_cell_block *cells,
   finish_fit(mpm, dim, upper, out);
 }
 
-/* Bodies that hold nodes of a stencil, bit by bit; 0 where its particles are least_squares.c's. */
-MPSI_INLINE uint32_t bodies_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                               const mpsi_worker *worker, int dim, int spline, int32_t first) {
-  uint32_t bodies = 0;
+/* MPSI_IMPULSE where bodies hold nodes of a stencil; 0 where its particles are least_squares.c's.
+ */
+MPSI_INLINE uint32_t held_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int dim, int spline, int32_t first) {
   if (mpm->standard || mpm->by_weight || cells->thin || cells->first_fit < 0) return 0;
-  MPSI_FOR_NODES(dim, spline) bodies |= worker->inside[first + mpsi_tile_index(i, j, k)], (void)n;
-  for (int32_t q = 0; q < cells->pairs; q++) {
-    const int32_t body = mpm->contact.cell_pair[cells->first_pair + q].body;
-    if (bodies >> body & 1 && !mpsi_by_impulses(mpm->contact.handle[body])) return 0;
-  }
-  return bodies;
+  const uint32_t state = mpsi_support_state(worker, dim, spline, first);
+  return state & MPSI_PENALTY ? 0 : state & MPSI_IMPULSE;
 }
 
 /* ---- particles to nodes ---------------------------------------------------------------------- */
@@ -458,13 +454,11 @@ MPSI_INLINE void give_rows(const mpsi_worker *worker, int dim, int spline, const
     }
 }
 
-MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                         const mpsi_worker *worker, int dim, int spline, const batch *b, int64_t p,
-                         int lanes) {
+MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+                         const batch *b, int64_t p, int lanes) {
   source s;
   find_source(mpm, dim, b, p, lanes, &s);
-  if (mpm->run.moments && mpsi_keeps_spin(mpm, cells, b->bodies) &&
-      give_spin(mpm, dim, spline, b, &s))
+  if (mpm->run.moments && mpsi_keeps_spin(mpm, b->held) && give_spin(mpm, dim, spline, b, &s))
     give_rows(worker, dim, spline, b, &s, true, lanes);
   else
     give_rows(worker, dim, spline, b, &s, false, lanes);
@@ -518,8 +512,8 @@ MPSI_INLINE void sum_row(int dim, int spline, const batch *b, const mpsi_node *n
   }
 }
 
-MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                        int dim, int spline, const batch *b, mpsi_gathered *out, int at) {
+MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+                        const batch *b, mpsi_gathered *out, int at) {
   node_sums sum = {.v = {{0.0}}};
   mpsi_quad L[3][3];
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
@@ -534,8 +528,7 @@ MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_cell_block *cells, const 
       for (int c = 1; c <= dim; c++) L[a][d] += b->q[1 + d][c] * sum.by[a][c];
       mpsi_put(out->derivative[dim * a + d] + at, L[a][d]);
     }
-  if (mpsi_keeps_spin(mpm, cells, b->bodies))
-    take_spin(dim, spline, mpm->grid.inverse, sum.moment, L);
+  if (mpsi_keeps_spin(mpm, b->held)) take_spin(dim, spline, mpm->grid.inverse, sum.moment, L);
   for (int a = 0; a < dim; a++) {
     mpsi_put(out->v[a] + at, sum.v[a]);
     for (int d = 0; d < dim; d++) mpsi_put(out->slope[dim * a + d] + at, L[a][d]);
@@ -588,15 +581,15 @@ MPSI_INLINE mpsi_batched scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells
                                       const mpsi_worker *worker, int dim, int spline,
                                       const mpsi_places *places, int64_t chunk, int begin,
                                       int end) {
-  const uint32_t bodies = bodies_of(mpm, cells, worker, dim, spline, places->first[begin]);
-  if (!bodies) return MPSI_BATCHED_NOT;
+  const uint32_t held = held_of(mpm, cells, worker, dim, spline, places->first[begin]);
+  if (!held) return MPSI_BATCHED_NOT;
   if (find_full(mpm, cells, worker, dim, spline, places, chunk, begin, end))
     return MPSI_BATCHED_FULL;
   for (int k = begin; k < end; k += 4) {
     const int n = end - k < 4 ? end - k : 4;
     batch b;
-    make_batch(mpm, cells, worker, dim, spline, places, k, chunk + k, n, bodies, &b);
-    scatter(mpm, cells, worker, dim, spline, &b, chunk + k, n);
+    make_batch(mpm, cells, worker, dim, spline, places, k, chunk + k, n, held, &b);
+    scatter(mpm, worker, dim, spline, &b, chunk + k, n);
   }
   return MPSI_BATCHED;
 }
@@ -605,14 +598,14 @@ MPSI_INLINE mpsi_batched gather_body(mps_mpm *mpm, const mpsi_cell_block *cells,
                                      const mpsi_worker *worker, int dim, int spline,
                                      const mpsi_places *places, int64_t chunk, int begin, int end,
                                      mpsi_gathered *out) {
-  const uint32_t bodies = bodies_of(mpm, cells, worker, dim, spline, places->first[begin]);
-  if (!bodies) return MPSI_BATCHED_NOT;
+  const uint32_t held = held_of(mpm, cells, worker, dim, spline, places->first[begin]);
+  if (!held) return MPSI_BATCHED_NOT;
   if (are_full(mpm, cells, chunk, begin, end)) return MPSI_BATCHED_FULL;
   for (int k = begin; k < end; k += 4) {
     const int n = end - k < 4 ? end - k : 4;
     batch b;
-    take_batch(mpm, cells, dim, spline, places, k, chunk + k, n, bodies, &b);
-    gather(mpm, cells, worker, dim, spline, &b, out, k);
+    take_batch(mpm, cells, dim, spline, places, k, chunk + k, n, held, &b);
+    gather(mpm, worker, dim, spline, &b, out, k);
   }
   return MPSI_BATCHED;
 }

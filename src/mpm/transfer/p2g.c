@@ -324,8 +324,8 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
     pair->in_contact = false;
     pair->deepest = 0.0;
-    memset(pair->load, 0, sizeof pair->load);
-    memset(pair->contacts, 0, sizeof pair->contacts);
+    memset(mpm->contact.load + pair->first_load, 0,
+           (size_t)mpm->contact.handle[pair->body]->parts * sizeof *mpm->contact.load);
   }
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   if (cells->first_fit >= 0)

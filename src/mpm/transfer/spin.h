@@ -19,19 +19,12 @@
 
 #define MPSI_LEAST_INERTIA 0.1 /* of a full support: below, turning would take too large a spin */
 
-/* Whether a particle that has nodes of `bodies` (bit by bit) in its stencil keeps its moment: not
- * in axisymmetry, where particles are rings, nor with penalty contact, which is as published. */
-MPSI_INLINE bool mpsi_keeps_spin(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                 uint32_t bodies) {
-  bool impulses = false;
-  if (bodies == 0 || mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || mpm->standard ||
-      mpm->by_weight)
-    return false;
-  for (int32_t q = 0; q < cells->pairs; q++) {
-    const int32_t body = mpm->contact.cell_pair[cells->first_pair + q].body;
-    impulses = impulses || (bodies >> body & 1 && mpsi_by_impulses(mpm->contact.handle[body]));
-  }
-  return impulses;
+/* Whether a particle whose stencil has nodes in bodies (`held`: MPSI_IMPULSE, MPSI_PENALTY or both)
+ * keeps its moment: not in axisymmetry, where particles are rings, nor with penalty contact, which
+ * is as published. */
+MPSI_INLINE bool mpsi_keeps_spin(const mps_mpm *mpm, uint32_t held) {
+  return (held & MPSI_IMPULSE) != 0 && mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC &&
+         !mpm->standard && !mpm->by_weight;
 }
 
 /* Sets the spin of the slopes L (1/s) by sum phi s_a v of the nodes, one for each axis a. */

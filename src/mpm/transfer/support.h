@@ -55,11 +55,9 @@ MPSI_INLINE int mpsi_support_local(const mpsi_support *s, int i, int j, int k) {
 MPSI_INLINE const double *mpsi_next_normal(const mps_mpm *mpm, const mpsi_node_block *nodes,
                                            int local, int32_t *pair) {
   if (nodes->near < 0) return NULL;
-  const uint32_t inside = mpm->contact.inside[mpsi_first_node(mpm, nodes->near) + local];
   while (*pair < nodes->first_pair + nodes->pairs) {
-    const int32_t t = (*pair)++;
-    if (inside >> mpm->contact.node_pair[t].body & 1)
-      return mpm->contact.normal[(int64_t)t * mpm->grid.block_nodes + local];
+    const int64_t at = (int64_t)(*pair)++ * mpm->grid.block_nodes + local;
+    if (mpm->contact.held[at]) return mpm->contact.normal[at];
   }
   return NULL;
 }
