@@ -30,6 +30,7 @@ raise StaleError once particles were added, removed or sorted. To write:
 
 from . import _objects
 from ._arrays import Edit, Field
+from ._block import Block
 from ._call import Error, Result, StaleError, column, functions, library, results
 from ._cdef import VERSION as __version__
 from ._objects import Context, Object, Particles
@@ -37,7 +38,7 @@ from ._objects import Context, Object, Particles
 _classes = {made.__name__: made for made in [*results.values(), *_objects.classes.values()]}
 _free = [name for name in functions if name != "context_create" and
          not any(_objects.takes(kind, name) for kind in _objects.classes)]
-__all__ = ["Context", "Edit", "Error", "Field", "Object", "Particles", "Result", "StaleError", "__version__", "column",
+__all__ = ["Block", "Context", "Edit", "Error", "Field", "Object", "Particles", "Result", "StaleError", "__version__", "column",
            "library", *_free]
 
 

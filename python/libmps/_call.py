@@ -99,7 +99,9 @@ def same(pointer, other):
 
 def column(pointer, count):
     """The `count` numbers (double or int64_t) behind a pointer that a callback was given, as an array:
-    for the duration of the callback."""
+    for the duration of the callback. An array stays as it is."""
+    if isinstance(pointer, numpy.ndarray):
+        return pointer[:count]
     if not pointer:
         return None
     dtype = _DTYPES[ffi.typeof(pointer).item.cname]
@@ -150,9 +152,16 @@ class Call:
     def callback(self, kind, function):
         """A C function that calls `function` without the first argument, C's `user`."""
 
+        blocks = [k for k, arg in enumerate(kind.args[1:]) if arg.cname == "mps_material_block *"]
+
         def called(_user, *values):
             # The same error for all: the first exception is the one that is raised.
-            answer = function(*[self.wrap(value) for value in values])
+            if blocks:
+                block = _block.Block(values[blocks[0]])
+                answer = function(block)
+                block._end()
+            else:
+                answer = function(*[self.wrap(value) for value in values])
             if kind.result.kind == "void":
                 return None
             return 0 if answer is None else answer
@@ -162,6 +171,9 @@ class Call:
 
         stop = library.MPS_ERROR_CANCELLED
         error = None if kind.result.kind == "void" else stop if kind.result.kind == "enum" else 1
+        if isinstance(getattr(function, "address", None), int):  # compiled, by numba's cfunc
+            self.alive.append(function)
+            return ffi.cast(kind, function.address)
         made = ffi.callback(kind, called, error=error, onerror=failed)
         self.alive.append(made)
         return made
@@ -469,3 +481,6 @@ def function_or_constant(name):
             return found
         return lambda *values: to_python(found(*values))
     raise AttributeError(f"libmps has no {name!r}")
+
+
+from . import _block  # noqa: E402 (it uses ffi)

@@ -186,6 +186,19 @@ def takes(kind, name):
     return bool(args) and args[0].cname == f"mps_{kind} *"
 
 
+class _Shown:
+    """Stands in a signature, where it is shown as its text."""
+
+    def __init__(self, text):
+        self.text = text
+
+    def __repr__(self):
+        return self.text
+
+
+_DEFAULT = _Shown("...")  # the member's, as the docstring says
+
+
 def _word(name):
     return name + "_" if name in ("from", "lambda", "in", "is") else name
 
@@ -196,12 +209,12 @@ def described(function, name, itself=True):
     parameters = [inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)] if itself else []
     for k, (word, kind) in enumerate(arguments):
         default = None if k >= len(arguments) - optional else inspect.Parameter.empty
-        parameters.append(inspect.Parameter(_word(word), inspect.Parameter.POSITIONAL_ONLY, annotation=kind,
+        parameters.append(inspect.Parameter(_word(word), inspect.Parameter.POSITIONAL_ONLY, annotation=_Shown(kind),
                                             default=default))
-    parameters += [inspect.Parameter(_word(word), inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=...)
+    parameters += [inspect.Parameter(_word(word), inspect.Parameter.KEYWORD_ONLY, annotation=_Shown(kind), default=_DEFAULT)
                    for word, kind in keywords]
     function.__doc__ = text
-    function.__signature__ = inspect.Signature(parameters, return_annotation=result)
+    function.__signature__ = inspect.Signature(parameters, return_annotation=_Shown(result))
     return function
 
 
