@@ -2,7 +2,7 @@
 
 usage: make_cdef.py CC INCLUDE OUT
 
-CC preprocesses INCLUDE/mps/mps.h. The result is a Python module with the text and the SONAME.
+CC preprocesses INCLUDE/mps/mps.h. The result is a Python module with the text, the version and the SONAME.
 """
 
 import re
@@ -67,7 +67,8 @@ def main():
     version = dict(re.findall(r"#define MPS_VERSION_(\w+) (\d+)", text))
     soname = f"libmps.so.{version['MAJOR']}.{version['MINOR']}"
     rows = "".join(f"    {name!r}: {names!r},\n" for name, names in parameters(text).items())
-    out.write_text(f'"""Written by make_cdef.py."""\n\nSONAME = {soname!r}\n'
+    number = ".".join(version[part] for part in ("MAJOR", "MINOR", "PATCH"))
+    out.write_text(f'"""Written by make_cdef.py."""\n\nVERSION = {number!r}\nSONAME = {soname!r}\n'
                    f'PARAMETERS = {{\n{rows}}}\nTEXT = r"""\n{text}"""\n')
 
 

@@ -14,6 +14,7 @@ bool frame_write(app *a, mps_particles *particles, const char *directory, const 
   if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path)
     return app_error(a, "the path of %s is too long", name);
   def.path = path;
+  def.xdmf = 1;
   mps_status status = mps_recorder_create(a->context, particles, &def, &recorder);
   if (status == MPS_ERROR_UNSUPPORTED) return true;
   if (status == MPS_OK) status = mps_recorder_write(recorder, 0.0);
@@ -38,6 +39,7 @@ mps_status frame_series(app *a, mps_particles *particles, const char *directory,
   else
     snprintf(path, sizeof path, "%s/%s-from-%g.vtkhdf", directory, what, from);
   def.path = path;
+  def.xdmf = 1;
   const mps_status status = mps_recorder_create(a->context, particles, &def, out);
   if (status == MPS_OK) app_wrote(a, path);
   return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status;

@@ -16,6 +16,7 @@ static mps_status open_series(mps_context *context, pile *p) {
   if (snprintf(path, sizeof path, "%s/%s", p->s.out, name) >= (int)sizeof path)
     return MPS_OK; /* the CSV files report it */
   def.path = path;
+  def.xdmf = 1;
   def.fields = fields;
   def.field_count = sizeof fields / sizeof *fields;
   mps_particles *whole;

@@ -68,6 +68,7 @@ static bool open_recorder(app *a, const settings *s, double now, files *f) {
   static const char *const fields[] = {"displacement", "rotation", "velocity",
                                        "acceleration", "pressure", "shear_velocity"};
   def.path = path;
+  def.xdmf = 1;
   def.fields = fields;
   def.field_count = 6;
   const bool ok = app_check(a, mps_recorder_create(a->context, whole, &def, &f->recorder));

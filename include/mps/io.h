@@ -27,6 +27,10 @@ typedef struct mps_recorder_def {
   const char *const *fields; /* names of the fields to write; NULL (default): all of the set.
                                 Position and id are always written. */
   int64_t field_count;       /* number of names */
+  int32_t xdmf; /* 1: writes PATH.xdmf too (x.xdmf for x.vtkhdf), a text that names the frames, for
+                   programs that read no series of VTKHDF, such as ParaView before 5.12; both files
+                   stay together. 0 (default): no */
+  int32_t reserved;
 } mps_recorder_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to

@@ -28,18 +28,33 @@ raise StaleError once particles were added, removed or sorted. To write:
         v[:, 0] = 1.0
 """
 
-from ._call import Error, StaleError, column, functions, library
-from ._objects import Context, Object
+from . import _objects
+from ._arrays import Edit, Field
+from ._block import Block
+from ._call import Error, Result, StaleError, column, functions, library, results
+from ._cdef import VERSION as __version__
+from ._objects import Context, Object, Particles
 
-__all__ = ["Context", "Error", "Object", "StaleError", "column", "library", *functions]
+_classes = {made.__name__: made for made in [*results.values(), *_objects.classes.values()]}
+_free = [name for name in functions if name != "context_create" and
+         not any(_objects.takes(kind, name) for kind in _objects.classes)]
+__all__ = ["Block", "Context", "Edit", "Error", "Field", "Object", "Particles", "Result", "StaleError", "__version__", "column",
+           "library", *_free]
 
 
 def __getattr__(name):
-    """Functions without an object (status_text, version), constants (DOF_X, MPM_SPACE)."""
+    """Functions without an object (status_text, version), constants (DOF_X, MPM_GEOMETRY_SPACE), classes of objects
+    and results (Mpm, Totals)."""
     from . import _call
 
-    return _call.function_or_constant(name)
+    if name.startswith("_"):
+        raise AttributeError(f"libmps has no {name!r}")
+    if name in _classes:
+        return _classes[name]
+    found = _call.function_or_constant(name)
+    return _objects.described(found, name, False) if name in _free else found
 
 
 def __dir__():
-    return sorted(__all__)
+    constants = [name[4:] for name in dir(library) if name.startswith("MPS_")]
+    return sorted({*__all__, *constants, *_classes})

@@ -7,19 +7,23 @@ from types import SimpleNamespace
 import cffi
 import numpy
 
-from . import _cdef, _shapes
+from . import _cdef, _docs, _shapes
 
 ffi = cffi.FFI()
 ffi.cdef(_cdef.TEXT)
 
 
 def _open():
-    """The library beside the package, as installed; else where LIBMPS_LIBRARY or the system says."""
+    """The library that LIBMPS_LIBRARY names; else the one in the package (a wheel) or three folders above (as
+    `cmake --install` has them); else where the system looks."""
     named = os.environ.get("LIBMPS_LIBRARY")
     if named:
         return ffi.dlopen(named)
-    beside = Path(__file__).resolve().parents[3] / _cdef.SONAME
-    return ffi.dlopen(str(beside) if beside.exists() else _cdef.SONAME)
+    here = Path(__file__).resolve()
+    for folder in (here.parent, here.parents[3] if len(here.parents) > 3 else here.parent):
+        if (folder / _cdef.SONAME).exists():
+            return ffi.dlopen(str(folder / _cdef.SONAME))
+    return ffi.dlopen(_cdef.SONAME)
 
 
 library = _open()
@@ -48,11 +52,25 @@ class StaleError(Exception):
     """An array of a field whose particles were added, removed or sorted since."""
 
 
+class Result(SimpleNamespace):
+    """A struct that C has filled: its members are attributes."""
+
+
+def class_name(kind):
+    """mps_mpm_totals: MpmTotals."""
+    return "".join(part.capitalize() for part in kind.removeprefix("mps_").split("_"))
+
+
+#: Classes of results by the name of the C struct.
+results = {kind: type(class_name(kind), (Result,), {"__doc__": text, "__module__": "libmps"})
+           for kind, text in _docs.STRUCTS.items() if kind not in ("mps_error", "mps_edit")}
+
+
 # ---- what C gives -------------------------------------------------------------------------------
 
 
 def to_python(value):
-    """A struct as a namespace, a C string as str, an array in a struct as a NumPy array; numbers stay.
+    """A struct as a Result, a C string as str, an array in a struct as a NumPy array; numbers stay.
     Pointers come as they are."""
     if not isinstance(value, ffi.CData):
         return value
@@ -60,7 +78,8 @@ def to_python(value):
     if kind.kind == "pointer" and kind.item.kind == "struct" and kind.item.fields:
         return to_python(value[0]) if value else None
     if kind.kind == "struct":
-        return SimpleNamespace(**{name: to_python(getattr(value, name)) for name, _ in kind.fields})
+        made = results.get(kind.cname, Result)
+        return made(**{name: to_python(getattr(value, name)) for name, _ in kind.fields})
     if kind.kind == "array" and kind.item.cname == "char":
         return ffi.string(value).decode()
     if kind.kind == "array" and kind.item.kind == "pointer":
@@ -80,7 +99,9 @@ def same(pointer, other):
 
 def column(pointer, count):
     """The `count` numbers (double or int64_t) behind a pointer that a callback was given, as an array:
-    for the duration of the callback."""
+    for the duration of the callback. An array stays as it is."""
+    if isinstance(pointer, numpy.ndarray):
+        return pointer[:count]
     if not pointer:
         return None
     dtype = _DTYPES[ffi.typeof(pointer).item.cname]
@@ -131,18 +152,28 @@ class Call:
     def callback(self, kind, function):
         """A C function that calls `function` without the first argument, C's `user`."""
 
+        blocks = [k for k, arg in enumerate(kind.args[1:]) if arg.cname == "mps_material_block *"]
+
         def called(_user, *values):
             # The same error for all: the first exception is the one that is raised.
-            answer = function(*[self.wrap(value) for value in values])
+            if blocks:
+                block = _block.Block(values[blocks[0]])
+                answer = function(block)
+                block._end()
+            else:
+                answer = function(*[self.wrap(value) for value in values])
             if kind.result.kind == "void":
                 return None
             return 0 if answer is None else answer
 
-        def failed(_type, exception, _trace):
-            self.raised.append(exception)
+        def failed(_type, exception, trace):
+            self.raised.append(exception.with_traceback(trace))  # the user's own lines are in it
 
         stop = library.MPS_ERROR_CANCELLED
         error = None if kind.result.kind == "void" else stop if kind.result.kind == "enum" else 1
+        if isinstance(getattr(function, "address", None), int):  # compiled, by numba's cfunc
+            self.alive.append(function)
+            return ffi.cast(kind, function.address)
         made = ffi.callback(kind, called, error=error, onerror=failed)
         self.alive.append(made)
         return made
@@ -173,6 +204,9 @@ class Call:
                 raise TypeError(f"{kind.cname} has no member {name!r}: it has {known}")
             self.assign(made, name, fields[name].type, value)
             self.measure(kind.cname, name, fields[name].type, value)
+        for name, formula in _shapes.STRUCTS.get(kind.cname, {}).items():  # ids alone say how many they are
+            if formula in fields and formula not in members and members.get(name) is not None:
+                setattr(made, formula, len(members[name]))
         for name, field in fields.items():
             if field.type.kind == "primitive":
                 self.lengths[name] = getattr(made, name)
@@ -283,47 +317,97 @@ def _output(kind):
     return None
 
 
-def call(name, owner, values, members):
-    """Calls mps_`name`: `owner` (None: no object) and `values` are its arguments, `members` those of its
-    definition. Returns (results, the call)."""
-    sized = f"mps_{name}_sized"
-    full = sized if sized in _cdef.PARAMETERS else f"mps_{name}"
-    function = getattr(library, full)
-    kinds, names = ffi.typeof(function).args, _cdef.PARAMETERS[full]
-    state = Call(None if owner is None else owner.context._raised)
-    given = list(([owner] if owner is not None else []) + list(values))
-    arguments, outputs = [], []
-    members_used = not members
-    for kind, parameter in zip(kinds, names):
-        constant = parameter.startswith("const ")
-        word = parameter.removeprefix("const ")
+class _Arguments:
+    """The arguments of one call in C's order, from those that Python was given; what C writes and the caller left
+    out is made here, and returned."""
+
+    def __init__(self, name, owner, state):
+        self.name, self.owner, self.state = name, owner, state
+        self.full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
+        self.formulas = _shapes.FUNCTIONS.get(f"mps_{name}", {})
+        self.values, self.outputs = [], []
+        self.left_out = []  # (place, name, type) of arrays
+        self.capacity = self.count = None  # places of `capacity` where it was left out, of the count that goes with it
+
+    def take(self, given, members):
+        kinds = ffi.typeof(getattr(library, self.full)).args
+        for kind, parameter in zip(kinds, _cdef.PARAMETERS[self.full]):
+            self.one(kind, parameter.removeprefix("const "), parameter.startswith("const "), given, members)
+        if given or members:
+            extra = "too many arguments" if given else f"no definition that has {', '.join(members)}"
+            raise TypeError(f"{self.name}(): {extra}: its arguments are {signature(self.name)}")
+
+    def one(self, kind, word, constant, given, members):
+        state = self.state
         if word == "user" and kind.cname == "void *":
-            arguments.append(ffi.NULL)
-        elif full == sized and word == "size":
-            arguments.append(ffi.sizeof(outputs[-1]))
+            self.values.append(ffi.NULL)
+        elif word == "size" and self.full.endswith("_sized"):
+            self.values.append(ffi.sizeof(self.outputs[-1]))
         elif constant and _is_struct(kind) and word == "def" and not (given and isinstance(given[0], dict)):
-            arguments.append(state.struct(kind.item, members))
-            members_used = True
-        elif word == "count" and "capacity" in state.lengths and kind.cname == "int64_t *":
-            outputs.append(_output(kind))  # how many there are stands before the arrays
-            arguments.append(outputs[-1])
+            self.values.append(state.struct(kind.item, dict(members)))
+            members.clear()
+        elif word == "count" and kind.cname == "int64_t *" and ("capacity" in state.lengths):
+            self.count = len(self.values)  # how many there are stands before the arrays
+            self.output(_output(kind))
         elif given:
             value = given.pop(0)
-            arguments.append(state.to_c(value, kind, constant))
-            state.measure(f"mps_{name}", word, kind, value)
+            self.values.append(state.to_c(value, kind, constant))
+            state.measure(f"mps_{self.name}", word, kind, value)
             state.lengths[word] = value
+        elif word == "capacity":
+            self.capacity = len(self.values)
+            state.lengths[word] = 0
+            self.values.append(0)
+        elif kind.kind == "function":
+            self.values.append(ffi.NULL)
+        elif word in self.formulas and not constant:
+            self.left_out.append((len(self.values), word, kind))
+            self.values.append(ffi.NULL)
         else:
             made = None if constant else _output(kind)
             if made is None:
-                raise TypeError(f"{name}() lacks {word!r}: its arguments are {signature(name)}")
-            outputs.append(made)
-            arguments.append(made)
-    if given or not members_used:
-        extra = "too many arguments" if given else f"no definition that has {', '.join(members)}"
-        raise TypeError(f"{name}(): {extra}: its arguments are {signature(name)}")
+                raise TypeError(f"{self.name}() lacks {word!r}: its arguments are {signature(self.name)}")
+            self.output(made)
+
+    def output(self, made):
+        self.outputs.append(made)
+        self.values.append(made)
+
+    def make_arrays(self, function):
+        """Arrays that were left out, as long as C fills them: asks first how many there are, where it says so."""
+        if self.capacity is not None:
+            status = function(*self.values)
+            if status:
+                return status
+            self.values[self.capacity] = self.state.lengths["capacity"] = self.values[self.count][0]
+        if self.left_out and self.count is not None:
+            self.outputs.remove(self.values[self.count])
+        words = _Words(self.owner, self.state.lengths)
+        for place, word, kind in self.left_out:
+            array = numpy.zeros(_shapes.length(self.formulas[word], words), _DTYPES[kind.item.cname])
+            self.outputs.append(array)
+            self.values[place] = ffi.cast(kind, array.ctypes.data)
+        return 0
+
+    def results(self):
+        """What C has written; of arrays of a given capacity those rows that are."""
+        if not self.left_out or self.count is None:
+            return self.outputs
+        count, room = self.values[self.count][0], self.state.lengths["capacity"]
+        return [o[:len(o) // room * min(count, room)] if isinstance(o, numpy.ndarray) and room else o
+                for o in self.outputs]
+
+
+def call(name, owner, values, members):
+    """Calls mps_`name`: `owner` (None: no object) and `values` are its arguments, `members` those of its
+    definition. Returns (results, the call)."""
+    state = Call(None if owner is None else owner.context._raised)
+    arguments = _Arguments(name, owner, state)
+    arguments.take(list(([owner] if owner is not None else []) + list(values)), dict(members))
+    function = getattr(library, arguments.full)
     state.compare(_Words(owner, state.lengths))
-    result = function(*arguments)
-    return result, outputs, state
+    result = arguments.make_arrays(function) or function(*arguments.values)
+    return result, arguments.results(), state
 
 
 class _Words:
@@ -397,3 +481,6 @@ def function_or_constant(name):
             return found
         return lambda *values: to_python(found(*values))
     raise AttributeError(f"libmps has no {name!r}")
+
+
+from . import _block  # noqa: E402 (it uses ffi)

@@ -1,14 +1,17 @@
 """Objects of the library: what they own and their methods."""
 
-from . import _cdef
+import inspect
+
+import numpy
+
+from . import _cdef, _docs, _show
 from ._arrays import Edit, lend
-from ._call import (Call, Error, call, ffi, functions, library, returns_status, same, signature,
-                    to_python)
+from ._call import Call, Error, call, class_name, ffi, functions, library, returns_status, same, to_python
 
 
 class Object:
-    """An object of the C library (a mps_mpm, a mps_signal ...). Its methods are the functions of its
-    header; close(), the end of a `with` block, or the last reference destroys it."""
+    """An object of the C library. Its methods are the functions of its header; close(), the end of a `with`
+    block, or the last reference destroys it."""
 
     pointer = None
     lengths = {}
@@ -47,31 +50,13 @@ class Object:
         self.close()
 
     def __repr__(self):
-        return f"<libmps {self.kind}{'' if self.pointer is not None else ', closed'}>"
+        return _show.text(self)
 
-    def __dir__(self):
-        own = [f.removeprefix(self.kind + "_") for f in functions if f.startswith(self.kind + "_")]
-        return sorted(set(object.__dir__(self)) | set(own) | {f for f in functions if self._takes(f)})
-
-    def _takes(self, name):
-        full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
-        args = ffi.typeof(getattr(library, full)).args if full in _cdef.PARAMETERS else ()
-        return bool(args) and args[0].cname == f"mps_{self.kind} *"
+    def _repr_html_(self):
+        return _show.html(self)
 
     def __getattr__(self, name):
-        if name.startswith("_"):
-            raise AttributeError(name)
-        for full in (f"{self.kind}_{name}", name):
-            if self._takes(full):
-                break
-        else:
-            raise AttributeError(f"{self.kind} of libmps has no {name!r}")
-
-        def method(*values, **members):
-            return self._invoke(full, values, members)
-
-        method.__name__, method.__doc__ = full, f"mps_{full}{signature(full)}"
-        return method
+        raise AttributeError(f"{self.kind if 'kind' in self.__dict__ else 'object'} of libmps has no {name!r}")
 
     def _invoke(self, name, values, members):
         if self.pointer is None:
@@ -97,7 +82,8 @@ class Object:
             return self._known(result, state)
         if result != 0:
             raise Error("mps_" + name, result, library.mps_context_error(context.pointer))
-        made = [self._made(output[0], state) for output in outputs]
+        made = [output if isinstance(output, numpy.ndarray) else self._made(output[0], state)
+                for output in outputs]
         self._remember(name, state, made)
         return None if not made else made[0] if len(made) == 1 else tuple(made)
 
@@ -129,7 +115,7 @@ class Object:
                     return held
             kind = ffi.typeof(result).item
             if result and kind.kind == "struct" and kind.fields is None:
-                return Object(result, self.context, [self], owned=False)
+                return classes[kind.cname.removeprefix("mps_")](result, self.context, [self], owned=False)
         return to_python(result)
 
 
@@ -180,12 +166,84 @@ class Particles(Object):
         self._invoke("particles_view", (name, view), {})
         return lend(self, view[0], False)
 
+    def __iter__(self):
+        raise TypeError("a set of particles is not iterated: set['position'] has a row for each of them")
+
     def edit(self, name):
+        """Opens a field for writing: `with set.edit("velocity") as v: v[:, 0] = 1.0` commits at the end of the
+        block. Error with ERROR_FIELD: no such field, or one that only the library writes; ERROR_STATE: it is open
+        already, or a callback of a solver is running."""
         return Edit(self, name)
+
+
+# ---- the functions of the headers as methods -------------------------------------------------------
+
+
+def takes(kind, name):
+    """Whether mps_`name` is a function of an object of that kind."""
+    full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
+    args = ffi.typeof(getattr(library, full)).args
+    return bool(args) and args[0].cname == f"mps_{kind} *"
+
+
+class _Shown:
+    """Stands in a signature, where it is shown as its text."""
+
+    def __init__(self, text):
+        self.text = text
+
+    def __repr__(self):
+        return self.text
+
+
+_DEFAULT = _Shown("...")  # the member's, as the docstring says
+
+
+def _word(name):
+    return name + "_" if name in ("from", "lambda", "in", "is") else name
+
+
+def described(function, name, itself=True):
+    """Gives a function of the package name, docstring and signature of mps_`name`."""
+    text, arguments, optional, keywords, result = _docs.FUNCTIONS[name]
+    parameters = [inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)] if itself else []
+    for k, (word, kind) in enumerate(arguments):
+        default = None if k >= len(arguments) - optional else inspect.Parameter.empty
+        parameters.append(inspect.Parameter(_word(word), inspect.Parameter.POSITIONAL_ONLY, annotation=_Shown(kind),
+                                            default=default))
+    parameters += [inspect.Parameter(_word(word), inspect.Parameter.KEYWORD_ONLY, annotation=_Shown(kind), default=_DEFAULT)
+                   for word, kind in keywords]
+    function.__doc__ = text
+    function.__signature__ = inspect.Signature(parameters, return_annotation=_Shown(result))
+    return function
+
+
+def _method(name, word, owner):
+    def method(self, *values, **members):
+        return self._invoke(name, values, members)
+
+    method.__name__, method.__qualname__, method.__module__ = word, f"{owner}.{word}", "libmps"
+    return described(method, name)
+
+
+def _classes():
+    """A class for each kind of object; functions that C's header has of that object are its methods."""
+    made = {"context": Context, "particles": Particles}
+    kinds = {name[4:-8] for name in _cdef.PARAMETERS if name.endswith("_destroy")} | {"grid"}
+    for kind in sorted(kinds):
+        name = class_name(kind)
+        own = made.setdefault(kind, type(name, (Object,), {"__module__": "libmps", "__doc__": Object.__doc__}))
+        for function in functions:
+            word = function.removeprefix(kind + "_")
+            if takes(kind, function) and word not in ("context", "kind") and word not in own.__dict__:
+                setattr(own, word, _method(function, word, name))
+    return made
+
+
+classes = _classes()
 
 
 def wrap(pointer, context, alive):
     """The Python object of what a function has made."""
     kept = [held for held in alive if isinstance(held, Object) or _is_callback(held)]
-    made = Particles if ffi.typeof(pointer).item.cname == "mps_particles" else Object
-    return made(pointer, context, kept)
+    return classes[ffi.typeof(pointer).item.cname.removeprefix("mps_")](pointer, context, kept)

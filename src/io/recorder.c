@@ -6,7 +6,7 @@
  * once, and a reader without time series (VTK before 9.3) finds a plain grid, the first frame.
  * Another number of particles begins another part.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "series.h"
+#include "xdmf.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -55,6 +55,7 @@ typedef struct recorded_field {
 typedef struct mark {
   int64_t frames, points, parts, cells;
   int64_t part_points, part_cells; /* of the last part: its points, and the cells before it */
+  int64_t xdmf;                    /* bytes of the file beside the series */
 } mark;
 
 struct mps_recorder {
@@ -63,6 +64,7 @@ struct mps_recorder {
   mpsi_holder holder;
   char *path;
   mpsi_h5_file file;
+  mpsi_xdmf xdmf;
   bool broken; /* a frame could not be written */
   int32_t compression;
   int64_t chunk_rows;    /* of the datasets of points */
@@ -172,6 +174,21 @@ static bool append_frame(mps_recorder *recorder, mark *next, double time) {
   return good && append_step(recorder, next, points, time) && flush(recorder);
 }
 
+/* The frame in the XDMF file: rows from `points` on. */
+static bool describe_frame(mps_recorder *recorder, mark *next, int64_t points, double time) {
+  const int64_t count = mps_particles_count(recorder->particles);
+  mpsi_xdmf *x = &recorder->xdmf;
+  if (x->fd < 0) return true;
+  mpsi_xdmf_begin(x, next->xdmf, time, count);
+  if (count > 0) mpsi_xdmf_array(x, NULL, MPSI_ITEM_F64, 3, points, count);
+  for (int32_t f = 0; count > 0 && f < recorder->field_count; f++)
+    mpsi_xdmf_array(x, recorder->fields[f].name, recorder->fields[f].item,
+                    recorder->fields[f].width, points, count);
+  next->xdmf = mpsi_xdmf_end(x, count);
+  if (x->error) recorder->file.error = x->error;
+  return next->xdmf >= 0;
+}
+
 mps_status mps_recorder_write(mps_recorder *recorder, double time) {
   if (!recorder) return MPS_ERROR_ARGUMENT;
   mps_context *context = recorder->context;
@@ -192,7 +209,8 @@ mps_status mps_recorder_write(mps_recorder *recorder, double time) {
   mps_status status = MPS_OK;
   mpsi_h5_stay stay;
   mpsi_h5_enter(&stay);
-  if (!append_frame(recorder, &next, time)) {
+  if (!append_frame(recorder, &next, time) ||
+      !describe_frame(recorder, &next, before.points, time)) {
     recorder->broken = true;
     (void)mpsi_h5_close(&recorder->file);
     status = mpsi_h5_fail(context, __func__, MPS_ERROR_IO, &stay, &recorder->file, "write",
@@ -283,6 +301,10 @@ static mps_status check_def(mps_context *context, const mps_recorder_def *def) {
   if (def->compression < 0 || def->compression > 9)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "compression is %d, allowed are 0 (none) to 9", def->compression);
+  if (def->xdmf != 0 && def->xdmf != 1)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "xdmf is %d, must be 0 or 1",
+                     def->xdmf);
+  if (def->xdmf) return mpsi_xdmf_check(context, function, def->path);
   return MPS_OK;
 }
 
@@ -372,7 +394,10 @@ static mps_status build(mps_recorder *recorder, const mps_recorder_def *def) {
   memcpy(recorder->path, def->path, length);
   recorder->rows = mpsi_alloc(context, MAX_CHUNK_ROWS, row);
   if (!recorder->rows) return mpsi_fail_memory(context, function, MAX_CHUNK_ROWS * row);
-  return open_file(recorder);
+  status = open_file(recorder);
+  if (status == MPS_OK && def->xdmf)
+    status = mpsi_xdmf_open(context, function, recorder->path, &recorder->xdmf);
+  return status;
 }
 
 mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
@@ -400,7 +425,7 @@ mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
   const int64_t count = mps_particles_count(particles);
   recorder->chunk_rows = count < MIN_CHUNK_ROWS ? MIN_CHUNK_ROWS : count;
   if (count > MAX_CHUNK_ROWS) recorder->chunk_rows = MAX_CHUNK_ROWS;
-  recorder->file.fd = -1;
+  recorder->file.fd = recorder->xdmf.fd = -1;
   recorder->file.id = recorder->number_of_steps = -1;
   if ((status = build(recorder, &def)) != MPS_OK) {
     mps_recorder_destroy(&recorder);
@@ -436,10 +461,14 @@ static mps_status end(mps_recorder **pointer, const char *function) {
   mps_recorder *recorder = *pointer;
   mps_context *context = recorder->context;
   *pointer = NULL;
-  const mps_status status = recorder->file.fd >= 0 ? close_file(recorder, function) : MPS_OK;
+  mps_status status = recorder->file.fd >= 0 ? close_file(recorder, function) : MPS_OK;
+  const int closed = recorder->xdmf.fd >= 0 ? close(recorder->xdmf.fd) : 0;
+  if (closed != 0 && status == MPS_OK)
+    status = mpsi_fail_io(function ? context : NULL, function, "close", recorder->xdmf.path, errno);
   mpsi_particles_release(recorder->particles, &recorder->holder);
   mpsi_free(context, recorder->rows);
   mpsi_free(context, recorder->path);
+  mpsi_free(context, recorder->xdmf.path);
   mpsi_free(context, recorder->fields);
   mpsi_free(context, recorder);
   mpsi_context_release(context);

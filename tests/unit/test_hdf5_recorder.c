@@ -74,6 +74,7 @@ static mps_recorder *record(mps_particles *set, const char *path, int32_t compre
   mps_recorder *recorder = NULL;
   def.path = path;
   def.compression = compression;
+  def.xdmf = 1;
   mps_assert_ok(context, mps_recorder_create(context, set, &def, &recorder));
   return recorder;
 }

@@ -1,0 +1,107 @@
+"""The particles that a law in Python is called with, as arrays: copies that C takes back when the law returns, so
+that none can outlive its memory."""
+
+import numpy
+
+from ._call import ffi
+
+#: Columns of the stress: xx, yy, zz, xy in 2D, and zx, yz besides in 3D (mps/material.h).
+STRESSES = {2: 4, 3: 6}
+
+
+class Block:
+    """A block of particles: what a law reads and writes. n is `count`.
+
+    dim, count, dt (s), time (s, at the end of the step)
+    gradient      (9, n): velocity gradient, row 3 i + j has dv_i/dx_j, 1/s; zero where it is none, as zz in
+                  plane strain
+    stress        (4, n) or (6, n): Cauchy stress, Pa, xx, yy, zz, xy (zx, yz), to be written
+    volume_ratio  (n,): V/V0, at the end of the step
+    deformation   (9, n): deformation gradient, likewise, or None for a law that did not ask for it
+    history       (history_count, n): to be written
+    flags         (n,) of int64: MATERIAL_... bits, to be written
+    ids, position (dim, n), temperature (n,) or None: of the particles
+
+    Write into the arrays, or assign: block.stress[0] += ..., block.stress = ... An exception ends the step."""
+
+    _WRITTEN = ("stress", "volume_ratio", "deformation", "history", "flags")
+
+    def __init__(self, pointer):
+        self._c = c = pointer[0]
+        self.dim, self.count, self.dt, self.time = c.dim, c.count, c.dt, c.time
+        self._taken = {}  # arrays by name, with the pointers that they came from
+
+    def _take(self, name, pointers, dtype=numpy.float64):
+        found = self._taken.get(name)
+        if found is None:
+            made = numpy.zeros((len(pointers), self.count), dtype)
+            for row, pointer in zip(made, pointers):
+                if pointer:
+                    ffi.memmove(row, pointer, 8 * self.count)
+            found = self._taken[name] = (made, pointers)
+        return found[0]
+
+    def _end(self):
+        """What the law has written goes back to C."""
+        for name in self._WRITTEN:
+            made, pointers = self._taken.get(name, ((), ()))
+            for row, pointer in zip(made, pointers):
+                if pointer:
+                    ffi.memmove(pointer, row, 8 * self.count)
+
+    @property
+    def gradient(self):
+        return self._take("gradient", list(self._c.gradient))
+
+    @property
+    def deformation(self):
+        if not self._c.deformation[0]:
+            return None
+        return self._take("deformation", list(self._c.deformation))
+
+    @property
+    def stress(self):
+        return self._take("stress", list(self._c.stress)[:STRESSES[self.dim]])
+
+    @stress.setter
+    def stress(self, value):
+        self.stress[...] = value
+
+    @property
+    def history(self):
+        return self._take("history", [self._c.history[k] for k in range(self._c.history_count)])
+
+    @history.setter
+    def history(self, value):
+        self.history[...] = value
+
+    @property
+    def volume_ratio(self):
+        return self._take("volume_ratio", [self._c.volume_ratio])[0]
+
+    @volume_ratio.setter
+    def volume_ratio(self, value):
+        self.volume_ratio[...] = value
+
+    @property
+    def flags(self):
+        return self._take("flags", [self._c.flags], numpy.int64)[0]
+
+    @flags.setter
+    def flags(self, value):
+        self.flags[...] = value
+
+    @property
+    def ids(self):
+        return self._take("ids", [self._c.ids], numpy.int64)[0] if self._c.ids else None
+
+    @property
+    def position(self):
+        return self._take("position", list(self._c.position)[:self.dim]) if self._c.position[0] else None
+
+    @property
+    def temperature(self):
+        return self._take("temperature", [self._c.temperature])[0] if self._c.temperature else None
+
+    def __repr__(self):
+        return f"<libmps Block: {self.count} particles in {self.dim}D, dt = {self.dt:.6g} s>"

@@ -1,0 +1,74 @@
+"""run_wheel.py SOURCE WORK: makes a wheel of the package (scripts/wheel --fast), installs it into a bare virtual
+environment, and runs a small job there: a block on a roller under its own weight, whose mean vertical stress is
+-density * g * height / 2. Exit status 77, with a line, where pip reaches no registry."""
+
+import pathlib
+import subprocess
+import sys
+import venv
+import zipfile
+
+JOB = r"""
+import sys
+import libmps as mps
+
+assert "dist-packages/libmps" not in mps.__file__, mps.__file__
+assert mps.__version__ == mps.version(), (mps.__version__, mps.version())
+height, density, g = 2.0, 1800.0, 9.81
+context = mps.Context(threads=1)
+sand = context.particles_create(spacing=0.1)
+sand.fill_box([0, 0], [1, height])
+sand.set("density", 0, density)
+sand.add_field("stress", 0)
+law = context.material_create_linear_elastic(1e7, 0.0)
+solver = context.mpm_create(sand, law, cell=0.2, lower=[0, 0, 0], upper=[1, 4, 0], gravity=[0, -g, 0],
+                            local_damping=0.7)
+solver.run(0.5, 1000, None)
+mean, theory = sand["stress"][:, 1].mean(), -density * g * height / 2
+print(f"{sys.version.split()[0]}: mean stress {mean:.1f} Pa, theory {theory:.1f}")
+assert abs(mean / theory - 1) < 0.01
+beam = context.particles_create(spacing=0.1)       # CHOLMOD and HDF5 are in the wheel too
+beam.fill_box([0, 0], [1, 0.3])
+beam.set("young", 0, 1e7)
+beam.set("poisson", 0, 0.0)
+elastic = context.elastic_create(beam)
+elastic.add_boundary(ids=beam.select_box([0, 0], [0.1, 0.3]), kind=mps.BOUNDARY_HELD)
+solver.save("job.h5", None)
+"""
+
+
+def call(*command, **keywords):
+    return subprocess.run([str(c) for c in command], **keywords)
+
+
+def main():
+    source, work = map(pathlib.Path, sys.argv[1:3])
+    work.mkdir(parents=True, exist_ok=True)
+    reached = call(sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--retries", 0, "--timeout", 20, "-d",
+                   work / "reached", "wheel", capture_output=True, text=True)
+    if reached.returncode:
+        print("skipped: pip reaches no registry:", (reached.stderr.strip().splitlines() or ["no pip"])[-1])
+        sys.exit(77)
+    made = call(sys.executable, source / "scripts/wheel", "--fast", "--out", work, stdout=subprocess.PIPE, text=True,
+                check=True).stdout.split()[-1]
+    names = zipfile.ZipFile(made).namelist()
+    for wanted in ("libmps/py.typed", "libmps/__init__.pyi", "licenses/LIBRARIES.md", "licenses/LICENSE"):
+        if not any(name.endswith(wanted) for name in names):
+            sys.exit(f"{made} lacks {wanted}")
+    if "-py3-none-manylinux" not in made:
+        sys.exit(f"{made} is no manylinux wheel for all versions of Python")
+    bare = work / "bare"
+    venv.create(bare, with_pip=True, clear=True)
+    call(bare / "bin/python", "-m", "pip", "install", "-q", made, check=True)
+    inside = call("ldd", next(bare.glob("lib/python3*/site-packages/libmps/libmps.so.*")), capture_output=True, text=True)
+    outside = [line.split()[0] for line in inside.stdout.splitlines() if "=> /" in line and "site-packages" not in line]
+    system = ("libc.so", "libm.so", "libpthread", "libdl", "librt", "libgcc_s", "libstdc++", "libresolv", "libz.so",
+              "libexpat", "ld-linux", "libutil")
+    strangers = [name for name in outside if not name.startswith(system)]
+    if strangers:
+        sys.exit(f"the installed library needs {strangers} of the system")
+    done = call(bare / "bin/python", "-c", JOB, cwd=work, env={"PATH": "/usr/bin:/bin", "HOME": str(work)})
+    sys.exit(done.returncode)
+
+
+main()
