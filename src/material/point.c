@@ -92,7 +92,8 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
 /* ---- given stresses -------------------------------------------------------------------------- */
 
 enum { COMPONENTS = 6, ROUNDS = 60, HALVINGS = 30 };
-#define CLOSE 1e-9 /* of the largest stress of a step */
+#define CLOSE 1e-9     /* of the largest stress of a step */
+#define ROUNDING 1e-14 /* of the wave modulus */
 
 /* One step: what is looked for, and what it is to give. */
 typedef struct control {
@@ -133,13 +134,16 @@ static mps_status try_rates(const control *c, const double *rate, mps_material_p
   return status;
 }
 
-/* Gauss with pivots; false of a singular matrix. */
-static bool solve(int n, double (*a)[COMPONENTS], double *x) {
+/* Gauss with pivots; false of a matrix that is singular to `least` of its largest entry. */
+static bool solve(int n, double (*a)[COMPONENTS], double *x, double least) {
+  double largest = 0.0;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) largest = fmax(largest, fabs(a[i][j]));
   for (int k = 0; k < n; k++) {
     int best = k;
     for (int i = k + 1; i < n; i++)
       if (fabs(a[i][k]) > fabs(a[best][k])) best = i;
-    if (!(fabs(a[best][k]) > 0.0)) return false;
+    if (!(fabs(a[best][k]) > least * largest)) return false;
     for (int j = 0; j < n; j++) {
       const double kept = a[k][j];
       a[k][j] = a[best][j], a[best][j] = kept;
@@ -159,10 +163,25 @@ static bool solve(int n, double (*a)[COMPONENTS], double *x) {
   return true;
 }
 
+/* The shortest of all solutions, nearly, of a singular matrix: on an edge of a pyramid two stresses
+ * are equal whatever the difference of the strains. */
+static bool solve_shortest(int n, double (*a)[COMPONENTS], double *x) {
+  double square[COMPONENTS][COMPONENTS] = {{0.0}}, right[COMPONENTS] = {0.0}, trace = 0.0;
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < n; k++) {
+      for (int j = 0; j < n; j++) square[i][j] += a[k][i] * a[k][j];
+      right[i] += a[k][i] * x[k];
+    }
+  for (int i = 0; i < n; i++) trace += square[i][i];
+  for (int i = 0; i < n; i++) square[i][i] += 1e-10 * trace;
+  memcpy(x, right, (size_t)n * sizeof *x);
+  return solve(n, square, x, 0.0);
+}
+
 /* Newton's direction; false where there is none. */
 static mps_status find_direction(const control *c, const double *rate, const double *miss,
                                  double *direction, bool *found) {
-  double matrix[COMPONENTS][COMPONENTS], other[COMPONENTS], moved[COMPONENTS], size;
+  double matrix[COMPONENTS][COMPONENTS] = {{0.0}}, other[COMPONENTS], moved[COMPONENTS], size;
   mps_material_point point;
   memcpy(moved, rate, sizeof moved);
   for (int k = 0; k < c->n; k++) {
@@ -173,7 +192,14 @@ static mps_status find_direction(const control *c, const double *rate, const dou
     moved[k] = rate[k];
     direction[k] = -miss[k];
   }
-  *found = solve(c->n, matrix, direction);
+  double copy[COMPONENTS][COMPONENTS], right[COMPONENTS];
+  memcpy(copy, matrix, sizeof copy);
+  memcpy(right, direction, sizeof right);
+  *found = solve(c->n, copy, direction, 1e-7);
+  if (!*found) {
+    memcpy(direction, right, sizeof right);
+    *found = solve_shortest(c->n, matrix, direction);
+  }
   for (int k = 0; k < c->n; k++) *found = *found && isfinite(direction[k]);
   return MPS_OK;
 }
@@ -231,7 +257,7 @@ static void set_scales(control *c) {
   const double modulus = mps_material_wave_modulus(c->material);
   c->small = 1e-4 * fmax(rate, change / (modulus * c->dt));
   if (!(c->small > 0.0)) c->small = 1e-9 / c->dt;
-  c->close = CLOSE * fmax(stress, 1e-9 * modulus);
+  c->close = fmax(CLOSE * stress, ROUNDING * modulus);
 }
 
 static mps_status take_step(control *c, double *rate, mps_material_point *point, int64_t step) {
