@@ -95,6 +95,15 @@ typedef struct mps_material_von_mises_def {
   double yield_stress; /* Pa, in uniaxial tension, > 0; no default. Plane strain with cohesion c:
                           sqrt(3) c, Nakamura (54) */
   double hardening;    /* Pa per plastic strain, >= 0; default 0 */
+  /** Softening: the strength falls to `residual` of itself as residual + (1 - residual) exp(-band
+   *  gamma/slip), gamma the plastic engineering shear strain sqrt(3) plastic_strain. */
+  double residual;       /* 0 to 1; default 1: no softening. Below 1 slip and band are needed */
+  double slip;           /* m, > 0: relative displacement across a band at exp(-1); no default */
+  double band;           /* m, > 0: width over which the solver spreads a band; WLS-MPM 2.4 cells
+                            with cubic weights, 2.0 with quadratic ones; no default */
+  double rate_factor;    /* mu >= 0: the strength grows by 1 + mu log10(rate/rate_reference), rate
+                            the largest less the smallest principal strain rate; default 0 */
+  double rate_reference; /* 1/s, > 0; no increase at smaller rates; default 3e-6 */
 } mps_material_von_mises_def;
 
 /** Fit of the Drucker-Prager cone to the Mohr-Coulomb pyramid. All cones have its apex; the flow
@@ -120,8 +129,15 @@ typedef struct mps_material_drucker_prager_def {
   double tension;  /* Pa, largest mean stress I1/3, >= 0; default infinity: up to the apex */
 } mps_material_drucker_prager_def;
 
-/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), perfectly plastic, with a cut-off
- *  s1 <= T (Rankine) whose flow is normal to it. */
+/** How the strength falls with the plastic strain. */
+typedef enum mps_material_softening {
+  MPS_MATERIAL_SOFTENING_EXPONENTIAL = 0,
+  MPS_MATERIAL_SOFTENING_LINEAR = 1
+} mps_material_softening;
+
+/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), with a cut-off s1 <= T
+ *  (Rankine) whose flow is normal to it. Perfectly plastic unless softening is given. Tresca:
+ * friction 0, cohesion su. */
 typedef struct mps_material_mohr_coulomb_def {
   uint32_t struct_size;
   uint32_t reserved;
@@ -131,6 +147,15 @@ typedef struct mps_material_mohr_coulomb_def {
   double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0 */
   double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
   double tension;  /* Pa, T, largest principal stress, >= 0; default infinity: up to the apex */
+  /** Softening: tan(phi) and c go from their values to residual ones, tan(psi) to 0, with the share
+   *  exp(-band gamma/slip) or max(0, 1 - band gamma/slip) of what is left, as in von Mises. */
+  double residual_friction; /* rad, 0 to friction; NaN (default): friction */
+  double residual_cohesion; /* Pa, 0 to cohesion; NaN (default): cohesion */
+  double slip, band;        /* m, as in von Mises; needed where a residual value is smaller */
+  double rate_factor;       /* as in von Mises, of the cohesion; default 0 */
+  double rate_reference;    /* 1/s, > 0; default 3e-6 */
+  int32_t softening;        /* mps_material_softening; default MPS_MATERIAL_SOFTENING_EXPONENTIAL */
+  int32_t reserved_2;
 } mps_material_mohr_coulomb_def;
 
 /** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */
@@ -158,6 +183,12 @@ typedef struct mps_material_newtonian_def {
  *  values for that (8 bytes for each component of the fields that a step writes). */
 typedef mps_status (*mps_material_fn)(void *user, const mps_material_block *block);
 
+/** Writes an upper bound of K + 4G/3 (Pa, finite and > 0) of each particle of the block in its
+ *  present state: by it the solver limits its step. Reads `stress`, `volume_ratio`, `history`,
+ *  `temperature`; `gradient` and `deformation` are those of the last step. Called by several
+ * threads at once. Any other value is MPS_ERROR_DIVERGED of the step, which names the particle. */
+typedef void (*mps_material_moduli_fn)(void *user, const mps_material_block *block, double *moduli);
+
 typedef struct mps_material_user_def {
   uint32_t struct_size;
   int32_t history_count;      /* 0..1024; default 0 */
@@ -176,6 +207,9 @@ typedef struct mps_material_user_def {
    *  from its stress. NaN, NaN (default): not stated; then K + 4G/3 is the wave modulus, and nu
    * 1/4. */
   double bulk_modulus, shear_modulus;
+  /** The wave modulus by the present state; NULL (default): `wave_modulus` at all times. Contacts
+   *  and absorbing walls take `wave_modulus`. */
+  mps_material_moduli_fn moduli;
 } mps_material_user_def;
 
 /** An Abaqus UMAT, as a C function or as a Fortran subroutine (`umat_` of gfortran): for each

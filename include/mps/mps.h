@@ -9,6 +9,7 @@
  *   signal.h      functions of time, recorded motions
  *   material.h    constitutive laws
  *   geostatic.h   stress of ground at rest
+ *   soil.h        Cam-Clay, its state at rest, laws along paths of stress and strain
  *   body.h        rigid bodies
  *   contact.h     contact of particles with bodies
  *   solver.h      what the solvers have in common
@@ -50,6 +51,7 @@
 #include "neighbours.h"
 #include "particles.h"
 #include "signal.h"
+#include "soil.h"
 #include "solver.h"
 
 #endif

@@ -41,6 +41,7 @@ FUNCTIONS = {
     "mps_domain_gather_fields": {"names": "count"},
     "mps_domain_get_field": {"ids": "count", "values": "count * components(name)"},
     "mps_material_point_drive": {"gradient": "9"},
+    "mps_material_point_control": {"gradient": "9", "target": "6", "found": "9"},
     "mps_dynamics_set_material": {"ids": "count"},
     "mps_elastic_set_material": {"ids": "count"},
     "mps_elastic_cut": {"ids": "count"},
@@ -81,6 +82,7 @@ STRUCTS = {
     "mps_fluid_boundary_def": {"nodes": "3 * node_count"},
     "mps_fluid_load_def": {"ids": "id_count"},
     "mps_geostatic_def": {"layers": "layer_count", "surface_line": "2 * surface_points"},
+    "mps_consolidation_def": {"ids": "count"},
     "mps_mpm_boundary_def": {"ids": "id_count"},
     "mps_mpm_load_def": {"ids": "id_count", "area": "id_count"},
 }

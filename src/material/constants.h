@@ -17,6 +17,13 @@ mpsi_law mpsi_law_elastic(double young, double poisson);
 /* Adds the cones of yield and flow, and the limit of tension. */
 void mpsi_law_add_cone(mpsi_law *law, mps_material_cone cone, double friction, double dilation,
                        double cohesion, double tension);
+/* soften.c: the checks, and the constants. */
+mps_status mpsi_check_mises_softening(mps_context *context, const char *function,
+                                      const mps_material_von_mises_def *def);
+mps_status mpsi_check_mohr_coulomb_softening(mps_context *context, const char *function,
+                                             const mps_material_mohr_coulomb_def *def);
+void mpsi_law_soften_mises(mpsi_law *law, const mps_material_von_mises_def *def);
+void mpsi_law_soften_mohr_coulomb(mpsi_law *law, const mps_material_mohr_coulomb_def *def);
 double mpsi_law_wave_modulus(const mpsi_law *law);
 
 #endif

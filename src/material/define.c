@@ -2,18 +2,32 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 
+#include <mps/soil.h>
+
 #include <stdio.h>
 
-static const mps_material_von_mises_def von_mises_defaults = {
-    .young = NAN, .poisson = 0.3, .yield_stress = NAN};
+static const mps_material_von_mises_def von_mises_defaults = {.young = NAN,
+                                                              .poisson = 0.3,
+                                                              .yield_stress = NAN,
+                                                              .residual = 1.0,
+                                                              .slip = NAN,
+                                                              .band = NAN,
+                                                              .rate_reference = 3e-6};
 static const mps_material_drucker_prager_def drucker_prager_defaults = {
     .cone = MPS_MATERIAL_CONE_PLANE_STRAIN,
     .young = NAN,
     .poisson = 0.3,
     .friction = NAN,
     .tension = INFINITY};
-static const mps_material_mohr_coulomb_def mohr_coulomb_defaults = {
-    .young = NAN, .poisson = 0.3, .friction = NAN, .tension = INFINITY};
+static const mps_material_mohr_coulomb_def mohr_coulomb_defaults = {.young = NAN,
+                                                                    .poisson = 0.3,
+                                                                    .friction = NAN,
+                                                                    .tension = INFINITY,
+                                                                    .residual_friction = NAN,
+                                                                    .residual_cohesion = NAN,
+                                                                    .slip = NAN,
+                                                                    .band = NAN,
+                                                                    .rate_reference = 3e-6};
 static const mps_material_newtonian_def newtonian_defaults = {.state = MPS_MATERIAL_STATE_TAIT,
                                                               .bulk_modulus = NAN};
 static const mps_material_user_def user_defaults = {.name = "user",
@@ -21,6 +35,15 @@ static const mps_material_user_def user_defaults = {.name = "user",
                                                     .wave_modulus = NAN,
                                                     .bulk_modulus = NAN,
                                                     .shear_modulus = NAN};
+
+static const mps_material_cam_clay_def cam_clay_defaults = {.critical_slope = NAN,
+                                                            .compression = NAN,
+                                                            .swelling = NAN,
+                                                            .poisson = 0.3,
+                                                            .shear_modulus = NAN,
+                                                            .void_ratio = NAN,
+                                                            .preconsolidation = NAN,
+                                                            .least_pressure = NAN};
 
 #define DEF_INIT(name)                                                                             \
   mps_status mps_material_##name##_def_init(mps_material_##name##_def *def, size_t size) {         \
@@ -31,24 +54,30 @@ DEF_INIT(drucker_prager)
 DEF_INIT(mohr_coulomb)
 DEF_INIT(newtonian)
 DEF_INIT(user)
+DEF_INIT(cam_clay)
 
 /* A material of the library's own; its columns of history are fields of the table, one for all
  * laws.
  */
 static mps_status create(mps_context *context, const char *function, mpsi_law_kind kind,
                          const void *def, mps_material **out) {
-  static const char *const columns[] = {"plastic_strain", "opening"};
   const mpsi_law_type *type = &mpsi_law_types[kind];
   mpsi_law law = {.has_moduli = false};
+  int32_t count = 0;
+  while (type->columns[count]) count++;
   const mps_status status = type->define(context, function, def, &law);
   if (status != MPS_OK) return status;
-  mps_material *material = mpsi_material_new(context, function, type, type->name, type->columns);
+  mps_material *material = mpsi_material_new(context, function, type, type->name, count);
   if (!material) return MPS_ERROR_MEMORY;
   material->law = law;
   material->wave_modulus = mpsi_law_wave_modulus(&law);
-  for (int32_t c = 0; c < type->columns; c++) {
-    strcpy(material->history_names[c], columns[c]);
-    strcpy(material->history_fields[c], columns[c]);
+  for (int32_t c = 0; c < count; c++) {
+    strcpy(material->history_names[c], type->columns[c]);
+    strcpy(material->history_fields[c], type->columns[c]);
+  }
+  if (kind == MPSI_LAW_CAM_CLAY) {
+    material->history_initial[MPSI_CLAY_PC] = law.first_pc;
+    material->history_initial[MPSI_CLAY_VOID] = law.first_void;
   }
   *out = material;
   return MPS_OK;
@@ -88,6 +117,7 @@ CREATE(von_mises, MPSI_LAW_VON_MISES)
 CREATE(drucker_prager, MPSI_LAW_DRUCKER_PRAGER)
 CREATE(mohr_coulomb, MPSI_LAW_MOHR_COULOMB)
 CREATE(newtonian, MPSI_LAW_NEWTONIAN)
+CREATE(cam_clay, MPSI_LAW_CAM_CLAY)
 
 /* ---- a user's law ---------------------------------------------------------------------------- */
 

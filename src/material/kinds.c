@@ -2,6 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kinds.h"
 
+const char *const mpsi_no_columns[] = {NULL};
+const char *const mpsi_metal_columns[] = {"plastic_strain", NULL};
+const char *const mpsi_sand_columns[] = {"plastic_strain", "opening", NULL};
+const char *const mpsi_clay_columns[] = {"plastic_strain", "preconsolidation", "void_ratio",
+                                         "opening", NULL};
+
 const mpsi_law_type mpsi_law_types[] = {
 #define ROW(kind, loop, name, columns, kept, traits, define, moduli)                               \
   {MPSI_LAW_##kind, name, columns, kept, traits, define, moduli},

@@ -6,11 +6,12 @@
  *   kind      MPSI_LAW_... of the enumeration
  *   loop      the function of laws.c that applies it to a block, inlined for each geometry
  *   name      of its materials; NULL: the definition gives it
- *   columns   how many of plastic_strain, opening it has; of a user's law, what its definition adds
+ *   columns   names of its history; a user's law has those of its definition
  *   kept      recoverable part of the work of its stresses
  *   traits    MPSI_LAW_... bits, below
  *   define    from its definition to its constants: all checks of the values
- *   moduli    the wave moduli of a block in its present state; NULL: that of zero strain
+ *   moduli    the wave moduli of a block in its present state; NULL: that of zero strain. A user's
+ *             law may have none: mpsi_material_stiffens
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MATERIAL_KINDS_H
 #define MPSI_MATERIAL_KINDS_H
@@ -19,20 +20,22 @@
 
 /* clang-format off */
 #define MPSI_LAW_KINDS(X)                                                                          \
-  X(LINEAR_ELASTIC, linear_elastic_loop, "linear_elastic", 0, MPSI_KEPT_ALL,                       \
+  X(LINEAR_ELASTIC, linear_elastic_loop, "linear_elastic", mpsi_no_columns, MPSI_KEPT_ALL,         \
     MPSI_LAW_IS_LINEAR,                           mpsi_define_elastic,        NULL)                \
-  X(VON_MISES,      von_mises_loop,      "von_mises",      1, MPSI_KEPT_ELASTIC,                   \
+  X(VON_MISES,      von_mises_loop,      "von_mises",      mpsi_metal_columns, MPSI_KEPT_ELASTIC,  \
     0,                                            mpsi_define_von_mises,      NULL)                \
-  X(DRUCKER_PRAGER, drucker_prager_loop, "drucker_prager", 2, MPSI_KEPT_ELASTIC,                   \
+  X(DRUCKER_PRAGER, drucker_prager_loop, "drucker_prager", mpsi_sand_columns, MPSI_KEPT_ELASTIC,   \
     MPSI_LAW_OPENS,                               mpsi_define_drucker_prager, NULL)                \
-  X(MOHR_COULOMB,   mohr_coulomb_loop,   "mohr_coulomb",   2, MPSI_KEPT_ELASTIC,                   \
+  X(MOHR_COULOMB,   mohr_coulomb_loop,   "mohr_coulomb",   mpsi_sand_columns, MPSI_KEPT_ELASTIC,   \
     MPSI_LAW_OPENS,                               mpsi_define_mohr_coulomb,   NULL)                \
-  X(NEO_HOOKEAN,    neo_hookean_loop,    "neo_hookean",    0, MPSI_KEPT_ALL,                       \
+  X(NEO_HOOKEAN,    neo_hookean_loop,    "neo_hookean",    mpsi_no_columns, MPSI_KEPT_ALL,         \
     MPSI_LAW_READS_VOLUME,                        mpsi_define_neo_hookean,    mpsi_neo_hookean_moduli) \
-  X(NEWTONIAN,      newtonian_loop,      "newtonian",      0, MPSI_KEPT_PRESSURE,                  \
+  X(NEWTONIAN,      newtonian_loop,      "newtonian",      mpsi_no_columns, MPSI_KEPT_PRESSURE,    \
     MPSI_LAW_READS_VOLUME,                        mpsi_define_newtonian,      mpsi_newtonian_moduli)   \
-  X(USER,           user_loop,           NULL,             0, MPSI_KEPT_ALL,                       \
-    MPSI_LAW_READS_VOLUME | MPSI_LAW_MAY_REFUSE,  mpsi_define_user,           NULL)
+  X(USER,           user_loop,           NULL,             mpsi_no_columns, MPSI_KEPT_ALL,         \
+    MPSI_LAW_READS_VOLUME | MPSI_LAW_MAY_REFUSE,  mpsi_define_user,           mpsi_user_moduli)    \
+  X(CAM_CLAY,       cam_clay_loop,       "cam_clay",       mpsi_clay_columns, MPSI_KEPT_ALL,        \
+    MPSI_LAW_HAS_START,                           mpsi_define_cam_clay,       mpsi_cam_clay_moduli)
 /* clang-format on */
 
 typedef enum mpsi_law_kind {
@@ -46,7 +49,8 @@ typedef enum mpsi_law_trait {
   MPSI_LAW_IS_LINEAR = 1,    /* stress and strain are proportional, at every strain */
   MPSI_LAW_READS_VOLUME = 2, /* V/V0 decides the stress */
   MPSI_LAW_MAY_REFUSE = 4,   /* a block, with a reason */
-  MPSI_LAW_OPENS = 8         /* a gap opens between grains: its last column */
+  MPSI_LAW_OPENS = 8,        /* a gap opens between grains: its last column */
+  MPSI_LAW_HAS_START = 16    /* history that is not 0 at the start stays, and must fit the stress */
 } mpsi_law_trait;
 
 struct mpsi_law;
@@ -61,7 +65,7 @@ typedef void (*mpsi_moduli_fn)(const struct mpsi_law *law, const mps_material_bl
 typedef struct mpsi_law_type {
   mpsi_law_kind kind;
   const char *name;
-  int32_t columns;
+  const char *const *columns; /* up to NULL */
   mpsi_kept kept;
   uint32_t traits;
   mpsi_define_fn define;
@@ -69,13 +73,17 @@ typedef struct mpsi_law_type {
 } mpsi_law_type;
 
 extern const mpsi_law_type mpsi_law_types[]; /* by kind */
+extern const char *const mpsi_no_columns[],
+    *const mpsi_metal_columns[], *const mpsi_sand_columns[], *const mpsi_clay_columns[];
+/* Columns of Cam-Clay. */
+enum { MPSI_CLAY_STRAIN, MPSI_CLAY_PC, MPSI_CLAY_VOID, MPSI_CLAY_GAP, MPSI_CLAY_COLUMNS };
 
 /* The definitions of the laws that are given by two numbers. */
 typedef struct mpsi_elastic_def {
   double young, poisson;
 } mpsi_elastic_def;
 
-/* parameters.c; user.c; moduli.c */
+/* parameters.c; user.c; cam_clay_start.c; moduli.c */
 mps_status mpsi_define_elastic(mps_context *context, const char *function, const void *def,
                                struct mpsi_law *law);
 mps_status mpsi_define_von_mises(mps_context *context, const char *function, const void *def,
@@ -90,6 +98,11 @@ mps_status mpsi_define_newtonian(mps_context *context, const char *function, con
                                  struct mpsi_law *law);
 mps_status mpsi_define_user(mps_context *context, const char *function, const void *def,
                             struct mpsi_law *law);
+mps_status mpsi_define_cam_clay(mps_context *context, const char *function, const void *def,
+                                struct mpsi_law *law);
+void mpsi_user_moduli(const struct mpsi_law *law, const mps_material_block *block, double *moduli);
+void mpsi_cam_clay_moduli(const struct mpsi_law *law, const mps_material_block *block,
+                          double *moduli);
 void mpsi_neo_hookean_moduli(const struct mpsi_law *law, const mps_material_block *block,
                              double *moduli);
 void mpsi_newtonian_moduli(const struct mpsi_law *law, const mps_material_block *block,

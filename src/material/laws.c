@@ -7,6 +7,7 @@
  * that plasticity costs a square root and a division and never a branch. Divisions by constants are
  * products with their reciprocals: in a vector a division is as dear as ten products.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/symmetric.h"
 #include "tensor.h"
 
 #define CONCAT_(a, b) a##b
@@ -154,9 +155,50 @@ MPSI_INLINE mps_status linear_elastic_loop(const int geometry, const mpsi_law *l
   return MPS_OK;
 }
 
+/* Largest less smallest principal strain rate of a particle, 1/s. */
+static double rate_of(const int geometry, const mpsi_law_columns *columns, int64_t k) {
+  const mpsi_sym d = mpsi_strain(geometry, columns, k, 1.0);
+  if (geometry != MPSI_SPACE) {
+    const double mean = 0.5 * (d.xx + d.yy), half = 0.5 * (d.xx - d.yy);
+    const double radius = sqrt(half * half + d.xy * d.xy);
+    return fmax(mean + radius, d.zz) - fmin(mean - radius, d.zz);
+  }
+  const double a[3][3] = {{d.xx, d.xy, d.zx}, {d.xy, d.yy, d.yz}, {d.zx, d.yz, d.zz}};
+  double value[3];
+  mpsi_symmetric_principal(a, value, NULL);
+  return fmax(value[0], fmax(value[1], value[2])) - fmin(value[0], fmin(value[1], value[2]));
+}
+
+/* Von Mises with softening or rate dependence: the trial in vector form, then the returns one by
+ * one, as each solves an equation. */
+static void soften_mises_loop(const int geometry, const mpsi_law *law,
+                              const mps_material_block *block) {
+  const mpsi_law_columns columns = mpsi_columns_of(block);
+  double *strain = block->history[0];
+  rate_loop(geometry, ELASTIC, law, block);
+  for (int64_t k = 0; k < block->count; k++) {
+    mpsi_sym s = mpsi_stress(geometry, &columns, k);
+    const double p = (s.xx + s.yy + s.zz) * THIRD, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
+    const double q =
+        sqrt(1.5 * (dx * dx + dy * dy + dz * dz) + 3.0 * (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
+    const double rate = law->rate_factor > 0.0 ? rate_of(geometry, &columns, k) : 0.0;
+    const double drop =
+        mpsi_soften_mises(law, q, law->yield * mpsi_rate_factor(law, rate), &strain[k]);
+    if (!(drop > 0.0)) continue;
+    const double scale = (q - drop) / q;
+    s.xx = p + scale * dx, s.yy = p + scale * dy, s.zz = p + scale * dz;
+    s.xy *= scale, s.yz *= scale, s.zx *= scale;
+    mpsi_put_stress(geometry, &columns, k, s);
+    block->flags[k] = MPS_MATERIAL_FLAG_PLASTIC;
+  }
+}
+
 MPSI_INLINE mps_status von_mises_loop(const int geometry, const mpsi_law *law,
                                       const mps_material_block *block) {
-  rate_loop(geometry, MISES, law, block);
+  if (law->softens)
+    soften_mises_loop(geometry, law, block);
+  else
+    rate_loop(geometry, MISES, law, block);
   return MPS_OK;
 }
 
@@ -171,6 +213,7 @@ MPSI_INLINE mps_status mohr_coulomb_loop(const int geometry, const mpsi_law *law
                                          const mps_material_block *block) {
   rate_loop(geometry, PYRAMID, law, block);
   const int32_t dim = geometry == MPSI_SPACE ? 3 : 2, components = dim == 3 ? 6 : 4;
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   double *strain = block->history[0], *gap = block->history[1], opened[CHUNK];
   for (int64_t begin = 0, end; begin < block->count; begin = end) {
     end = begin + CHUNK < block->count ? begin + CHUNK : block->count;
@@ -179,12 +222,46 @@ MPSI_INLINE mps_status mohr_coulomb_loop(const int geometry, const mpsi_law *law
       if (block->flags[k] == 0) continue;
       double s[6];
       for (int32_t c = 0; c < components; c++) s[c] = block->stress[c][k];
-      block->flags[k] =
-          mpsi_mohr_coulomb_return(law, dim, s, &strain[k], &gap[k], &opened[k - begin]);
+      if (law->softens)
+        block->flags[k] = mpsi_soften_mohr_coulomb(
+            law, dim, law->rate_factor > 0.0 ? rate_of(geometry, &columns, k) : 0.0, s, &strain[k],
+            &gap[k], &opened[k - begin]);
+      else
+        block->flags[k] =
+            mpsi_mohr_coulomb_return(law, dim, s, &strain[k], &gap[k], &opened[k - begin]);
       if (block->flags[k] == 0) continue;
       for (int32_t c = 0; c < components; c++) block->stress[c][k] = s[c];
     }
     volume_loop(geometry, block, begin, end, opened);
+  }
+  return MPS_OK;
+}
+
+/* The spin in the form of this geometry; the return, which iterates, particle by particle. */
+MPSI_INLINE mps_status cam_clay_loop(const int geometry, const mpsi_law *law,
+                                     const mps_material_block *block) {
+  const mpsi_law_columns columns = mpsi_columns_of(block);
+  double *const *h = block->history;
+  for (int64_t k = 0; k < block->count; k++) {
+    const mpsi_sym d = mpsi_strain(geometry, &columns, k, block->dt);
+    const mpsi_spin w = mpsi_spin_of(geometry, &columns, k, block->dt);
+    const mpsi_sym t = mpsi_turn(geometry, mpsi_stress(geometry, &columns, k), w);
+    const double strain[6] = {d.xx, d.yy, d.zz, d.xy, d.zx, d.yz};
+    double s[6] = {t.xx, t.yy, t.zz, t.xy, t.zx, t.yz};
+    mpsi_clay clay = {.strain = h[MPSI_CLAY_STRAIN][k],
+                      .pc = h[MPSI_CLAY_PC][k],
+                      .void_ratio = h[MPSI_CLAY_VOID][k],
+                      .gap = h[MPSI_CLAY_GAP][k],
+                      .volume = block->volume_ratio[k]};
+    block->flags[k] = mpsi_cam_clay_step(law, geometry == MPSI_SPACE ? 3 : 2, strain, s, &clay);
+    h[MPSI_CLAY_STRAIN][k] = clay.strain;
+    h[MPSI_CLAY_PC][k] = clay.pc;
+    h[MPSI_CLAY_VOID][k] = clay.void_ratio;
+    h[MPSI_CLAY_GAP][k] = clay.gap;
+    block->volume_ratio[k] = clay.volume;
+    mpsi_put_stress(
+        geometry, &columns, k,
+        (mpsi_sym){.xx = s[0], .yy = s[1], .zz = s[2], .xy = s[3], .zx = s[4], .yz = s[5]});
   }
   return MPS_OK;
 }

@@ -63,6 +63,13 @@ bool mpsi_material_opens(const mps_material *material);
 bool mpsi_material_dilates(const mps_material *material);
 /* True: a user's law, which may fail for a block. */
 bool mpsi_material_may_refuse(const mps_material *material);
+/* True: values of history that are not 0 at the start are kept, and stress and history must fit one
+ * another (mpsi_material_check_state). */
+bool mpsi_material_has_start(const mps_material *material);
+/* Such a start of one particle: stress (2 dim components), its history with 0 for the law's own
+ * value. False, with the reason, where the law cannot begin there. */
+bool mpsi_material_check_state(const mps_material *material, int32_t dim, const double *stress,
+                               const double *history, char *reason, size_t size);
 /* True: the wave modulus follows the state. */
 bool mpsi_material_stiffens(const mps_material *material);
 /* Writes an upper bound of K + 4G/3 (Pa) in the present state of each particle. */

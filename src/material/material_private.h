@@ -30,11 +30,20 @@ typedef struct mpsi_law {
   double alpha, kappa, alpha_flow, cone, tension, q_tension;
   /* Mohr-Coulomb; cut: largest principal stress, infinite where the apex comes first. */
   double sin_phi, sin_psi, c_cos_phi, apex, cut;
+  /* Softening and rate: share of the strength that is left at last, exponent per plastic strain,
+   * mu and 1/(reference rate); Mohr-Coulomb's slopes and cohesion, first and last. */
+  double residual, per_strain, rate_factor, per_rate;
+  double tan_phi, tan_phi_last, tan_psi, cohesion, cohesion_last, given_cut;
+  /* Cam-Clay: M, lambda, kappa, G/K (0: `shear` is constant), a^4 of the Lode angle (1: a circle),
+   * pc and e of the definition, p below which grains part. */
+  double slope, compression, swelling, shear_ratio, lode, first_pc, first_void, least_pressure;
   double viscosity;                     /* Pa s */
   bool tait, no_tension;                /* fluid */
   bool turns_stress, needs_deformation; /* user */
+  bool softens, softens_linearly;       /* or depends on the rate */
   int32_t history_count;                /* user */
   mps_material_fn update;
+  mps_material_moduli_fn moduli;
   void *user;
 } mpsi_law;
 
@@ -80,6 +89,31 @@ mps_status mpsi_check_results(const mps_material_block *block, int32_t history_c
  * flags; adds to *plastic_strain, opens and closes the gap, and returns, where it has flags, the
  * part of the step's volume strain that is not that of the grains. */
 int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
+                                 double *plastic_strain, double *gap, double *opened);
+
+/* State of one particle of Cam-Clay. */
+typedef struct mpsi_clay {
+  double strain, pc, void_ratio, gap; /* of the columns */
+  double volume;                      /* V/V0 of the grains and their pores */
+} mpsi_clay;
+/* A step with the strain increment d (xx yy zz xy zx yz; 2D the first four) from a stress that has
+ * been rotated. Returns the flags. */
+int64_t mpsi_cam_clay_step(const mpsi_law *law, int32_t dim, const double *d, double *stress,
+                           mpsi_clay *clay);
+
+/* K0 of its one-dimensional virgin compression. */
+double mpsi_cam_clay_k0(const mpsi_law *law);
+
+/* soften.c: share of the strength beyond the residual one that is left after a plastic strain. */
+double mpsi_softening_share(const mpsi_law *law, double plastic_strain);
+/* Factor of the strength at a rate (1/s): 1 + mu log10(rate/reference), at least 1. */
+double mpsi_rate_factor(const mpsi_law *law, double rate);
+/* Return of von Mises with softening: the drop of sqrt(3 J2) from its trial value and the new
+ * plastic strain; `strength` is that of no plastic strain. */
+double mpsi_soften_mises(const mpsi_law *law, double trial, double strength,
+                         double *plastic_strain);
+/* mpsi_mohr_coulomb_return with the strength of the plastic strain after the step. */
+int64_t mpsi_soften_mohr_coulomb(const mpsi_law *law, int32_t dim, double rate, double *stress,
                                  double *plastic_strain, double *gap, double *opened);
 
 #endif

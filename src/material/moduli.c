@@ -2,7 +2,29 @@
  * stiffness that depends on the state. SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 
-bool mpsi_material_stiffens(const mps_material *material) { return material->type->moduli != NULL; }
+bool mpsi_material_stiffens(const mps_material *material) {
+  return material->type->moduli != NULL &&
+         (material->type->kind != MPSI_LAW_USER || material->law.moduli != NULL);
+}
+
+/* A value that no modulus can have makes the particle a bad one, which the solver reports. */
+void mpsi_user_moduli(const mpsi_law *law, const mps_material_block *block, double *moduli) {
+  law->moduli(law->user, block, moduli);
+  for (int64_t k = 0; k < block->count; k++)
+    if (!(moduli[k] > 0.0)) moduli[k] = NAN;
+}
+
+/* K = v p/kappa at the larger of p and pc, which bounds that of the next steps too, and G. */
+void mpsi_cam_clay_moduli(const mpsi_law *law, const mps_material_block *block, double *moduli) {
+  for (int64_t k = 0; k < block->count; k++) {
+    const double p = -(block->stress[0][k] + block->stress[1][k] + block->stress[2][k]) / 3.0;
+    const double pc = fmax(block->history[MPSI_CLAY_PC][k], 2.0 * law->least_pressure);
+    const double v = 1.0 + block->history[MPSI_CLAY_VOID][k];
+    const double bulk = v * fmax(p, pc) / law->swelling;
+    const double shear = law->shear_ratio > 0.0 ? law->shear_ratio * bulk : law->shear;
+    moduli[k] = bulk + 4.0 / 3.0 * shear;
+  }
+}
 
 /* -V dp/dV: K r, or K r^7, r = V0/V. */
 void mpsi_newtonian_moduli(const mpsi_law *law, const mps_material_block *block, double *moduli) {
@@ -37,7 +59,7 @@ void mpsi_neo_hookean_moduli(const mpsi_law *law, const mps_material_block *bloc
 
 void mpsi_material_wave_moduli(const mps_material *material, const mps_material_block *block,
                                double *moduli) {
-  if (material->type->moduli)
+  if (mpsi_material_stiffens(material))
     material->type->moduli(&material->law, block, moduli);
   else
     for (int64_t k = 0; k < block->count; k++) moduli[k] = material->wave_modulus;

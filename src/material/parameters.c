@@ -28,10 +28,12 @@ mps_status mpsi_define_von_mises(mps_context *context, const char *function, con
   if (status == MPS_OK)
     status =
         mpsi_check_range_or_0(context, function, "hardening", def->hardening, MPSI_RANGE_STRESS);
+  if (status == MPS_OK) status = mpsi_check_mises_softening(context, function, def);
   if (status != MPS_OK) return status;
   *law = mpsi_law_elastic(def->young, def->poisson);
   law->yield = def->yield_stress;
   law->hardening = def->hardening;
+  mpsi_law_soften_mises(law, def);
   return MPS_OK;
 }
 
@@ -72,6 +74,7 @@ mps_status mpsi_define_mohr_coulomb(mps_context *context, const char *function, 
   if (status == MPS_OK)
     status = mpsi_check_friction(context, function, def->friction, def->dilation, def->cohesion);
   if (status == MPS_OK) status = check_tension(context, function, def->tension);
+  if (status == MPS_OK) status = mpsi_check_mohr_coulomb_softening(context, function, def);
   if (status != MPS_OK) return status;
   *law = mpsi_law_elastic(def->young, def->poisson);
   mpsi_law_add_cone(law, MPS_MATERIAL_CONE_INSCRIBED, def->friction, def->dilation, def->cohesion,
@@ -81,6 +84,7 @@ mps_status mpsi_define_mohr_coulomb(mps_context *context, const char *function, 
   law->c_cos_phi = def->cohesion * cos(def->friction);
   law->apex = def->friction > 0.0 ? law->c_cos_phi / law->sin_phi : INFINITY;
   law->cut = def->tension < law->apex ? def->tension : INFINITY;
+  mpsi_law_soften_mohr_coulomb(law, def);
   return MPS_OK;
 }
 

@@ -1,6 +1,11 @@
-/* point.c - one particle with its state: a law along a strain path, without a solver.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* point.c - one particle with its state, without a solver: a law along a path of strain, or one of
+ * which some components of the stress are given and the rest of the strain, as in a triaxial cell.
+ * There the strains of a step are found by Newton's method, with a matrix by differences, since
+ * laws give no tangent. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/symmetric.h"
 #include "material_private.h"
+
+#include <mps/soil.h>
 
 mps_status mps_material_point_init(mps_context *context, const mps_material *material,
                                    mps_material_point *point) {
@@ -72,6 +77,227 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
       return mpsi_material_refused(context, __func__, material, answer, message, -1, step);
   }
   now.time = point->time + duration;
+  *point = now;
+  return MPS_OK;
+}
+
+/* ---- given stresses -------------------------------------------------------------------------- */
+
+enum { COMPONENTS = 6, ROUNDS = 60, HALVINGS = 30 };
+#define CLOSE 1e-9     /* of the largest stress of a step */
+#define ROUNDING 1e-14 /* of the wave modulus */
+
+/* One step: what is looked for, and what it is to give. */
+typedef struct control {
+  mps_context *context;
+  const mps_material *material;
+  const mps_material_point *start;
+  double gradient[9], dt;
+  int n, component[COMPONENTS]; /* of the stress */
+  double target[COMPONENTS];    /* of these, Pa */
+  double small;                 /* difference of a rate, 1/s */
+  double close;                 /* Pa */
+} control;
+
+static const char function[] = "mps_material_point_control";
+
+static void build_gradient(const control *c, const double *rate, double *gradient) {
+  memcpy(gradient, c->gradient, sizeof c->gradient);
+  for (int k = 0; k < c->n; k++) {
+    const int i = mpsi_symmetric_row[c->component[k]], j = mpsi_symmetric_column[c->component[k]];
+    gradient[3 * i + j] += rate[k];
+    if (i != j) gradient[3 * j + i] += rate[k];
+  }
+}
+
+/* The point after the step with these rates, and how far its stresses are from the targets. */
+static mps_status try_rates(const control *c, const double *rate, mps_material_point *point,
+                            double *miss, double *size) {
+  double gradient[9];
+  build_gradient(c, rate, gradient);
+  *point = *c->start;
+  const mps_status status =
+      mps_material_point_drive(c->context, c->material, point, gradient, c->dt, 1);
+  *size = 0.0;
+  for (int k = 0; k < c->n && status == MPS_OK; k++) {
+    miss[k] = point->stress[c->component[k]] - c->target[k];
+    *size = fmax(*size, fabs(miss[k]));
+  }
+  return status;
+}
+
+/* Gauss with pivots; false of a matrix that is singular to `least` of its largest entry. */
+static bool solve(int n, double (*a)[COMPONENTS], double *x, double least) {
+  double largest = 0.0;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) largest = fmax(largest, fabs(a[i][j]));
+  for (int k = 0; k < n; k++) {
+    int best = k;
+    for (int i = k + 1; i < n; i++)
+      if (fabs(a[i][k]) > fabs(a[best][k])) best = i;
+    if (!(fabs(a[best][k]) > least * largest)) return false;
+    for (int j = 0; j < n; j++) {
+      const double kept = a[k][j];
+      a[k][j] = a[best][j], a[best][j] = kept;
+    }
+    const double kept = x[k];
+    x[k] = x[best], x[best] = kept;
+    for (int i = k + 1; i < n; i++) {
+      const double ratio = a[i][k] / a[k][k];
+      for (int j = k; j < n; j++) a[i][j] -= ratio * a[k][j];
+      x[i] -= ratio * x[k];
+    }
+  }
+  for (int k = n; k-- > 0;) {
+    for (int j = k + 1; j < n; j++) x[k] -= a[k][j] * x[j];
+    x[k] /= a[k][k];
+  }
+  return true;
+}
+
+/* The shortest of all solutions, nearly, of a singular matrix: on an edge of a pyramid two stresses
+ * are equal whatever the difference of the strains. */
+static bool solve_shortest(int n, double (*a)[COMPONENTS], double *x) {
+  double square[COMPONENTS][COMPONENTS] = {{0.0}}, right[COMPONENTS] = {0.0}, trace = 0.0;
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < n; k++) {
+      for (int j = 0; j < n; j++) square[i][j] += a[k][i] * a[k][j];
+      right[i] += a[k][i] * x[k];
+    }
+  for (int i = 0; i < n; i++) trace += square[i][i];
+  for (int i = 0; i < n; i++) square[i][i] += 1e-10 * trace;
+  memcpy(x, right, (size_t)n * sizeof *x);
+  return solve(n, square, x, 0.0);
+}
+
+/* Newton's direction; false where there is none. */
+static mps_status find_direction(const control *c, const double *rate, const double *miss,
+                                 double *direction, bool *found) {
+  double matrix[COMPONENTS][COMPONENTS] = {{0.0}}, other[COMPONENTS], moved[COMPONENTS], size;
+  mps_material_point point;
+  memcpy(moved, rate, sizeof moved);
+  for (int k = 0; k < c->n; k++) {
+    moved[k] = rate[k] + c->small;
+    const mps_status status = try_rates(c, moved, &point, other, &size);
+    if (status != MPS_OK) return status;
+    for (int i = 0; i < c->n; i++) matrix[i][k] = (other[i] - miss[i]) / (moved[k] - rate[k]);
+    moved[k] = rate[k];
+    direction[k] = -miss[k];
+  }
+  double copy[COMPONENTS][COMPONENTS], right[COMPONENTS];
+  memcpy(copy, matrix, sizeof copy);
+  memcpy(right, direction, sizeof right);
+  *found = solve(c->n, copy, direction, 1e-7);
+  if (!*found) {
+    memcpy(direction, right, sizeof right);
+    *found = solve_shortest(c->n, matrix, direction);
+  }
+  for (int k = 0; k < c->n; k++) *found = *found && isfinite(direction[k]);
+  return MPS_OK;
+}
+
+/* The rates of one step, from those given; *size is what is missing at the end. */
+static mps_status find_rates(const control *c, double *rate, mps_material_point *point,
+                             double *size) {
+  double miss[COMPONENTS], direction[COMPONENTS];
+  mps_status status = try_rates(c, rate, point, miss, size);
+  for (int round = 0; round < ROUNDS && status == MPS_OK && *size > c->close; round++) {
+    bool found = false;
+    status = find_direction(c, rate, miss, direction, &found);
+    if (status != MPS_OK || !found) return status;
+    const double former = *size;
+    double next[COMPONENTS], share = 1.0;
+    for (int half = 0; half < HALVINGS; half++, share *= 0.5) {
+      for (int k = 0; k < c->n; k++) next[k] = rate[k] + share * direction[k];
+      status = try_rates(c, next, point, miss, size);
+      if (status != MPS_OK || *size < former) break;
+    }
+    if (status != MPS_OK || !(*size < former)) return status;
+    memcpy(rate, next, (size_t)c->n * sizeof *rate);
+  }
+  return status;
+}
+
+static mps_status check_targets(mps_context *context, const mps_material_point *point,
+                                const double *target, uint32_t controlled) {
+  if (controlled >= 1u << COMPONENTS)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "controlled is %u, must be a sum of MPS_MATERIAL_POINT_... bits, below 64",
+                     (unsigned)controlled);
+  if (controlled != 0 && !target)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "target is NULL");
+  for (int c = 0; c < COMPONENTS; c++) {
+    if ((controlled >> c & 1) && !(fabs(target[c]) <= 1e18))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "target[%d] is %g Pa, must be finite and at most 1e18", c, target[c]);
+    if (!isfinite(point->stress[c]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "stress[%d] of the point is %g, must be finite", c, point->stress[c]);
+  }
+  return MPS_OK;
+}
+
+/* The step's size, by which differences and the tolerance are chosen. */
+static void set_scales(control *c) {
+  double rate = 0.0, change = 0.0, stress = 0.0;
+  for (int k = 0; k < 9; k++) rate = fmax(rate, fabs(c->gradient[k]));
+  for (int k = 0; k < COMPONENTS; k++) stress = fmax(stress, fabs(c->start->stress[k]));
+  for (int k = 0; k < c->n; k++) {
+    change = fmax(change, fabs(c->target[k] - c->start->stress[c->component[k]]));
+    stress = fmax(stress, fabs(c->target[k]));
+  }
+  const double modulus = mps_material_wave_modulus(c->material);
+  c->small = 1e-4 * fmax(rate, change / (modulus * c->dt));
+  if (!(c->small > 0.0)) c->small = 1e-9 / c->dt;
+  c->close = fmax(CLOSE * stress, ROUNDING * modulus);
+}
+
+static mps_status take_step(control *c, double *rate, mps_material_point *point, int64_t step) {
+  double size, first[COMPONENTS] = {0.0};
+  set_scales(c);
+  mps_status status = find_rates(c, rate, point, &size);
+  if (status == MPS_OK && size > c->close) { /* from rest: the path may have turned */
+    memcpy(rate, first, sizeof first);
+    status = find_rates(c, rate, point, &size);
+  }
+  if (status != MPS_OK || size <= c->close) return status;
+  return mpsi_fail(c->context, function, MPS_ERROR_NUMERIC,
+                   "step %lld: no strain gives the target stress, the nearest is %g Pa from it: it "
+                   "may lie beyond the strength of the law %s; take smaller steps or give strains",
+                   (long long)step, size, mps_material_name(c->material));
+}
+
+mps_status mps_material_point_control(mps_context *context, const mps_material *material,
+                                      mps_material_point *point, const double gradient[9],
+                                      uint32_t controlled, const double target[6], double duration,
+                                      int64_t steps, double found[9]) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_drive(context, function, material, point, gradient, duration, steps);
+  if (status == MPS_OK) status = check_targets(context, point, target, controlled);
+  if (status != MPS_OK) return status;
+  mps_material_point now = *point, next = *point;
+  double rate[COMPONENTS] = {0.0};
+  control c = {
+      .context = context, .material = material, .start = &now, .dt = duration / (double)steps};
+  memcpy(c.gradient, gradient, sizeof c.gradient);
+  for (int k = 0; k < COMPONENTS; k++) {
+    if (!(controlled >> k & 1)) continue;
+    const int i = mpsi_symmetric_row[k], j = mpsi_symmetric_column[k];
+    if (i == j) c.gradient[4 * i] = 0.0;
+    c.component[c.n++] = k;
+  }
+  for (int64_t step = 0; step < steps; step++) {
+    const double share = (double)(step + 1) / (double)steps;
+    for (int k = 0; k < c.n; k++) {
+      const int a = c.component[k];
+      c.target[k] = point->stress[a] + share * (target[a] - point->stress[a]);
+    }
+    status = mpsi_as(context, function, take_step(&c, rate, &next, step));
+    if (status != MPS_OK) return status;
+    now = next;
+  }
+  now.time = point->time + duration;
+  if (found) build_gradient(&c, rate, found);
   *point = now;
   return MPS_OK;
 }

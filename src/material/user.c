@@ -89,6 +89,7 @@ mps_status mpsi_define_user(mps_context *context, const char *function, const vo
                     .viscosity = def->viscosity,
                     .needs_deformation = def->needs_deformation == 1,
                     .turns_stress = def->turns_stress == 1,
+                    .moduli = def->moduli,
                     .history_count = def->history_count,
                     .has_moduli = def->shear_modulus > 0.0,
                     .shear = def->shear_modulus,

@@ -4,7 +4,7 @@
 
 #include <float.h>
 
-#include <mps/material.h>
+#include <mps/soil.h>
 
 #define YOUNG 1e-6, 1e18, 1e6
 #define POISSON -0.999, 0.49999, 0.3
@@ -39,6 +39,7 @@ API_INIT(material_von_mises_def)
 API_INIT(material_drucker_prager_def)
 API_INIT(material_mohr_coulomb_def)
 API_INIT(material_newtonian_def)
+API_INIT(material_cam_clay_def)
 API_INIT(material_user_def)
 API_INIT(material_umat_def)
 API_INIT(material_block)
@@ -93,6 +94,33 @@ static void material_mohr_coulomb(api *a) {
   DRAW_SOIL(a, &def);
   mps_material **out = api_null(a, "out") ? NULL : &made;
   (void)made_material(a, mps_material_create_mohr_coulomb(context, &def, out), &made);
+}
+
+static void material_cam_clay(api *a) {
+  api_begin(a, "mps_material_create_cam_clay");
+  mps_material *made = NULL;
+  mps_context *context = api_context(a);
+  mps_material_cam_clay_def def = mps_material_cam_clay_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.critical_slope = api_real(a, "critical_slope", 0.05, 2.9, 1.0);
+  def.compression = api_real(a, "compression", 0.1, 5.0, 0.2);
+  def.swelling = api_real(a, "swelling", 1e-5, 0.09, 0.04);
+  if (def.swelling < def.compression && def.swelling > 0.09 && def.swelling <= 0.1) a->wrong = 0;
+  def.poisson = api_real(a, "poisson", 0.0, 0.49, 0.3);
+  def.void_ratio = api_real(a, "void_ratio", 0.01, 20.0, 1.0);
+  def.preconsolidation = api_real(a, "preconsolidation", 1e-3, 1e12, 1e5);
+  def.lode = api_choice(a, "lode", 2);
+  (void)made_material(
+      a, mps_material_create_cam_clay(context, &def, api_null(a, "out") ? NULL : &made), &made);
+}
+
+static void normal_k0(api *a) {
+  api_begin(a, "mps_material_normal_k0");
+  const mps_material *material = api_any(a, API_MATERIAL)->handle;
+  const double k0 = mps_material_normal_k0(material);
+  a->reads = true;
+  if (!isnan(k0) && !(k0 > 0.0 && k0 < 1.0)) api_broken(a, "K0 is %g", k0);
+  (void)api_end(a, MPS_OK);
 }
 
 static void material_newtonian(api *a) {
@@ -322,7 +350,17 @@ static void material_point(api *a) {
   for (int k = 0; status == MPS_OK && k < 6; k++)
     if (!isfinite(point.stress[k]))
       api_broken(a, "succeeds, and stress[%d] is %g", k, point.stress[k]);
-  (void)api_end(a, status);
+  if (!api_end(a, status)) return;
+  api_begin(a, "mps_material_point_control");
+  double target[6] = {0.0}, still[9] = {0.0};
+  for (int k = 0; k < 3; k++) target[k] = point.stress[k];
+  const uint32_t bits = (uint32_t)api_below(a, 8);
+  const mps_status held = mps_material_point_control(context, material, &point, still, bits, target,
+                                                     0.01, 1 + (int64_t)api_below(a, 3), NULL);
+  for (int k = 0; held == MPS_OK && k < 3; k++)
+    if ((bits >> k & 1) && !(fabs(point.stress[k] - target[k]) <= 1e-6 * fabs(target[k]) + 1.0))
+      api_broken(a, "stress[%d] is %g, not its target %g", k, point.stress[k], target[k]);
+  (void)api_end(a, held);
 }
 
 static const api_call calls[] = {
@@ -338,6 +376,9 @@ static const api_call calls[] = {
     {"mps_material_create_von_mises", 2, API_CONTEXT, material_von_mises},
     {"mps_material_create_drucker_prager", 2, API_CONTEXT, material_drucker_prager},
     {"mps_material_create_mohr_coulomb", 2, API_CONTEXT, material_mohr_coulomb},
+    {"mps_material_cam_clay_def_init", 1, API_NOTHING, init_material_cam_clay_def},
+    {"mps_material_create_cam_clay", 2, API_CONTEXT, material_cam_clay},
+    {"mps_material_normal_k0", 1, API_MATERIAL, normal_k0},
     {"mps_material_create_newtonian", 2, API_CONTEXT, material_newtonian},
     {"mps_material_create_user", 3, API_CONTEXT, material_user},
     {"mps_material_create_umat", 2, API_CONTEXT, material_umat},
@@ -355,5 +396,6 @@ static const api_call calls[] = {
     {"mps_material_update", 4, API_MATERIAL, material_update},
     {"mps_material_point_init", 4, API_MATERIAL, material_point},
     {"mps_material_point_drive", 0, API_MATERIAL, material_point},
+    {"mps_material_point_control", 0, API_MATERIAL, material_point},
 };
 const api_table api_material_calls = API_TABLE(calls);

@@ -5,6 +5,7 @@
 #include <float.h>
 
 #include <mps/geostatic.h>
+#include <mps/soil.h>
 #include <mps/material.h>
 
 #include <stdlib.h>
@@ -377,6 +378,20 @@ static void particles_set_geostatic(api *a) {
   (void)api_end(a, mps_particles_set_geostatic(set, &def));
 }
 
+API_INIT(consolidation_def)
+
+static void particles_set_consolidation(api *a) {
+  api_begin(a, "mps_particles_set_consolidation");
+  mps_particles *set = api_any(a, API_SET)->handle;
+  const mps_material *material = api_any(a, API_MATERIAL)->handle;
+  mps_consolidation_def def = mps_consolidation_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.ocr = api_real(a, "ocr", 1.0, 1000.0, 2.0);
+  def.pop = api_real(a, "pop", 0.0, 1e12, 0.0);
+  api_loosen(a);
+  (void)api_end(a, mps_particles_set_consolidation(set, material, &def));
+}
+
 static mps_status some_stress(void *user, const double *x, double *stress) {
   for (int k = 0; k < 4; k++) stress[k] = -100.0 * x[1];
   return api_callback(user, stress, 4);
@@ -426,6 +441,8 @@ static const api_call calls[] = {
     {"mps_particles_index", 2, API_SET, particles_index},
     {"mps_particles_nearest", 2, API_SET, particles_nearest},
     {"mps_geostatic_def_init", 1, API_NOTHING, init_geostatic_def},
+    {"mps_consolidation_def_init", 1, API_NOTHING, init_consolidation_def},
+    {"mps_particles_set_consolidation", 1, API_SET, particles_set_consolidation},
     {"mps_particles_set_geostatic", 4, API_SET, particles_set_geostatic},
     {"mps_particles_set_stress", 4, API_SET, particles_set_stress},
     {"mps_particles_set_material", 4, API_MATERIAL, particles_set_material},

@@ -14,6 +14,7 @@ run() { # run PROGRAM OPTIONS...: it ends well and writes a summary of numbers
 programs=$1
 run mps-wave --width 4 --height 10 --duration 0.1 --frames 2
 run mps-stability --radius 1 --method linear
+run mps-element --steps 20
 run mps-sliding-box --h 0.1
 run mps-rolling-disc --h 0.02 --duration 0.02
 run mps-footing --h 0.25 --domain 3x1 --settlement 0.05mm

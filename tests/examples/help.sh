@@ -27,6 +27,11 @@ for program in mps-dam-break mps-column-collapse; do
   done
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
 done
+"$1/mps-element" --help >"$work/help" || fail "mps-element --help"
+for text in "Usage: mps-element" "--path iso|oedometer|cu" "(default" "--out DIR" "--threads N"; do
+  has "$work/help" "$text"
+done
+[ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "mps-element: long lines"
 "$1/mps-penetrometer" --help >"$work/help" || fail "mps-penetrometer --help"
 for text in "Usage: mps-penetrometer" "--tip cone|sphere|stl" "--h [m]" "(default" "--out DIR"; do
   has "$work/help" "$text"

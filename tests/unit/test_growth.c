@@ -16,6 +16,7 @@
 #include <mps/elastic_solver.h>
 #include <mps/fluid_solver.h>
 #include <mps/geostatic.h>
+#include <mps/soil.h>
 #include <mps/io.h>
 #include <mps/material.h>
 #include <mps/mpm.h>
@@ -88,6 +89,14 @@ static void need_mohr_coulomb(void *def) {
   d->young = 1e7;
   d->friction = 0.5;
 }
+static void need_cam_clay(void *def) {
+  mps_material_cam_clay_def *d = def;
+  d->critical_slope = 1.0;
+  d->compression = 0.1;
+  d->swelling = 0.02;
+  d->void_ratio = 1.0;
+  d->preconsolidation = 1e5;
+}
 static void need_newtonian(void *def) { ((mps_material_newtonian_def *)def)->bulk_modulus = 1e6; }
 
 #define USE_MATERIAL(name)                                                                         \
@@ -101,6 +110,21 @@ USE_MATERIAL(von_mises)
 USE_MATERIAL(drucker_prager)
 USE_MATERIAL(mohr_coulomb)
 USE_MATERIAL(newtonian)
+USE_MATERIAL(cam_clay)
+
+static mps_status use_consolidation(const void *def) {
+  mps_particles *set = square();
+  mps_material *clay = NULL;
+  mps_material_cam_clay_def law = mps_material_cam_clay_defaults();
+  need_cam_clay(&law);
+  mps_assert_ok(context, mps_particles_add_field(set, "stress", 0));
+  for (int c = 0; c < 3; c++) mps_assert_ok(context, mps_particles_set(set, "stress", c, -1e4));
+  mps_assert_ok(context, mps_material_create_cam_clay(context, &law, &clay));
+  const mps_status status = mps_particles_set_consolidation(set, clay, def);
+  mps_material_destroy(&clay);
+  mps_particles_destroy(&set);
+  return status;
+}
 
 static mps_status use_body(const void *def) {
   mps_body *made = NULL;
@@ -548,9 +572,11 @@ static const user users[] = {
     {"mps_material_umat_def", need_umat, use_umat},
     {"mps_material_user_def", need_user_law, use_user_law},
     {"mps_body_def", need_nothing, use_body},
+    {"mps_consolidation_def", need_nothing, use_consolidation},
     {"mps_context_def", need_nothing, use_context},
     {"mps_coupling_def", need_coupling, use_coupling},
     {"mps_domain_def", need_domain, use_domain},
+    {"mps_material_cam_clay_def", need_cam_clay, use_cam_clay},
     {"mps_material_drucker_prager_def", need_drucker_prager, use_drucker_prager},
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},

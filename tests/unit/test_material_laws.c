@@ -20,8 +20,11 @@ static void each_kind_has_its_descriptor(void **state) {
     const mpsi_law_type *type = &mpsi_law_types[kind];
     assert_int_equal((int)type->kind, kind);
     assert_non_null(type->define);
-    assert_true(type->columns >= 0 && type->columns <= 2);
-    assert_true(!(type->traits & MPSI_LAW_OPENS) || type->columns == 2);
+    int columns = 0;
+    while (type->columns[columns]) columns++;
+    assert_true(columns <= 4);
+    assert_true(!(type->traits & MPSI_LAW_OPENS) ||
+                (columns == 2 && strcmp(type->columns[1], "opening") == 0));
     for (int level = 0; level < 3; level++)
       for (int geometry = 0; geometry < MPSI_GEOMETRIES; geometry++) {
         const mpsi_law_table *table = mpsi_laws_select(levels[level]);

@@ -12,6 +12,7 @@
   X(mps_body_def, mps_body_def_init, "0.3", 176) \
   X(mps_body_motion, mps_body_motion_init, "0.3", 104) \
   X(mps_checkpoint, mps_checkpoint_init, "0.3", 112) \
+  X(mps_consolidation_def, mps_consolidation_def_init, "0.3", 72) \
   X(mps_contact_def, mps_contact_def_init, "0.3", 96) \
   X(mps_context_def, mps_context_def_init, "0.3", 104) \
   X(mps_coupling_def, mps_coupling_def_init, "0.3", 64) \
@@ -32,12 +33,13 @@
   X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.3", 56) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.3", 80) \
   X(mps_material_block, mps_material_block_init, "0.3", 312) \
+  X(mps_material_cam_clay_def, mps_material_cam_clay_def_init, "0.3", 72) \
   X(mps_material_drucker_prager_def, mps_material_drucker_prager_def_init, "0.3", 56) \
-  X(mps_material_mohr_coulomb_def, mps_material_mohr_coulomb_def_init, "0.3", 56) \
+  X(mps_material_mohr_coulomb_def, mps_material_mohr_coulomb_def_init, "0.3", 112) \
   X(mps_material_newtonian_def, mps_material_newtonian_def_init, "0.3", 32) \
   X(mps_material_umat_def, mps_material_umat_def_init, "0.3", 104) \
-  X(mps_material_user_def, mps_material_user_def_init, "0.3", 88) \
-  X(mps_material_von_mises_def, mps_material_von_mises_def_init, "0.3", 40) \
+  X(mps_material_user_def, mps_material_user_def_init, "0.3", 96) \
+  X(mps_material_von_mises_def, mps_material_von_mises_def_init, "0.3", 80) \
   X(mps_mpm_boundary_def, mps_mpm_boundary_def_init, "0.3", 144) \
   X(mps_mpm_def, mps_mpm_def_init, "0.3", 192) \
   X(mps_mpm_load_def, mps_mpm_load_def_init, "0.3", 104) \

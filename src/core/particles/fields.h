@@ -100,6 +100,10 @@
     "WLS-MPM with a plastic law of the library", "after a step or a run")                            \
   X(opening, F64, 1, "-", "volume strain of the gap between grains that were drawn apart", \
     "WLS-MPM with a frictional law of the library", "after a step or a run")                         \
+  X(preconsolidation, F64, 1, "Pa", "pc of Cam-Clay: largest p of the yield surface", \
+    "the caller (initial state; 0: of the law); WLS-MPM with Cam-Clay", "after a step or a run")     \
+  X(void_ratio, F64, 1, "-", "volume of the pores over that of the grains, e", \
+    "the caller (initial state; 0: of the law); WLS-MPM with Cam-Clay", "after a step or a run")     \
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then in the order of mps_mpm_set_material", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
@@ -117,6 +121,8 @@
   X(shear_velocity, 0.0, 3e8)                                                                      \
   X(pressure_velocity, 0.0, 3e8)                                                                   \
   X(damping, 0.0, 1e6)                                                                             \
+  X(preconsolidation, 0.0, 1e18)                                                                    \
+  X(void_ratio, 0.0, 1e3)                                                                          \
   X(young, 0.0, 1e24)                                                                              \
   X(poisson, -1.0, 0.5)                                                                            \
   X(mass, 0.0, 1e48)                                                                               \

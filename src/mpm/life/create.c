@@ -345,6 +345,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     mpsi_mpm_bind(mpm);
     status = mpsi_mpm_check_start(mpm, create);
     if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
+    if (status == MPS_OK) status = mpsi_mpm_check_states(mpm, create, 0, mpm->p.count);
     status = mpsi_fail_of(mpm->context, status, "particles");
     if (status == MPS_OK && !shared) status = save_columns(mpm, &copy);
     if (status == MPS_OK) status = begin(mpm);
@@ -371,6 +372,7 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
     mpsi_mpm_bind(mpm);
     status = mpsi_mpm_check_start(mpm, create);
     if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
+    if (status == MPS_OK) status = mpsi_mpm_check_states(mpm, create, 0, mpm->p.count);
     status = mpsi_fail_of(mpm->context, status, "particles");
   }
   if (status == MPS_OK && writes_given(mpm, fields))

@@ -52,6 +52,14 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
                        "ids: particle %lld has a volume_ratio of %g, must be > 0, or 0 for 1",
                        (long long)mpm->laws.ids[k], J[k]);
   }
+  if (!mpsi_material_has_start(material)) return MPS_OK;
+  mpsi_first_state first;
+  mpsi_mpm_find_state(mpm, material, &first);
+  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
+    const int64_t k = place(mpm, ids, i);
+    status = k >= 0 ? mpsi_mpm_check_state(mpm, function, &first, k) : MPS_OK;
+    if (status != MPS_OK) return status;
+  }
   return MPS_OK;
 }
 

@@ -142,7 +142,11 @@ void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double
       mps_material_block block;
       mpsi_mpm_begin_block(&block);
       int64_t flags[MPSI_CHUNK];
+      double *history[MPSI_MATERIAL_COLUMNS];
       find_columns(mpm, law, k, next, flags, &block);
+      for (int32_t h = 0; h < law->columns; h++) history[h] = law->history[h] + k;
+      block.history = history;
+      block.history_count = law->columns;
       mpsi_material_wave_moduli(law->material, &block, moduli + (k - begin));
     } else {
       for (int64_t q = k; q < next; q++) moduli[q - begin] = law->modulus;

@@ -59,6 +59,18 @@ void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
+/* materials.c: MPS_ERROR_ARGUMENT where the law cannot begin in the state of the particle, which
+ * the message names. `columns`: found once for the law. */
+typedef struct mpsi_first_state {
+  const mps_material *material;
+  const double *history[MPSI_MATERIAL_COLUMNS]; /* NULL: the set has no such field yet */
+} mpsi_first_state;
+void mpsi_mpm_find_state(const mps_mpm *mpm, const mps_material *material, mpsi_first_state *out);
+mps_status mpsi_mpm_check_state(const mps_mpm *mpm, const char *function,
+                                const mpsi_first_state *first, int64_t particle);
+/* Of the particles [begin, end) under the law of creation. */
+mps_status mpsi_mpm_check_states(const mps_mpm *mpm, const char *function, int64_t begin,
+                                 int64_t end);
 /* materials.c: where the columns of a law's own fields are now. */
 void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law);
 void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);

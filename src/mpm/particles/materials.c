@@ -87,3 +87,38 @@ void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
   }
   mpsi_material_begin(law->material, law->history, k, k + 1);
 }
+
+/* ---- a first state --------------------------------------------------------------------------- */
+
+void mpsi_mpm_find_state(const mps_mpm *mpm, const mps_material *material, mpsi_first_state *out) {
+  out->material = material;
+  for (int32_t h = 0; h < mps_material_history_count(material); h++)
+    out->history[h] =
+        mpsi_particles_column(mpm->particles, mps_material_history_field(material, h), 0);
+}
+
+mps_status mpsi_mpm_check_state(const mps_mpm *mpm, const char *function,
+                                const mpsi_first_state *first, int64_t k) {
+  enum { MOST = 8 }; /* columns of a law that has a start */
+  double stress[6] = {0.0}, history[MOST] = {0.0};
+  char reason[200];
+  if (!mpsi_material_has_start(first->material)) return MPS_OK;
+  for (int32_t c = 0; c < 2 * mpm->dim; c++) stress[c] = mpm->p.s[c][k];
+  for (int32_t h = 0; h < mps_material_history_count(first->material) && h < MOST; h++)
+    if (first->history[h]) history[h] = first->history[h][k];
+  if (mpsi_material_check_state(first->material, mpm->dim, stress, history, reason, sizeof reason))
+    return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material: particle %lld %s",
+                   (long long)mpm->laws.ids[k], reason);
+}
+
+mps_status mpsi_mpm_check_states(const mps_mpm *mpm, const char *function, int64_t begin,
+                                 int64_t end) {
+  mpsi_first_state first;
+  mps_status status = MPS_OK;
+  if (!mpsi_material_has_start(mpm->laws.law[0].material)) return MPS_OK;
+  mpsi_mpm_find_state(mpm, mpm->laws.law[0].material, &first);
+  for (int64_t k = begin; k < end && status == MPS_OK; k++)
+    status = mpsi_mpm_check_state(mpm, function, &first, k);
+  return status;
+}

@@ -24,6 +24,7 @@ static mps_status take_in(mps_mpm *mpm, const char *function, int64_t first, int
   status = mpsi_mpm_check_places(mpm, function, first, first + count);
   for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
     status = mpsi_mpm_check_inside(mpm, function, mpm->contact.handle[b], first);
+  if (status == MPS_OK) status = mpsi_mpm_check_states(mpm, function, first, first + count);
   for (int64_t k = first; k < first + count && status == MPS_OK; k++) {
     mpm->p.V[k] = mpsi_mpm_lattice_volume(mpm, k);
     mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);

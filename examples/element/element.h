@@ -1,0 +1,81 @@
+/* element.h - the parts of mps-element: the law (law.c), the path of stress and strain (path.c,
+ * steps.c), results (results.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_ELEMENT_H
+#define EXAMPLES_ELEMENT_H
+
+#include "common/options.h"
+#include "common/output.h"
+
+#include <mps/soil.h>
+
+enum { ELASTIC, NEO_HOOKEAN, VON_MISES, TRESCA, DRUCKER_PRAGER, MOHR_COULOMB, NEWTONIAN, CAM_CLAY };
+#define ELEMENT_LAWS "elastic|neohookean|vonmises|tresca|druckerprager|mohrcoulomb|newtonian|mcc"
+enum { ISO, OEDOMETER, CU, CD, PS_UNDRAINED, EXTENSION, SHEAR, FROM_FILE };
+#define ELEMENT_PATHS "iso|oedometer|cu|cd|ps-undrained|extension|shear"
+
+typedef struct settings {
+  int law, path;
+  const char *path_file; /* NULL: `path` */
+  double strain, rate;   /* 1, 1/s */
+  int64_t steps, threads;
+  double p0, k0;                      /* Pa, 1: the first stress */
+  double young, poisson, nu;          /* nu: another name of poisson; NaN: not given */
+  double cohesion, phi, psi, tension; /* Pa, degrees, degrees, Pa */
+  int cone;
+  double yield, hardening;                          /* Pa; NaN: sqrt(3) cohesion */
+  double residual, residual_phi, residual_cohesion; /* 1, degrees, Pa */
+  double slip, band, rate_factor, rate_reference;   /* m, m, 1, 1/s */
+  bool linear;                                      /* softening */
+  double bulk, viscosity;                           /* Pa, Pa s */
+  double M, lambda, kappa, e0, ocr, shear_modulus;  /* e0: NaN, there is none */
+  bool lode;
+  const char *out;
+} settings;
+
+/* A part of the path: strains (logarithmic, tensor components of a velocity gradient that stays the
+ * same) or, of the controlled components, changes of stress, in equal steps. */
+typedef struct stage {
+  double strain[9];
+  uint32_t controlled; /* MPS_MATERIAL_POINT_... */
+  double stress[6];    /* Pa, change */
+  int64_t steps;
+} stage;
+
+enum { STAGES = 1000 };
+
+/* A row of path.csv. */
+typedef struct row {
+  double strain, stress[6], p, q, u, void_ratio, pc, e[4], volume_ratio, plastic;
+} row;
+
+typedef struct element {
+  app a;
+  settings s;
+  mps_material *material;
+  mps_material_point point;
+  stage *stages;
+  int stage_count;
+  int64_t rows, room;
+  row *table;
+  double e[4]; /* logarithmic strain xx, yy, zz, and engineering shear xy, so far */
+  int pc_at, void_at, plastic_at; /* columns of history; -1: the law has none */
+} element;
+
+/* Reasons why settings are not consistent; NULL: good. Fills in defaults that depend on the law. */
+const char *element_settle(settings *s, const option *table);
+bool element_make_law(element *x);
+/* The first stress and history. */
+bool element_start(element *x);
+
+/* One stage of a path by name, or those of the file. */
+bool element_make_path(element *x);
+/* Drives the point; false where a step has failed, after the rows up to it. */
+bool element_drive(element *x);
+
+/* path.csv, summary.json, pictures. `done`: the path has come to its end. */
+bool element_results(element *x, bool done);
+/* q at which the path ends under shear, by theory; NaN: none. */
+double element_limit(const element *x);
+
+#endif

@@ -1,0 +1,117 @@
+/* mps/soil.h - ground by critical state: modified Cam-Clay, its state at rest, and any law at one
+ * point along paths of stress and strain, as in a triaxial test.
+ *
+ * p = -I1/3 is the mean effective pressure, q = sqrt(3 J2), e the void ratio, v = 1 + e; tension is
+ * positive in tensors. The equations are in docs/materials.md.
+ *
+ * Thread rule: creation and states, one thread at a time per set and context; a point, one thread
+ * at a time per context. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef LIBMPS_SOIL_H
+#define LIBMPS_SOIL_H
+
+#include "material.h"
+
+MPS_EXTERN_C_BEGIN
+
+/** Modified Cam-Clay: q^2/M^2 + p (p - pc) = 0, associated; K = v p/kappa, dpc/pc = v times the
+ *  plastic volume strain over lambda - kappa. Effective stress. Its history is `plastic_strain`,
+ *  `preconsolidation` (pc, Pa), `void_ratio` and `opening`; a particle whose fields hold other
+ *  values than 0 starts from them, else from those of the definition. */
+typedef struct mps_material_cam_clay_def {
+  uint32_t struct_size;
+  int32_t lode;          /* 0 (default): M in all directions; 1: it follows the Lode angle, in
+                            triaxial extension (3 - sin phi)/(3 + sin phi) of that in compression */
+  double critical_slope; /* M, q/p at the critical state in triaxial compression, 0.05 to 2.9; no
+                            default. 6 sin(phi)/(3 - sin(phi)) */
+  double compression;   /* lambda, slope of virgin compression in v - ln p, 1e-4 to 5; no default */
+  double swelling;      /* kappa, slope of unloading, 1e-5 to below lambda; no default */
+  double poisson;       /* nu, 0 to 0.49, from which G follows K; default 0.3 */
+  double shear_modulus; /* Pa, constant G instead of nu; NaN (default): by nu. G by nu gives and
+                           takes energy in closed cycles of p and q */
+  double void_ratio;    /* e, 0.01 to 20; no default */
+  double preconsolidation; /* Pa, pc, 1e-3 to 1e12; no default */
+  double least_pressure;   /* Pa, p below which grains part, up to pc/10; NaN (default): pc/1000 */
+} mps_material_cam_clay_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
+MPS_API mps_status mps_material_cam_clay_def_init(mps_material_cam_clay_def *def, size_t size);
+MPS_MATERIAL_DEFAULTS(cam_clay)
+
+/** Modified Cam-Clay. Constants are copied. mps_material_wave_modulus and mps_material_get_moduli
+ *  give those at pc and e of the definition; a solver's step follows the present state.
+ *  MPS_ERROR_ARGUMENT: a constant out of range, which the message names; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_material_create_cam_clay(mps_context *context,
+                                                              const mps_material_cam_clay_def *def,
+                                                              mps_material **out);
+
+/* ---- ground of Cam-Clay at rest -------------------------------------------------------------- */
+
+typedef struct mps_consolidation_def {
+  uint32_t struct_size;
+  int32_t reserved;
+  double ocr; /* largest former vertical effective stress over the present one, 1 to 1000;
+                 default 1 */
+  double pop; /* Pa, >= 0: added to that largest stress; default 0 */
+  double k0;  /* horizontal over vertical stress; NaN (default): that of the law after
+                 one-dimensional loading to the largest stress and elastic unloading, at most
+                 the passive one */
+  double critical_volume; /* Gamma, v on the critical state line at `reference`, above 1: e follows
+                             from p and pc; NaN (default): e of the law */
+  double reference;       /* Pa, > 0; default 1000 */
+  int64_t count;          /* of `ids`; 0 and NULL (default): all particles */
+  const int64_t *ids;
+  int32_t vertical; /* axis of the vertical stress, 0, 1, 2; -1 (default): the last of the set */
+  int32_t reserved_2;
+} mps_consolidation_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
+MPS_API mps_status mps_consolidation_def_init(mps_consolidation_def *def, size_t size);
+static inline mps_consolidation_def mps_consolidation_defaults(void) {
+  mps_consolidation_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_consolidation_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** From the vertical effective stress in the field `stress` (mps_particles_set_geostatic with
+ *  buoyant densities) sets the horizontal stresses, and the fields `preconsolidation` and
+ *  `void_ratio`, of ground that has settled under its weight and its former load; no shear. To be
+ *  called before the solver is created. MPS_ERROR_ARGUMENT: a value out of range, a vertical stress
+ *  that is not compression (the message names the particle), k0 beyond the yield surface of the
+ *  largest stress; MPS_ERROR_FIELD: no `stress`; MPS_ERROR_UNSUPPORTED: a law that is not Cam-Clay;
+ *  MPS_ERROR_STATE: a solver's callback is running. Nothing is changed on an error. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_consolidation(mps_particles *particles,
+                                                                 const mps_material *material,
+                                                                 const mps_consolidation_def *def);
+
+/** K0 of one-dimensional virgin compression of a Cam-Clay; NaN of another law or NULL. Thread safe.
+ */
+MPS_API double mps_material_normal_k0(const mps_material *material);
+
+/* ---- a point along a path of stress and strain ------------------------------------------------
+ */
+
+/** Bits of `controlled`, in the order of a stress's components. */
+#define MPS_MATERIAL_POINT_XX 1
+#define MPS_MATERIAL_POINT_YY 2
+#define MPS_MATERIAL_POINT_ZZ 4
+#define MPS_MATERIAL_POINT_XY 8
+#define MPS_MATERIAL_POINT_ZX 16
+#define MPS_MATERIAL_POINT_YZ 32
+
+/** `steps` (>= 1) steps of duration/steps with the velocity gradient[3 i + j] (1/s), of which the
+ *  components in `controlled` (bits above) are found such that those components of the stress go in
+ *  equal parts from the present values to `target` (6, Pa; others are not read). A controlled shear
+ *  strain is symmetric, and adds to `gradient`. `found` (9, 1/s; may be NULL): the gradient of the
+ *  last step. MPS_ERROR_ARGUMENT as mps_material_point_drive, and bits or targets out of range;
+ *  MPS_ERROR_NUMERIC: no strain gives that stress, as beyond a law's strength; the point is
+ *  unchanged then. */
+MPS_API MPS_NODISCARD mps_status
+mps_material_point_control(mps_context *context, const mps_material *material,
+                           mps_material_point *point, const double gradient[9], uint32_t controlled,
+                           const double target[6], double duration, int64_t steps, double found[9]);
+
+MPS_EXTERN_C_END
+#endif

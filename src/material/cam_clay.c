@@ -1,0 +1,219 @@
+/* cam_clay.c - modified Cam-Clay (Roscoe & Burland 1968) in one step: yield surface
+ * f = q^2/M^2 + p (p - pc), associated flow, K = v p/kappa, hardening by the plastic change of the
+ * specific volume v. With compression positive in p and v, whatever the step,
+ *   ln(pc1/pc0) = (v0 - v1 - kappa ln(p1/p0))/(lambda - kappa),                                (1)
+ * so that two unknowns are left, x = ln p and the flow multiplier g, of the equations
+ *   r1 = v0 - v1 - kappa (x - ln p0) - (v0 + v1)/2 g (2 p - pc)
+ *   r2 = q*^2/(M D)^2 + p (p - pc), D = 1 + 6 G g/M^2,
+ * the deviator being the trial's over D. Newton's method solves nearly all; the rest by bisection
+ * in g, as r1 falls in x for each g. Stresses in these equations are divided by pc0.
+ *
+ * Below `least_pressure` grains part, as in the sand of laws.c: the volume strain of the gap is
+ * kept and compression closes it first. SPDX-License-Identifier: BSD-3-Clause */
+#include "material_private.h"
+
+#define LONGEST 1e-2  /* strain of a substep: G is that of its beginning */
+#define FARTHEST 10.0 /* strain of a step; a solver never comes near it */
+
+/* What one substep solves, in units of pc0. */
+typedef struct clay_return {
+  double x0, dv, vm;         /* ln p0, v0 - v1, mean v */
+  double kappa, per_plastic; /* 1/(lambda - kappa) */
+  double q, slope2, shear6;  /* q*, M^2, 6 G */
+  double start;              /* x of the trial */
+} clay_return;
+
+typedef struct clay_point {
+  double x, g, p, pc, r1, r2, rate; /* rate: D */
+} clay_point;
+
+static clay_point evaluate(const clay_return *c, double x, double g) {
+  const double elastic = c->kappa * (x - c->x0);
+  const double p = exp(x), pc = exp((c->dv - elastic) * c->per_plastic);
+  const double D = 1.0 + c->shear6 * g / c->slope2;
+  return (clay_point){.x = x,
+                      .g = g,
+                      .p = p,
+                      .pc = pc,
+                      .rate = D,
+                      .r1 = c->dv - elastic - c->vm * g * (2.0 * p - pc),
+                      .r2 = c->q * c->q / (c->slope2 * D * D) + p * (p - pc)};
+}
+
+/* Newton's method from the trial; false where it has not converged. */
+static bool solve_newton(const clay_return *c, clay_point *out) {
+  const double fall = c->kappa * c->per_plastic; /* -d ln pc/dx */
+  double x = c->start, g = 0.0;
+  for (int i = 0; i < 25; i++) {
+    const clay_point a = evaluate(c, x, g);
+    const double xx = -c->kappa - c->vm * g * (2.0 * a.p + fall * a.pc);
+    const double xg = -c->vm * (2.0 * a.p - a.pc);
+    const double gx = a.p * (2.0 * a.p - a.pc) + fall * a.p * a.pc;
+    const double gg =
+        -2.0 * c->q * c->q * c->shear6 / (c->slope2 * c->slope2 * a.rate * a.rate * a.rate);
+    const double det = xx * gg - xg * gx;
+    if (!(fabs(det) > 1e-300)) return false;
+    const double dx = fmax(-1.0, fmin(1.0, (xg * a.r2 - gg * a.r1) / det));
+    const double next = fmax(0.0, g + (gx * a.r1 - xx * a.r2) / det), dg = next - g;
+    x += dx;
+    g = next;
+    if (fabs(dx) <= 1e-11 && fabs(dg) * c->shear6 <= 1e-11 * (c->slope2 + c->shear6 * g)) {
+      *out = evaluate(c, x, g);
+      return out->p > 0.0 && fabs(out->r1) <= 1e-13 * (fabs(c->dv) + c->kappa + c->vm) &&
+             fabs(out->r2) <= 1e-12 * (1.0 + out->p * out->p);
+    }
+  }
+  return false;
+}
+
+/* x of r1 = 0 for a multiplier: between the trial and the critical state, 2 p = pc. */
+static clay_point solve_volume(const clay_return *c, double g) {
+  const double fall = c->kappa * c->per_plastic;
+  const double critical = (fall * c->start - 0.69314718055994531) / (1.0 + fall);
+  double low = fmin(c->start, critical), high = fmax(c->start, critical), x = c->start;
+  clay_point a = evaluate(c, x, g);
+  for (int i = 0; i < 200 && a.r1 != 0.0 && high - low > 1e-15 * (1.0 + fabs(x)); i++) {
+    if (a.r1 > 0.0)
+      low = x;
+    else
+      high = x;
+    x += a.r1 / (c->kappa + c->vm * g * (2.0 * a.p + fall * a.pc));
+    if (!(x > low && x < high)) x = 0.5 * (low + high);
+    a = evaluate(c, x, g);
+  }
+  return a;
+}
+
+static clay_point solve_bracket(const clay_return *c) {
+  double low = 0.0, high = 1e-3 * c->slope2 / c->shear6;
+  clay_point a = solve_volume(c, high);
+  for (int i = 0; i < 200 && a.r2 > 0.0; i++) {
+    low = high;
+    high *= 4.0;
+    a = solve_volume(c, high);
+  }
+  for (int i = 0; i < 200 && high - low > 1e-15 * high; i++) {
+    const double middle = 0.5 * (low + high);
+    a = solve_volume(c, middle);
+    if (a.r2 > 0.0)
+      low = middle;
+    else
+      high = middle;
+  }
+  return a;
+}
+
+/* ---- one substep ----------------------------------------------------------------------------- */
+
+/* M^2 in the direction of a deviator, whose flow is radial: M^4 2 a^4/(1 + a^4 + (1 - a^4) S),
+ * S = sin 3 theta, -1 in compression. */
+static double slope_squared(const mpsi_law *law, const double *s, double q) {
+  const double m2 = law->slope * law->slope, a4 = law->lode;
+  if (a4 == 1.0 || !(q > 0.0)) return m2;
+  const double j3 = s[0] * (s[1] * s[2] - s[5] * s[5]) - s[3] * (s[3] * s[2] - s[5] * s[4]) +
+                    s[4] * (s[3] * s[5] - s[1] * s[4]);
+  const double sine = fmax(-1.0, fmin(1.0, 13.5 * j3 / (q * q * q)));
+  return m2 * sqrt(2.0 * a4 / (1.0 + a4 + (1.0 - a4) * sine));
+}
+
+/* p = least_pressure, the deviator cut to the yield surface there. */
+static int64_t part(const mpsi_law *law, double m2, double shear, double q, mpsi_clay *clay,
+                    double *scale, double *p) {
+  const double least = law->least_pressure;
+  const double most = sqrt(m2 * least * (clay->pc - least));
+  *p = least;
+  if (q > most) {
+    *scale = most / q;
+    clay->strain += (q - most) / (3.0 * shear);
+  }
+  return MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX;
+}
+
+static int64_t return_plastic(const mpsi_law *law, const clay_return *c, mpsi_clay *clay,
+                              double *scale, double *p) {
+  clay_point a;
+  if (!solve_newton(c, &a)) a = solve_bracket(c);
+  *p = a.p * clay->pc;
+  *scale = 1.0 / a.rate;
+  clay->strain += 2.0 * a.g * c->q * *scale / c->slope2;
+  clay->pc = fmax(a.pc * clay->pc, 2.0 * law->least_pressure);
+  return MPS_MATERIAL_FLAG_PLASTIC;
+}
+
+/* The mean pressure after the volume strain `growth`, and the fraction of the trial deviator that
+ * is left. */
+static int64_t find_invariants(const mpsi_law *law, double p0, double growth, double shear,
+                               double m2, double q, mpsi_clay *clay, double *scale, double *p) {
+  const double v0 = 1.0 + clay->void_ratio, half = 0.5 * growth;
+  const double v1 = v0 * ((1.0 + half) / (1.0 - half)), x0 = log(p0);
+  const double x = x0 + (v0 - v1) / law->swelling, least = log(law->least_pressure);
+  if (x < least) {
+    const double v = v0 - law->swelling * (least - x0);
+    clay->gap += log(v1 / v);
+    clay->void_ratio = v - 1.0;
+    clay->volume *= v / v0;
+    return part(law, m2, shear, q, clay, scale, p);
+  }
+  clay->void_ratio = v1 - 1.0;
+  clay->volume *= v1 / v0;
+  *p = exp(x);
+  if (!(q * q / m2 + *p * (*p - clay->pc) > 0.0)) return 0;
+  const double log_pc = log(clay->pc), per_pc = 1.0 / clay->pc;
+  const clay_return c = {.x0 = x0 - log_pc,
+                         .dv = v0 - v1,
+                         .vm = 0.5 * (v0 + v1),
+                         .kappa = law->swelling,
+                         .per_plastic = 1.0 / (law->compression - law->swelling),
+                         .q = q * per_pc,
+                         .slope2 = m2,
+                         .shear6 = 6.0 * shear * per_pc,
+                         .start = x - log_pc};
+  return return_plastic(law, &c, clay, scale, p);
+}
+
+static int64_t substep(const mpsi_law *law, const double *d, double *s, mpsi_clay *clay) {
+  const double p0 = fmax(-(s[0] + s[1] + s[2]) / 3.0, law->least_pressure);
+  const double growth = d[0] + d[1] + d[2], mean = growth / 3.0, old = (s[0] + s[1] + s[2]) / 3.0;
+  const double bulk = (1.0 + clay->void_ratio) * p0 / law->swelling;
+  const double shear = law->shear_ratio > 0.0 ? law->shear_ratio * bulk : law->shear;
+  double dev[6], scale = 1.0, p;
+  for (int c = 0; c < 6; c++)
+    dev[c] = s[c] - (c < 3 ? old : 0.0) + 2.0 * shear * (d[c] - (c < 3 ? mean : 0.0));
+  const double q = sqrt(1.5 * (dev[0] * dev[0] + dev[1] * dev[1] + dev[2] * dev[2]) +
+                        3.0 * (dev[3] * dev[3] + dev[4] * dev[4] + dev[5] * dev[5]));
+  const double m2 = slope_squared(law, dev, q), closed = clay->gap + growth;
+  const bool apart = clay->gap > 0.0;
+  int64_t flags;
+  if (apart && closed > 0.0) {
+    clay->gap = closed;
+    flags = part(law, m2, shear, q, clay, &scale, &p);
+  } else {
+    clay->gap = 0.0;
+    flags = find_invariants(law, p0, apart ? closed : growth, shear, m2, q, clay, &scale, &p);
+    if (apart) flags |= MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX;
+  }
+  for (int c = 0; c < 6; c++) s[c] = scale * dev[c] - (c < 3 ? p : 0.0);
+  return flags;
+}
+
+int64_t mpsi_cam_clay_step(const mpsi_law *law, int32_t dim, const double *strain, double *stress,
+                           mpsi_clay *clay) {
+  double d[6] = {0.0}, s[6] = {0.0}, square = 0.0;
+  int64_t flags = 0;
+  for (int c = 0; c < 2 * dim; c++) {
+    d[c] = strain[c];
+    s[c] = stress[c];
+    square += (c < 3 ? 1.0 : 2.0) * d[c] * d[c];
+  }
+  const double size = sqrt(square);
+  if (!(size <= FARTHEST)) {
+    for (int c = 0; c < 2 * dim; c++) stress[c] = NAN;
+    return 0;
+  }
+  const int parts = size > LONGEST ? (int)ceil(size / LONGEST) : 1;
+  if (!(clay->pc >= 2.0 * law->least_pressure)) clay->pc = 2.0 * law->least_pressure;
+  for (int c = 0; c < 2 * dim && parts > 1; c++) d[c] /= parts;
+  for (int i = 0; i < parts; i++) flags = substep(law, d, s, clay) | (flags & 1);
+  for (int c = 0; c < 2 * dim; c++) stress[c] = s[c];
+  return flags;
+}

@@ -1,0 +1,58 @@
+#!/bin/sh
+# element.sh DIRECTORY: mps-element with two clays against an independent integration of modified
+# Cam-Clay, other laws against their limits, and stages of a file against the paths by name.
+. "$(dirname "$0")/checks.sh"
+run() { name=$1; shift; "$element" "$@" --out "$work/$name" >"$work/log" || fail "$*"; }
+element=$1/mps-element
+stiff="--law mcc --M 1.2 --lambda 0.10 --kappa 0.02 --nu 0.2 --e0 0.8 --p0 50kPa --ocr 4"
+soft="--law mcc --M 0.92 --lambda 0.205 --kappa 0.044 --nu 0.25 --e0 1.4 --p0 100kPa --ocr 1"
+
+run cu $stiff --path cu --strain 0.2
+is "$work/cu/path.csv" p -1 87055 87
+is "$work/cu/path.csv" q -1 104466 104
+is "$work/cu/path.csv" pc -1 174110 174
+is "$work/cu/path.csv" strain -1 0.2 1e-9
+for name in q_p q_strain e_p; do picture "$work/cu/$name.png" 900x640 1f4e8c; done
+in_range "$work/cu/summary.json" q_limit 104465 104467
+run oedometer $soft --path oedometer --strain 0.1
+is "$work/oedometer/path.csv" szz -1 -337773 338
+is "$work/oedometer/path.csv" sxx -1 -252643 253
+run cd $soft --path cd --strain 0.1
+is "$work/cd/path.csv" q -1 90000 90
+is "$work/cd/path.csv" sxx -1 -100000 1
+is "$work/cd/path.csv" void_ratio -1 1.27397 1e-4 # 2.4 exp(-0.053939) - 1
+run shear $stiff --path shear --strain 0.1
+is "$work/shear/path.csv" sxy -1 60329 60
+is "$work/shear/path.csv" syy -1 -87573 88
+run iso $soft --path iso --strain 0.02
+is "$work/iso/path.csv" p -1 126089 126
+run plane $soft --path ps-undrained --strain 0.5
+in_range "$work/plane/summary.json" q 53325 53432 # sqrt(3) times su 30.818 kPa
+
+# A file's stages: the drained test by its lateral stress, then what cannot be.
+printf 'ezz,sxx,syy,steps\n-0.1,0,0,1000\n' >"$work/cd.csv"
+run file $soft --path-file "$work/cd.csv"
+cut -d, -f2-8 "$work/cd/path.csv" >"$work/a"
+cut -d, -f2-8 "$work/file/path.csv" >"$work/b"
+cmp "$work/a" "$work/b" || fail "the drained test of a file"
+printf 'szz,sxx,syy\n-300e3,0,0\n' >"$work/beyond.csv"
+if "$element" --law mohrcoulomb --path-file "$work/beyond.csv" --out "$work/beyond" 2>"$work/log"; then
+  fail "a stress beyond the strength"
+fi
+has "$work/log" "no strain gives the target stress"
+has "$work/beyond/summary.json" '"outcome": "failed"'
+is "$work/beyond/path.csv" q -1 198000 3000 # Kp - 1 times 100 kPa is 200 kPa
+
+# Other laws: what they bear.
+run mises --law vonmises --cohesion 20kPa --path ps-undrained --strain 0.05
+is "$work/mises/path.csv" q -1 34641 35
+run mohr --law mohrcoulomb --phi 30 --psi 10 --path cd --strain 0.2
+is "$work/mohr/path.csv" q -1 200000 1
+run soft --law tresca --cohesion 10kPa --residual 0.5 --slip 10mm --band 0.1m --path cu --strain 1 --steps 4000
+is "$work/soft/path.csv" q -1 10000 20
+run fast --law vonmises --cohesion 10kPa --rate-factor 0.1 --strain-rate 3e-3 --path shear --strain 0.1
+is "$work/fast/path.csv" sxy -1 13000 3 # a thousand times the reference
+run hooke --law elastic --young 10MPa --poisson 0.25 --path cd --strain 0.01
+is "$work/hooke/path.csv" q -1 100000 1
+run rubber --law neohookean --path oedometer --strain 0.1 --steps 10000
+is "$work/rubber/path.csv" szz -1 -1348399 200

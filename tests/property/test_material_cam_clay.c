@@ -1,0 +1,219 @@
+/* test_material_cam_clay.c - modified Cam-Clay from any state: the return satisfies its equations,
+ * gaps open and close without a loss of volume, closed cycles of elastic strain close, a rotation
+ * rotates, blocks and geometries agree.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "clay_points.h"
+
+static double between(uint64_t *seed, double low, double high) {
+  return low + (high - low) * 0.5 * (random_number(seed) + 1.0);
+}
+
+/* Evenly in the logarithm. */
+static double scaled(uint64_t *seed, double low, double high) {
+  return exp(between(seed, log(low), log(high)));
+}
+
+static clay random_clay(uint64_t *seed) {
+  clay c = {.M = between(seed, 0.5, 1.7),
+            .lambda = scaled(seed, 0.03, 0.4),
+            .nu = between(seed, 0.05, 0.42),
+            .e0 = scaled(seed, 0.3, 4.0),
+            .p0 = scaled(seed, 1e3, 1e6),
+            .R = 1.0};
+  c.kappa = c.lambda * between(seed, 0.04, 0.6);
+  return c;
+}
+
+/* A stress of mean pressure p and a random deviator of norm q. */
+static void set_stress(mps_material_point *x, uint64_t *seed, double p, double q) {
+  double mean = 0.0, *s = x->stress;
+  for (int c = 0; c < 6; c++) s[c] = random_number(seed);
+  for (int c = 0; c < 3; c++) mean += s[c] / 3.0;
+  for (int c = 0; c < 3; c++) s[c] -= mean;
+  const double scale = q / (ROOT3 * root_j2(s));
+  for (int c = 0; c < 6; c++) s[c] = scale * s[c] - (c < 3 ? p : 0.0);
+}
+
+static double yield(const clay *c, double p, double q, double pc) {
+  return (q * q / (c->M * c->M) + p * (p - pc)) / (pc * pc);
+}
+
+static void check_plastic(const clay *c, const mps_material_point *old,
+                          const mps_material_point *now) {
+  const double p0 = clay_p(old), p1 = clay_p(now), q = clay_q(now), pc = now->history[CLAY_PC];
+  const double v0 = 1.0 + old->history[CLAY_VOID], v1 = 1.0 + now->history[CLAY_VOID];
+  const double loss = v0 - v1 - c->kappa * log(p1 / p0); /* plastic change of v */
+  mps_assert_near(yield(c, p1, q, pc), 0.0, 1e-9);
+  mps_assert_near(log(pc / old->history[CLAY_PC]), loss / (c->lambda - c->kappa), 1e-9);
+  const double shear = now->history[CLAY_STRAIN] - old->history[CLAY_STRAIN];
+  const double volume = loss / (0.5 * (v0 + v1)), m2 = c->M * c->M;
+  assert_true(shear >= 0.0);
+  const double left = shear * (2.0 * p1 - pc), right = volume * 2.0 * q / m2; /* normality */
+  mps_assert_near(left / pc, right / pc, 1e-9 + 1e-7 * fabs(right / pc));
+}
+
+static void any_state_returns_to_the_surface(void **state) {
+  (void)state;
+  uint64_t seed = 7;
+  int64_t plastic = 0, apart = 0, elastic = 0;
+  for (int draw = 0; draw < 1000; draw++) {
+    const clay c = random_clay(&seed);
+    mps_material *m = make_clay(&c);
+    for (int i = 0; i < 100; i++) {
+      mps_material_point x = point_under(m, 0.0), old;
+      const double pc = x.history[CLAY_PC], p = pc * scaled(&seed, 2e-3, 1.0);
+      const double most = c.M * sqrt(fmax(0.0, p * (pc - p)));
+      const double inside = random_number(&seed) > 0.0 ? 1.0 : fabs(random_number(&seed));
+      set_stress(&x, &seed, p, inside * most);
+      double L[9], size = 0.0;
+      for (int k = 0; k < 9; k++) L[k] = random_number(&seed), size += L[k] * L[k];
+      const double length = scaled(&seed, 1e-6, 1e-2) / sqrt(size);
+      for (int k = 0; k < 9; k++) L[k] *= length;
+      old = x;
+      mps_assert_ok(context, mps_material_point_drive(context, m, &x, L, 1.0, 1));
+      const double p1 = clay_p(&x);
+      assert_true(yield(&c, p1, clay_q(&x), x.history[CLAY_PC]) < 1e-9);
+      if (x.flags & MPS_MATERIAL_FLAG_APEX) {
+        apart++;
+        assert_true(fabs(p1 / (1e-3 * pc) - 1.0) < 1e-9 && x.history[CLAY_GAP] >= 0.0);
+      } else if (x.flags & MPS_MATERIAL_FLAG_PLASTIC) {
+        plastic++;
+        check_plastic(&c, &old, &x);
+      } else {
+        elastic++;
+        mps_assert_near(log(p1 / clay_p(&old)),
+                        (old.history[CLAY_VOID] - x.history[CLAY_VOID]) / c.kappa, 1e-9);
+        assert_true(x.history[CLAY_PC] == pc);
+      }
+    }
+    mps_material_destroy(&m);
+  }
+  print_message("%lld plastic, %lld elastic, %lld apart\n", (long long)plastic, (long long)elastic,
+                (long long)apart);
+  assert_true(plastic > 25000 && elastic > 10000 && apart > 100);
+}
+
+/* Torn by 5 % and pressed together again: the same pressure, void ratio and volume. */
+static void a_gap_closes_where_it_opened(void **state) {
+  (void)state;
+  mps_material *m = make_clay(&clays[1]);
+  mps_material_point x = point_under(m, -50e3);
+  const mps_material_point first = x;
+  const double pull = 0.25 / 3.0;
+  const double out[9] = {pull, 0, 0, 0, pull, 0, 0, 0, pull};
+  const double in[9] = {-pull, 0, 0, 0, -pull, 0, 0, 0, -pull};
+  mps_assert_ok(context, mps_material_point_drive(context, m, &x, out, 1.0, 100));
+  assert_true(x.flags & MPS_MATERIAL_FLAG_APEX);
+  mps_assert_near(clay_p(&x), 200.0, 1e-9); /* pc/1000 */
+  assert_true(x.history[CLAY_GAP] > 0.15);
+  mps_assert_near(log(x.volume_ratio) + x.history[CLAY_GAP], 0.25, 1e-7);
+  mps_assert_ok(context, mps_material_point_drive(context, m, &x, in, 1.0, 130));
+  mps_assert_near(x.history[CLAY_GAP], 0.0, 0.0);
+  mps_assert_near(clay_p(&x) / 50e3, 1.0, 1e-4);
+  mps_assert_near(x.history[CLAY_VOID], first.history[CLAY_VOID], 1e-6);
+  mps_assert_near(x.volume_ratio, 1.0, 1e-6);
+  mps_material_destroy(&m);
+}
+
+/* A hundred thousand elastic cycles of a hundredth leave pressure and void ratio. */
+static void elastic_cycles_do_not_drift(void **state) {
+  (void)state;
+  mps_material *m = make_clay(&clays[1]);
+  mps_material_point x = point_under(m, -50e3);
+  for (int i = 0; i < 100000; i++) {
+    const double e = (i % 2 ? -1.0 : 1.0) * 0.003;
+    const double L[9] = {e, 0, 0, 0, e, 0, 0, 0, e};
+    mps_assert_ok(context, mps_material_point_drive(context, m, &x, L, 1.0, 1));
+  }
+  mps_assert_near(clay_p(&x) / 50e3, 1.0, 1e-6);
+  mps_assert_near(x.history[CLAY_VOID], 0.8, 1e-8);
+  mps_material_destroy(&m);
+}
+
+static void a_rotation_rotates_the_stress(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  mps_material *m = make_clay(&clays[0]);
+  mps_material_point x = point_under(m, 0.0);
+  set_stress(&x, &seed, 60e3, 30e3);
+  const mps_material_point first = x;
+  const double w = PI, L[9] = {0, w, 0, -w, 0, 0, 0, 0, 0};
+  mps_assert_ok(context,
+                mps_material_point_drive(context, m, &x, L, 1.0, 1000)); /* by 180 degrees */
+  for (int c = 0; c < 4; c++) mps_assert_near(x.stress[c] / 60e3, first.stress[c] / 60e3, 1e-4);
+  for (int c = 4; c < 6; c++) mps_assert_near(x.stress[c] / 60e3, -first.stress[c] / 60e3, 1e-4);
+  mps_assert_near(clay_p(&x) / 60e3, 1.0, 1e-10);
+  mps_material_destroy(&m);
+}
+
+/* Plane strain and axisymmetry are space without their missing components. */
+static void geometries_agree(void **state) {
+  (void)state;
+  enum { N = 70 };
+  static double L[9][N], s[3][6][N], h[3][4][N], V[3][N];
+  static int64_t flags[3][N];
+  uint64_t seed = 11;
+  mps_material *m = make_clay(&clays[0]);
+  for (int k = 0; k < N; k++) {
+    for (int c = 0; c < 9; c++)
+      L[c][k] = c == 0 || c == 1 || c == 3 || c == 4 ? 5e-3 * random_number(&seed) : 0.0;
+    for (int g = 0; g < 3; g++) {
+      for (int c = 0; c < 6; c++) s[g][c][k] = c < 3 ? -60e3 : 0.0;
+      for (int c = 0; c < 4; c++) h[g][c][k] = mps_material_history_initial(m, c);
+      V[g][k] = 1.0;
+    }
+  }
+  for (int g = 0; g < 3; g++) {
+    mps_material_block block = mps_material_block_defaults();
+    double *history[4];
+    block.dim = g == 2 ? 3 : 2;
+    block.count = N;
+    block.dt = 1.0;
+    for (int c = 0; c < 9; c++)
+      if (g == 2 || c == 0 || c == 1 || c == 3 || c == 4 || (g == 1 && c == 8))
+        block.gradient[c] = L[c];
+    for (int c = 0; c < 2 * block.dim; c++) block.stress[c] = s[g][c];
+    for (int c = 0; c < 4; c++) history[c] = h[g][c];
+    block.history = history;
+    block.history_count = 4;
+    block.volume_ratio = V[g];
+    block.flags = flags[g];
+    for (int step = 0; step < 5; step++)
+      mps_assert_ok(context, mps_material_update(context, m, &block));
+  }
+  for (int g = 1; g < 3; g++)
+    for (int k = 0; k < N; k++) {
+      for (int c = 0; c < 4; c++) mps_assert_near(s[g][c][k] / 60e3, s[0][c][k] / 60e3, 1e-12);
+      for (int c = 0; c < 4; c++) mps_assert_near(h[g][c][k], h[0][c][k], 1e-9 * fabs(h[0][c][k]));
+      assert_int_equal(flags[g][k], flags[0][k]);
+    }
+  mps_material_destroy(&m);
+}
+
+/* Strains far beyond a solver's leave numbers, and absurd ones a NaN that a solver reports. */
+static void large_strains_are_divided(void **state) {
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    mps_material *m = make_clay(&clays[k]);
+    mps_material_point one = point_under(m, -clays[k].p0), many = one;
+    const double L[9] = {0.1, 0.3, 0, 0, 0.1, 0, 0, 0, -0.2};
+    mps_assert_ok(context, mps_material_point_drive(context, m, &one, L, 1.0, 1));
+    mps_assert_ok(context, mps_material_point_drive(context, m, &many, L, 1.0, 1000));
+    mps_assert_near(clay_p(&one) / clay_p(&many), 1.0, 0.05);
+    const double absurd[9] = {1e30, 0, 0, 0, 0, 0, 0, 0, 0};
+    assert_int_equal(mps_material_point_drive(context, m, &one, absurd, 1.0, 1), MPS_ERROR_NUMERIC);
+    mps_material_destroy(&m);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(any_state_returns_to_the_surface),
+      cmocka_unit_test(a_gap_closes_where_it_opened),
+      cmocka_unit_test(elastic_cycles_do_not_drift),
+      cmocka_unit_test(a_rotation_rotates_the_stress),
+      cmocka_unit_test(geometries_agree),
+      cmocka_unit_test(large_strains_are_divided),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
