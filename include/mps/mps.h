@@ -21,6 +21,7 @@
  *   elastic.h     implicit elasticity;  elastic_solver.h  another solver of its equations
  *   fluid.h       free-surface flow
  *   couple.h      implicit coupling of two codes
+ *   waves.h       seas, wave makers, absorption, reflection;  wave_loads.h  loads on walls
  *   io.h          series of results, restart files
  *
  * Another library of this name, MPSolve (Debian's libmps), has a header mps/mps.h too. A source may
@@ -53,5 +54,7 @@
 #include "signal.h"
 #include "soil.h"
 #include "solver.h"
+#include "wave_loads.h"
+#include "waves.h"
 
 #endif

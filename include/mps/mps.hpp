@@ -110,6 +110,8 @@ MPS_CPP_HANDLE(elastic)
 MPS_CPP_HANDLE(fluid)
 MPS_CPP_HANDLE(coupling)
 MPS_CPP_HANDLE(domain)
+MPS_CPP_HANDLE(waves)
+MPS_CPP_HANDLE(absorber)
 #undef MPS_CPP_HANDLE
 
 namespace detail {

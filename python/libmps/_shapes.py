@@ -59,6 +59,13 @@ FUNCTIONS = {
     "mps_fluid_get_levels": {"station": "count", "level": "count"},
     "mps_mpm_set_material": {"ids": "count"},
     "mps_fluid_set_material": {"ids": "count"},
+    "mps_waves_get_components": {"frequency": "capacity", "amplitude": "capacity", "phase": "capacity"},
+    "mps_waves_get_levels": {"t": "count", "linear": "count", "level": "count"},
+    "mps_waves_get_piston": {"t": "count", "displacement": "count", "velocity": "count",
+                             "acceleration": "count", "level": "count"},
+    "mps_absorber_get_memory": {"values": "MPS_ABSORBER_MEMORY"},
+    "mps_absorber_set_memory": {"values": "MPS_ABSORBER_MEMORY"},
+    "mps_separation_find": {"frequency": "capacity", "incident": "capacity", "reflected": "capacity"},
     "mps_grid_get_nodes": {"position": "3 * capacity", "mass": "capacity",
                            "velocity": "3 * capacity", "force": "3 * capacity"},
     "mps_grid_evaluate": {"points": "3 * count", "states": "count",
@@ -84,6 +91,9 @@ STRUCTS = {
     "mps_geostatic_def": {"layers": "layer_count", "surface_line": "2 * surface_points"},
     "mps_consolidation_def": {"ids": "count"},
     "mps_mpm_boundary_def": {"ids": "id_count"},
+    "mps_separation_def": {"position": "gauges", "times": "samples", "levels": "samples * gauges"},
+    "mps_waves_def": {"frequency": "count", "density": "count", "times": "samples",
+                      "levels": "samples"},
     "mps_mpm_load_def": {"ids": "id_count", "area": "id_count"},
 }
 

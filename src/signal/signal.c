@@ -38,6 +38,7 @@ void mps_signal_destroy(mps_signal **signal) {
   *signal = NULL;
   if (atomic_fetch_sub(&s->references, 1) != 1) return;
   mps_context *context = s->context;
+  if (s->release) s->release(s->user);
   mpsi_free(context, s->knots);
   mpsi_free(context, s);
   mpsi_context_release(context);
@@ -277,19 +278,25 @@ mps_status mps_signal_create_ramp(mps_context *context, double start, double dur
 
 /* ---- the caller's own ------------------------------------------------------------------------ */
 
-mps_status mps_signal_create_user(mps_context *context, mps_signal_fn fn, void *user,
-                                  mps_signal **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  *out = NULL;
-  if (!fn) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "fn is NULL");
-  mps_signal *signal = mpsi_signal_new(context, __func__);
+mps_status mpsi_signal_create_owned(mps_context *context, const char *function, mps_signal_fn fn,
+                                    void (*release)(void *user), void *user, mps_signal **out) {
+  mps_signal *signal = mpsi_signal_new(context, function);
   if (!signal) return MPS_ERROR_MEMORY;
   signal->fn = fn;
+  signal->release = release;
   signal->user = user;
   signal->start = -INFINITY;
   signal->end = INFINITY;
   signal->peak = NAN;
   *out = signal;
   return MPS_OK;
+}
+
+mps_status mps_signal_create_user(mps_context *context, mps_signal_fn fn, void *user,
+                                  mps_signal **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!fn) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "fn is NULL");
+  return mpsi_signal_create_owned(context, __func__, fn, NULL, user, out);
 }

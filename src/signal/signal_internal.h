@@ -30,6 +30,10 @@ mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, d
                                 mpsi_signal_motion *out);
 /* Whether the caller may refuse: the signal is a function of the caller. NULL: no. */
 bool mpsi_signal_may_fail(const mps_signal *signal);
+/* A signal of a function, on behalf of the public `function`; `release` (NULL: none) is called with
+ * `user` when the last reference ends. */
+mps_status mpsi_signal_create_owned(mps_context *context, const char *function, mps_signal_fn fn,
+                                    void (*release)(void *user), void *user, mps_signal **out);
 /* Adds that hash. */
 void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *signal);
 

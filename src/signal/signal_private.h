@@ -23,6 +23,7 @@ struct mps_signal {
   /* The caller's own function; NULL: `at` is the motion. */
   mps_signal_fn fn;
   void *user;
+  void (*release)(void *user); /* NULL: the caller keeps `user` */
   /* The analytic kinds: amplitude, and c (1/s2) and tp (s) of a Ricker wavelet, the angular
    * frequency (rad/s) and the phase of a sine, or the duration (s) of a ramp. */
   double amplitude, rate, shift;

@@ -46,6 +46,8 @@ typedef enum api_kind {
   API_DYNAMICS,
   API_ELASTIC,
   API_FLUID,
+  API_WAVES,
+  API_ABSORBER,
   API_KINDS,
   API_NOTHING = API_KINDS /* a call that needs no object */
 } api_kind;

@@ -8,8 +8,9 @@
 #include <string.h>
 
 const char *const api_kind_names[API_KINDS] = {
-    "context",  "set",    "signal",   "material", "kernel", "body",     "contact", "neighbours",
-    "coupling", "domain", "recorder", "snapshot", "mpm",    "dynamics", "elastic", "fluid"};
+    "context", "set",        "signal",   "material", "kernel",   "body",
+    "contact", "neighbours", "coupling", "domain",   "recorder", "snapshot",
+    "mpm",     "dynamics",   "elastic",  "fluid",    "waves",    "absorber"};
 
 int api_alive(const api *a, api_kind kind) {
   int count = 0;
@@ -87,6 +88,8 @@ void api_destroy(api_kind kind, void **handle) {
     DESTROY(API_DYNAMICS, mps_dynamics, mps_dynamics_destroy)
     DESTROY(API_ELASTIC, mps_elastic, mps_elastic_destroy)
     DESTROY(API_FLUID, mps_fluid, mps_fluid_destroy)
+    DESTROY(API_WAVES, mps_waves, mps_waves_destroy)
+    DESTROY(API_ABSORBER, mps_absorber, mps_absorber_destroy)
 #undef DESTROY
   case API_KINDS:
     return;

@@ -8,7 +8,7 @@
 const api_table *const api_tables[] = {&api_context_calls,  &api_particles_calls, &api_signal_calls,
                                        &api_material_calls, &api_body_calls,      &api_mpm_calls,
                                        &api_dynamics_calls, &api_elastic_calls,   &api_fluid_calls,
-                                       &api_io_calls};
+                                       &api_io_calls,       &api_waves_calls};
 const int api_table_count = API_COUNT(api_tables);
 
 /* Exported functions that nothing here calls, and why. A new function belongs into a table. */

@@ -9,6 +9,7 @@
 
 /* clang-format off */
 #define MPSI_RELEASED_SIZES(X) \
+  X(mps_absorber_def, mps_absorber_def_init, "0.3", 72) \
   X(mps_body_def, mps_body_def_init, "0.3", 176) \
   X(mps_body_motion, mps_body_motion_init, "0.3", 104) \
   X(mps_checkpoint, mps_checkpoint_init, "0.3", 112) \
@@ -26,12 +27,14 @@
   X(mps_elastic_load_def, mps_elastic_load_def_init, "0.3", 120) \
   X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.3", 96) \
   X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.3", 40) \
+  X(mps_eurotop_def, mps_eurotop_def_init, "0.3", 104) \
   X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.3", 88) \
   X(mps_fluid_contact_def, mps_fluid_contact_def_init, "0.3", 16) \
   X(mps_fluid_def, mps_fluid_def_init, "0.3", 112) \
   X(mps_fluid_load_def, mps_fluid_load_def_init, "0.3", 152) \
   X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.3", 56) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.3", 80) \
+  X(mps_goda_def, mps_goda_def_init, "0.3", 128) \
   X(mps_material_block, mps_material_block_init, "0.3", 312) \
   X(mps_material_cam_clay_def, mps_material_cam_clay_def_init, "0.3", 72) \
   X(mps_material_drucker_prager_def, mps_material_drucker_prager_def_init, "0.3", 56) \
@@ -47,7 +50,10 @@
   X(mps_neighbours_def, mps_neighbours_def_init, "0.3", 24) \
   X(mps_particles_def, mps_particles_def_init, "0.3", 40) \
   X(mps_recorder_def, mps_recorder_def_init, "0.3", 40) \
-  X(mps_signal_record_def, mps_signal_record_def_init, "0.3", 32)
+  X(mps_sainflou_def, mps_sainflou_def_init, "0.3", 48) \
+  X(mps_separation_def, mps_separation_def_init, "0.3", 88) \
+  X(mps_signal_record_def, mps_signal_record_def_init, "0.3", 32) \
+  X(mps_waves_def, mps_waves_def_init, "0.3", 184)
 /* clang-format on */
 
 /* MPSI_RELEASED_<struct>: its size. */

@@ -1,0 +1,149 @@
+/* overtopping.c - mean overtopping discharge by the formulas of EurOtop (2018), the mean of the
+ * tests or with coefficients a standard deviation off, Q = q/(g Hm0^3)^1/2, R = Rc/Hm0:
+ *
+ *   (7.1)  .047 exp(-(2.35 R)^1.3)               .007, .23  vertical, no influencing foreshore
+ *   (7.5)  .05 exp(-2.78 R)                      .012, .17  foreshore, depth^2/(Hm0 L) > .23
+ *   (7.7)  .011 (Hm0/(h s))^1/2 exp(-2.2 R)      .0045      impulsive, R < 1.35
+ *   (7.8)  .0014 (Hm0/(h s))^1/2 R^-3            .0006      impulsive, R >= 1.35
+ *   (5.10) .023/tan(a)^1/2 gb xi exp(-(2.7 R/(xi gb gf gB gv))^1.3)  .003, .20, at most
+ *   (5.11) .09 exp(-(1.5 R/(gf gB g*))^1.3)      .0135, .15
+ *
+ * L and s = Hm0/L of deep water for T(m-1,0). SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/digits.h"
+#include "waves_private.h"
+
+#include <mps/wave_loads.h>
+
+#define CREST_MOST 3.5   /* Rc/Hm0 of the tests */
+#define BREAKER_MOST 5.0 /* xi of (5.10), (5.11) */
+
+static const mps_eurotop_def defaults = {
+    .struct_size = sizeof(mps_eurotop_def),
+    .height = NAN,
+    .period = NAN,
+    .depth = NAN,
+    .crest = NAN,
+    .cotangent = NAN,
+    .berm = 1.0,
+    .roughness = 1.0,
+    .obliquity = 1.0,
+    .crown = 1.0,
+    .promenade = 1.0,
+    .gravity = 9.81,
+};
+
+mps_status mps_eurotop_def_init(mps_eurotop_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_eurotop_def, def, size, &defaults);
+}
+
+static bool above(double value) { return value > 0.0 && value <= 1e12; }
+static bool factor(double value) { return value > 0.0 && value <= 1.0; }
+
+static double breaker(const mps_eurotop_def *d) {
+  const double L = d->gravity * d->period * d->period / (2.0 * MPSI_WAVES_PI);
+  return 1.0 / d->cotangent / sqrt(d->height / L);
+}
+
+static mps_status check_def(mps_context *context, const mps_eurotop_def *d) {
+  const bool slope = d->wall == MPS_EUROTOP_WALL_SLOPE;
+  const struct {
+    const char *name, *allowed;
+    double value;
+    bool good;
+  } checks[] = {
+      {"wall", "0 or 1", d->wall, d->wall == 0 || d->wall == 1},
+      {"foreshore", "0 or 1", d->foreshore, d->foreshore == 0 || d->foreshore == 1},
+      {"design", "0 or 1", d->design, d->design == 0 || d->design == 1},
+      {"height", "in (0, 1e12] m", d->height, above(d->height)},
+      {"period", "in (0, 1e12] s", d->period, above(d->period)},
+      {"depth", "in (0, 1e12] m", d->depth, above(d->depth)},
+      {"crest", "in (0, 1e12] m", d->crest, above(d->crest)},
+      {"gravity", "in (0, 1e12] m/s2", d->gravity, above(d->gravity)},
+      {"cotangent", "in 2 to 8", d->cotangent,
+       !slope || (d->cotangent >= 2.0 && d->cotangent <= 8.0)},
+      {"berm", "in (0, 1]", d->berm, !slope || factor(d->berm)},
+      {"roughness", "in (0, 1]", d->roughness, !slope || factor(d->roughness)},
+      {"obliquity", "in (0, 1]", d->obliquity, !slope || factor(d->obliquity)},
+      {"crown", "in (0, 1]", d->crown, !slope || factor(d->crown)},
+      {"promenade", "in (0, 1]", d->promenade, !slope || factor(d->promenade)},
+  };
+  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
+    if (!checks[k].good)
+      return mpsi_fail(context, "mps_eurotop_evaluate_sized", MPS_ERROR_ARGUMENT,
+                       "%s of the wall is %s, must be %s", checks[k].name,
+                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
+  if (d->crest > CREST_MOST * d->height)
+    return mpsi_fail(context, "mps_eurotop_evaluate_sized", MPS_ERROR_ARGUMENT,
+                     "crest of the wall is %s m, must be at most %g m, 3.5 times height",
+                     mpsi_outside(d->crest, 0.0, CREST_MOST * d->height).text,
+                     CREST_MOST * d->height);
+  if (slope && !(breaker(d) < BREAKER_MOST))
+    return mpsi_fail(
+        context, "mps_eurotop_evaluate_sized", MPS_ERROR_ARGUMENT,
+        "period %g s, height %g m and cotangent %g have a breaker parameter of %g, must "
+        "be below 5",
+        d->period, d->height, d->cotangent, breaker(d));
+  return MPS_OK;
+}
+
+static int32_t choose_vertical(const mps_eurotop_def *d) {
+  const double L = d->gravity * d->period * d->period / (2.0 * MPSI_WAVES_PI);
+  if (!d->foreshore && d->depth > 4.0 * d->height) return MPS_EUROTOP_FORMULA_DEEP;
+  if (d->depth * d->depth > 0.23 * d->height * L) return MPS_EUROTOP_FORMULA_FORESHORE;
+  return d->crest < 1.35 * d->height ? MPS_EUROTOP_FORMULA_IMPULSIVE_LOW
+                                     : MPS_EUROTOP_FORMULA_IMPULSIVE_HIGH;
+}
+
+/* q (m2/s) with coefficients `n` standard deviations to the side of more water. */
+static double discharge(const mps_eurotop_def *d, int32_t formula, double n) {
+  const double R = d->crest / d->height, scale = sqrt(d->gravity * pow(d->height, 3.0));
+  const double L = d->gravity * d->period * d->period / (2.0 * MPSI_WAVES_PI);
+  const double impulse = sqrt(L / d->depth); /* (Hm0/(h s))^1/2 */
+  const double xi = d->wall == MPS_EUROTOP_WALL_SLOPE ? breaker(d) : NAN;
+  const double rough = d->roughness * d->obliquity;
+  switch (formula) {
+  case MPS_EUROTOP_FORMULA_DEEP:
+    return scale * (0.047 + 0.007 * n) * exp(-pow((2.35 - 0.23 * n) * R, 1.3));
+  case MPS_EUROTOP_FORMULA_FORESHORE:
+    return scale * (0.05 + 0.012 * n) * exp(-(2.78 - 0.17 * n) * R);
+  case MPS_EUROTOP_FORMULA_IMPULSIVE_LOW:
+    return scale * (0.011 + 0.0045 * n) * impulse * exp(-2.2 * R);
+  case MPS_EUROTOP_FORMULA_IMPULSIVE_HIGH:
+    return scale * (0.0014 + 0.0006 * n) * impulse * pow(R, -3.0);
+  case MPS_EUROTOP_FORMULA_BREAKING:
+    return scale * (0.023 + 0.003 * n) * sqrt(d->cotangent) * d->berm * xi *
+           exp(-pow((2.7 - 0.2 * n) * R / (xi * d->berm * rough * d->crown), 1.3));
+  default:
+    return scale * (0.09 + 0.0135 * n) *
+           exp(-pow((1.5 - 0.15 * n) * R / (rough * d->promenade), 1.3));
+  }
+}
+
+/* The lesser of the two formulas of a slope. */
+static double wall_discharge(const mps_eurotop_def *d, double n, int32_t *formula) {
+  if (d->wall == MPS_EUROTOP_WALL_VERTICAL) {
+    *formula = choose_vertical(d);
+    return discharge(d, *formula, n);
+  }
+  const double breaking = discharge(d, MPS_EUROTOP_FORMULA_BREAKING, n);
+  const double most = discharge(d, MPS_EUROTOP_FORMULA_NON_BREAKING, n);
+  *formula = breaking < most ? MPS_EUROTOP_FORMULA_BREAKING : MPS_EUROTOP_FORMULA_NON_BREAKING;
+  return fmin(breaking, most);
+}
+
+mps_status mps_eurotop_evaluate_sized(mps_context *context, const mps_eurotop_def *user_def,
+                                      mps_eurotop *out, size_t size) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!user_def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
+  mps_eurotop_def d = defaults;
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_eurotop_def, user_def, &d);
+  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
+  if (status == MPS_OK) status = check_def(context, &d);
+  if (status != MPS_OK) return status;
+  mps_eurotop r = {.breaker = d.wall == MPS_EUROTOP_WALL_SLOPE ? breaker(&d) : NAN};
+  int32_t ignored;
+  r.low = wall_discharge(&d, -1.0, &ignored);
+  r.high = wall_discharge(&d, 1.0, &ignored);
+  r.discharge = wall_discharge(&d, d.design, &r.formula);
+  return mpsi_out_write(context, __func__, out, size, &r, sizeof r);
+}

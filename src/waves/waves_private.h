@@ -1,0 +1,56 @@
+/* waves_private.h - the members of a sea, for the files of this folder only.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_WAVES_PRIVATE_H
+#define MPSI_WAVES_PRIVATE_H
+
+#include "core/internal.h"
+
+#include <mps/waves.h>
+
+#include <complex.h>
+
+#define MPSI_WAVES_PI 3.14159265358979323846
+
+/* A wave of first order: Re A exp(i (omega t - k x)). */
+typedef struct mpsi_wave {
+  int64_t bin;      /* its frequency is bin/repeat */
+  double omega;     /* rad/s */
+  double k;         /* rad/m */
+  double far, near; /* transfer of the piston: mps_waves_find_piston */
+  double complex a; /* A, m */
+} mpsi_wave;
+
+struct mps_waves {
+  mps_context *context;
+  atomic_int references;
+  mps_waves_def def;           /* without its arrays */
+  double period, repeat, ramp; /* s, as found */
+  int64_t count;
+  mpsi_wave *wave; /* ascending frequency */
+  int64_t bins;    /* of second order: frequencies 1/repeat to bins/repeat; 0: none */
+  /* bins + 1 amplitudes (m): of the second-order displacement of the piston, of bound waves at x =
+   * 0 */
+  double complex *push, *bound;
+  mps_waves_report report;
+};
+
+mps_waves *mpsi_waves_retain(mps_waves *waves);
+
+/* components.c: fills `wave` and `count`, period and repeat, from a definition that is checked. */
+mps_status mpsi_waves_make_components(mps_waves *w, const mps_waves_def *def);
+
+/* second_order.c. */
+/* Fills `push` of a sea with the components. */
+mps_status mpsi_waves_find_push(mps_waves *w);
+/* Adds the bound waves at x (m) to `eta`, bins + 1 amplitudes. */
+void mpsi_waves_add_bound(const mps_waves *w, double x, double complex *eta);
+
+/* motion.c: displacement, velocity, acceleration and level at the piston; `eta`: bound waves of x =
+ * 0 or NULL. */
+void mpsi_waves_move(const mps_waves *w, double t, const double complex *eta, double motion[4]);
+/* The first three at `count` times t, t + step, ..., at most MPSI_WAVES_BLOCK. */
+#define MPSI_WAVES_BLOCK 256
+void mpsi_waves_move_evenly(const mps_waves *w, double t, double step, int64_t count,
+                            double (*motion)[3]);
+
+#endif
