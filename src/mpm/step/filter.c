@@ -6,9 +6,13 @@
  * below 0 they are closed. p alone would not do: the law puts it back to 0 wherever there is a gap.
  * With the operator S of the means by node, (S e)_p = sum w_ip (sum w_iq V_q e_q/sum w_iq V_q),
  *
- *   r = e - S e,   e' = e - a (r - S r),   a = min(1, 8 BETA c dt/h),
+ *   r = a (e - S e),   e' = e - (r - S r),   a = min(1, 8 BETA c dt/h),
  *
- * so that sum V e is kept, a smooth field to the fourth order too, and what S does not see decays.
+ * so that sum V e is kept whatever a is from particle to particle, a smooth field to the fourth
+ * order too, and what S does not see decays.
+ * At a wall or a surface all particles of a node lie on one side of it. So e goes to the nodes and
+ * back along the slope that it has in ground at rest (closed_stress), and stays as it is there.
+ *
  * p' is e' where that is closed, else what is left of p, the gap the rest; the deviatoric stress
  * stays; then the law's own return, without strain. V follows the elastic volume strain of p' - p.
  * Velocities do not change. The elastic energy that goes is counted as spent (energy.h).
@@ -38,30 +42,43 @@ static double *gap_of(const mpsi_law_use *law, int64_t k) {
   return law->history[law->columns - 1] + k;
 }
 
-/* e, Pa. */
-static double closed_stress(const mps_mpm *mpm, int64_t k) {
+/* e, Pa, and its slope (per cell along each axis) in ground at rest, compressed by its weight
+ * without lateral strain; none where it is open. */
+static double closed_stress(const mps_mpm *mpm, int64_t k, double *slope) {
   const mpsi_law_use *law = mpsi_law_of(mpm, k);
-  return mean_stress(mpm, k) + law->bulk * *gap_of(law, k);
+  const double gap = *gap_of(law, k), density = mpm->p.m[k] / mpm->p.V[k];
+  const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * mpm->def.cell;
+  for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
+  return mean_stress(mpm, k) + law->bulk * gap;
+}
+
+/* a: the decay of what the nodes do not see. */
+static double decay(const mps_mpm *mpm, int64_t k) {
+  const double wave = sqrt(mpsi_law_of(mpm, k)->modulus * mpm->p.V[k] / mpm->p.m[k]);
+  return fmin(1.0, EVERY * BETA * wave * mpm->run.dt * mpm->grid.inverse);
 }
 
 /* ---- supports -------------------------------------------------------------------------------- */
 
-/* Along each axis the nodes of the block's tile, those beyond a mirror by their partners, as
- * offsets into the tile. */
+/* Along each axis the nodes of the block's tile, those beyond a mirror by their partners: where they
+ * are, in cells, and as offsets into the tile. */
 typedef struct axes {
+  double place[3][MPSI_TILE_SIDE];
   int offset[3][MPSI_TILE_SIDE];
 } axes;
 
 static void find_axes(const mps_mpm *mpm, const mpsi_cell_block *cells, axes *out) {
   for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_TILE_SIDE)
-    for (int i = 0; i < MPSI_TILE_SIDE; i++)
-      out->offset[c][i] =
-          stride * (c < mpm->dim ? mpsi_mpm_mirror_partner(mpm, cells, c, i) : i);
+    for (int i = 0; i < MPSI_TILE_SIDE; i++) {
+      const int partner = c < mpm->dim ? mpsi_mpm_mirror_partner(mpm, cells, c, i) : i;
+      out->place[c][i] = partner;
+      out->offset[c][i] = stride * partner;
+    }
 }
 
 typedef struct support {
   const int *at[3]; /* offsets of its nodes along each axis */
-  double w[3][4];
+  double w[3][4], away[3][4]; /* weights; cells from the particle to the node */
   uint64_t across; /* bit 16 k + 4 j + i: the node's values across (thin_bodies.h) */
 } support;
 
@@ -76,6 +93,8 @@ MPSI_INLINE void find_support(const mps_mpm *mpm, const mpsi_cell_block *cells, 
     const double x = mpm->p.x[c][k] - dt * mpm->p.v[c][k];
     const double t = mpsi_grid_coordinate(mpm, c, x) - (cells->at[c] * (double)MPSI_SIDE + base[c]);
     mpsi_weights(spline, t < least ? least : t > least + 1.0 ? least + 1.0 : t, out->w[c]);
+    for (int i = 0; i <= spline; i++)
+      out->away[c][i] = all->place[c][base[c] + i] - (base[c] + t);
     out->at[c] = all->offset[c] + base[c];
   }
   out->across = 0;
@@ -90,20 +109,30 @@ MPSI_INLINE mpsi_node *tile_of(const mpsi_worker *worker, bool thin, const suppo
   return thin && (s->across >> node & 1) ? worker->across_tile : worker->tile;
 }
 
-/* Adds {V, V value} by the weights. */
+/* Adds {V, V value} by the weights, the value prolonged along its slope (per cell; NULL: none). */
 MPSI_INLINE void give(const mpsi_worker *worker, int dim, int spline, bool thin, const support *s,
-                      double V, double value) {
+                      double V, double value, const double *slope) {
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
-      const double row = V * s->w[1][j] * (dim == 3 ? s->w[2][k] : 1.0);
+      const double weight = V * s->w[1][j] * (dim == 3 ? s->w[2][k] : 1.0);
       const int from = s->at[1][j] + (dim == 3 ? s->at[2][k] : 0);
+      double row = value;
+      if (slope) row += slope[1] * s->away[1][j] + (dim == 3 ? slope[2] * s->away[2][k] : 0.0);
       for (int i = 0; i <= spline; i++) {
         double *to = tile_of(worker, thin, s, 16 * k + 4 * j + i)[from + s->at[0][i]];
-        const double w = row * s->w[0][i];
+        const double w = weight * s->w[0][i];
         to[MPSI_SUM_VOLUME] += w;
-        to[MPSI_SUM_VALUE] += w * value;
+        to[MPSI_SUM_VALUE] += w * (slope ? row + slope[0] * s->away[0][i] : row);
       }
     }
+}
+
+/* How far the mean of the nodes' places is from the particle, along the slope: 0 but at mirrors. */
+MPSI_INLINE double rise(int dim, int spline, const support *s, const double *slope) {
+  double sum = 0.0;
+  for (int c = 0; c < dim; c++)
+    for (int i = 0; i <= spline; i++) sum += slope[c] * (s->w[c][i] * s->away[c][i]);
+  return sum;
 }
 
 /* The mean of the nodes' means, which are in the tile. All nodes of the support have some volume,
@@ -149,18 +178,23 @@ typedef enum loop {
 MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                           int dim, int spline, bool thin, loop which) {
   double *rough = mpm->p.rough;
+  double slope[3];
   axes all;
   support s;
   find_axes(mpm, cells, &all);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     if (!is_filtered(mpm, k)) continue;
     find_support(mpm, cells, &all, dim, spline, thin, k, &s);
+    const double closed = which == SUM_STRESS || which == FIND_ROUGH
+                              ? closed_stress(mpm, k, slope)
+                              : 0.0;
     if (which == SUM_STRESS)
-      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed_stress(mpm, k));
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope);
     else if (which == SUM_ROUGH)
-      give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k]);
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k], NULL);
     else if (which == FIND_ROUGH)
-      rough[k] = closed_stress(mpm, k) - take(worker, dim, spline, thin, &s);
+      rough[k] = decay(mpm, k) * (closed + rise(dim, spline, &s, slope) -
+                                  take(worker, dim, spline, thin, &s));
     else
       rough[k] -= take(worker, dim, spline, thin, &s);
   }
@@ -212,14 +246,12 @@ static double grown(double V, double strain) {
   return V * ((1.0 + 0.5 * strain) / (1.0 - 0.5 * strain));
 }
 
-/* e' = e - a (r - S r), in p and the gap. */
+/* e' = e - (r - S r), in p and the gap. */
 static void change_stress(const mps_mpm *mpm, int64_t k) {
   const mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, k);
   double *gap = gap_of(law, k);
-  const double was = mean_stress(mpm, k), wave = sqrt(law->modulus * p->V[k] / p->m[k]);
-  const double a = fmin(1.0, EVERY * BETA * wave * mpm->run.dt * mpm->grid.inverse);
-  const double closed = was + law->bulk * *gap - a * p->rough[k];
+  const double was = mean_stress(mpm, k), closed = was + law->bulk * *gap - p->rough[k];
   const double now =
       *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
   *gap = fmax(0.0, (closed - now) / law->bulk);
