@@ -1,6 +1,7 @@
-/* mps-footing - a strip footing pressed into the ground: Nakamura 7.3, Figures 15 to 21. Cohesive
- * ground without weight (von Mises) against Prandtl's bearing capacity (52), q = (2 + pi) c; ground
- * with friction and weight (Drucker-Prager) against the method of characteristics.
+/* mps-footing - a footing pressed into the ground: Nakamura 7.3, Figures 15 to 21. Cohesive ground
+ * without weight (von Mises) against Prandtl's bearing capacity (52), q = (2 + pi) c, or under a
+ * circle (Tresca) 5.69 c and 6.05 c; ground with friction and weight (Drucker-Prager) against the
+ * method of characteristics.
  *
  * Half of it is computed: x = 0 is the line of symmetry.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -11,6 +12,7 @@
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.h = 0.1,
                                  .rate = NAN,
+                                 .corner = 0.6,
                                  .half_width = 0.5,
                                  .domain = "5x5",
                                  .phi = 30.0,
@@ -29,7 +31,7 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Ground"),
-      OPTION_CHOICE("model", "vonmises|druckerprager", &s->model, "law of the ground"),
+      OPTION_CHOICE("model", "vonmises|druckerprager", &s->model, "law of the ground; under a circle Tresca's in place of von Mises'"),
       OPTION_TEXT("domain", "WxH", &s->domain,
                   "width of the half model and depth of the ground in m, whole cells"),
       COMMON_NUMBER_IN("cohesion", OPTION_FROM_TO(1.0, 1e11), &s->cohesion, "von Mises: undrained"),
@@ -43,8 +45,10 @@ int main(int argc, char **argv) {
       COMMON_NUMBER("density", &s->density, NULL),
       COMMON_NUMBER("gravity", &s->gravity, "default 0, Drucker-Prager 9.81 m/s2"),
       OPTION_HEADING("Footing"),
-      OPTION_NUMBER("half-width", "m", OPTION_LENGTH, &s->half_width, "B/2"),
+      OPTION_CHOICE("shape", "strip|circle", &s->shape, "circle: axisymmetry; cohesive ground"),
+      OPTION_NUMBER("half-width", "m", OPTION_LENGTH, &s->half_width, "B/2; radius of a circle"),
       COMMON_NUMBER("friction", &s->mu, "of its base"),
+      COMMON_NUMBER("corner", &s->corner, "radius of its edges for the soil, in cells; impulses"),
       COMMON_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 0.1), &s->rate,
                        "default 0.5 mm/s, quasi-static 1.5 mm/s"),
       OPTION_NUMBER("settlement", "m", OPTION_LENGTH, &s->settlement,
@@ -66,9 +70,9 @@ int main(int argc, char **argv) {
       {0}};
   const options_program program = {
       "mps-footing",
-      "A strip footing on cohesive ground without weight (WLS-MPM, von Mises) or on ground with\n"
-      "friction and weight (Drucker-Prager): Nakamura, Figures 15 to 21. Its bearing capacity is\n"
-      "compared with Prandtl's, or with the exact one by the method of characteristics.",
+      "A strip or circular footing on cohesive ground without weight (WLS-MPM, von Mises or\n"
+      "Tresca), or a strip on ground with friction and weight (Drucker-Prager): Nakamura, Figures\n"
+      "15 to 21. Its bearing capacity is compared with the exact one.",
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;

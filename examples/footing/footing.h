@@ -9,16 +9,17 @@
 #include "common/mpm_model.h"
 
 enum { FOOTING_SAMPLES = 120, FOOTING_SETTLED = 30, VON_MISES = 0, DRUCKER_PRAGER = 1 };
+enum { STRIP = 0, CIRCLE = 1 };
 
 typedef struct settings {
-  int model, cone;        /* VON_MISES or DRUCKER_PRAGER; mps_material_cone */
+  int model, cone, shape; /* VON_MISES or DRUCKER_PRAGER; mps_material_cone; STRIP or CIRCLE */
   double width, depth;    /* m, of the half model */
   double phi, psi;        /* degrees */
   double cohesion, young; /* Pa */
   double poisson, density, gravity;
   int contact;            /* mps_contact_method */
   int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
-  double h, mu, rate, half_width, k, settlement; /* m, 1, m/s, m, N/m, m */
+  double h, mu, corner, rate, half_width, k, settlement; /* m, 1, cells, m/s, m, N/m, m */
   int64_t ppc, threads;
   bool settled; /* --quasi-static */
   mpm_course_options course;

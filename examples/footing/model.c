@@ -21,6 +21,9 @@ const char *footing_settle(settings *s, const option *table) {
   if (!cone &&
       (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "cone")))
     return "--phi, --psi and --cone are for --model druckerprager";
+  if (cone && s->shape == CIRCLE) return "--shape circle is for --model vonmises";
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY && options_given(table, "corner"))
+    return "--corner is for --contact impulse";
   const char *large = mpm_model_too_large(s->width * s->depth / (s->h * s->h) * (double)s->ppc);
   if (large) return large;
   if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --h";
@@ -52,8 +55,12 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
   mps_body_def def = mps_body_defaults();
   const double height = s->half_width;
   def.position[1] = s->depth + 0.5 * height;
+  const double half[8] = {0.0, -0.5 * height, s->half_width, -0.5 * height,
+                          s->half_width, 0.5 * height, 0.0, 0.5 * height};
   if (status == MPS_OK)
-    status = mps_body_create_box(context, &def, 2.0 * s->half_width, height, &sim->m.body[0]);
+    status = s->shape == CIRCLE
+                 ? mps_body_create_polygon(context, &def, 4, half, &sim->m.body[0])
+                 : mps_body_create_box(context, &def, 2.0 * s->half_width, height, &sim->m.body[0]);
   if (status == MPS_OK) status = mps_body_drive(sim->m.body[0], 1, down, -1.0);
   mps_signal_destroy(&down);
   return status;
@@ -64,6 +71,7 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   contact.friction = s->mu;
   contact.method = s->contact;
   if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k;
+  if (s->contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = s->corner * s->h;
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
@@ -88,13 +96,22 @@ static mps_status make_ground(mps_context *context, const settings *s, mpm_model
   return status == MPS_OK && s->gravity > 0.0 ? set_stress(m->particles, s) : status;
 }
 
-static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
-  if (s->model == VON_MISES) {
-    mps_material_von_mises_def law = mps_material_von_mises_defaults();
-    law.young = s->young, law.poisson = s->poisson;
-    law.yield_stress = sqrt(3.0) * s->cohesion; /* (54) */
-    return mps_material_create_von_mises(context, &law, out);
+/* In plane strain von Mises' law has the shear strength c of Tresca's; under a circle it has not. */
+static mps_status make_clay(mps_context *context, const settings *s, mps_material **out) {
+  if (s->shape == CIRCLE) {
+    mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
+    law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
+    law.friction = law.dilation = 0.0;
+    return mps_material_create_mohr_coulomb(context, &law, out);
   }
+  mps_material_von_mises_def law = mps_material_von_mises_defaults();
+  law.young = s->young, law.poisson = s->poisson;
+  law.yield_stress = sqrt(3.0) * s->cohesion; /* (54) */
+  return mps_material_create_von_mises(context, &law, out);
+}
+
+static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
+  if (s->model == VON_MISES) return make_clay(context, s, out);
   mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = s->cone;
   law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
@@ -112,7 +129,7 @@ mps_status footing_build(mps_context *context, void *user) {
                              .directory = s->out,
                              .what = "ground",
                              .duration = end,
-                             .key = "mps-footing 2",
+                             .key = "mps-footing 3",
                              .table = options_read(),
                              .pass = footing_pass,
                              .user = sim};
@@ -120,6 +137,8 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_ground(context, s, &sim->m);
   if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
+  def.geometry =
+      s->shape == CIRCLE ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = s->h;
   def.spline = s->spline + 2;
   def.volumetric = s->volumetric;
@@ -134,6 +153,11 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = mpm_course_begin(&sim->course, context, true);
   sim->m.samples = sim->rows;
   return status;
+}
+
+/* Area of the base that the force of the model acts on: half a strip 1 m long, or the circle. */
+static double footing_area(const settings *s) {
+  return s->shape == CIRCLE ? 180.0 * DEGREE * s->half_width * s->half_width : s->half_width;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
@@ -152,7 +176,7 @@ static mps_status take_sample(simulation *sim) {
                            ? reaction.force[1]
                            : (reaction.impulse[1] - sim->last_impulse) / (t - sim->last_time);
   sim->path[sim->rows] = s->depth + 0.5 * s->half_width - body.position[1];
-  sim->q[sim->rows++] = force / s->half_width;
+  sim->q[sim->rows++] = force / footing_area(s);
   sim->m.samples = sim->rows;
   sim->last_impulse = reaction.impulse[1];
   sim->last_time = t;

@@ -37,6 +37,15 @@ static void fit_path(const simulation *sim, capacity *c) {
   for (int k = sim->rows - fifth; k < sim->rows; k++) c->last += sim->q[k] / unit / fifth;
 }
 
+/* Cohesive ground: Prandtl (52), whatever the weight and the base. A circle: smooth, R. T. Shield, J.
+ * Mech. Phys. Solids 4 (1955) 10-16; rough, G. Eason and R. T. Shield, Z. angew. Math. Phys. 11
+ * (1960) 33-43. Coulomb's friction lets the base bear c, as a rough one does, where mu q > c. */
+static void find_cohesive_limits(const settings *s, capacity *c) {
+  if (s->shape == STRIP) return;
+  c->smooth = 5.69, c->rough = 6.05;
+  c->exact = s->mu == 0.0 ? c->smooth : s->mu * c->smooth >= 1.0 ? c->rough : NAN;
+}
+
 /* The limit by characteristics, which supposes associated flow; its error falls with the square of
  * the lines and is extrapolated. */
 static double limit(const settings *s, bool rough) {
@@ -55,7 +64,10 @@ static capacity measure(const simulation *sim) {
   capacity c = {.smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
   c.last = c.undeformed = c.slope = NAN; /* the ground bears more until the end of the path */
   if (sim->rows == sim->samples) fit_path(sim, &c);
-  if (s->model == VON_MISES) return c; /* Prandtl (52), whatever the weight and the base */
+  if (s->model == VON_MISES) {
+    find_cohesive_limits(s, &c);
+    return c;
+  }
   c.smooth = limit(s, false);
   c.rough = limit(s, true);
   c.exact = s->mu == 0.0 ? c.smooth : s->mu >= tan(s->phi * PI / 180.0) ? c.rough : NAN;
@@ -105,8 +117,10 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   output f;
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
+  json_text(&f, "shape", s->shape == CIRCLE ? "circle" : "strip");
   json_number(&f, "h", s->h);
   json_number(&f, "friction", s->mu);
+  if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(&f, "corner", s->corner);
   json_number(&f, "rate", s->rate);
   json_text(&f, "loading", s->settled ? "quasi-static" : "steady");
   json_number(&f, "q_over_c", c->last);
@@ -134,15 +148,19 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
   if (!s->settled) snprintf(loading, sizeof loading, "%g mm/s", 1e3 * s->rate);
   output_text(&f,
-              "set title \"Strip footing on %s ground\\n{/*0.85 h = %g m, half width %g m, "
+              "set title \"%s footing on %s ground\\n{/*0.85 h = %g m, half width %g m, "
               "%s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
               "set ylabel 'pressure over cohesion, q/c'\nset key right bottom opaque\n"
               "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:3 with lines "
               "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
+              s->shape == CIRCLE ? "Circular" : "Strip",
               s->model == VON_MISES ? "cohesive" : "frictional", s->h, s->half_width, loading,
               s->mu);
   const bool cone = s->model == DRUCKER_PRAGER;
-  if (!cone) draw_limit(&f, c->exact, "--", "Prandtl");
+  const bool circle = s->shape == CIRCLE;
+  if (!cone && !circle) draw_limit(&f, c->exact, "--", "Prandtl");
+  if (circle && c->exact != c->rough) draw_limit(&f, c->smooth, "--", "smooth base, Shield");
+  if (circle && c->exact != c->smooth) draw_limit(&f, c->rough, "-.", "rough base, Eason, Shield");
   if (cone && c->exact != c->rough) draw_limit(&f, c->smooth, "--", "smooth base, characteristics");
   if (cone && c->exact != c->smooth) draw_limit(&f, c->rough, "-.", "rough base, characteristics");
   output_text(&f, "\n");
@@ -216,9 +234,17 @@ static void print(const settings *s, const capacity *c) {
     printf("no bearing capacity: the footing has not settled as far as --settlement\n");
     return;
   }
+  if (s->model == VON_MISES && isnan(c->exact)) {
+    printf("bearing capacity q/c %.3f (smooth base %.2f, rough %.2f)\n", c->last, c->smooth,
+           c->rough);
+    return;
+  }
   if (s->model == VON_MISES) {
-    printf("bearing capacity q/c %.3f (Prandtl %.3f, %+.1f %%)\n", c->last, c->exact,
-           100.0 * (c->last / c->exact - 1.0));
+    printf("bearing capacity q/c %.3f (%s %.3f, %+.1f %%)\n", c->last,
+           s->shape == STRIP ? "Prandtl"
+           : s->mu > 0.0     ? "rough base"
+                             : "smooth base",
+           c->exact, 100.0 * (c->last / c->exact - 1.0));
     return;
   }
   printf("bearing capacity q/c %.2f, taken back to no settlement %.2f; exact: ", c->last,

@@ -53,19 +53,27 @@ typedef enum mps_mpm_step_from {
                                   moves; particles may then go further than `courant` cells a step */
 } mps_mpm_step_from;
 
-/** Volumetric strain rate that the laws receive: against volumetric locking and oscillating
- *  pressures in nearly incompressible material. */
+/** Volumetric strain rate that the laws receive, against volumetric locking and oscillating
+ *  pressures in nearly incompressible material; and the filter of the mean stress of frictional
+ *  laws, whose particles else share it unevenly once the ground has flowed. */
 typedef enum mps_mpm_volumetric {
-  MPS_MPM_VOLUMETRIC_POINT = 0, /* each particle's own tr(d), in axisymmetry with the hoop */
-  MPS_MPM_VOLUMETRIC_CELL = 1,  /* F-bar: the mean of tr(d), weighted by volumes, over the particles
+  MPS_MPM_VOLUMETRIC_BY_LAW = 0, /* for each material: Mohr-Coulomb and Drucker-Prager with an angle
+                               of friction above 0 as NODES; those without friction or dilation
+                               (undrained clay), von Mises, and elastic laws (linear, neo-Hookean,
+                               users' that state their moduli) with nu >= 0.45 as CELL; all others,
+                               fluids among them, as POINT */
+  MPS_MPM_VOLUMETRIC_POINT = 1,  /* each particle's own tr(d), in axisymmetry with the hoop */
+  MPS_MPM_VOLUMETRIC_CELL = 2,   /* F-bar: the mean of tr(d), weighted by volumes, over the particles
                                of the cell (quadratic: of the cell-sized box about a node); the part
                                of d without trace, the spin and `velocity_gradient` stay. Volumes,
                                `volume_ratio` and `deformation_gradient` follow the mean.
                                Mohr-Coulomb and Drucker-Prager with an angle of dilation above 0
                                keep their own tr(d), and are not in the mean */
-  MPS_MPM_VOLUMETRIC_NODES = 2 /* the mean of tr(d) and of pressures over the nodes near: fluids use
-                              it, other laws approach it by 0.03 c dt/h a step. Frictional laws keep
-                              their own tr(d); pressures are smoothed every eighth step */
+  MPS_MPM_VOLUMETRIC_NODES = 3 /* the mean of tr(d) and of pressures over the nodes near: fluids use
+                              it, other laws approach it by 0.03 c dt/h a step. Mohr-Coulomb and
+                              Drucker-Prager keep their own tr(d); every eighth step (a step whose
+                              number, from creation, 8 divides) their mean stress is filtered:
+                              docs/theory/walls.md */
 } mps_mpm_volumetric;
 
 /** Shape functions of particles near a roller, a fixed side or the axis. */
@@ -80,7 +88,7 @@ typedef struct mps_mpm_def {
   int32_t geometry;   /* mps_mpm_geometry, default PLANE_STRAIN; of as many dimensions as the set.
                          In 2D the third value of each array below is not read */
   int32_t spline;     /* degree of the B-spline weights: 3 (Nakamura (36)) or 2; 0 (default): 3 */
-  int32_t volumetric; /* mps_mpm_volumetric, default POINT */
+  int32_t volumetric; /* mps_mpm_volumetric, default BY_LAW */
   int32_t step_from;  /* mps_mpm_step_from, default SPEED */
   int32_t budget; /* 1: each step sums the energy budget, see mps_mpm_get_totals; forces are then
                      summed apart from the momenta, which costs time and changes last bits. 0

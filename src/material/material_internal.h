@@ -61,6 +61,13 @@ bool mpsi_material_reads_volume(const mps_material *material);
 bool mpsi_material_opens(const mps_material *material);
 /* True: such a law with plastic dilation, an angle above 0. */
 bool mpsi_material_dilates(const mps_material *material);
+/* The volumetric strain that suits a law (MPS_MPM_VOLUMETRIC_BY_LAW of mps/mpm.h). */
+typedef enum mpsi_volume {
+  MPSI_VOLUME_OWN,     /* each particle's own */
+  MPSI_VOLUME_MEAN,    /* a mean: the law flows at constant volume, or hardly changes it */
+  MPSI_VOLUME_FILTERED /* each particle's own, and its mean stress is filtered: friction */
+} mpsi_volume;
+mpsi_volume mpsi_material_volume(const mps_material *material);
 /* True: a user's law, which may fail for a block. */
 bool mpsi_material_may_refuse(const mps_material *material);
 /* True: values of history that are not 0 at the start are kept, and stress and history must fit one

@@ -30,7 +30,7 @@ API_QUERY(mpm_grid, API_MPM)
 
 static void draw_choices(api *a, mps_mpm_def *def) {
   def->spline = api_chance(a, 50) ? 3 : 2;
-  def->volumetric = api_choice(a, "volumetric", 3);
+  def->volumetric = api_choice(a, "volumetric", 4);
   def->step_from = api_choice(a, "step_from", 2);
   def->budget = (int32_t)api_below(a, 2);
   def->walls = api_choice(a, "walls", 2);

@@ -198,6 +198,7 @@ static void a_umat_works_in_the_solver(void **unused) {
     mpm_scene_affine(&s[own], v0, still);
     mps_mpm_def def = mps_mpm_defaults();
     def.cell = 0.1;
+    def.volumetric = MPS_MPM_VOLUMETRIC_POINT; /* by law von Mises takes means */
     def.lower[1] = 0.0;
     mpm_scene_solve(&s[own], &def);
     mps_assert_ok(context, mps_mpm_step(s[own].mpm, 100));

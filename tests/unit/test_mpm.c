@@ -49,7 +49,7 @@ static void refuses_bad_definitions(void **state) {
   CASE(cell, 1e-4, "must be 0.5 to 100 of their spacings");
   CASE(dt, 0.0, "dt is 0 s");
   CASE(courant, 1.5, "courant is 1.5");
-  CASE(volumetric, 3, "volumetric is 3");
+  CASE(volumetric, 4, "volumetric is 4");
   CASE(budget, 2, "budget is 2");
   CASE(dt, -1.0, "dt is -1 s");
   CASE(gravity[1], INFINITY, "gravity[1] inf");

@@ -203,7 +203,7 @@ static void no_step_until_it_is_mended(mpm_scene *s) {
 static void a_step_that_loses_a_particle_is_whole(void **state) {
   (void)state;
   for (int32_t by_cell = 0; by_cell < 2; by_cell++) {
-    mpm_scene s = flying(by_cell ? MPS_MPM_VOLUMETRIC_CELL : 0);
+    mpm_scene s = flying(by_cell ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_POINT);
     mps_snapshot *snapshot = NULL;
     mps_totals t;
     mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &snapshot));

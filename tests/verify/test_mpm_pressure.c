@@ -126,7 +126,8 @@ static void collapse_is_smooth(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
     double rough[3], front[3];
-    for (int32_t v = 0; v < 3; v++) collapse(spline, v, &rough[v], &front[v]);
+    for (int32_t v = 0; v < 3; v++)
+      collapse(spline, MPS_MPM_VOLUMETRIC_POINT + v, &rough[v], &front[v]);
     print_message("collapse, spline %d, T 1 to 3: roughness %.3g Pa, by cell %.3g, by nodes %.3g; "
                   "front at T = 3 %.3f, %.3f, %.3f a\n",
                   spline, rough[0], rough[1], rough[2], front[0], front[1], front[2]);

@@ -11,7 +11,9 @@ typedef struct mpsi_columns {
   double *x[3], *v[3]; /* m, m/s */
   double *L[9];        /* 1/s, velocity gradient; 2D: xx, xy, yx, yy, hoop */
   double *D[9];        /* 1/s, derivatives of the velocity that the laws see, as L without the hoop;
-                          NULL with VOLUMETRIC_POINT: G2P passes them on */
+                          NULL where no law waits for a mean: G2P passes them on */
+  double *rough;       /* Pa, what the nodes do not see of a filtered mean stress (filter.c), of the
+                          step being made; NULL where none is */
   double *s[6];        /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *V, *m;       /* m3, kg */
   double *J;           /* V/V0 where some law reads it, else NULL */
@@ -19,7 +21,7 @@ typedef struct mpsi_columns {
   double *f[3];        /* N, body accelerations and loads of the step; NULL where there are none */
   int64_t *law;        /* number of each particle's law; NULL: one law */
   int32_t *stencil;    /* lowest node of the particle's stencil, in its block's tile, of the step
-                          being made; NULL with VOLUMETRIC_POINT */
+                          being made; NULL where volumetric.c and filter.c have no work */
 } mpsi_columns;
 
 #endif

@@ -132,7 +132,7 @@ void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
   mpsi_cell_energy *sum = of_cells(mpm, cells);
   for (int64_t k = begin; k < end; k++) {
     double s0[6] = {0.0}, s1[6] = {0.0}, wave, shear;
-    if (!mpsi_law_of(mpm, k)->opens) continue;
+    if (!mpsi_law_of(mpm, k)->filtered) continue;
     mpsi_mpm_elastic(mpm, k, &wave, &shear);
     for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k - begin], s1[c] = p->s[c][k];
     const double bulk = wave - 4.0 / 3.0 * shear, V = 0.5 * (before->volume[k - begin] + p->V[k]);

@@ -30,7 +30,7 @@ typedef struct mpsi_cell_energy {
   double seen;     /* the same by the gradient that the laws see */
   double warm;     /* work against the mean stresses of the step that the laws keep */
   double spent;    /* the rest of that: plasticity, viscosity */
-  double smoothed; /* elastic energy that the smoothing of frictional stresses takes */
+  double smoothed; /* elastic energy that the filter of frictional stresses takes */
 } mpsi_cell_energy;
 
 /* Likewise of a block of nodes. */
@@ -97,8 +97,8 @@ void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_b
 void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
                          const mps_material_block *block, const mpsi_before_law *before,
                          int64_t begin);
-/* Frictional particles from `begin` on, as many, whose stresses were smoothed after their law
- * (volumetric.c) and had been those of `before`: what their elastic energy loses is spent. */
+/* Frictional particles from `begin` on, as many, whose stresses were filtered after their law
+ * (filter.c) and had been those of `before`: what their elastic energy loses is spent. */
 void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
                               const mpsi_before_law *before, int64_t begin, int64_t end);
 /* Nodes of block g, all forces known: `held` has their velocities before the boundaries, `damped`

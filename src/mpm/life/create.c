@@ -47,9 +47,9 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->spline != 0 && d->spline != 2 && d->spline != 3)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "spline is %d, allowed are 2 and 3, and 0 for 3", d->spline);
-  if (d->volumetric < MPS_MPM_VOLUMETRIC_POINT || d->volumetric > MPS_MPM_VOLUMETRIC_NODES)
+  if (d->volumetric < MPS_MPM_VOLUMETRIC_BY_LAW || d->volumetric > MPS_MPM_VOLUMETRIC_NODES)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "volumetric is %d, allowed are 0 (point), 1 (cell) and 2 (nodes)",
+                     "volumetric is %d, allowed are 0 (by law), 1 (point), 2 (cell) and 3 (nodes)",
                      d->volumetric);
   if (d->budget != 0 && d->budget != 1)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -550,6 +550,7 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->rooms.radix.item,
                    mpm->rooms.stencil.item,
                    mpm->rooms.strain.item,
+                   mpm->rooms.rough.item,
                    mpm->rooms.gone.item,
                    mpm->undo.list_room.item,
                    mpm->undo.room.item,

@@ -117,7 +117,7 @@ void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t 
     const mpsi_law_use *law = mpsi_law_of(mpm, k);
     mps_material_block block;
     int64_t flags[MPSI_CHUNK];
-    if (!law->opens) continue;
+    if (!law->filtered) continue;
     mpsi_mpm_begin_block(&block);
     find_columns(mpm, law, k, next, flags, &block);
     for (int c = 0; c < 9; c++)

@@ -12,9 +12,10 @@
 typedef struct mpsi_law_use {
   mps_material *material;
   double modulus; /* K + 4G/3 at zero strain, Pa */
+  double bulk;    /* K at zero strain, Pa */
   bool reads_volume, needs_deformation;
-  bool opens;      /* a frictional law: its history is plastic_strain, opening */
   bool own_volume; /* it takes each particle's own change of volume, not a mean (volumetric.c) */
+  bool filtered;   /* its mean stress is filtered (filter.c); its last column is the opening */
   int32_t columns;
   double **history; /* columns over all particles; NULL for none */
 } mpsi_law_use;
@@ -35,8 +36,8 @@ typedef struct mpsi_laws {
   mpsi_room room;   /* of these */
   bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
   bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
-  bool some_open;   /* some law is frictional, */
-  bool some_own;    /* takes each particle's own change of volume */
+  bool some_own;    /* some law takes each particle's own change of volume, */
+  bool some_filtered; /* its mean stress is filtered */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */
   mpsi_refusal refusal;
@@ -49,12 +50,12 @@ typedef struct mpsi_laws {
 void mpsi_mpm_begin_block(mps_material_block *block);
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
                         double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block);
-/* laws.c: the returns to the yield surface of the frictional ones among particles [begin, end), at
- * most a chunk, without strain. */
+/* laws.c: the returns to the yield surface of those among particles [begin, end), at most a chunk,
+ * whose stress is filtered, without strain. */
 void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* laws.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
-/* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
+/* volumetric.c: after the step's G2P the laws that wait for means, and what is smoothed. */
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */

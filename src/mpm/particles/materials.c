@@ -4,6 +4,7 @@
 #include "mpm/base/kernels.h"
 
 #include "core/particles/particles_internal.h"
+#include "particles.h"
 
 /* ---- one law --------------------------------------------------------------------------------- */
 
@@ -30,14 +31,21 @@ void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law) {
 
 /* A mean change of volume beside each particle's own pressure does work from nothing where dilation
  * makes pressures rough: volumetric.c. */
-static bool keeps_own_volume(const mps_mpm *mpm, const mps_material *material) {
+static void choose_volume(const mps_mpm *mpm, mpsi_law_use *law) {
+  const mpsi_volume suits = mpsi_material_volume(law->material);
   switch (mpm->def.volumetric) {
+  case MPS_MPM_VOLUMETRIC_BY_LAW:
+    law->own_volume = suits != MPSI_VOLUME_MEAN;
+    law->filtered = suits == MPSI_VOLUME_FILTERED;
+    return;
   case MPS_MPM_VOLUMETRIC_CELL:
-    return mpsi_material_dilates(material);
+    law->own_volume = mpsi_material_dilates(law->material);
+    return;
   case MPS_MPM_VOLUMETRIC_NODES:
-    return mpsi_material_opens(material);
+    law->own_volume = law->filtered = mpsi_material_opens(law->material);
+    return;
   default:
-    return true;
+    law->own_volume = true;
   }
 }
 
@@ -51,9 +59,14 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
                       .modulus = mps_material_wave_modulus(material),
                       .reads_volume = mpsi_material_reads_volume(material),
                       .needs_deformation = mps_material_needs_deformation(material) != 0,
-                      .opens = mpsi_material_opens(material),
-                      .own_volume = keeps_own_volume(mpm, material),
+                      .bulk = mpsi_material_rest_modulus(material) -
+                              4.0 / 3.0 * mpsi_material_shear(material),
                       .columns = mps_material_history_count(material)};
+  choose_volume(mpm, &law);
+  const bool at_once = law.own_volume && (mpm->laws.count == 0 || mpm->laws.at_once);
+  const bool some_filtered = law.filtered || mpm->laws.some_filtered;
+  if (mpm->laws.count > 0 && !mpsi_mpm_volume_room(mpm, mpm->p.count, !at_once, some_filtered))
+    return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * 10 * sizeof(double));
   law.history = mpsi_alloc(mpm->context, law.columns, sizeof *law.history);
   if (!law.history)
     return mpsi_fail_memory(mpm->context, function, (size_t)law.columns * sizeof *law.history);
@@ -69,9 +82,9 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   if (mpm->laws.count == 0) atomic_flag_clear(&mpm->laws.refusal.busy);
   mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
                           mpsi_material_viscosity(material) == 0.0;
-  mpm->laws.at_once = law.own_volume && (mpm->laws.count == 0 || mpm->laws.at_once);
+  mpm->laws.at_once = at_once;
   mpm->laws.some_own = mpm->laws.some_own || law.own_volume;
-  mpm->laws.some_open = mpm->laws.some_open || law.opens;
+  mpm->laws.some_filtered = some_filtered;
   mpm->laws.law[mpm->laws.count++] = law;
   return MPS_OK;
 }

@@ -45,23 +45,32 @@ bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
   return make_columns(mpm, &mpm->rooms.force, particles, mpm->dim, mpm->p.f);
 }
 
-bool mpsi_mpm_make_room(void *solver, int64_t particles) {
-  mps_mpm *mpm = solver;
-  mps_context *context = mpm->context;
+bool mpsi_mpm_volume_room(mps_mpm *mpm, int64_t particles, bool means, bool filter) {
   mpsi_rooms *r = &mpm->rooms;
-  const bool by_cell = mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT;
+  const bool stencil = means || filter;
   const bool good =
-      mpsi_room_ensure(context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
-      (!by_cell || mpsi_room_ensure(context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
-      (!by_cell || make_columns(mpm, &r->strain, particles, mpm->dim * mpm->dim, mpm->p.D)) &&
-      (!r->force.item || mpsi_mpm_force_room(mpm, particles));
-  mpm->grid.radix = r->radix.item;
+      (!stencil ||
+       mpsi_room_ensure(mpm->context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
+      (!means || make_columns(mpm, &r->strain, particles, mpm->dim * mpm->dim, mpm->p.D)) &&
+      (!filter || make_columns(mpm, &r->rough, particles, 1, &mpm->p.rough));
   mpm->p.stencil = r->stencil.item;
   return good;
 }
 
+bool mpsi_mpm_make_room(void *solver, int64_t particles) {
+  mps_mpm *mpm = solver;
+  mpsi_rooms *r = &mpm->rooms;
+  const bool good =
+      mpsi_room_ensure(mpm->context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
+      mpsi_mpm_volume_room(mpm, particles, !mpm->laws.at_once, mpm->laws.some_filtered) &&
+      (!r->force.item || mpsi_mpm_force_room(mpm, particles));
+  mpm->grid.radix = r->radix.item;
+  return good;
+}
+
 bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
-  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.stencil, &mpm->rooms.strain};
+  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.stencil, &mpm->rooms.strain,
+                              &mpm->rooms.rough};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
     mpsi_free(mpm->context, rooms[k]->item);
     *rooms[k] = (mpsi_room){0};

@@ -15,6 +15,8 @@ bool mpsi_mpm_make_room(void *mpm, int64_t particles);
 /* The same, giving up what there is. */
 bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles);
 bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles);
+/* What means of the change of volume and the filter of stresses need, as laws do. */
+bool mpsi_mpm_volume_room(mps_mpm *mpm, int64_t particles, bool means, bool filter);
 
 /* Places inside the domain, of particles [first, end). */
 mps_status mpsi_mpm_check_places(const mps_mpm *mpm, const char *function, int64_t first,

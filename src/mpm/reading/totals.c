@@ -40,7 +40,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->energy.cells_room.capacity, sizeof *mpm->energy.cells},
               {mpm->energy.nodes_room.capacity, sizeof *mpm->energy.nodes},
               {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->dim * sizeof(double)},
-              {mpm->rooms.strain.capacity, sizeof(double)},
+              {mpm->rooms.strain.capacity + mpm->rooms.rough.capacity, sizeof(double)},
               {mpm->p.stencil ? mpm->p.count : 0, sizeof *mpm->p.stencil},
               {mpm->p.count, 2 * sizeof *mpm->grid.radix}};
   int64_t bytes = 0;

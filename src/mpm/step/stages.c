@@ -79,7 +79,7 @@ void mpsi_step_after_gather(mps_mpm *mpm) {
   mpsi_mpm_sum_boundaries(mpm);
   mpsi_mpm_drive_particles(mpm);
   mpsi_mpm_find_impulse_loss(mpm); /* before means take the nodes' places */
-  if (mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT) mpsi_mpm_apply_laws_by_cell(mpm);
+  if (!mpm->laws.at_once || mpm->laws.some_filtered) mpsi_mpm_apply_laws_by_cell(mpm);
 }
 
 mps_status mpsi_step_refuse(mps_mpm *mpm, const char *function) {

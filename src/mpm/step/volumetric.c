@@ -21,25 +21,14 @@
  * node and back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V
  * and p~ = sum w (p_i - rho g.(x_i - x)): at rest it is kept as it is.
  *
- * By node frictional laws, by cell those with dilation see each particle's own tr(d) instead. Means
- * of the rate under forces by own pressures let rough pressures do work from nothing, and dilation
- * makes them rough: a dilatant sand blew up. What is smoothed by node, every eighth step, is e = p
- * + K gap, the mean stress that an open particle would have if its grains still held together:
- * below 0 they are closed. With the operator S of the means, r = e - S e and e' = e - a (r - S r),
- * so that sum V e is kept, a smooth field to the fourth order too, and what S does not see decays.
- * p' is e' where that is closed, else what is left of p, the gap the rest; then the law's own
- * return, without strain. V follows the elastic volume strain of p' - p.
+ * By node and by law frictional laws, by cell those with dilation see each particle's own tr(d)
+ * instead. Means of the rate under forces by own pressures let rough pressures do work from
+ * nothing, and dilation makes them rough: a dilatant sand blew up. Their mean stress is filtered
+ * instead, by filter.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
-#include "mpm/ranks/parcels.h"
-
-#include <string.h>
+#include "means.h"
 
 #define BETA 0.03 /* larger ones spread pressure at free surfaces */
-#define GRAINS_BETA 0.01
-#define GRAINS_EVERY 8 /* steps */
-
-enum { SUM_VOLUME = 0, SUM_TRACE = 1 };
 
 /* A particle whose law takes its own tr(d). */
 static bool keeps_own(const mps_mpm *mpm, int64_t k) {
@@ -57,21 +46,6 @@ static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
                                                                      : NULL;
 }
 
-/* Place of a particle when G2P found its stencil. */
-static void former_place(const mps_mpm *mpm, int64_t k, double *x) {
-  for (int c = 0; c < 3; c++)
-    x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
-}
-
-/* The sums of tile node (i, j, k): those of a block, in the tile of a worker, or (NULL) those of
- * all blocks, at the node. */
-static double *sums_at(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                       bool across, int i, int j, int k) {
-  if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];
-  return mpm->grid
-      .node[across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k)];
-}
-
 /* Those of a cell that a thin body parts (thin_bodies.h) are two cells. */
 static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                        int64_t particle) {
@@ -80,31 +54,21 @@ static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const m
   mpsi_unravel(mpm->p.stencil[particle], MPSI_TILE_SIDE, at);
   if (cells->thin) {
     double x[3];
-    former_place(mpm, particle, x);
+    mpsi_former_place(mpm, particle, x);
     across = mpsi_mpm_find_parted(mpm, cells, at, x).across & 1;
   }
-  return sums_at(mpm, cells, worker, across, at[0], at[1], at[2]);
+  return mpsi_sums_at(mpm, cells, worker, across, at[0], at[1], at[2]);
 }
 
 static const double level[3] = {0.0, 0.0, 0.0}; /* no slope */
-
-static void clear_tile(mps_mpm *mpm, int64_t b, int32_t number) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
-  for (int across = 0; across < (cells->thin ? 2 : 1); across++)
-    for (int k = cells->low[2]; k < cells->high[2]; k++)
-      for (int j = cells->low[1]; j < cells->high[1]; j++)
-        memset(sums_at(mpm, cells, &mpm->grid.workers[number], across != 0, cells->low[0], j, k), 0,
-               bytes);
-}
 
 /* ---- by node --------------------------------------------------------------------------------- */
 
 static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES; }
 
-/* A particle whose law is frictional. */
-static bool is_grains(const mps_mpm *mpm, int64_t k) {
-  return mpm->laws.some_open && mpsi_law_of(mpm, k)->opens;
+/* A particle whose mean stress is filtered, not smoothed (filter.c). */
+static bool is_filtered(const mps_mpm *mpm, int64_t k) {
+  return mpm->laws.some_filtered && mpsi_law_of(mpm, k)->filtered;
 }
 
 /* Nodes of a tile along each axis, ghosts of mirrors by their partners, and weights. */
@@ -122,7 +86,7 @@ static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
   int base[3];
   double x[3];
   mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
-  former_place(mpm, k, x);
+  mpsi_former_place(mpm, k, x);
   if (cells->thin) out.across = mpsi_mpm_find_parted(mpm, cells, base, x).across;
   for (int c = 0; c < mpm->dim; c++) {
     const double t =
@@ -146,7 +110,7 @@ static double further(const support *s, const double *slope, int i, int j, int k
 static double *node_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                        const support *s, int i, int j, int k) {
   const bool across = s->across >> (16 * k + 4 * j + i) & 1;
-  return sums_at(mpm, cells, worker, across, s->at[0][i], s->at[1][j], s->at[2][k]);
+  return mpsi_sums_at(mpm, cells, worker, across, s->at[0][i], s->at[1][j], s->at[2][k]);
 }
 
 /* Adds {V, V value} by the weights; or the mean of the nodes' means. */
@@ -158,8 +122,8 @@ static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_wo
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k] * V;
         double *to = node_of(mpm, cells, worker, s, i, j, k);
-        to[SUM_VOLUME] += w;
-        to[SUM_TRACE] += w * (value + further(s, slope, i, j, k));
+        to[MPSI_SUM_VOLUME] += w;
+        to[MPSI_SUM_VALUE] += w * (value + further(s, slope, i, j, k));
       }
 }
 
@@ -172,8 +136,8 @@ static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const suppo
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k];
         const double *from = node_of(mpm, cells, NULL, s, i, j, k);
-        if (!(from[SUM_VOLUME] > 0.0) || w == 0.0) continue;
-        sum += w * (from[SUM_TRACE] / from[SUM_VOLUME] - further(s, slope, i, j, k));
+        if (!(from[MPSI_SUM_VOLUME] > 0.0) || w == 0.0) continue;
+        sum += w * (from[MPSI_SUM_VALUE] / from[MPSI_SUM_VOLUME] - further(s, slope, i, j, k));
         weight += w;
       }
   return sum / weight;
@@ -194,9 +158,9 @@ static void slope_at_rest(const mps_mpm *mpm, int64_t k, double *slope) {
 static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
-  clear_tile(mpm, b, number);
+  mpsi_clear_sums(mpm, b, number);
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (is_grains(mpm, k)) continue;
+    if (is_filtered(mpm, k)) continue;
     const support s = support_of(mpm, cells, k);
     double slope[3];
     slope_at_rest(mpm, k, slope);
@@ -208,7 +172,7 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (is_grains(mpm, k)) continue;
+    if (is_filtered(mpm, k)) continue;
     const support s = support_of(mpm, cells, k);
     double fraction = 1.0, wave, shear, slope[3];
     slope_at_rest(mpm, k, slope);
@@ -222,93 +186,13 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   mpm->kernels->speed(mpm, b, worker);
 }
 
-/* ---- by node: frictional laws ---------------------------------------------------------------- */
-
-static double bulk_of(const mps_mpm *mpm, int64_t k) {
-  double wave, shear;
-  mpsi_mpm_elastic(mpm, k, &wave, &shear);
-  return wave - 4.0 / 3.0 * shear;
-}
-
-static double *gap_of(const mps_mpm *mpm, int64_t k) { return mpsi_law_of(mpm, k)->history[1] + k; }
-
-/* r of each particle, in a column that the laws have read. */
-static double *deviation(const mps_mpm *mpm) { return mpm->p.D[0]; }
-
-static void sum_closed(mps_mpm *mpm, int64_t b, int32_t number) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  clear_tile(mpm, b, number);
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (!is_grains(mpm, k)) continue;
-    const support s = support_of(mpm, cells, k);
-    const double closed = mean_stress(mpm, k) + bulk_of(mpm, k) * *gap_of(mpm, k);
-    give(mpm, cells, &mpm->grid.workers[number], &s, mpm->p.V[k], closed, level);
-  }
-}
-
-static void sum_deviations(mps_mpm *mpm, int64_t b, int32_t number) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  clear_tile(mpm, b, number);
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (!is_grains(mpm, k)) continue;
-    const support s = support_of(mpm, cells, k);
-    give(mpm, cells, &mpm->grid.workers[number], &s, mpm->p.V[k], deviation(mpm)[k], level);
-  }
-}
-
-static void find_deviations(mps_mpm *mpm, int64_t b, int32_t worker) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  (void)worker;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (!is_grains(mpm, k)) continue;
-    const support s = support_of(mpm, cells, k);
-    const double closed = mean_stress(mpm, k) + bulk_of(mpm, k) * *gap_of(mpm, k);
-    deviation(mpm)[k] = closed - take(mpm, cells, &s, level);
-  }
-}
-
-/* A volume after a volume strain, to the third order: strains to and fro leave it as it was. */
-static double grown(double V, double strain) {
-  return V * ((1.0 + 0.5 * strain) / (1.0 - 0.5 * strain));
-}
-
-static void smooth_one(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
-  const mpsi_columns *p = &mpm->p;
-  const support s = support_of(mpm, cells, k);
-  const double r = deviation(mpm)[k], bulk = bulk_of(mpm, k), was = mean_stress(mpm, k);
-  double *gap = gap_of(mpm, k), wave, shear;
-  mpsi_mpm_elastic(mpm, k, &wave, &shear);
-  const double cells_a_step = sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse;
-  const double fraction = fmin(1.0, GRAINS_EVERY * GRAINS_BETA * cells_a_step);
-  const double closed = was + bulk * *gap - fraction * (r - take(mpm, cells, &s, level));
-  const double now =
-      *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
-  *gap = fmax(0.0, (closed - now) / bulk);
-  for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
-  p->V[k] = grown(p->V[k], (now - was) / bulk);
-}
-
-static void smooth_grains(mps_mpm *mpm, int64_t b, int32_t worker) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  for (int64_t begin = cells->begin, end; begin < cells->end; begin = end) {
-    end = begin + MPSI_CHUNK < cells->end ? begin + MPSI_CHUNK : cells->end;
-    mpsi_before_law before;
-    if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
-    for (int64_t k = begin; k < end; k++)
-      if (is_grains(mpm, k)) smooth_one(mpm, cells, k);
-    mpsi_mpm_return_stress(mpm, cells, begin, end);
-    if (mpm->energy.counts) mpsi_mpm_energy_smoothed(mpm, cells, &before, begin, end);
-  }
-  mpm->kernels->speed(mpm, b, worker);
-}
-
 /* ---- both ------------------------------------------------------------------------------------ */
 
 static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
   const double *L[3], *V = mpm->p.V;
-  clear_tile(mpm, b, number);
+  mpsi_clear_sums(mpm, b, number);
   find_diagonal(mpm, L);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
@@ -319,8 +203,8 @@ static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
       continue;
     }
     double *sums = sums_of(mpm, cells, worker, k);
-    sums[SUM_VOLUME] += V[k];
-    sums[SUM_TRACE] += V[k] * trace;
+    sums[MPSI_SUM_VOLUME] += V[k];
+    sums[MPSI_SUM_VALUE] += V[k] * trace;
   }
 }
 
@@ -338,7 +222,7 @@ static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int
       mean = take(mpm, cells, &s, level);
     } else {
       const double *sums = sums_of(mpm, cells, NULL, k);
-      mean = sums[SUM_TRACE] / sums[SUM_VOLUME];
+      mean = sums[MPSI_SUM_VALUE] / sums[MPSI_SUM_VOLUME];
     }
     const double change = (mean - own) / 3.0;
     for (int c = 0; c < 3; c++) diagonal[c][k - begin] = (L[c] ? L[c][k] : 0.0) + change;
@@ -359,77 +243,19 @@ static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
   if (!by_nodes(mpm)) mpm->kernels->speed(mpm, b, worker);
 }
 
-/* A tile to the nodes; blocks of one colour have none in common. */
-static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                     bool across) {
-  for (int k = cells->low[2]; k < cells->high[2]; k++)
-    for (int j = cells->low[1]; j < cells->high[1]; j++)
-      for (int i = cells->low[0]; i < cells->high[0]; i++) {
-        const double *from = sums_at(mpm, cells, worker, across, i, j, k);
-        if (from[SUM_VOLUME] == 0.0) continue;
-        double *to = sums_at(mpm, cells, NULL, across, i, j, k);
-        to[SUM_VOLUME] += from[SUM_VOLUME];
-        to[SUM_TRACE] += from[SUM_TRACE];
-      }
-}
-
-/* What a block gives, summed here or by its own rank. */
-static void add_block(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  if (!mpm->partition)
-    sum(mpm, b, number);
-  else if (!mpsi_mpm_receive_sums(mpm, b, number, sum))
-    return;
-  for (int across = 0; across < (cells->thin ? 2 : 1); across++)
-    add_tile(mpm, cells, &mpm->grid.workers[number], across != 0);
-}
-
 static void add_rates(mps_mpm *mpm, int64_t b, int32_t worker) {
-  add_block(mpm, b, worker, sum_rates);
+  mpsi_add_sums(mpm, b, worker, sum_rates);
 }
 
 static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
-  add_block(mpm, b, worker, sum_pressures);
-}
-
-static void add_closed(mps_mpm *mpm, int64_t b, int32_t worker) {
-  add_block(mpm, b, worker, sum_closed);
-}
-
-static void add_deviations(mps_mpm *mpm, int64_t b, int32_t worker) {
-  add_block(mpm, b, worker, sum_deviations);
-}
-
-static void run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather) {
-  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
-                          .scatter = add,
-                          .gather = gather,
-                          .arrive = mpm->partition ? mpsi_mpm_receive_parcels : NULL};
-  if (mpm->partition) mpsi_mpm_send_sums(mpm, sum);
-  mpsi_mpm_run_pass(mpm, &pass);
-}
-
-/* The step has failed; its places may be no places. */
-static bool has_failed(const mps_mpm *mpm) {
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    if (mpm->grid.cells[b].bad >= 0 && !mpm->grid.cells[b].lost) return true;
-  return false;
-}
-
-/* Whether some rank, or the only one, has. */
-static bool on_any(mps_mpm *mpm, bool failed) {
-  if (!mpm->partition || mpm->partition->lost != MPS_OK) return failed;
-  mpm->partition->lost = mpsi_mpm_any_rank(mpm, "mps_mpm_step", &failed);
-  return failed || mpm->partition->lost != MPS_OK;
+  mpsi_add_sums(mpm, b, worker, sum_pressures);
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
-  const bool others = !mpm->laws.at_once; /* than frictional ones, or by cell */
-  if (on_any(mpm, has_failed(mpm))) return;
-  if (others) run_sums(mpm, sum_rates, add_rates, apply_laws);
-  if (!by_nodes(mpm) || on_any(mpm, mpm->laws.refusal.cells != NULL)) return;
-  if (others) run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
-  if (!mpm->laws.some_open || mpm->run.steps % GRAINS_EVERY != 0) return;
-  run_sums(mpm, sum_closed, add_closed, find_deviations);
-  run_sums(mpm, sum_deviations, add_deviations, smooth_grains);
+  const bool means = !mpm->laws.at_once, filters = mpsi_mpm_filters(mpm);
+  if (!(means || filters) || mpsi_any_failed(mpm)) return;
+  if (means) mpsi_run_sums(mpm, sum_rates, add_rates, apply_laws);
+  if (!(by_nodes(mpm) || filters) || mpsi_any_refused(mpm)) return;
+  if (means && by_nodes(mpm)) mpsi_run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
+  if (filters) mpsi_mpm_filter(mpm);
 }

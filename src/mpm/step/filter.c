@@ -1,0 +1,281 @@
+/* filter.c - the filter of the mean stress of frictional laws.
+ *
+ * Sand that has flowed bears its weight by half of its particles: the others are open, at no stress
+ * at all, and the nodes, which see sums, do not notice. What is filtered, every eighth step, is e =
+ * p + K gap, the mean stress that an open particle would have if its grains still held together:
+ * below 0 they are closed. p alone would not do: the law puts it back to 0 wherever there is a gap.
+ * With the operator S of the means by node, (S e)_p = sum w_ip (sum w_iq V_q e_q/sum w_iq V_q),
+ *
+ *   r = a (e - S e),   e' = e - (r - S r),   a = min(1, 8 BETA c dt/h),
+ *
+ * so that sum V e is kept whatever a is from particle to particle, a smooth field to the fourth
+ * order too, and what S does not see decays.
+ * At a wall or a surface all particles of a node lie on one side of it. So e goes to the nodes and
+ * back along the slope that it has in ground at rest (closed_stress), and stays as it is there.
+ *
+ * p' is e' where that is closed, else what is left of p, the gap the rest; the deviatoric stress
+ * stays; then the law's own return, without strain. V follows the elastic volume strain of p' - p.
+ * Velocities do not change. The elastic energy that goes is counted as spent (energy.h).
+ *
+ * Both passes have loops of their own for each dimension and degree, and for blocks beside thin
+ * bodies. SPDX-License-Identifier: BSD-3-Clause */
+#include "means.h"
+
+#include <string.h>
+
+#define BETA 0.01
+#define EVERY 8 /* steps */
+
+bool mpsi_mpm_filters(const mps_mpm *mpm) {
+  return mpm->laws.some_filtered && mpm->run.steps % EVERY == 0;
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static bool is_filtered(const mps_mpm *mpm, int64_t k) { return mpsi_law_of(mpm, k)->filtered; }
+
+static double mean_stress(const mps_mpm *mpm, int64_t k) {
+  return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) * (1.0 / 3.0);
+}
+
+static double *gap_of(const mpsi_law_use *law, int64_t k) {
+  return law->history[law->columns - 1] + k;
+}
+
+/* e, Pa, and its slope (per cell along each axis) in ground at rest, compressed by its weight
+ * without lateral strain; none where it is open. */
+static double closed_stress(const mps_mpm *mpm, int64_t k, double *slope) {
+  const mpsi_law_use *law = mpsi_law_of(mpm, k);
+  const double gap = *gap_of(law, k), density = mpm->p.m[k] / mpm->p.V[k];
+  const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * mpm->def.cell;
+  for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
+  return mean_stress(mpm, k) + law->bulk * gap;
+}
+
+/* a: the decay of what the nodes do not see. */
+static double decay(const mps_mpm *mpm, int64_t k) {
+  const double wave = sqrt(mpsi_law_of(mpm, k)->modulus * mpm->p.V[k] / mpm->p.m[k]);
+  return fmin(1.0, EVERY * BETA * wave * mpm->run.dt * mpm->grid.inverse);
+}
+
+/* ---- supports -------------------------------------------------------------------------------- */
+
+/* Along each axis the nodes of the block's tile, those beyond a mirror by their partners: where they
+ * are, in cells, and as offsets into the tile. */
+typedef struct axes {
+  double place[3][MPSI_TILE_SIDE];
+  int offset[3][MPSI_TILE_SIDE];
+} axes;
+
+static void find_axes(const mps_mpm *mpm, const mpsi_cell_block *cells, axes *out) {
+  for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_TILE_SIDE)
+    for (int i = 0; i < MPSI_TILE_SIDE; i++) {
+      const int partner = c < mpm->dim ? mpsi_mpm_mirror_partner(mpm, cells, c, i) : i;
+      out->place[c][i] = partner;
+      out->offset[c][i] = stride * partner;
+    }
+}
+
+typedef struct support {
+  const int *at[3]; /* offsets of its nodes along each axis */
+  double w[3][4], away[3][4]; /* weights; cells from the particle to the node */
+  uint64_t across; /* bit 16 k + 4 j + i: the node's values across (thin_bodies.h) */
+} support;
+
+/* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
+MPSI_INLINE void find_support(const mps_mpm *mpm, const mpsi_cell_block *cells, const axes *all,
+                              int dim, int spline, bool thin, int64_t k, support *out) {
+  const double least = spline == 3 ? 1.0 : 0.5;
+  const double dt = mpm->run.dt;
+  int base[3];
+  mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
+  for (int c = 0; c < dim; c++) {
+    const double x = mpm->p.x[c][k] - dt * mpm->p.v[c][k];
+    const double t = mpsi_grid_coordinate(mpm, c, x) - (cells->at[c] * (double)MPSI_SIDE + base[c]);
+    mpsi_weights(spline, t < least ? least : t > least + 1.0 ? least + 1.0 : t, out->w[c]);
+    for (int i = 0; i <= spline; i++)
+      out->away[c][i] = all->place[c][base[c] + i] - (base[c] + t);
+    out->at[c] = all->offset[c] + base[c];
+  }
+  out->across = 0;
+  if (!thin) return;
+  double x[3];
+  mpsi_former_place(mpm, k, x);
+  out->across = mpsi_mpm_find_parted(mpm, cells, base, x).across;
+}
+
+/* The tile that a node of a support has its value in. */
+MPSI_INLINE mpsi_node *tile_of(const mpsi_worker *worker, bool thin, const support *s, int node) {
+  return thin && (s->across >> node & 1) ? worker->across_tile : worker->tile;
+}
+
+/* Adds {V, V value} by the weights, the value prolonged along its slope (per cell; NULL: none). */
+MPSI_INLINE void give(const mpsi_worker *worker, int dim, int spline, bool thin, const support *s,
+                      double V, double value, const double *slope) {
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const double weight = V * s->w[1][j] * (dim == 3 ? s->w[2][k] : 1.0);
+      const int from = s->at[1][j] + (dim == 3 ? s->at[2][k] : 0);
+      double row = value;
+      if (slope) row += slope[1] * s->away[1][j] + (dim == 3 ? slope[2] * s->away[2][k] : 0.0);
+      for (int i = 0; i <= spline; i++) {
+        double *to = tile_of(worker, thin, s, 16 * k + 4 * j + i)[from + s->at[0][i]];
+        const double w = weight * s->w[0][i];
+        to[MPSI_SUM_VOLUME] += w;
+        to[MPSI_SUM_VALUE] += w * (slope ? row + slope[0] * s->away[0][i] : row);
+      }
+    }
+}
+
+/* How far the mean of the nodes' places is from the particle, along the slope: 0 but at mirrors. */
+MPSI_INLINE double rise(int dim, int spline, const support *s, const double *slope) {
+  double sum = 0.0;
+  for (int c = 0; c < dim; c++)
+    for (int i = 0; i <= spline; i++) sum += slope[c] * (s->w[c][i] * s->away[c][i]);
+  return sum;
+}
+
+/* The mean of the nodes' means, which are in the tile. All nodes of the support have some volume,
+ * this particle's, so that the weights add up to 1. */
+MPSI_INLINE double take(const mpsi_worker *worker, int dim, int spline, bool thin,
+                        const support *s) {
+  double sum = 0.0;
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const int from = s->at[1][j] + (dim == 3 ? s->at[2][k] : 0);
+      double row = 0.0;
+      for (int i = 0; i <= spline; i++)
+        row += s->w[0][i] *
+               tile_of(worker, thin, s, 16 * k + 4 * j + i)[from + s->at[0][i]][MPSI_SUM_VALUE];
+      sum += row * s->w[1][j] * (dim == 3 ? s->w[2][k] : 1.0);
+    }
+  return sum;
+}
+
+/* The means of the nodes under a block, to the tile of the worker. */
+static void gather_means(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker) {
+  for (int across = 0; across < (cells->thin ? 2 : 1); across++)
+    for (int k = cells->low[2]; k < cells->high[2]; k++)
+      for (int j = cells->low[1]; j < cells->high[1]; j++)
+        for (int i = cells->low[0]; i < cells->high[0]; i++) {
+          const double *from = mpsi_sums_at(mpm, cells, NULL, across != 0, i, j, k);
+          const double volume = from[MPSI_SUM_VOLUME];
+          mpsi_sums_at(mpm, cells, worker, across != 0, i, j, k)[MPSI_SUM_VALUE] =
+              volume > 0.0 ? from[MPSI_SUM_VALUE] / volume : 0.0;
+        }
+}
+
+/* ---- the four loops -------------------------------------------------------------------------- */
+
+typedef enum loop {
+  SUM_STRESS, /* e to the tile */
+  FIND_ROUGH, /* r by the means of e */
+  SUM_ROUGH,  /* r to the tile */
+  FIND_SMOOTH /* r - S r by the means of r */
+} loop;
+
+MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                          int dim, int spline, bool thin, loop which) {
+  double *rough = mpm->p.rough;
+  double slope[3];
+  axes all;
+  support s;
+  find_axes(mpm, cells, &all);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (!is_filtered(mpm, k)) continue;
+    find_support(mpm, cells, &all, dim, spline, thin, k, &s);
+    const double closed = which == SUM_STRESS || which == FIND_ROUGH
+                              ? closed_stress(mpm, k, slope)
+                              : 0.0;
+    if (which == SUM_STRESS)
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope);
+    else if (which == SUM_ROUGH)
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k], NULL);
+    else if (which == FIND_ROUGH)
+      rough[k] = decay(mpm, k) * (closed + rise(dim, spline, &s, slope) -
+                                  take(worker, dim, spline, thin, &s));
+    else
+      rough[k] -= take(worker, dim, spline, thin, &s);
+  }
+}
+
+MPSI_INLINE void choose_loop(mps_mpm *mpm, int64_t b, int32_t number, loop which) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_worker *worker = &mpm->grid.workers[number];
+  const int dim = mpm->dim, spline = mpm->def.spline;
+  if (dim == 2 && !cells->thin && spline == 2)
+    run_loop(mpm, cells, worker, 2, 2, false, which);
+  else if (dim == 2 && !cells->thin)
+    run_loop(mpm, cells, worker, 2, 3, false, which);
+  else if (dim == 3 && !cells->thin && spline == 2)
+    run_loop(mpm, cells, worker, 3, 2, false, which);
+  else if (dim == 3 && !cells->thin)
+    run_loop(mpm, cells, worker, 3, 3, false, which);
+  else
+    run_loop(mpm, cells, worker, dim, spline, true, which);
+}
+
+static void sum_stress(mps_mpm *mpm, int64_t b, int32_t number) {
+  mpsi_clear_sums(mpm, b, number);
+  choose_loop(mpm, b, number, SUM_STRESS);
+}
+
+static void sum_rough(mps_mpm *mpm, int64_t b, int32_t number) {
+  mpsi_clear_sums(mpm, b, number);
+  choose_loop(mpm, b, number, SUM_ROUGH);
+}
+
+static void add_stress(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_add_sums(mpm, b, worker, sum_stress);
+}
+
+static void add_rough(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_add_sums(mpm, b, worker, sum_rough);
+}
+
+static void find_rough(mps_mpm *mpm, int64_t b, int32_t number) {
+  gather_means(mpm, &mpm->grid.cells[b], &mpm->grid.workers[number]);
+  choose_loop(mpm, b, number, FIND_ROUGH);
+}
+
+/* ---- stresses -------------------------------------------------------------------------------- */
+
+/* A volume after a volume strain, to the third order: strains to and fro leave it as it was. */
+static double grown(double V, double strain) {
+  return V * ((1.0 + 0.5 * strain) / (1.0 - 0.5 * strain));
+}
+
+/* e' = e - (r - S r), in p and the gap. */
+static void change_stress(const mps_mpm *mpm, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  const mpsi_law_use *law = mpsi_law_of(mpm, k);
+  double *gap = gap_of(law, k);
+  const double was = mean_stress(mpm, k), closed = was + law->bulk * *gap - p->rough[k];
+  const double now =
+      *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
+  *gap = fmax(0.0, (closed - now) / law->bulk);
+  for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
+  p->V[k] = grown(p->V[k], (now - was) / law->bulk);
+}
+
+static void filter_stress(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  gather_means(mpm, cells, &mpm->grid.workers[number]);
+  choose_loop(mpm, b, number, FIND_SMOOTH);
+  for (int64_t begin = cells->begin, end; begin < cells->end; begin = end) {
+    end = begin + MPSI_CHUNK < cells->end ? begin + MPSI_CHUNK : cells->end;
+    mpsi_before_law before;
+    if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
+    for (int64_t k = begin; k < end; k++)
+      if (is_filtered(mpm, k)) change_stress(mpm, k);
+    mpsi_mpm_return_stress(mpm, cells, begin, end);
+    if (mpm->energy.counts) mpsi_mpm_energy_smoothed(mpm, cells, &before, begin, end);
+  }
+  mpm->kernels->speed(mpm, b, number);
+}
+
+void mpsi_mpm_filter(mps_mpm *mpm) {
+  mpsi_run_sums(mpm, sum_stress, add_stress, find_rough);
+  mpsi_run_sums(mpm, sum_rough, add_rough, filter_stress);
+}

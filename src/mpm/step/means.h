@@ -1,0 +1,42 @@
+/* means.h - sums over particles at the nodes, {sum V, sum V value}, for means by cell or by node
+ * after the step's G2P, when the nodes have done their work: they take the place of mass and
+ * momentum. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_MEANS_H
+#define MPSI_MPM_MEANS_H
+
+#include "mpm/base/kernels.h"
+
+enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1 };
+
+/* Place (m) of a particle when G2P found its stencil: it has moved by dt v since. */
+static inline void mpsi_former_place(const mps_mpm *mpm, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++)
+    x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
+}
+
+/* The sums of tile node (i, j, k): those of a block, in the tile of a worker, or (NULL) those of
+ * all blocks, at the node; `across`: of what thin bodies part (thin_bodies.h). */
+static inline double *mpsi_sums_at(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                   const mpsi_worker *worker, bool across, int i, int j, int k) {
+  if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];
+  return mpm->grid
+      .node[across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k)];
+}
+
+/* Empties the part of the worker's tiles that the block uses. */
+void mpsi_clear_sums(mps_mpm *mpm, int64_t b, int32_t worker);
+/* In the scatter of a pass: what `sum` puts into a worker's tile, here or on the block's own rank,
+ * to the nodes. */
+void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t worker, mpsi_mpm_task sum);
+/* A pass: `add` calls mpsi_add_sums with `sum`; then `gather`, block by block. */
+void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather);
+/* Whether the step has failed on some rank, or the only one: places may be no places, or a law has
+ * refused. Collective. */
+bool mpsi_any_failed(mps_mpm *mpm);
+bool mpsi_any_refused(mps_mpm *mpm);
+
+/* filter.c: of a step whose number the interval divides, the mean stresses of frictional laws. */
+bool mpsi_mpm_filters(const mps_mpm *mpm);
+void mpsi_mpm_filter(mps_mpm *mpm);
+
+#endif

@@ -1,0 +1,364 @@
+/* test_mpm_filter.c - the change of volume by the law, and the filter of the mean stress of
+ * frictional laws: flowed sand has pressures like its neighbours', with the same heap; the sum of
+ * volumes times pressures is kept, in every geometry and beside mirrors and thin bodies; ground at
+ * rest does not move; each law has the treatment that suits it, however it came to the solver.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#include <mps/geostatic.h>
+#include <mps/mpm_energy.h>
+
+#include <stdlib.h>
+
+#define DEGREE 0.017453292519943295
+
+static mps_material *make_sand(double cohesion) {
+  mps_material *out = NULL;
+  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
+  law.young = 1e6, law.friction = 30.0 * DEGREE, law.dilation = 0.0, law.cohesion = cohesion;
+  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &law, &out));
+  return out;
+}
+
+static double pressure(const mps_view *stress, int64_t k) {
+  return -(*mps_view_f64(stress, k, 0) + *mps_view_f64(stress, k, 1) +
+           *mps_view_f64(stress, k, 2)) /
+         3.0;
+}
+
+/* ---- a heap ---------------------------------------------------------------------------------- */
+
+typedef struct heap {
+  double noise, front, top, volume, residual, spent;
+} heap;
+
+/* rms of each pressure less the mean of its 8 nearest neighbours', over the rms pressure. */
+static double find_noise(mpm_scene *s, double h) {
+  mps_view x = mpm_scene_view(s, "position"), stress = mpm_scene_view(s, "stress");
+  double rough = 0.0, all = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    double near[8], p[8] = {0.0}, mean = 0.0;
+    for (int i = 0; i < 8; i++) near[i] = INFINITY;
+    for (int64_t j = 0; j < x.shape[0]; j++) {
+      const double dx = *mps_view_f64(&x, j, 0) - *mps_view_f64(&x, k, 0);
+      const double dy = *mps_view_f64(&x, j, 1) - *mps_view_f64(&x, k, 1);
+      const double square = dx * dx + dy * dy;
+      if (j == k || square > 4.0 * h * h || square >= near[7]) continue;
+      int i = 7;
+      for (; i > 0 && near[i - 1] > square; i--) near[i] = near[i - 1], p[i] = p[i - 1];
+      near[i] = square, p[i] = pressure(&stress, j);
+    }
+    if (near[7] == INFINITY) continue; /* a grain that lies alone */
+    for (int i = 0; i < 8; i++) mean += p[i] / 8.0;
+    const double own = pressure(&stress, k);
+    rough += (own - mean) * (own - mean);
+    all += own * own;
+  }
+  return sqrt(rough / all);
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return x < y ? -1 : x > y;
+}
+
+/* The place that all but 1 % of the particles are below, along axis c. */
+static double find_extent(mpm_scene *s, int c) {
+  mps_view x = mpm_scene_view(s, "position");
+  double *sorted = malloc((size_t)x.shape[0] * sizeof *sorted);
+  assert_non_null(sorted);
+  for (int64_t k = 0; k < x.shape[0]; k++) sorted[k] = *mps_view_f64(&x, k, c);
+  qsort(sorted, (size_t)x.shape[0], sizeof *sorted, ascending);
+  const double out = sorted[(int64_t)(0.99 * (double)(x.shape[0] - 1))];
+  free(sorted);
+  return out;
+}
+
+/* A column of sand, 0.2 x 0.3 m, that has collapsed on a rough floor. */
+static heap collapse(int32_t volumetric, int32_t spline) {
+  const double h = 0.02;
+  mpm_scene s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, 1e6);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.3);
+  mps_material_destroy(&s.material);
+  s.material = make_sand(0.0);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = h, def.spline = spline, def.volumetric = volumetric, def.budget = 1;
+  def.lower[0] = def.lower[1] = 0.0, def.gravity[1] = -9.81;
+  mpm_scene_solve(&s, &def);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, 0.5);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 1.2, INT64_MAX, NULL, NULL));
+  mps_mpm_losses l;
+  mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
+  const heap out = {.noise = find_noise(&s, h),
+                    .front = find_extent(&s, 0),
+                    .top = find_extent(&s, 1),
+                    .volume = mpm_scene_totals(&s).volume,
+                    .residual = l.residual,
+                    .spent = l.laws};
+  print_message("volumetric %d, spline %d: noise %.3f, front %.4f m, top %.4f m, V %.6f m2, laws "
+                "%.2f J, residual %.2g J\n",
+                (int)volumetric, (int)spline, out.noise, out.front, out.top, out.volume, out.spent,
+                out.residual);
+  mpm_scene_end(&s);
+  return out;
+}
+
+static void flowed_sand_has_smooth_pressures(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++) {
+    const heap own = collapse(MPS_MPM_VOLUMETRIC_POINT, spline);
+    const heap filtered = collapse(MPS_MPM_VOLUMETRIC_BY_LAW, spline);
+    assert_true(own.noise > 0.3);
+    assert_true(filtered.noise < 0.1);
+    mps_assert_near(filtered.front / own.front, 1.0, 0.02);
+    mps_assert_near(filtered.top / own.top, 1.0, 0.02);
+    mps_assert_near(filtered.volume / own.volume, 1.0, 5e-4);
+    mps_assert_near(filtered.residual, 0.0, 1e-10 * filtered.spent);
+  }
+}
+
+/* ---- what is kept ---------------------------------------------------------------------------- */
+
+/* A block between rollers whose pressures differ from particle to particle, after the first step,
+ * which filters. Its cohesion keeps it from yielding. */
+static mpm_scene step_rough(int32_t volumetric, int32_t geometry, int32_t spline) {
+  const int dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
+  const double h = 0.1, lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.9, 1.1, 0.5};
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * h, 0.0, 0.0, 1e6);
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_set(s.particles, "stress", 0, 0.0));
+  mps_material_destroy(&s.material);
+  s.material = make_sand(1e6);
+  mps_edit stress = mpm_scene_edit(&s, "stress");
+  uint32_t random = 7;
+  for (int64_t k = 0; k < stress.view.shape[0]; k++) {
+    random = random * 1664525u + 1013904223u;
+    const double p = 1e4 + 5e3 * ((double)(random >> 8) / 16777216.0 - 0.5);
+    for (int c = 0; c < 3; c++) *mps_edit_f64(&stress, k, c) = -p;
+  }
+  mpm_scene_commit(&s, &stress);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry, def.cell = h, def.spline = spline, def.volumetric = volumetric;
+  for (int c = 0; c < dim; c++) def.lower[c] = 0.0;
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  return s;
+}
+
+static void the_sum_of_volumes_times_pressures_is_kept(void **state) {
+  (void)state;
+  for (int k = 0; k < 6; k++) {
+    mpm_scene own = step_rough(MPS_MPM_VOLUMETRIC_POINT, k / 2, 2 + k % 2);
+    mpm_scene filtered = step_rough(MPS_MPM_VOLUMETRIC_BY_LAW, k / 2, 2 + k % 2);
+    mps_view p[2] = {mpm_scene_view(&own, "stress"), mpm_scene_view(&filtered, "stress")};
+    mps_view V = mpm_scene_view(&own, "volume");
+    double sum = 0.0, change = 0.0, largest = 0.0;
+    for (int64_t i = 0; i < V.shape[0]; i++) {
+      const double v = *mps_view_f64(&V, i, 0), before = pressure(&p[0], i);
+      sum += v * before;
+      change += v * (pressure(&p[1], i) - before);
+      largest = fmax(largest, fabs(pressure(&p[1], i) - before));
+    }
+    assert_true(largest > 10.0);
+    mps_assert_near(change, 0.0, 1e-12 * sum);
+    const double volume[2] = {mpm_scene_totals(&own).volume, mpm_scene_totals(&filtered).volume};
+    mps_assert_near(volume[1] / volume[0], 1.0, 1e-6); /* K differs from p by 0.01 */
+    mpm_scene_end(&own);
+    mpm_scene_end(&filtered);
+  }
+}
+
+/* Two halves with different pressures on either side of a thin plate: the largest difference from
+ * these after some steps. */
+static double beside_plate(int32_t volumetric) {
+  mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
+  mpm_scene_box(&s, 0.0, 0.0, 0.5, 1.0);
+  mpm_scene_box(&s, 0.55, 0.0, 1.0, 1.0);
+  mps_assert_ok(context, mps_particles_set(s.particles, "stress", 0, 0.0));
+  mps_material_destroy(&s.material);
+  s.material = make_sand(1e6);
+  mps_edit stress = mpm_scene_edit(&s, "stress");
+  mps_view x = mpm_scene_view(&s, "position");
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    for (int c = 0; c < 3; c++)
+      *mps_edit_f64(&stress, k, c) = *mps_view_f64(&x, k, 0) < 0.5 ? -1e4 : -2e4;
+  mpm_scene_commit(&s, &stress);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.1, def.volumetric = volumetric;
+  for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 1.0;
+  mpm_scene_solve(&s, &def);
+  mps_body_def at = mps_body_defaults();
+  at.position[0] = 0.525, at.position[1] = 0.5;
+  mps_body *plate = NULL;
+  mps_assert_ok(context, mps_body_create_box(context, &at, 0.05, 1.4, &plate));
+  mpm_scene_contact(&s, plate, 0.0);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 97));
+  mps_view p = mpm_scene_view(&s, "stress");
+  x = mpm_scene_view(&s, "position");
+  double off = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    off = fmax(off, fabs(pressure(&p, k) - (*mps_view_f64(&x, k, 0) < 0.5 ? 1e4 : 2e4)));
+  mpm_scene_end(&s);
+  mps_body_destroy(&plate);
+  return off;
+}
+
+static void nothing_passes_a_thin_plate(void **state) {
+  (void)state;
+  const double own = beside_plate(MPS_MPM_VOLUMETRIC_POINT);
+  const double filtered = beside_plate(MPS_MPM_VOLUMETRIC_BY_LAW);
+  print_message("beside a plate: pressures off by %.3g and %.3g Pa\n", own, filtered);
+  assert_true(filtered < 1.05 * own + 1.0); /* of a difference of 1e4 */
+}
+
+/* Sand without cohesion at its K0 stress under gravity, between rollers, with a free surface. */
+static void ground_at_rest_does_not_move(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++) {
+    double moved[2] = {0.0, 0.0}, off[2] = {0.0, 0.0};
+    for (int option = 0; option < 2; option++) {
+      mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e7);
+      mpm_scene_box(&s, 0.0, 0.0, 2.0, 1.0);
+      mps_material_destroy(&s.material);
+      s.material = make_sand(0.0);
+      mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+      const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = 0.5, .density = NAN};
+      mps_geostatic_def rest = mps_geostatic_defaults();
+      rest.layers = &layer, rest.layer_count = 1, rest.gravity = 9.81, rest.surface = 1.0;
+      mps_assert_ok(context, mps_particles_set_geostatic(s.particles, &rest));
+      mps_mpm_def def = mps_mpm_defaults();
+      def.cell = 0.1, def.spline = spline, def.gravity[1] = -9.81;
+      def.volumetric = option == 0 ? MPS_MPM_VOLUMETRIC_POINT : MPS_MPM_VOLUMETRIC_BY_LAW;
+      def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
+      mpm_scene_solve(&s, &def);
+      double start[800];
+      mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
+      assert_int_equal(x.shape[0], 800);
+      for (int64_t k = 0; k < 800; k++)
+        start[*mps_view_i64(&id, k, 0)] = *mps_view_f64(&x, k, 1);
+      mps_assert_ok(context, mps_mpm_step(s.mpm, 800));
+      mps_view stress = mpm_scene_view(&s, "stress");
+      x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
+      for (int64_t k = 0; k < 800; k++) {
+        const double y = start[*mps_view_i64(&id, k, 0)];
+        moved[option] = fmax(moved[option], fabs(*mps_view_f64(&x, k, 1) - y));
+        off[option] =
+            fmax(off[option], fabs(*mps_view_f64(&stress, k, 1) + 9810.0 * (1.0 - y)) / 9810.0);
+      }
+      mpm_scene_end(&s);
+    }
+    print_message("spline %d: moved %.3g and %.3g m, stress off by %.3g and %.3g of the largest\n",
+                  (int)spline, moved[0], moved[1], off[0], off[1]);
+    assert_true(moved[1] < moved[0] + 1e-5); /* 1e-4 of the smallest cell */
+    assert_true(off[1] < off[0] + 2e-3);
+  }
+}
+
+/* ---- the choice ------------------------------------------------------------------------------ */
+
+typedef enum choice {
+  SAND,
+  CONE,
+  CLAY,
+  CONE_CLAY,
+  METAL,
+  RUBBER,
+  JELLY,
+  SOIL,
+  WATER,
+  CHOICES
+} choice;
+
+static mps_material *make_law(choice which) {
+  mps_material *out = NULL;
+  mps_material_mohr_coulomb_def pyramid = mps_material_mohr_coulomb_defaults();
+  mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
+  mps_material_von_mises_def mises = mps_material_von_mises_defaults();
+  mps_material_newtonian_def fluid = mps_material_newtonian_defaults();
+  pyramid.young = cone.young = mises.young = 1e6;
+  pyramid.friction = cone.friction = which == SAND || which == CONE ? 0.5 : 0.0;
+  pyramid.dilation = cone.dilation = which == SAND ? 0.2 : 0.0;
+  pyramid.cohesion = cone.cohesion = 100.0;
+  mises.poisson = 0.3, mises.yield_stress = 200.0;
+  fluid.bulk_modulus = 1e6;
+  mps_status status = MPS_OK;
+  if (which == SAND || which == CLAY)
+    status = mps_material_create_mohr_coulomb(context, &pyramid, &out);
+  if (which == CONE || which == CONE_CLAY)
+    status = mps_material_create_drucker_prager(context, &cone, &out);
+  if (which == METAL) status = mps_material_create_von_mises(context, &mises, &out);
+  if (which == RUBBER) status = mps_material_create_neo_hookean(context, 1e6, 0.45, &out);
+  if (which == JELLY) status = mps_material_create_linear_elastic(context, 1e6, 0.49, &out);
+  if (which == SOIL) status = mps_material_create_linear_elastic(context, 1e6, 0.44, &out);
+  if (which == WATER) status = mps_material_create_newtonian(context, &fluid, &out);
+  mps_assert_ok(context, status);
+  return out;
+}
+
+/* A block of the law strikes the floor; `later`: it was made of elastic soil, and is given the law
+ * before the first step. */
+static mpm_scene strike(choice which, int32_t volumetric, bool later) {
+  mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e6);
+  mpm_scene_box(&s, 0.1, 0.0, 0.6, 0.5);
+  const double v0[2] = {0.0, -1.0}, still[4] = {0.5, 0.0, 0.0, 0.0};
+  mpm_scene_affine(&s, v0, still);
+  mps_material *law = make_law(which);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.1, def.volumetric = volumetric, def.lower[1] = 0.0, def.dt = 2e-4;
+  if (!later) mps_material_destroy(&s.material), s.material = law;
+  mpm_scene_solve(&s, &def);
+  if (later) {
+    mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 0, NULL));
+    mps_material_destroy(&law);
+  }
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 40));
+  return s;
+}
+
+/* The largest difference of stresses over the largest stress. */
+static double compare(mpm_scene *a, mpm_scene *b) {
+  mps_view s[2] = {mpm_scene_view(a, "stress"), mpm_scene_view(b, "stress")};
+  double apart = 0.0, largest = 0.0;
+  for (int64_t k = 0; k < s[0].shape[0]; k++)
+    for (int c = 0; c < 4; c++) {
+      apart = fmax(apart, fabs(*mps_view_f64(&s[0], k, c) - *mps_view_f64(&s[1], k, c)));
+      largest = fmax(largest, fabs(*mps_view_f64(&s[0], k, c)));
+    }
+  return apart / largest;
+}
+
+static void each_law_has_what_suits_it(void **state) {
+  (void)state;
+  static const int32_t expected[CHOICES] = {
+      [SAND] = MPS_MPM_VOLUMETRIC_NODES,     [CONE] = MPS_MPM_VOLUMETRIC_NODES,
+      [CLAY] = MPS_MPM_VOLUMETRIC_CELL,      [CONE_CLAY] = MPS_MPM_VOLUMETRIC_CELL,
+      [METAL] = MPS_MPM_VOLUMETRIC_CELL,     [RUBBER] = MPS_MPM_VOLUMETRIC_CELL,
+      [JELLY] = MPS_MPM_VOLUMETRIC_CELL,     [SOIL] = MPS_MPM_VOLUMETRIC_POINT,
+      [WATER] = MPS_MPM_VOLUMETRIC_POINT};
+  for (int which = 0; which < CHOICES; which++) {
+    mpm_scene by_law = strike(which, MPS_MPM_VOLUMETRIC_BY_LAW, false);
+    for (int32_t option = MPS_MPM_VOLUMETRIC_POINT; option <= MPS_MPM_VOLUMETRIC_NODES; option++) {
+      mpm_scene s = strike(which, option, false);
+      const double apart = compare(&by_law, &s);
+      if (option == expected[which])
+        mps_assert_near(apart, 0.0, 0.0);
+      else
+        assert_true(apart > 1e-6);
+      mpm_scene_end(&s);
+    }
+    mpm_scene later = strike(which, MPS_MPM_VOLUMETRIC_BY_LAW, true);
+    mps_assert_near(compare(&by_law, &later), 0.0, 0.0);
+    mpm_scene_end(&later);
+    mpm_scene_end(&by_law);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(flowed_sand_has_smooth_pressures),
+                                     cmocka_unit_test(the_sum_of_volumes_times_pressures_is_kept),
+                                     cmocka_unit_test(nothing_passes_a_thin_plate),
+                                     cmocka_unit_test(ground_at_rest_does_not_move),
+                                     cmocka_unit_test(each_law_has_what_suits_it)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
