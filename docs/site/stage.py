@@ -1,0 +1,116 @@
+"""Puts the sources of the site together: the pages of docs/ at their places, the pages of the repository's root, the
+reference of the headers, and the table of equations. Links between pages hold in the repository; here those to files
+that are no pages become names of files, which links.py leads to listings."""
+
+import os
+import pathlib
+import re
+import shutil
+
+import equations
+import headers
+
+ROOT_PAGES = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "README.md": "index.md", "LICENSE": "license.md",
+              "docs/site/index.md": "index.md"}
+LINK = re.compile(r"(?<!\!)\[((?:[^\[\]`]|`[^`]*`|\[[^\]]*\])*)\]\(([^():\s#]*)(#[^)\s]*)?\)")
+
+
+def place_of(path):
+    """Where the repository's file `path` stands on the site, or None."""
+    if path in ROOT_PAGES:
+        return ROOT_PAGES[path]
+    if path == "include/mps":
+        return "api/index.rst"
+    if re.fullmatch(r"include/mps/\w+\.h", path):
+        return f"api/{path[len('include/mps/'):-2]}.rst"
+    if path.startswith("docs/") and path.endswith(".md") and not path.startswith("docs/site/"):
+        return path[len("docs/"):]
+    return None
+
+
+def relink(text, path, here):
+    """The links of the page `path`, which becomes `here`, for the site."""
+    def new(match):
+        said, target, anchor = match[1], match[2], match[3] or ""
+        if not target:
+            return match[0]
+        file = os.path.normpath(os.path.join(os.path.dirname(path), target))
+        page = place_of(file)
+        if page:
+            return f"[{said}]({os.path.relpath(page, os.path.dirname(here) or '.')}{anchor})"
+        if target.endswith(".png"):
+            return match[0]
+        return f"{said} (`{file}`)" if "`" not in said else said
+    parts = re.split(r"(^```.*?^```\s*$)", text, flags=re.S | re.M)
+    return "".join(part if k % 2 else LINK.sub(new, part) for k, part in enumerate(parts))
+
+
+# Pages that lead to pages of their own folder: what is behind them in the navigation.
+TREES = {"verification/README.md": "wls-mpm explicit-mps implicit-elastic fluid ranks", "verification/wls-mpm.md": "wls-mpm/*",
+         "verification/fluid.md": "fluid/*"}
+
+
+def tree(here):
+    """The hidden list of the pages behind the page `here`."""
+    listed = TREES.get(here, "").split()
+    return "\n```{toctree}\n:hidden:\n:glob:\n\n" + "\n".join(listed) + "\n```\n" if listed else ""
+
+
+def write(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+def stage_pages(root, out):
+    """Pages and pictures."""
+    pages = [p.relative_to(root).as_posix() for p in sorted((root / "docs").rglob("*.md"))]
+    for path in [*pages, "CHANGELOG.md", "CONTRIBUTING.md", "docs/site/index.md"]:
+        here = place_of(path)
+        if here:
+            write(out / here, relink((root / path).read_text(), path, here) + tree(here))
+    for picture in sorted((root / "docs").rglob("*.png")):
+        target = out / picture.relative_to(root / "docs")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(picture, target)
+    write(out / "license.md", "# Licence\n\n```text\n" + (root / "LICENSE").read_text().strip() + "\n```\n")
+    write(out / "cite.md", "# How to cite\n\nThe file `CITATION.cff` in the root of the sources, as reference managers read it:\n\n```yaml\n"
+          + (root / "CITATION.cff").read_text().strip() + "\n```\n")
+
+
+def stage_reference(root, out):
+    """A page for each header; every exported name must be on one."""
+    names, rows = set(), []
+    for path in sorted((root / "include/mps").glob("*.h")):
+        text, entries = headers.page(path.name, path.read_text())
+        names |= {entry.name for entry in entries}
+        write(out / "api" / f"{path.stem}.rst", text)
+        first = headers.summary(path.read_text())
+        rows.append(f"* - :doc:`mps/{path.name} <{path.stem}>`\n  - {first}\n  - {sum(e.kind == 'function' for e in entries)}")
+    exported = set(re.findall(r"^\s+(mps_\w+);", "".join(p.read_text() for p in (root / "src").rglob("*.map")), re.M))
+    if exported - names:
+        raise SystemExit(f"docs: exported, and on no page of the reference: {', '.join(sorted(exported - names))}")
+    head = (root / "docs/site/reference.rst").read_text()
+    table = ".. list-table::\n   :header-rows: 1\n   :widths: 24 66 10\n\n   * - header\n     - what\n     - functions\n"
+    table += "\n".join("   " + row.replace("\n", "\n   ") for row in rows)
+    tree = ".. toctree::\n   :hidden:\n\n" + "\n".join(f"   {p.stem}" for p in sorted((root / "include/mps").glob("*.h")))
+    write(out / "api" / "index.rst", f"{head}\n{table}\n\n{tree}\n")
+
+
+def check_gallery(root):
+    """Every program has its place in the gallery."""
+    shown = (root / "docs/gallery.md").read_text()
+    missing = [p.stem for p in sorted((root / "examples").glob("mps-*.c")) if f"## {p.stem}" not in shown]
+    if missing:
+        raise SystemExit(f"docs: programs without a place in docs/gallery.md: {', '.join(missing)}")
+
+
+def stage(root, out, pictures):
+    """All sources of the site, in `out`; files in `pictures` take the places of those in docs/images."""
+    root, out = pathlib.Path(root), pathlib.Path(out)
+    shutil.rmtree(out, ignore_errors=True)
+    check_gallery(root)
+    stage_pages(root, out)
+    stage_reference(root, out)
+    write(out / "theory" / "equations.rst", equations.page(root))
+    for picture in sorted(pathlib.Path(pictures).glob("*.png")) if pictures else []:
+        shutil.copyfile(picture, out / "images" / picture.name)

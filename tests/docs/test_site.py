@@ -1,0 +1,123 @@
+"""The parts of the site (docs/site) that need no package: headers, links, equations, programs on pages."""
+
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "docs/site"))
+
+import equations  # noqa: E402
+import headers  # noqa: E402
+import programs  # noqa: E402
+import stage  # noqa: E402
+
+
+class Headers(unittest.TestCase):
+    """What the reference has of the headers."""
+
+    TEXT = """/* mps/x.h - what x is. More of it.
+ * SPDX-License-Identifier: BSD-3-Clause */
+typedef struct mps_x mps_x;
+/** A choice. */
+typedef enum mps_x_kind { MPS_X_ONE = 1, /* the first */ MPS_X_TWO = 2 /* the second: a*b */ } mps_x_kind;
+typedef struct mps_x_def {
+  double mass, volume; /* kg, m3 */
+  /** In: a list. */
+  const double *list[3];
+  mps_status (*call)(void *user, int32_t n); /* asked */
+} mps_x_def;
+/** Makes it: x - 1 pieces
+ *  - 2 of `count`. MPS_ERROR_ARGUMENT: NULL. */
+MPS_API MPS_NODISCARD mps_status mps_x_make(mps_x *x,
+                                            int32_t count);
+#define MPS_X_MOST 7 /* pieces */
+"""
+
+    def test_entries(self):
+        introduction, entries = headers.parse(self.TEXT)
+        self.assertTrue(introduction.startswith("mps/x.h - what x is."))
+        self.assertEqual([(e.kind, e.name) for e in entries],
+                         [("type", "mps_x"), ("enum", "mps_x_kind"), ("struct", "mps_x_def"), ("function", "mps_x_make"), ("macro", "MPS_X_MOST")])
+        self.assertEqual(entries[1].members, [("MPS_X_ONE", "MPS_X_ONE = 1", "the first"), ("MPS_X_TWO", "MPS_X_TWO = 2", "the second: a*b")])
+        self.assertEqual([(n, c) for n, _, c in entries[2].members], [("mass", "kg, m3"), ("volume", "kg, m3"), ("list", "In: a list."), ("call", "asked")])
+        self.assertEqual(entries[3].signature, "mps_status mps_x_make(mps_x *x, int32_t count)")
+
+    def test_a_minus_at_the_start_of_a_line_is_no_list(self):
+        lines = headers.paragraphs("x is a\n- b of `c`.", 0)
+        self.assertEqual(lines[0], "x is a - b of ``c``.")
+        self.assertEqual(headers.paragraphs("two:\n- one\n- other", 0)[:4], ["two:", "", "- one", "- other"])
+
+    def test_all_declarations_of_the_library_have_an_entry(self):
+        found = {}
+        for path in sorted((ROOT / "include/mps").glob("*.h")):
+            for entry in headers.parse(path.read_text())[1]:
+                found[entry.name] = entry
+                for name, _, _ in entry.members:
+                    found.setdefault(name, entry)
+        text = "".join(p.read_text() for p in (ROOT / "include/mps").glob("*.h"))
+        code = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+        functions = set(re.findall(r"^MPS_(?:PETSC_|EXPERIMENTAL_)?API\b[^;(]*?\b(mps_\w+)\s*\(", code, re.M))
+        self.assertGreater(len(functions), 300)
+        self.assertEqual(functions - set(found), set())
+        self.assertEqual({n for n in functions if not found[n].comment}, set())
+        enumerators = set(re.findall(r"^\s+(MPS_[A-Z0-9_]+)\s*=\s*[-\w]+\s*,?", code, re.M))
+        self.assertGreater(len(enumerators), 100)
+        self.assertEqual({n for n in enumerators - set(found) if not n.endswith("FORCE_32BIT")}, set())
+
+
+class Pages(unittest.TestCase):
+    def test_links_to_pages_and_to_other_files(self):
+        self.assertEqual(stage.relink("[a](mpm.md#b)", "docs/fluid.md", "fluid.md"), "[a](mpm.md#b)")
+        self.assertEqual(stage.relink("[a](../CHANGELOG.md)", "docs/fluid.md", "fluid.md"), "[a](changelog.md)")
+        self.assertEqual(stage.relink("[a](../mpm.md)", "docs/site/index.md", "index.md"), "[a](mpm.md)")
+        self.assertEqual(stage.relink("[a](cases/x.ini)", "docs/verification/wls-mpm.md", "verification/wls-mpm.md"),
+                         "a (`docs/verification/cases/x.ini`)")
+        kept = "```c\n[a](../CHANGELOG.md)\n```\n"
+        self.assertEqual(stage.relink(kept, "docs/fluid.md", "fluid.md"), kept)
+
+    def test_a_program_without_a_place_in_the_gallery_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "docs").mkdir()
+            (root / "examples").mkdir()
+            (root / "examples/mps-new.c").touch()
+            (root / "docs/gallery.md").write_text("# Gallery\n\n## mps-old\n")
+            with self.assertRaisesRegex(SystemExit, "mps-new"):
+                stage.check_gallery(root)
+
+    def test_every_page_is_in_the_navigation(self):
+        index = (ROOT / "docs/site/index.md").read_text()
+        listed = set(re.findall(r"^(?:.* <)?([\w/-]+)>?$", "".join(re.findall(r"```\{toctree\}(.*?)```", index, re.S)), re.M))
+        for path in (ROOT / "docs").rglob("*.md"):
+            here = stage.place_of(path.relative_to(ROOT).as_posix())
+            if here and here != "index.md" and not here.startswith("verification/"):
+                self.assertIn(here[:-3], listed)
+
+
+class Equations(unittest.TestCase):
+    def test_numbers(self):
+        self.assertEqual(equations.numbers(" (28) to (31)"), [("", 28, ""), ("", 29, ""), ("", 30, ""), ("", 31, "")])
+        self.assertEqual(equations.numbers(" (49), (50)"), [("", 49, ""), ("", 50, "")])
+        self.assertEqual(equations.numbers(" (A8)"), [("A", 8, "")])
+
+    def test_an_equation_is_found_in_the_function_that_computes_it(self):
+        found = equations.collect(ROOT)
+        place, = {p for p in found[("Nakamura", ("", 31, ""))] if p[0] == "src/contact/friction.c"}
+        text = (ROOT / place[0]).read_text()
+        self.assertIn("(31)", text[text.index(place[1] + "("):].split("\n}")[0])
+
+
+class Programs(unittest.TestCase):
+    def test_numbers_agree_within_a_percent_and_words_exactly(self):
+        self.assertIsNone(programs.agree("force 100.0 N", "force 100.9 N\n"))
+        self.assertIsNone(programs.agree("ratio 0.71", "ratio 0.72"))
+        self.assertEqual(programs.agree("force 100.0 N", "force 103.0 N"), ("force 100.0 N", "force 103.0 N"))
+        self.assertEqual(programs.agree("force 100.0 N", "load 100.0 N"), ("force 100.0 N", "load 100.0 N"))
+        self.assertEqual(programs.agree("a 1", "a 1\nb 2"), ("nothing", "b 2"))
+
+
+if __name__ == "__main__":
+    unittest.main()
