@@ -5,6 +5,7 @@ set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mps)
 
 # As they lie here, so that the links between them hold.
 install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES share/paraview_libmps.py DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
 
 if(NOT PETSc_FOUND)
