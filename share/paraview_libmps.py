@@ -19,7 +19,9 @@ import argparse
 import os
 import sys
 
-from paraview import simple
+import numpy
+from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 #: What an engineer looks at first: by the beginning of the file's name, (field, component or "Magnitude").
 PROGRAMS = {
@@ -55,18 +57,17 @@ def field_of(path, arrays):
     return "id", 0
 
 
-def spacing_of(source, arrays):
-    """The particles' distance: from their volume where the series has it, else from the area or volume they fill."""
-    information = source.GetDataInformation()
-    bounds = information.GetBounds()
-    sides = [bounds[2 * k + 1] - bounds[2 * k] for k in range(3)]
-    dim = 2 if sides[2] == 0 else 3
-    if "volume" in arrays:
-        return abs(source.GetPointDataInformation().GetArray("volume").GetRange(0)[0]) ** (1.0 / dim)
-    filled = 1.0
-    for side in sides[:dim]:
-        filled *= max(side, 1e-300)
-    return (filled / max(1, information.GetNumberOfPoints())) ** (1.0 / dim)
+def spacing_of(reader, time):
+    """The distance of neighbours at a time: the median over some particles of that to the nearest one."""
+    reader.UpdatePipeline(time)
+    points = vtk_to_numpy(servermanager.Fetch(reader).GetPoints().GetData())
+    distances = []
+    for k in range(0, len(points), max(1, len(points) // 100)):
+        square = ((points - points[k]) ** 2).sum(axis=1)
+        square[k] = numpy.inf
+        distances.append(square.min() ** 0.5)
+    found = float(numpy.median(distances))
+    return found if numpy.isfinite(found) and found > 0 else 1.0
 
 
 def open_series(path, field=None, component=None, time=None):
@@ -81,6 +82,7 @@ def show(reader, path, field=None, component=None, time=None):
     view = simple.GetActiveViewOrCreate("RenderView")
     simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
     view.ViewTime = time if time is not None else (times[-1] if times else 0.0)
+    spacing = spacing_of(reader, times[0] if times else 0.0)
     reader.UpdatePipeline(view.ViewTime)
     data = reader.GetPointDataInformation()
     arrays = {data.GetArray(k).Name: data.GetArray(k).GetNumberOfComponents()
@@ -93,7 +95,7 @@ def show(reader, path, field=None, component=None, time=None):
         component = 0 if arrays[field] == 1 else "Magnitude"
     display = simple.Show(reader, view)
     display.SetRepresentationType("Point Gaussian")
-    display.GaussianRadius = 0.6 * spacing_of(reader, arrays)
+    display.GaussianRadius = 0.6 * spacing
     display.ShaderPreset = "Plain circle"
     simple.ColorBy(display, ("POINTS", field, *([] if component == "Magnitude" else [str(component)])))
     display.RescaleTransferFunctionToDataRange(False, True)
@@ -102,9 +104,12 @@ def show(reader, path, field=None, component=None, time=None):
     view.UseColorPaletteForBackground = 0
     bar = simple.GetScalarBar(simple.GetColorTransferFunction(field), view)
     bar.TitleColor = bar.LabelColor = [0, 0, 0]
+    bar.TitleFontSize = bar.LabelFontSize = 12
+    bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.8, 0.3], 0.4
     if reader.GetDataInformation().GetBounds()[4] == reader.GetDataInformation().GetBounds()[5]:
         view.InteractionMode = "2D"
     simple.ResetCamera(view)
+    view.GetActiveCamera().Zoom(0.8)  # room for the colour bar
     simple.Render(view)
     return reader, display, view
 

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { TITLE = 12, ROW = 24 }; /* columns of text */
 
@@ -121,9 +122,36 @@ void report_list(report *r, const char *title) {
   }
 }
 
+/* A number as JSON writes it: -0.5, 1e+06. */
+static bool is_number(const char *text) {
+  static const char digits[] = "0123456789";
+  text += *text == '-';
+  const size_t whole = strspn(text, digits);
+  if (whole == 0 || (whole > 1 && *text == '0')) return false;
+  text += whole;
+  if (*text == '.') {
+    const size_t part = strspn(++text, digits);
+    if (part == 0) return false;
+    text += part;
+  }
+  if (*text == 'e' || *text == 'E') {
+    text++;
+    text += *text == '-' || *text == '+';
+    if (!*text) return false;
+    text += strspn(text, digits);
+  }
+  return *text == '\0';
+}
+
 void report_row(report *r, const char *name, const char *text) {
   if (r->json) {
-    report_text(r, name, text);
+    member(r, name);
+    if (is_number(text))
+      printf("%s", text);
+    else if (strcmp(text, "nan") == 0)
+      printf("null");
+    else
+      print_quoted(text);
     return;
   }
   printf("    %-*s ", ROW, name);

@@ -11,7 +11,7 @@
  *   auto solver = mps::create(context, mps_mpm_create, sand, law, def);
  *   mps::run(solver, mps_mpm_run, 1.0, 100, [](mps_mpm *s) { ... });
  *   mps_totals totals = mps::get<mps_totals>(solver, mps_mpm_get_totals);
- *   for (auto v = mps::view(sand, "velocity"); ...) ... v(i, 0) ...
+ *   for (double vx : mps::view(sand, "velocity").column(0)) ...
  *
  * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::callback. A
  * function that is given to C without it must not throw: C has no way to unwind a step.
@@ -26,7 +26,9 @@
 #include "mps.h"
 
 #include <atomic>
+#include <cstddef>
 #include <exception>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -300,6 +302,59 @@ void run(const handle<T> &solver,
   check(solver.error_context(), status);
 }
 
+/** Iterator over one component of a field, in the present order of the particles: random access. */
+template <class V> class strided {
+public:
+  using iterator_category = std::random_access_iterator_tag;
+  using value_type = std::remove_cv_t<V>;
+  using difference_type = std::ptrdiff_t;
+  using pointer = V *;
+  using reference = V &;
+  strided() noexcept = default;
+  strided(V *first, int64_t stride) noexcept : at_(first), stride_(stride) {}
+  reference operator*() const noexcept { return *at_; }
+  pointer operator->() const noexcept { return at_; }
+  reference operator[](difference_type n) const noexcept { return at_[n * stride_]; }
+  strided &operator+=(difference_type n) noexcept { return at_ += n * stride_, *this; }
+  strided &operator-=(difference_type n) noexcept { return at_ -= n * stride_, *this; }
+  strided &operator++() noexcept { return *this += 1; }
+  strided &operator--() noexcept { return *this -= 1; }
+  strided operator++(int) noexcept { return std::exchange(*this, *this + 1); }
+  strided operator--(int) noexcept { return std::exchange(*this, *this - 1); }
+  friend strided operator+(strided i, difference_type n) noexcept { return i += n; }
+  friend strided operator+(difference_type n, strided i) noexcept { return i += n; }
+  friend strided operator-(strided i, difference_type n) noexcept { return i -= n; }
+  friend difference_type operator-(strided a, strided b) noexcept {
+    return a.stride_ ? (a.at_ - b.at_) / a.stride_ : 0;
+  }
+  friend bool operator==(strided a, strided b) noexcept { return a.at_ == b.at_; }
+  friend bool operator!=(strided a, strided b) noexcept { return a.at_ != b.at_; }
+  friend bool operator<(strided a, strided b) noexcept { return b - a > 0; }
+  friend bool operator>(strided a, strided b) noexcept { return b < a; }
+  friend bool operator<=(strided a, strided b) noexcept { return !(b < a); }
+  friend bool operator>=(strided a, strided b) noexcept { return !(a < b); }
+
+private:
+  V *at_ = nullptr;
+  difference_type stride_ = 1;
+};
+
+/** One component of a field as a range: for (double &v : field.column(0)) ..., std::max_element.
+ *  Valid as long as its field. */
+template <class V> class column_range {
+public:
+  column_range(V *first, int64_t stride, int64_t size) noexcept
+      : first_(first, stride), size_(size) {}
+  strided<V> begin() const noexcept { return first_; }
+  strided<V> end() const noexcept { return first_ + size_; }
+  int64_t size() const noexcept { return size_; }
+  V &operator[](int64_t i) const noexcept { return first_[i]; }
+
+private:
+  strided<V> first_;
+  int64_t size_;
+};
+
 /** A field for reading: v(i, c) is component c of the particle at present index i. `V` is double or
  *  int64_t, as the field's. */
 template <class V> class array {
@@ -317,6 +372,10 @@ public:
   bool stale() const noexcept { return mps_particles_epoch(set_) != view_.epoch; }
   const V &operator()(int64_t i, int64_t c = 0) const noexcept { return *at(i, c); }
   const V *data() const noexcept { return at(0, 0); }
+  /** Component `c` (0 to components() - 1) as a range. */
+  column_range<const V> column(int64_t c = 0) const noexcept {
+    return {at(0, c), view_.stride[0], size()};
+  }
   const mps_view &raw() const noexcept { return view_; } /* strides */
 
 protected:
@@ -351,6 +410,10 @@ public:
   double &operator()(int64_t i, int64_t c = 0) const {
     if (!edit_.data) throw error(MPS_ERROR_STATE, "the edit of '" + name_ + "' has been committed");
     return *mps_edit_f64(&edit_, i, c);
+  }
+  /** Component `c` as a range to write into; throws as operator(). */
+  column_range<double> column(int64_t c = 0) const {
+    return {size() > 0 ? &(*this)(0, c) : nullptr, view_.stride[0], size()};
   }
   void commit() { check(context_, mps_particles_commit(set_, &edit_)); }
 

@@ -3,9 +3,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <mps/mps.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <numeric>
 #include <stdexcept>
 
 static int failures = 0;
@@ -101,6 +103,28 @@ static void writing(const mps::context &context) {
   } catch (const mps::error &e) {
     EXPECT(e.status() == MPS_ERROR_FIELD);
   }
+}
+
+static void ranges(const mps::context &context) {
+  const mps::particles sand = block(context);
+  mps::call(sand, mps_particles_add_field, "velocity", 0);
+  {
+    mps::edit v(sand, "velocity");
+    double next = 0.0;
+    for (double &speed : v.column(1)) speed = next++;
+    auto x = v.column(0);
+    std::fill(x.begin(), x.end(), 3.0);
+    x[5] = 4.0;
+    v.commit();
+  }
+  const mps::array<double> v = mps::view(sand, "velocity");
+  const auto x = v.column(0), y = v.column(1);
+  EXPECT(y.size() == 100 && y.end() - y.begin() == 100);
+  EXPECT(std::accumulate(y.begin(), y.end(), 0.0) == 4950.0);
+  EXPECT(std::max_element(x.begin(), x.end()) - x.begin() == 5);
+  EXPECT(*std::lower_bound(y.begin(), y.end(), 41.5) == 42.0);
+  EXPECT(y.begin()[7] == v(7, 1) && *(y.begin() + 7) == 7.0 && *--y.end() == 99.0);
+  for (const int64_t id : mps::view<int64_t>(sand, "id").column()) EXPECT(id >= 0 && id < 100);
 }
 
 static void errors(const mps::context &context) {
@@ -199,6 +223,7 @@ int main() {
     const mps::context context = mps::create_context();
     free_fall(context);
     writing(context);
+    ranges(context);
     errors(context);
     callbacks(context);
     mps_context_def two = mps_context_defaults();

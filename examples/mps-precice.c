@@ -1,0 +1,164 @@
+/* mps-precice - an elastic flap coupled with another code by preCICE: tutorials' "perpendicular
+ * flap". SPDX-License-Identifier: BSD-3-Clause */
+#include "common/frame.h"
+#include "common/output.h"
+#include "common/options.h"
+#include "precice/flap.h"
+#include "precice/participant.h"
+
+#include <mps/io.h>
+
+#include <math.h>
+#include <stdio.h>
+
+typedef struct settings {
+  flap_def flap;
+  participant_def coupling;
+  int reads;
+  int64_t threads, frames;
+  const char *out;
+} settings;
+
+typedef struct records {
+  app *a;
+  const flap *flap;
+  output table;
+  mps_recorder *recorder;
+  double largest, at; /* m, s: of the tip */
+  int64_t windows, every;
+} records;
+
+static const char purpose[] = "An elastic flap in plane strain as a participant of a preCICE "
+                              "coupling (version 3). Another code gives the forces\n"
+                              "on its facets and receives their displacements. The defaults are "
+                              "those of preCICE's perpendicular flap.";
+
+static int parse(settings *s, int argc, char **argv) {
+  *s = (settings){.flap = {.width = 0.1,
+                           .height = 1.0,
+                           .spacing = 0.0125,
+                           .young = 4e6,
+                           .poisson = 0.3,
+                           .density = 3000.0,
+                           .bending = 1.0,
+                           .dt = 0.01},
+                  .coupling = {.config = "precice-config.xml",
+                               .name = "Solid",
+                               .mesh = "Solid-Mesh",
+                               .force = "Force",
+                               .displacement = "Displacement"},
+                  .frames = 20,
+                  .out = "out/precice"};
+  const char *data = s->coupling.force, *velocity = NULL;
+  option table[] = {
+      OPTION_HEADING("Flap"),
+      OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->flap.width,
+                    "thickness, rounded to whole spacings"),
+      OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->flap.height, "height, rounded likewise"),
+      OPTION_NUMBER("x", "m", OPTION_FROM_TO(-1e6, 1e6), &s->flap.x, "middle of its foot"),
+      OPTION_NUMBER("y", "m", OPTION_FROM_TO(-1e6, 1e6), &s->flap.y, "level of the ground"),
+      COMMON_NUMBER("spacing", &s->flap.spacing, NULL),
+      COMMON_NUMBER("young", &s->flap.young, NULL),
+      COMMON_NUMBER("poisson", &s->flap.poisson, NULL),
+      COMMON_NUMBER("density", &s->flap.density, NULL),
+      OPTION_NUMBER("bending", "1", OPTION_FROM_TO(0.0, 1.0), &s->flap.bending,
+                    "a cell's own stiffness against bending; without it thin parts are too soft"),
+      OPTION_HEADING("Coupling"),
+      OPTION_TEXT("config", "FILE", &s->coupling.config, "preCICE's configuration"),
+      OPTION_TEXT("participant", "NAME", &s->coupling.name, "name of this participant in it;"),
+      OPTION_TEXT("mesh", "NAME", &s->coupling.mesh, "name of its mesh;"),
+      OPTION_CHOICE("reads", "force|stress", &s->reads,
+                    "kind of the data that are read: N on each vertex, or Pa"),
+      OPTION_TEXT("data", "NAME", &data, "name of these data;"),
+      OPTION_TEXT("displacement", "NAME", &s->coupling.displacement,
+                  "name of the displacements that are written;"),
+      OPTION_TEXT("velocity", "NAME", &velocity, "name of velocities to be written too"),
+      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->flap.dt,
+                    "largest time step; preCICE may ask for shorter ones"),
+      OPTION_HEADING("Running"),
+      COMMON_INTEGER("frames", &s->frames, NULL),
+      OPTION_THREADS(&s->threads),
+      OPTION_OUT(&s->out),
+      {0}};
+  const options_program program = {"mps-precice", purpose, table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  s->coupling.dt = s->flap.dt;
+  s->coupling.velocity = velocity;
+  s->coupling.force = s->reads == 0 ? data : NULL;
+  s->coupling.stress = s->reads == 1 ? data : NULL;
+  s->flap.width = fmax(1.0, round(s->flap.width / s->flap.spacing)) * s->flap.spacing;
+  s->flap.height = fmax(1.0, round(s->flap.height / s->flap.spacing)) * s->flap.spacing;
+  if (!(s->flap.width / s->flap.spacing * (s->flap.height / s->flap.spacing) <= 4e6))
+    return options_refuse(&program,
+                          "--width and --height hold more than 4 million particles of --spacing");
+  return -1;
+}
+
+/* A time window is complete: a row of the table and, of some, a frame. */
+static bool each(void *user, mps_elastic *solver) {
+  records *r = user;
+  double u[2];
+  if (!flap_tip(r->a, r->flap, u)) return false;
+  const double row[3] = {mps_elastic_time(solver), u[0], u[1]};
+  csv_row(&r->table, 3, row);
+  if (fabs(u[0]) > fabs(r->largest)) r->largest = u[0], r->at = row[0];
+  if (r->recorder && r->windows++ % r->every == 0)
+    return app_check(r->a, mps_recorder_write(r->recorder, row[0]));
+  return true;
+}
+
+static bool write_summary(app *a, const settings *s, const records *r,
+                          const participant_result *result) {
+  output f;
+  if (!summary_open(&f, a, s->out)) return false;
+  json_integer(&f, "particles", mps_particles_count(r->flap->particles));
+  json_integer(&f, "facets", r->flap->facet_count);
+  json_integer(&f, "windows", result->windows);
+  json_integer(&f, "steps", result->steps);
+  json_integer(&f, "windows_repeated", result->repeats);
+  json_number(&f, "tip_largest_m", r->largest);
+  json_number(&f, "tip_largest_time_s", r->at);
+  json_end(&f);
+  return output_close(&f);
+}
+
+static bool run(app *a, settings *s) {
+  flap body;
+  records r = {.a = a, .flap = &body, .every = 1};
+  participant_result result = {0};
+  bool good = output_directory(a, s->out) && flap_make(a, &s->flap, &body);
+  if (good && s->frames > 0)
+    good = app_check(a, frame_series(a, body.particles, s->out, "flap", NAN, &r.recorder));
+  good = good && output_open(&r.table, a, s->out, "tip.csv");
+  if (good) {
+    csv_header(&r.table, "t_s,x_m,y_m");
+    s->coupling.each = each;
+    s->coupling.user = &r;
+    good = participant_run(a, body.solver, body.facet_count, body.facets, &s->coupling, &result);
+    good = output_close(&r.table) && good;
+  }
+  a->outcome = good ? "finished" : "failed";
+  if (good)
+    good = app_check(a, mps_recorder_close(&r.recorder)) && write_summary(a, s, &r, &result);
+  mps_recorder_destroy(&r.recorder);
+  if (good) {
+    app_tell_results(a, s->out);
+    printf("%lld particles, %lld time windows, %lld steps, %lld of them repeated; largest "
+           "deflection of the tip "
+           "%.5g m at %.4g s\n",
+           (long long)mps_particles_count(body.particles), (long long)result.windows,
+           (long long)result.steps, (long long)result.repeats, r.largest, r.at);
+  }
+  flap_free(&body);
+  return good;
+}
+
+int main(int argc, char **argv) {
+  settings s;
+  app a;
+  const int code = parse(&s, argc, argv);
+  if (code >= 0) return code;
+  if (!app_start(&a, "mps-precice", s.threads)) return app_finish(&a, APP_FAILED);
+  return app_finish(&a, run(&a, &s) ? APP_OK : APP_FAILED);
+}
