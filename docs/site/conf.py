@@ -20,6 +20,7 @@ myst_heading_anchors = 4
 myst_dmath_double_inline = True
 # A local copy: equations are rendered without a network. tex-svg.js carries its fonts.
 mathjax_path = "mathjax/tex-svg.js"
+mathjax3_config = {"options": {"enableMenu": False}}  # the menu would fetch parts from the network
 highlight_language = "none"
 c_maximum_signature_line_length = 80
 nitpicky = False

@@ -91,6 +91,6 @@ def page(root):
         for key in rows:
             places = found[key]
             listed = ", ".join(f"``{p[1]}`` in ``{p[0]}``" if p[1] else f"``{p[0]}``" for p in places)
-            lines += [f"   * - {label(key[1])}", f"     - {listed}"]
+            lines += [f"   * - \\{label(key[1])}", f"     - {listed}"]
         lines.append("")
     return "\n".join(lines) + "\n"

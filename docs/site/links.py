@@ -41,11 +41,14 @@ class Sources:
         return found[0] if len(found) == 1 else None
 
     def function(self, name, near):
-        """The one definition of `name`, or the one in a file that the page names."""
+        """The one definition of `name`, or the one in the first of the files `near` that has one."""
         places = self.functions.get(name, [])
-        if len(places) > 1:
-            places = [place for place in places if place[0] in near] or [place for place in places if place[0].startswith("src/")]
-        return places[0] if len(places) == 1 else None
+        for file in near if len(places) > 1 else ():
+            here = [place for place in places if place[0] == file]
+            if here:
+                return here[0] if len(here) == 1 else None
+        library = [place for place in places if place[0].startswith("src/")]
+        return library[0] if len(library) == 1 else None
 
 
 def reference_of(app):
@@ -94,13 +97,17 @@ def link_code(app, doctree, page):
         app.mps_reference, app.mps_sources = reference_of(app), Sources()
         app.mps_programs = {p.stem for p in (ROOT / "examples").glob("mps-*.c")}
     literals = [n for n in doctree.findall(nodes.literal)]
-    near = {app.mps_sources.file(n.astext()) for n in literals}
+    files = [(n.parent, app.mps_sources.file(n.astext())) for n in literals]
     for literal in literals:
         parent = literal.parent
         while parent is not None and not isinstance(parent, (nodes.reference, nodes.title)):
             parent = parent.parent
         if parent is not None:
             continue
+        index = next(k for k, other in enumerate(literals) if other is literal)
+        block = literal.parent  # files that its own paragraph names behind it, before it, then all others
+        near = [f for p, f in files[index:] if f and p is block] + [f for p, f in files[index::-1] if f and p is block]
+        near += [f for _, f in files if f]
         target = target_of(app, literal.astext(), near, page)
         if not target or (target[0] == "page" and target[1] == page and not target[2]):
             continue

@@ -49,7 +49,7 @@ class Page:
         self.name, self.path = name, ROOT / "docs" / f"{name}.md"
         self.text = self.path.read_text()
         self.blocks = [(m[1], m[2], m.span(2)) for m in BLOCK.finditer(self.text)]
-        self.pictures = re.findall(r"\]\((?:\.\./)*images/([\w-]+\.png)\)", self.text)
+        self.pictures = re.findall(r"\]\((?:\.\./)*images/([\w-]+\.(?:png|gif))\)", self.text)
 
     def digest(self, build):
         """Changes with the blocks, libmps, its package and the programs that the page runs."""

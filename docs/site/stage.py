@@ -38,7 +38,7 @@ def relink(text, path, here):
         page = place_of(file)
         if page:
             return f"[{said}]({os.path.relpath(page, os.path.dirname(here) or '.')}{anchor})"
-        if target.endswith(".png"):
+        if target.endswith((".png", ".gif")):
             return match[0]
         return f"{said} (`{file}`)" if "`" not in said else said
     parts = re.split(r"(^```.*?^```\s*$)", text, flags=re.S | re.M)
@@ -68,13 +68,30 @@ def stage_pages(root, out):
         here = place_of(path)
         if here:
             write(out / here, relink((root / path).read_text(), path, here) + tree(here))
-    for picture in sorted((root / "docs").rglob("*.png")):
+    for picture in sorted(p for p in (root / "docs").rglob("*") if p.suffix in (".png", ".gif")):
         target = out / picture.relative_to(root / "docs")
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(picture, target)
     write(out / "license.md", "# Licence\n\n```text\n" + (root / "LICENSE").read_text().strip() + "\n```\n")
     write(out / "cite.md", "# How to cite\n\nThe file `CITATION.cff` in the root of the sources, as reference managers read it:\n\n```yaml\n"
           + (root / "CITATION.cff").read_text().strip() + "\n```\n")
+
+
+# Parts of pictures for the start page: left, top, right, bottom as fractions.
+CARDS = {"card-pile.png": ("pile.png", 0.595, 0.12, 0.955, 0.84), "card-earthquake.png": ("slope.png", 0.08, 0.18, 0.85, 0.78),
+         "card-seawall.png": ("seawall-waves.png", 0.5, 0.025, 0.9, 0.29), "card-footing.png": ("footing.png", 0.06, 0.05, 0.89, 0.91),
+         "card-cone.png": ("penetrometer.png", 0.07, 0.12, 0.425, 0.885), "card-columns.png": ("column-collapse.png", 0.27, 0.04, 0.7, 0.6)}
+
+
+def stage_cards(out):
+    """The pictures of the start page, cut out of those of the programs."""
+    from PIL import Image  # here, as tests of the rest need no package
+    for name, (picture, *box) in CARDS.items():
+        with Image.open(out / "images" / picture) as whole:
+            size = (whole.width, whole.height) * 2
+            part = whole.convert("RGB").crop([round(f * s) for f, s in zip(box, size)])
+        part.thumbnail((640, 640))
+        part.save(out / "images" / name)
 
 
 def stage_reference(root, out):
@@ -112,5 +129,6 @@ def stage(root, out, pictures):
     stage_pages(root, out)
     stage_reference(root, out)
     write(out / "theory" / "equations.rst", equations.page(root))
-    for picture in sorted(pathlib.Path(pictures).glob("*.png")) if pictures else []:
+    for picture in sorted(pathlib.Path(pictures).glob("*.*")) if pictures else []:
         shutil.copyfile(picture, out / "images" / picture.name)
+    stage_cards(out)
