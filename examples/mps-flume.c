@@ -21,7 +21,9 @@ static void place_gauges(flume *m) {
   flume_settings *s = &m->s;
   const double last = fmax(s->length - m->wave_length, 0.5 * s->length);
   for (int k = 0; k < 4; k++) s->gauge[k] = last - (0.47 - part[k]) * m->wave_length;
-  for (int k = 0; k < 4; k++) s->gauge[k] = fmax(s->gauge[k], 0.01 * (k + 1) * s->length);
+  for (int k = 0; k < 4; k++) /* on the lattice, apart */
+    s->gauge[k] = fmax(round(s->gauge[k] / s->spacing), k + 1.0) * s->spacing;
+  for (int k = 1; k < 4; k++) s->gauge[k] = fmax(s->gauge[k], s->gauge[k - 1] + s->spacing);
 }
 
 static int check_wall(const options_program *program, const flume_settings *s) {

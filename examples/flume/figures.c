@@ -10,6 +10,8 @@
 
 #define LOWEST 0.5 /* band of the separation, over the frequency of the peak */
 #define HIGHEST 2.2
+#define REGULAR_LOWEST 0.8 /* without what is bound to a regular wave */
+#define REGULAR_HIGHEST 1.2
 
 static bool in_window(const flume_figures *f, double t) {
   return t >= f->from - 1e-9 && t <= f->to + 1e-9;
@@ -61,7 +63,9 @@ static bool separate(app *a, flume *m, flume_figures *f) {
   def.gauges = m->gauges, def.position = m->s.gauge;
   def.depth = m->s.depth, def.gravity = WAVES_G;
   def.from = f->from, def.to = f->to;
-  def.lower = LOWEST / m->s.period, def.upper = HIGHEST / m->s.period;
+  const bool regular = m->s.waves == FLUME_REGULAR;
+  def.lower = (regular ? REGULAR_LOWEST : LOWEST) / m->s.period;
+  def.upper = (regular ? REGULAR_HIGHEST : HIGHEST) / m->s.period;
   def.samples = m->samples, def.times = t, def.levels = level;
   const int64_t most = (int64_t)(def.upper * (f->to - f->from)) + 2;
   f->frequency = calloc(4 * (size_t)most, sizeof(double));
@@ -83,10 +87,9 @@ static bool separate(app *a, flume *m, flume_figures *f) {
   return good;
 }
 
-/* Slope of the logarithm of the levels' deviations over the gauges, of waves that nothing sends
- * back. */
+/* Slope of the logarithm of the levels' deviations over gauges that span a wave length at least. */
 static void find_loss(const flume *m, flume_figures *f) {
-  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, least = INFINITY, most = -INFINITY;
   for (int g = 0; g < m->gauges; g++) {
     double sum = 0.0, square = 0.0, n = 0.0;
     for (int64_t k = 0; k < m->samples; k++) {
@@ -94,12 +97,13 @@ static void find_loss(const flume *m, flume_figures *f) {
       if (!in_window(f, m->sample[k].t)) continue;
       sum += level, square += level * level, n += 1.0;
     }
+    least = fmin(least, m->s.gauge[g]), most = fmax(most, m->s.gauge[g]);
     const double x = m->s.gauge[g] / m->wave_length, variance = square / n - sum * sum / (n * n);
     const double y = 0.5 * log(variance);
     sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
   const double n = m->gauges, spread = sxx - sx * sx / n;
-  if (spread > 0.0) f->loss = -(sxy - sx * sy / n) / spread;
+  if (most - least >= m->wave_length) f->loss = -(sxy - sx * sy / n) / spread;
 }
 
 /* ---- loads ----------------------------------------------------------------------------------- */

@@ -20,14 +20,14 @@ static bool draw_levels(app *a, const flume *m) {
   output_text(
       &f,
       "set multiplot layout %d,1\nset xrange [%.6g:%.6g]\nset ylabel 'level (mm)'\nset lmargin "
-      "10\nset key outside top center horizontal\n",
-      shown, fmax(last - 12.0 * m->s.period, 0.0), last);
+      "10\nset ytics %.6g\nset key outside top center horizontal\n",
+      shown, fmax(last - 12.0 * m->s.period, 0.0), last, plot_tics(2e3 * m->s.height, 6.0));
   for (int k = 0; k < shown; k++) {
     const int g = shown == 1 ? 0 : k * (m->gauges - 1) / (shown - 1);
     output_text(
         &f,
         "%splot 'gauges.csv' every ::1 using 1:(1e3*$%d) with lines linewidth 3 linecolor rgb "
-        "'#f0b27a' title 'target of second order, without reflection, x = %g m', '' every ::1 "
+        "'#f0b27a' title 'target without reflection, x = %g m', '' every ::1 "
         "using 1:(1e3*$%d) with lines linewidth 1.4 linecolor rgb '#1f4e8c' title 'MPS'\n",
         k == shown - 1 ? "set xlabel 't (s)'\n" : "", 2 * g + 3, m->s.gauge[g], 2 * g + 2);
   }
@@ -145,7 +145,8 @@ static bool draw_water(app *a, const flume *m) {
   output_text(
       &f,
       "set size ratio -1\nunset grid\nset xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\nset xlabel "
-      "'x (m)'\nset ylabel 'y (m)'\nset ytics %.6g\nset cblabel 'pressure (kPa)'\nset title 't = "
+      "'x (m)'\nset ylabel 'y (m)'\nset ytics %.6g\nset cblabel 'pressure (kPa)' offset 1.2\nset "
+      "title 't = "
       "%.2f s%s'\nset palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 "
       "'#f4d03f')\n",
       lower[0], upper[0], lower[1], upper[1], plot_tics(upper[1] - lower[1], 4.0), m->look.t,
