@@ -125,6 +125,11 @@ static mps_status write_frame(flume *m, int64_t k) {
   return app_settle(m->a, status);
 }
 
+/* The last two samples may fall into one step. */
+static bool is_new(const flume *m) {
+  return m->samples == 0 || mps_fluid_time(m->fluid) > m->sample[m->samples - 1].t;
+}
+
 /* Samples are taken after the first step that reaches their time: no step is shortened for them. */
 mps_status flume_run(app *a, flume *m) {
   const flume_settings *s = &m->s;
@@ -137,7 +142,7 @@ mps_status flume_run(app *a, flume *m) {
       snprintf(text, sizeof text, "t = %.2f s", mps_fluid_time(m->fluid));
       progress_draw(&a->bar, mps_fluid_time(m->fluid) / s->duration, text);
     }
-    if (status == MPS_OK) status = take_sample(m);
+    if (status == MPS_OK && is_new(m)) status = take_sample(m);
     if (status == MPS_OK) status = write_frame(m, k);
     if (status == MPS_OK) resume_save_when_due(a, &m->saves, mps_fluid_time(m->fluid));
   }
