@@ -275,9 +275,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, mps_cont
 /* ---- loads ----------------------------------------------------------------------------------- */
 
 typedef enum mps_fluid_load_kind {
-  MPS_FLUID_LOAD_BODY = 0,    /* `acceleration` on the particles chosen: a shaken tank, wind */
-  MPS_FLUID_LOAD_PRESSURE = 1 /* `pressure` on the free surface that the chosen particles make: a
+  MPS_FLUID_LOAD_BODY = 0,     /* `acceleration` on the particles chosen: a shaken tank, wind */
+  MPS_FLUID_LOAD_PRESSURE = 1, /* `pressure` on the free surface that the chosen particles make: a
                                  squall, the air in a chamber. Not with the classical scheme */
+  MPS_FLUID_LOAD_DAMPING = 2   /* -`rate` u: a zone in which waves fade */
 } mps_fluid_load_kind;
 
 /** A load, times factor times signal in each component, on the particles of a list, those in a box
@@ -295,7 +296,14 @@ typedef struct mps_fluid_load_def {
                                 reach three spacings into it */
   mps_signal *signal[3];     /* of PRESSURE [0]: its displacement is read as a number, at the time
                                 that a step begins with; NULL (default): 1. Kept alive */
-  double factor[3];          /* finite; of PRESSURE [0]; default 1 */
+  double factor[3];          /* finite; of PRESSURE and DAMPING [0]; default 1 */
+  double rate;  /* 1/s, DAMPING: 0 to 1e6, where factor and signal are 1; more than 1/dt counts
+                   as that. Of a zone one wave length L long R = .01 to .04 with 10 a period, for
+                   depths of L/12 to L/3; default 0 */
+  int32_t side; /* DAMPING: 1: the rate rises from 0 at lower[0] with the square of the distance to
+                   `rate` at upper[0], -1: from 0 at upper[0]; both are finite then. 0 (default):
+                   it is the same in all the box */
+  int32_t reserved;
 } mps_fluid_load_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to

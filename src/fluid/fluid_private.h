@@ -220,7 +220,8 @@ typedef struct mpsi_fluid_given {
   int64_t count; /* of ids, 0: no list */
   int64_t *ids;  /* ascending */
   double lower[2], upper[2];
-  double amount[2]; /* m/s2, or Pa */
+  double amount[2]; /* m/s2, or Pa, or 1/s */
+  int32_t side;
   double factor[2], now[2];
   mps_signal *signal[2];
 } mpsi_fluid_given;

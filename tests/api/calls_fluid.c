@@ -178,7 +178,7 @@ static void fluid_add_contact(api *a) {
   mps_body *body = api_any(a, API_BODY)->handle;
   mps_fluid_contact_def def = mps_fluid_contact_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
-  def.kind = api_choice(a, "kind", 2); /* a body is HELD or ROLLER, not DRIVEN between them */
+  def.kind = api_choice(a, "kind", 3); /* a body is HELD or ROLLER, not DRIVEN between them */
   def.kind = def.kind == 1 ? MPS_BOUNDARY_ROLLER : def.kind == 2 ? MPS_BOUNDARY_DRIVEN : def.kind;
   if (api_chance(a, 20)) def.floats = (int32_t)api_below(a, 2);
   const bool kept = api_chance(a, 80);
@@ -210,6 +210,8 @@ static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t
   }
   if (def->kind == MPS_FLUID_LOAD_PRESSURE)
     def->pressure = api_real(a, "pressure", -1e12, 1e12, 100.0);
+  else if (def->kind == MPS_FLUID_LOAD_DAMPING)
+    def->rate = api_real(a, "rate", 0.0, 1e6, 5.0);
   else
     api_vector(a, "acceleration", 2, 0.0, 1.0, def->acceleration);
   if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");

@@ -26,4 +26,6 @@ run mps-column-collapse --h 0.02 --falls 0.01
 run mps-plate --case hole --cells 8
 run mps-cantilever --ny 4
 run mps-tank --spacing 0.05 --duration 0.05
+run mps-flume --spacing 0.05 --length 2 --duration 0.05 --frames 2
+run mps-flume --waves jonswap --wall slope --spacing 0.05 --length 2 --duration 0.05
 run mps-seawall --duration 0.01

@@ -92,6 +92,8 @@ interrupt tank 1 mps-tank --duration 100
 wrote tank summary.json
 interrupt dam-mps 0.5 mps-dam-break --method mps
 wrote dam-mps front.csv particles.csv summary.json
+interrupt flume 1 mps-flume --duration 100
+wrote flume gauges.csv force.csv summary.json
 if [ -x "$programs/mps-seawall" ]; then
   interrupt seawall 1 mps-seawall
   wrote seawall force.csv summary.json

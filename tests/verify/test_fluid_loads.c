@@ -266,6 +266,42 @@ static void loads_go_back(void **state) {
   tank_free(&t);
 }
 
+/* ---- damping --------------------------------------------------------------------------------- */
+
+/* A drop in free flight without gravity: each step takes rate dt of its speed, within the box. */
+static void a_damping_zone_slows_what_is_in_it(void **state) {
+  (void)state;
+  const double middle[2] = {0.0, 0.0}, dt = 1e-3, rate = 3.0;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_particles *water = NULL;
+  mps_fluid *fluid = NULL;
+  mps_totals sum;
+  set.spacing = 0.02;
+  def.gravity[1] = 0.0, def.dt = dt, def.level = 0.0;
+  mps_assert_ok(context, mps_particles_create(context, &set, &water));
+  mps_assert_ok(context, mps_particles_fill_ball(water, middle, 0.1, NULL));
+  mps_assert_ok(context, mps_particles_add_field(water, "velocity", 0));
+  mps_assert_ok(context, mps_particles_set(water, "velocity", 0, 0.5));
+  mps_assert_ok(context, mps_fluid_create(context, water, &def, &fluid));
+  mps_fluid_load_def load = mps_fluid_load_defaults();
+  load.kind = MPS_FLUID_LOAD_DAMPING, load.rate = rate;
+  mps_assert_ok(context, mps_fluid_add_load(fluid, &load, NULL));
+  mps_assert_ok(context, mps_fluid_step(fluid, 100));
+  mps_assert_ok(context, mps_fluid_get_totals(fluid, &sum));
+  const double mass = 1000.0 * 0.02 * 0.02 * (double)mps_particles_count(water);
+  const double speed = 0.5 * pow(1.0 - rate * dt, 100.0);
+  mps_assert_near(sum.linear[0] / mass, speed, 1e-9);
+  mps_assert_near(sum.work_loads, 0.5 * mass * (speed * speed - 0.25), 1e-6 * mass);
+  load.lower[0] = 1.0, load.upper[0] = 2.0, load.side = 1; /* elsewhere */
+  mps_assert_ok(context, mps_fluid_set_load(fluid, 0, &load));
+  mps_assert_ok(context, mps_fluid_step(fluid, 20));
+  mps_assert_ok(context, mps_fluid_get_totals(fluid, &sum));
+  mps_assert_near(sum.linear[0] / mass, speed, 1e-9);
+  mps_fluid_destroy(&fluid);
+  mps_particles_destroy(&water);
+}
+
 /* ---- errors ---------------------------------------------------------------------------------- */
 
 static mps_status refuse(void *user, double t, double motion[3]) {
@@ -284,7 +320,10 @@ static void what_is_refused(void **state) {
   bad = mps_fluid_load_defaults();                                                                 \
   change;                                                                                          \
   mps_assert_fails(context, mps_fluid_add_load(t.fluid, &bad, &number), MPS_ERROR_ARGUMENT, part)
-  REFUSED(bad.kind = 2, "kind of the load is 2");
+  REFUSED(bad.kind = 3, "kind of the load is 3");
+  REFUSED(bad.rate = -1.0, "rate of the load is -1");
+  REFUSED(bad.side = 2, "side of the load is 2");
+  REFUSED((bad.kind = MPS_FLUID_LOAD_DAMPING, bad.side = 1), "lower[0] and upper[0]");
   REFUSED(bad.acceleration[1] = NAN, "acceleration[1]");
   REFUSED(bad.acceleration[2] = 1.0, "acceleration[2] of the load is 1");
   REFUSED(bad.pressure = INFINITY, "pressure of the load is inf");
@@ -320,6 +359,7 @@ int main(void) {
       cmocka_unit_test(pressure_of_the_air_is_felt),
       cmocka_unit_test(a_gust_makes_waves),
       cmocka_unit_test(loads_go_back),
+      cmocka_unit_test(a_damping_zone_slows_what_is_in_it),
       cmocka_unit_test(what_is_refused),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

@@ -6,6 +6,8 @@
  * pressure balances a uniform b exactly, as in a tank that moves with -b. A pressure adds to that
  * of the surface point. Its work is taken with the area vector of each particle, -V m/S0: sum w dx
  * adds up to the area of a plane surface exactly, and vanishes inside.
+ *
+ * Damping, -r z^2 u, z from 0 to 1 along a zone, makes waves fade without a reflection of its own.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
@@ -28,9 +30,10 @@ mps_status mps_fluid_load_def_init(mps_fluid_load_def *def, size_t size) {
 /* ---- definitions ----------------------------------------------------------------------------- */
 
 static mps_status check_load(mps_fluid *f, const char *function, const mps_fluid_load_def *d) {
-  if (d->kind != MPS_FLUID_LOAD_BODY && d->kind != MPS_FLUID_LOAD_PRESSURE)
+  if (d->kind < MPS_FLUID_LOAD_BODY || d->kind > MPS_FLUID_LOAD_DAMPING)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the load is %d, allowed are 0 (body) and 1 (pressure)", d->kind);
+                     "kind of the load is %d, allowed are 0 (body), 1 (pressure) and 2 (damping)",
+                     d->kind);
   if (d->kind == MPS_FLUID_LOAD_PRESSURE && f->classical.gamma > 0.0)
     return mpsi_fail(
         f->context, function, MPS_ERROR_UNSUPPORTED,
@@ -53,6 +56,18 @@ static mps_status check_load(mps_fluid *f, const char *function, const mps_fluid
                        "the box of the load is %g to %g m along %c: empty", d->lower[c],
                        d->upper[c], "xyz"[c]);
   }
+  if (!(d->rate >= 0.0 && d->rate <= 1e6))
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "rate of the load is %g 1/s, allowed is 0 to 1e6", d->rate);
+  if (d->side < -1 || d->side > 1)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "side of the load is %d, allowed are -1, 0 and 1", d->side);
+  if (d->kind == MPS_FLUID_LOAD_DAMPING && d->side != 0 &&
+      !(isfinite(d->lower[0]) && isfinite(d->upper[0]) && d->upper[0] > d->lower[0]))
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "lower[0] and upper[0] of the load are %g and %g m: with a side both must be "
+                     "finite and ascending",
+                     d->lower[0], d->upper[0]);
   if (!(fabs(d->pressure) <= 1e12))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "pressure of the load is %g Pa, allowed is 1e12 at most", d->pressure);
@@ -80,20 +95,21 @@ static mps_status make_load(mps_fluid *f, const char *function, const mps_fluid_
   if (status != MPS_OK) return status;
   mpsi_fluid_given *g = mpsi_alloc(f->context, 1, sizeof *g);
   if (!g) return mpsi_fail_memory(f->context, function, sizeof *g);
-  *g = (mpsi_fluid_given){.kind = d.kind, .count = d.id_count};
+  *g = (mpsi_fluid_given){.kind = d.kind, .count = d.id_count, .side = d.side};
   if (g->count > 0 && !(g->ids = mpsi_alloc(f->context, g->count, sizeof *g->ids))) {
     drop(f, g);
     return mpsi_fail_memory(f->context, function, (size_t)d.id_count * sizeof *d.ids);
   }
   for (int64_t k = 0; k < g->count; k++) g->ids[k] = d.ids[k];
   if (g->count > 0) qsort(g->ids, (size_t)g->count, sizeof *g->ids, ascending);
-  const bool presses = d.kind == MPS_FLUID_LOAD_PRESSURE;
+  const bool pushes = d.kind == MPS_FLUID_LOAD_BODY;
+  const double scalar = d.kind == MPS_FLUID_LOAD_PRESSURE ? d.pressure : d.rate;
   for (int c = 0; c < 2; c++) {
     g->lower[c] = isnan(d.lower[c]) ? -INFINITY : d.lower[c];
     g->upper[c] = isnan(d.upper[c]) ? INFINITY : d.upper[c];
-    g->amount[c] = presses ? (c == 0 ? d.pressure : 0.0) : d.acceleration[c];
+    g->amount[c] = pushes ? d.acceleration[c] : c == 0 ? scalar : 0.0;
     g->factor[c] = d.factor[c];
-    if (d.signal[c] && !(presses && c == 1)) g->signal[c] = mpsi_signal_retain(d.signal[c]);
+    if (d.signal[c] && (pushes || c == 0)) g->signal[c] = mpsi_signal_retain(d.signal[c]);
   }
   *out = g;
   return MPS_OK;
@@ -108,6 +124,7 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
   mpsi_give(&given, "number", number);
   if (status == MPS_OK && g) {
     MPSI_GIVE(&given, g, kind);
+    MPSI_GIVE(&given, g, side);
     MPSI_GIVE_VECTOR(&given, g, lower, 2);
     MPSI_GIVE_VECTOR(&given, g, upper, 2);
     MPSI_GIVE_VECTOR(&given, g, amount, 2);
@@ -198,7 +215,31 @@ static bool chosen(const mps_fluid *f, const mpsi_fluid_given *g, const int64_t 
   return true;
 }
 
+/* z^2 of a damping zone, z the part of its length; 1 without a side. */
+static double profile(const mpsi_fluid_given *g, double x) {
+  if (g->side == 0) return 1.0;
+  const double part = (x - g->lower[0]) / (g->upper[0] - g->lower[0]);
+  const double z = g->side > 0 ? part : 1.0 - part;
+  return z * z;
+}
+
+/* A particle loses at most its velocity in a step. */
+static void add_damping(mps_fluid *f, const mpsi_fluid_given *g) {
+  const int64_t *id = mpsi_particles_integers(f->particles, "id");
+  const double rate = g->amount[0] * g->now[0], most = f->dt > 0.0 ? 1.0 / f->dt : INFINITY;
+  for (int c = 0; c < 2; c++) {
+    const double *u = mpsi_particles_column(f->particles, "velocity", c);
+    for (int64_t i = 0; i < f->count; i++)
+      if (chosen(f, g, id, i))
+        f->push[c][i] -= fmin(fmax(rate * profile(g, f->x[0][i]), 0.0), most) * u[i];
+  }
+}
+
 static void add_load(mps_fluid *f, const mpsi_fluid_given *g) {
+  if (g->kind == MPS_FLUID_LOAD_DAMPING) {
+    add_damping(f, g);
+    return;
+  }
   const int64_t *id = mpsi_particles_integers(f->particles, "id");
   const double a[2] = {g->amount[0] * g->now[0], g->amount[1] * g->now[1]};
   for (int64_t i = 0; i < f->count; i++) {

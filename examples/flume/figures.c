@@ -1,0 +1,206 @@
+/* figures.c - what a run of mps-flume is about: incident and reflected waves and the target in the
+ * same window, forces beside Goda's, safeties of a caisson, discharge beside EurOtop's, loss of
+ * height. SPDX-License-Identifier: BSD-3-Clause */
+#include "flume.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LOWEST 0.5 /* band of the separation, over the frequency of the peak */
+#define HIGHEST 2.2
+#define REGULAR_LOWEST 0.8 /* without what is bound to a regular wave */
+#define REGULAR_HIGHEST 1.2
+
+static bool in_window(const flume_figures *f, double t) {
+  return t >= f->from - 1e-9 && t <= f->to + 1e-9;
+}
+
+/* ---- the window ------------------------------------------------------------------------------ */
+
+static double group_velocity(const flume_settings *s, double wave_length) {
+  const double kd = 2.0 * WAVES_PI * s->depth / wave_length;
+  return 0.5 * (1.0 + 2.0 * kd / sinh(2.0 * kd)) * wave_length / s->period;
+}
+
+/* From when waves have been to the wall and half the way back, to the end; a whole number of
+ * periods of regular waves. */
+static bool find_window(const flume *m, flume_figures *f) {
+  const flume_settings *s = &m->s;
+  const double first = m->samples ? m->sample[0].t : 0.0;
+  const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
+  const double way = 1.5 * s->length / group_velocity(s, m->wave_length);
+  f->from = fmax(isnan(s->window[0]) ? s->ramp + way : s->window[0], first);
+  f->to = fmin(isnan(s->window[1]) ? last : s->window[1], last);
+  if (s->waves == FLUME_REGULAR)
+    f->to = f->from + floor((f->to - f->from) / s->period + 1e-6) * s->period;
+  return f->to - f->from >= 2.0 * s->period;
+}
+
+/* ---- waves ----------------------------------------------------------------------------------- */
+
+/* Levels of the gauges, of the run or of the linear target. */
+static bool fill_levels(app *a, const flume *m, bool target, double *t, double *level) {
+  double *one = malloc((size_t)m->samples * sizeof *one);
+  bool good = one != NULL;
+  for (int64_t k = 0; k < m->samples; k++) t[k] = m->sample[k].t;
+  for (int g = 0; good && g < m->gauges; g++) {
+    if (target)
+      good = app_check(a, mps_waves_get_levels(m->waves, m->s.gauge[g], m->samples, t, one, NULL));
+    for (int64_t k = 0; k < m->samples; k++)
+      level[k * m->gauges + g] = target ? one[k] : m->sample[k].level[g];
+  }
+  free(one);
+  return good;
+}
+
+static bool separate(app *a, flume *m, flume_figures *f) {
+  const size_t n = (size_t)m->samples;
+  double *t = malloc(n * sizeof *t), *level = malloc(n * (size_t)m->gauges * sizeof *level);
+  mps_separation target;
+  mps_separation_def def = mps_separation_defaults();
+  def.gauges = m->gauges, def.position = m->s.gauge;
+  def.depth = m->s.depth, def.gravity = WAVES_G;
+  def.from = f->from, def.to = f->to;
+  const bool regular = m->s.waves == FLUME_REGULAR;
+  def.lower = (regular ? REGULAR_LOWEST : LOWEST) / m->s.period;
+  def.upper = (regular ? REGULAR_HIGHEST : HIGHEST) / m->s.period;
+  def.samples = m->samples, def.times = t, def.levels = level;
+  const int64_t most = (int64_t)(def.upper * (f->to - f->from)) + 2;
+  f->frequency = calloc(4 * (size_t)most, sizeof(double));
+  bool good = t && level && f->frequency;
+  if (!good) app_no_memory(a);
+  f->incident = f->frequency ? f->frequency + most : NULL;
+  f->reflected = f->frequency ? f->incident + most : NULL;
+  f->target = f->frequency ? f->reflected + most : NULL;
+  good = good && fill_levels(a, m, true, t, level) &&
+         app_check(a, mps_separation_find(a->context, &def, most, &f->bands, NULL, f->target, NULL,
+                                          &target));
+  good = good && fill_levels(a, m, false, t, level) &&
+         app_check(a, mps_separation_find(a->context, &def, most, &f->bands, f->frequency,
+                                          f->incident, f->reflected, &f->split));
+  free(t);
+  free(level);
+  f->separated = good;
+  f->target_height = good ? target.incident_height : NAN;
+  return good;
+}
+
+/* Slope of the logarithm of the levels' deviations over gauges that span a wave length at least. */
+static void find_loss(const flume *m, flume_figures *f) {
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, least = INFINITY, most = -INFINITY;
+  for (int g = 0; g < m->gauges; g++) {
+    double sum = 0.0, square = 0.0, n = 0.0;
+    for (int64_t k = 0; k < m->samples; k++) {
+      const double level = m->sample[k].level[g];
+      if (!in_window(f, m->sample[k].t)) continue;
+      sum += level, square += level * level, n += 1.0;
+    }
+    least = fmin(least, m->s.gauge[g]), most = fmax(most, m->s.gauge[g]);
+    const double x = m->s.gauge[g] / m->wave_length, variance = square / n - sum * sum / (n * n);
+    const double y = 0.5 * log(variance);
+    sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  const double n = m->gauges, spread = sxx - sx * sx / n;
+  if (most - least >= m->wave_length) f->loss = -(sxy - sx * sy / n) / spread;
+}
+
+/* ---- loads ----------------------------------------------------------------------------------- */
+
+/* In still water, N/m. */
+static double weight_of(const flume_settings *s) {
+  return WAVES_G * s->width * (s->density * (s->depth + s->crest) - WAVES_DENSITY * s->depth);
+}
+
+/* Uplift: a triangle from the wave's pressure at the foot to 0 at the heel. */
+static void find_safeties(const flume *m, const flume_sample *p, flume_figures *f) {
+  const flume_settings *s = &m->s;
+  const double rest = WAVES_DENSITY * WAVES_G * s->depth, W = weight_of(s);
+  const double U = 0.5 * s->width * fmax(p->foot - rest, 0.0);
+  const double force = p->force - 0.5 * rest * s->depth;
+  const double moment = p->moment - rest * s->depth * s->depth / 6.0;
+  if (force > 0.0) f->sliding = fmin(f->sliding, s->friction * (W - U) / force);
+  if (moment > 0.0)
+    f->overturning = fmin(f->overturning, (0.5 * W * s->width - 2.0 / 3.0 * U * s->width) / moment);
+}
+
+static void find_forces(const flume *m, flume_figures *f) {
+  const double rest = WAVES_DENSITY * WAVES_G * m->s.depth;
+  f->force_still = 0.5 * rest * m->s.depth;
+  f->force_peak = -INFINITY, f->force_least = INFINITY, f->foot_peak = NAN, f->peak_at = NAN;
+  f->sliding = f->overturning = INFINITY;
+  for (int64_t k = 0; k < m->samples; k++) {
+    const flume_sample *p = &m->sample[k];
+    if (!in_window(f, p->t)) continue;
+    f->force_least = fmin(f->force_least, p->force);
+    if (p->force > f->force_peak)
+      f->force_peak = p->force, f->peak_at = p->t, f->foot_peak = p->foot - rest;
+    if (m->s.wall == FLUME_CAISSON) find_safeties(m, p, f);
+  }
+}
+
+/* Height and period of the design wave. */
+static void find_goda(app *a, const flume *m, flume_figures *f) {
+  const flume_settings *s = &m->s;
+  const bool regular = s->waves == FLUME_REGULAR;
+  mps_goda_def def = mps_goda_defaults();
+  if (s->wall != FLUME_VERTICAL && s->wall != FLUME_CAISSON) return;
+  def.height = f->split.incident_height * (regular ? sqrt(0.5) : 1.8);
+  def.period = regular ? s->period : f->split.peak_period;
+  def.depth = s->depth;
+  def.crest = s->wall == FLUME_CAISSON ? s->crest : 10.0 * s->depth;
+  def.width = s->wall == FLUME_CAISSON ? s->width : s->depth;
+  if (s->wall == FLUME_CAISSON) def.weight = weight_of(s);
+  def.friction = s->friction, def.density = WAVES_DENSITY, def.gravity = WAVES_G;
+  f->has_goda = mps_goda_evaluate(a->context, &def, &f->goda) == MPS_OK;
+}
+
+static double passed_at(const flume *m, double t) {
+  double volume = 0.0;
+  for (int64_t k = 0; k < m->samples && m->sample[k].t <= t + 1e-9; k++)
+    volume = m->sample[k].volume;
+  return volume;
+}
+
+static void find_discharge(app *a, const flume *m, flume_figures *f) {
+  const flume_settings *s = &m->s;
+  mps_eurotop_def def = mps_eurotop_defaults();
+  if (!flume_has_body(s)) return;
+  f->discharge = (passed_at(m, f->to) - passed_at(m, f->from)) / (f->to - f->from);
+  if (s->waves == FLUME_REGULAR) return;
+  def.wall = s->wall == FLUME_SLOPE ? MPS_EUROTOP_WALL_SLOPE : MPS_EUROTOP_WALL_VERTICAL;
+  def.height = f->split.incident_height, def.period = f->split.energy_period;
+  def.depth = s->depth, def.crest = s->crest, def.cotangent = s->cotangent;
+  def.gravity = WAVES_G;
+  f->has_eurotop = mps_eurotop_evaluate(a->context, &def, &f->eurotop) == MPS_OK;
+  if (!f->has_eurotop)
+    snprintf(f->why, sizeof f->why, "%s", mps_context_error(a->context)->message);
+}
+
+/* ---- all ------------------------------------------------------------------------------------- */
+
+bool flume_find_figures(app *a, flume *m, flume_figures *f) {
+  memset(f, 0, sizeof *f);
+  f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
+  f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
+  f->force_still = 0.5 * WAVES_DENSITY * WAVES_G * m->s.depth * m->s.depth;
+  if (!find_window(m, f)) {
+    app_warn(a,
+             "the run is too short for incident and reflected waves: its window, %.4g to %.4g s, "
+             "has less than two periods",
+             f->from, f->to);
+    return true;
+  }
+  if (m->gauges >= 2 && !separate(a, m, f)) return false;
+  if (m->s.wall != FLUME_OPEN_END) find_forces(m, f);
+  if (m->s.wall == FLUME_OPEN_END && m->gauges >= 3) find_loss(m, f);
+  if (f->separated) find_goda(a, m, f);
+  if (f->separated) find_discharge(a, m, f);
+  return true;
+}
+
+void flume_free_figures(flume_figures *f) {
+  free(f->frequency);
+  memset(f, 0, sizeof *f);
+}

@@ -1,0 +1,206 @@
+/* results.c - tables and summary of mps-flume.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "flume.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+/* Levels and the target of second order at each gauge. */
+static bool write_gauges(app *a, const flume *m) {
+  const size_t n = (size_t)m->samples;
+  char names[1600] = "t_s";
+  double *t = malloc(n * sizeof *t), *target = malloc(n * FLUME_GAUGES * sizeof *target);
+  output f;
+  bool good = t && target;
+  if (!good) app_no_memory(a);
+  for (int64_t k = 0; good && k < m->samples; k++) t[k] = m->sample[k].t;
+  for (int g = 0; good && g < m->gauges; g++) {
+    const size_t at = strlen(names);
+    snprintf(names + at, sizeof names - at, ",level_at_%g_m?,target_at_%g_m", m->s.gauge[g],
+             m->s.gauge[g]);
+    good = app_check(a, mps_waves_get_levels(m->waves, m->s.gauge[g], m->samples, t, NULL,
+                                             target + n * (size_t)g));
+  }
+  if (!good || !output_open(&f, a, m->s.out, "gauges.csv")) {
+    free(t);
+    free(target);
+    return false;
+  }
+  csv_header(&f, names);
+  for (int64_t k = 0; k < m->samples; k++) {
+    double row[2 * FLUME_GAUGES + 1] = {m->sample[k].t};
+    for (int g = 0; g < m->gauges; g++) {
+      row[1 + 2 * g] = m->sample[k].level[g];
+      row[2 + 2 * g] = target[n * (size_t)g + (size_t)k];
+    }
+    csv_row(&f, 2 * m->gauges + 1, row);
+  }
+  free(t);
+  free(target);
+  return output_close(&f);
+}
+
+static bool write_force(app *a, const flume *m) {
+  const bool wall = m->s.wall != FLUME_OPEN_END;
+  output f;
+  if (!output_open(&f, a, m->s.out, "force.csv")) return false;
+  csv_header(&f, wall ? "t_s,maker_m,end_m,force_N,moment_N_m,foot_Pa" : "t_s,maker_m,end_m");
+  for (int64_t k = 0; k < m->samples; k++) {
+    const flume_sample *p = &m->sample[k];
+    const double row[] = {p->t, p->maker, p->end, p->force, p->moment, p->foot};
+    csv_row(&f, wall ? 6 : 3, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_discharge(app *a, const flume *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "discharge.csv")) return false;
+  csv_header(&f, "t_s,volume_m2");
+  for (int64_t k = 0; k < m->samples; k++) {
+    const double row[] = {m->sample[k].t, m->sample[k].volume};
+    csv_row(&f, 2, row);
+  }
+  return output_close(&f);
+}
+
+/* An event: water that passes the crest without a pause of half a period. */
+static bool write_events(app *a, const flume *m, int64_t *count) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "events.csv")) return false;
+  csv_header(&f, "begins_s,ends_s,volume_m2");
+  double begins = NAN, ends = NAN, before = 0.0, last = 0.0;
+  *count = 0;
+  for (int64_t k = 0; k <= m->samples; k++) {
+    const bool over = k == m->samples || m->sample[k].t > ends + 0.5 * m->s.period;
+    if (!isnan(begins) && over) {
+      const double row[] = {begins, ends, last - before};
+      csv_row(&f, 3, row);
+      (*count)++;
+      begins = NAN;
+    }
+    if (k == m->samples || !(m->sample[k].volume > last)) continue;
+    if (isnan(begins)) begins = m->sample[k].t, before = last;
+    ends = m->sample[k].t, last = m->sample[k].volume;
+  }
+  return output_close(&f);
+}
+
+/* Densities of energy, a^2/(2 df). */
+static bool write_spectrum(app *a, const flume *m, const flume_figures *g) {
+  const double each = 0.5 * (g->to - g->from);
+  output f;
+  if (!output_open(&f, a, m->s.out, "spectrum.csv")) return false;
+  csv_header(&f, "frequency_Hz,incident_m2_s,reflected_m2_s,target_m2_s");
+  for (int64_t k = 0; k < g->bands; k++) {
+    const double row[] = {g->frequency[k], each * pow(g->incident[k], 2.0),
+                          each * pow(g->reflected[k], 2.0), each * pow(g->target[k], 2.0)};
+    csv_row(&f, 4, row);
+  }
+  return output_close(&f);
+}
+
+/* ---- summary --------------------------------------------------------------------------------- */
+
+static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
+  const bool regular = m->s.waves == FLUME_REGULAR, there = g->separated;
+  mps_waves_report waves;
+  if (mps_waves_get_report(m->waves, &waves) != MPS_OK) return;
+  json_number(f, "wave_length", m->wave_length);
+  json_integer(f, "components", waves.components);
+  json_number(f, "stroke", fmax(waves.stroke[1], -waves.stroke[0]));
+  json_number(f, "window_from", g->from);
+  json_number(f, "window_to", g->to);
+  json_number_if(f, there, "Hm0_incident", g->split.incident_height);
+  json_number_if(f, there, "Hm0_target", g->target_height);
+  json_number_if(f, there && regular, "H_incident", g->split.incident_height * sqrt(0.5));
+  json_number_if(f, there, "Tp", g->split.peak_period);
+  json_number_if(f, there, "Tm_10", g->split.energy_period);
+  json_number_if(f, there, "reflection", g->split.reflection);
+  json_number_if(f, there, "residual", g->split.residual);
+  json_number(f, "loss_per_wavelength", g->loss);
+  if (there)
+    printf("incident Hm0 %.4f m, linear target in the same window %.4f m; Tp %.3f s; reflection "
+           "%.3f\n",
+           g->split.incident_height, g->target_height, g->split.peak_period, g->split.reflection);
+}
+
+static void summarise_absorption(output *f, const flume *m) {
+  double r = NAN;
+  mps_absorber_report report = {.limited = 0};
+  const bool active = m->maker &&
+                      mps_absorber_get_reflection(m->maker, m->s.period, &r) == MPS_OK &&
+                      mps_absorber_get_report(m->maker, &report) == MPS_OK;
+  json_number_if(f, active, "reflection_theory", r);
+  json_integer_if(f, active, "limited_steps", report.limited);
+}
+
+static void summarise_force(output *f, const flume *m, const flume_figures *g) {
+  const bool wall = m->s.wall != FLUME_OPEN_END;
+  json_number_if(f, wall, "force_still", g->force_still);
+  json_number_if(f, wall, "force_peak", g->force_peak - g->force_still);
+  json_number_if(f, wall, "force_least", g->force_least - g->force_still);
+  json_number_if(f, wall, "force_peak_at", g->peak_at);
+  json_number_if(f, wall, "foot_peak", g->foot_peak);
+  json_number_if(f, g->has_goda, "force_goda", g->goda.force);
+  json_number_if(f, g->has_goda, "foot_goda", g->goda.p3);
+  json_number_if(f, m->s.wall == FLUME_CAISSON, "safety_sliding", g->sliding);
+  json_number_if(f, m->s.wall == FLUME_CAISSON, "safety_overturning", g->overturning);
+  json_number_if(f, g->has_goda, "safety_sliding_goda", g->goda.sliding);
+  if (wall && !isnan(g->force_peak) && g->has_goda)
+    printf("largest force above rest %.1f N at %.2f s, Goda %.1f N\n",
+           g->force_peak - g->force_still, g->peak_at, g->goda.force);
+}
+
+static void summarise_discharge(app *a, output *f, const flume *m, const flume_figures *g,
+                                int64_t events) {
+  const bool body = flume_has_body(&m->s);
+  json_number_if(f, body, "q", g->discharge);
+  json_number_if(f, body && m->samples > 0, "volume",
+                 m->samples ? m->sample[m->samples - 1].volume : NAN);
+  json_integer_if(f, body, "events", events);
+  json_number_if(f, g->has_eurotop, "q_eurotop", g->eurotop.discharge);
+  json_number_if(f, g->has_eurotop, "q_eurotop_low", g->eurotop.low);
+  json_number_if(f, g->has_eurotop, "q_eurotop_high", g->eurotop.high);
+  if (body && !isnan(g->discharge))
+    printf("discharge %.3g m2/s in %lld events", g->discharge, (long long)events);
+  if (g->has_eurotop)
+    printf(", EurOtop %.3g m2/s (%.3g to %.3g)", g->eurotop.discharge, g->eurotop.low,
+           g->eurotop.high);
+  if (body && !isnan(g->discharge)) printf("\n");
+  if (g->why[0]) app_warn(a, "no discharge by EurOtop: %s", g->why);
+}
+
+static bool write_summary(app *a, const flume *m, const flume_figures *g, int64_t events) {
+  output f;
+  if (!summary_open(&f, a, m->s.out)) return false;
+  json_integer(&f, "particles", mps_particles_count(m->water));
+  json_integer(&f, "steps", mps_fluid_steps(m->fluid));
+  json_number(&f, "time", mps_fluid_time(m->fluid));
+  summarise_waves(&f, m, g);
+  summarise_absorption(&f, m);
+  summarise_force(&f, m, g);
+  summarise_discharge(a, &f, m, g, events);
+  json_integer(&f, "collisions", m->report.collisions);
+  json_integer(&f, "limited", m->report.limited);
+  json_integer(&f, "pushed", m->report.pushed);
+  json_end(&f);
+  return output_close(&f);
+}
+
+bool flume_write(app *a, flume *m) {
+  flume_figures g;
+  int64_t events = 0;
+  bool good = flume_find_figures(a, m, &g) && write_gauges(a, m) && write_force(a, m);
+  if (good && flume_has_body(&m->s)) good = write_discharge(a, m) && write_events(a, m, &events);
+  if (good && g.separated) good = write_spectrum(a, m, &g);
+  if (good && m->series) good = app_check(a, mps_recorder_close(&m->series));
+  good = good && write_summary(a, m, &g, events) && flume_draw(a, m, &g);
+  flume_free_figures(&g);
+  if (good) app_tell_results(a, m->s.out);
+  return good;
+}

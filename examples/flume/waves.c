@@ -1,0 +1,83 @@
+/* waves.c - the sea of mps-flume from its options, and the pistons at its ends.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "flume.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { POINTS = 40 }; /* a period, of a record read from a file */
+
+static mps_waves_def definition(const flume_settings *s) {
+  mps_waves_def def = mps_waves_defaults();
+  static const int32_t kinds[] = {MPS_WAVES_KIND_REGULAR, MPS_WAVES_KIND_JONSWAP,
+                                  MPS_WAVES_KIND_PIERSON_MOSKOWITZ, MPS_WAVES_KIND_JONSWAP,
+                                  MPS_WAVES_KIND_RECORD};
+  def.kind = kinds[s->waves];
+  def.theory = s->order;
+  def.depth = s->depth, def.gravity = WAVES_G;
+  def.height = s->height, def.period = s->period;
+  def.gamma = s->gamma, def.repeat = s->repeat, def.ramp = s->ramp;
+  def.seed = s->seed;
+  def.stroke = s->stroke, def.speed = s->speed;
+  if (s->waves == FLUME_JONSWAP || s->waves == FLUME_PM)
+    def.phases = s->random ? MPS_WAVES_PHASES_AMPLITUDES : MPS_WAVES_PHASES_RANDOM;
+  if (s->waves == FLUME_FOCUSED) {
+    def.phases = MPS_WAVES_PHASES_FOCUSED;
+    def.crest = 0.5 * s->height;
+    def.position = s->focus[0], def.time = s->focus[1];
+  }
+  return def;
+}
+
+/* The record of the file at even intervals: a table of displacements between whose samples is a
+ * spline. */
+static mps_status read_file(app *a, const flume_settings *s, mps_waves_def *def, double **room) {
+  mps_signal_record_def record = mps_signal_record_defaults();
+  mps_signal *signal = NULL;
+  double start, end;
+  record.format = MPS_SIGNAL_RECORD_CSV, record.quantity = MPS_SIGNAL_QUANTITY_DISPLACEMENT;
+  const mps_status status = mps_signal_create_record(a->context, s->file, &record, &signal);
+  if (status != MPS_OK) return status;
+  mps_signal_span(signal, &start, &end);
+  def->samples = (int64_t)fmin(fmax(ceil(POINTS * (end - start) / s->period), 16.0), 2e6);
+  *room = malloc(2 * (size_t)def->samples * sizeof **room);
+  if (*room) {
+    double *t = *room, *level = t + def->samples;
+    for (int64_t k = 0; k < def->samples; k++) {
+      t[k] = start + (end - start) * (double)k / (double)(def->samples - 1);
+      level[k] = mps_signal_displacement(signal, t[k]);
+    }
+    def->times = t, def->levels = level;
+  }
+  mps_signal_destroy(&signal);
+  return *room ? MPS_OK : MPS_ERROR_MEMORY;
+}
+
+mps_status flume_make_waves(app *a, flume *m) {
+  mps_waves_def def = definition(&m->s);
+  double *room = NULL;
+  mps_waves_report report;
+  mps_status status = MPS_OK;
+  if (m->s.waves == FLUME_FILE) status = read_file(a, &m->s, &def, &room);
+  if (status == MPS_OK) status = mps_waves_create(a->context, &def, &m->waves);
+  free(room);
+  if (status == MPS_OK) status = mps_waves_get_report(m->waves, &report);
+  if (status == MPS_OK) m->wave_length = 2.0 * WAVES_PI / report.wave_number;
+  return app_settle(a, status);
+}
+
+/* Either end; the far one is asked for still water. */
+mps_status flume_make_pistons(app *a, flume *m) {
+  mps_absorber_def def = mps_absorber_defaults();
+  def.form = m->s.form ? MPS_ABSORBER_FORM_SHALLOW : MPS_ABSORBER_FORM_TUNED;
+  def.depth = m->s.depth, def.gravity = WAVES_G;
+  def.period = m->s.period;
+  if (!isnan(m->s.stroke)) def.stroke = m->s.stroke;
+  def.waves = m->waves;
+  if (m->s.absorb != FLUME_ACTIVE) return MPS_OK;
+  mps_status status = mps_absorber_create(a->context, &def, &m->maker);
+  def.waves = NULL;
+  if (status == MPS_OK && m->s.wall == FLUME_OPEN_END)
+    status = mps_absorber_create(a->context, &def, &m->end);
+  return app_settle(a, status);
+}

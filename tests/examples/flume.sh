@@ -1,0 +1,62 @@
+#!/bin/sh
+# flume.sh DIRECTORY: mps-flume on coarse particles: regular waves and a sea against their targets, still
+# water before a dike, a caisson that waves pass, a restart, refusals.
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+coarse="--spacing 0.05 --threads 1"
+
+# Regular waves between two absorbing pistons.
+"$1/mps-flume" $coarse --length 5 --height 0.1 --duration 12 --frames 0 --out "$work/a" >"$work/log"
+s=$work/a/summary.json
+in_range "$s" H_incident 0.09 0.105
+in_range "$s" Hm0_target 0.140 0.143
+in_range "$s" reflection 0 0.06
+in_range "$s" reflection_theory 0.003 0.008
+in_range "$s" collisions 0 0
+has "$work/a/gauges.csv" "level_at_2.6_m"
+has "$work/a/force.csv" "t_s,maker_m,end_m"
+picture "$work/a/levels.png" 0x0
+picture "$work/a/water.png" 0x0
+
+# A sea towards a caisson: rows of all tables, a discharge.
+sea="--spacing 0.04 --threads 1 --waves jonswap --height 0.16 --wall caisson --crest 0.08 --length 3"
+"$1/mps-flume" $sea --duration 16 --frames 3 --out "$work/b" >"$work/log"
+s=$work/b/summary.json
+in_range "$s" Hm0_incident 0.08 0.2
+in_range "$s" q 1e-6 0.01
+in_range "$s" q_eurotop 1e-6 0.01
+in_range "$s" force_goda 100 1000
+in_range "$s" force_peak 100 1500
+has "$work/b/discharge.csv" "t_s,volume_m2"
+has "$work/b/events.csv" "begins_s,ends_s,volume_m2"
+has "$work/b/spectrum.csv" "frequency_Hz,incident_m2_s,reflected_m2_s,target_m2_s"
+for name in levels spectrum force discharge water; do picture "$work/b/$name.png" 0x0; done
+
+# Still water before a dike: rho g d^2/2.
+"$1/mps-flume" --spacing 0.025 --threads 1 --height 1e-5 --wall slope --length 1.5 --duration 1.5 --frames 0 \
+  --out "$work/still" >"$work/log" 2>&1
+is "$work/still/force.csv" force_N -1 784.8 16
+
+# A zone before the far end; a focused group; a record.
+"$1/mps-flume" $coarse --length 5 --height 0.1 --duration 13 --absorb zone --frames 0 --out "$work/zone" >"$work/log"
+in_range "$work/zone/summary.json" reflection 0 0.1
+"$1/mps-flume" $coarse --waves focused --focus 2,6 --height 0.15 --length 4 --duration 2 --frames 0 \
+  --out "$work/focus" >"$work/log" 2>&1
+awk 'BEGIN { for (k = 0; k <= 400; k++) printf "%g,%g\n", 0.05 * k, 0.04 * cos(4.5 * 0.05 * k) }' >"$work/record.csv"
+"$1/mps-flume" $coarse --waves file --file "$work/record.csv" --length 3 --duration 2 --frames 0 \
+  --out "$work/file" >"$work/log" 2>&1
+
+# On from a checkpoint: the results of the run that never stopped.
+run="$sea --duration 4 --frames 0"
+"$1/mps-flume" $run --out "$work/c" >"$work/log" 2>&1
+if [ -f "$work/b/water.vtkhdf" ]; then # built with HDF5
+  "$1/mps-flume" $run --every-checkpoint 1.5 --checkpoint "$work/d.h5" --out "$work/d" >"$work/log" 2>&1
+  "$1/mps-flume" $run --restart "$work/d.h5" --out "$work/e" >"$work/log" 2>&1
+  for file in gauges.csv force.csv discharge.csv water.bin summary.json; do
+    cmp "$work/c/$file" "$work/e/$file" || fail "another $file after a restart"
+  done
+  if "$1/mps-flume" $run --restart "$work/d.h5" --seed 2 --out "$work/f" 2>"$work/log"; then
+    fail "a restart with another --seed"
+  fi
+  has "$work/log" "--seed is 2"
+fi
