@@ -53,7 +53,8 @@ typedef struct mps_mpm_settled {
  *  as an uninterrupted call, the counts of `out` included. If mps_mpm_step or mps_mpm_run is called
  *  first, the particles are stopped before it. MPS_ERROR_NUMERIC: not within `max_steps`, as where
  *  ground flows; the particles stay at rest at their present positions, and `out` is written:
- *  another call continues from there. MPS_ERROR_UNSUPPORTED: a body in contact moves freely.
+ *  another call continues from there. MPS_ERROR_UNSUPPORTED: a body in contact moves freely, or pore water flows
+ *  (mps/pore_water.h).
  *  MPS_ERROR_STATE: no particles, and so no dt. MPS_ERROR_DIVERGED as of mps_mpm_step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *def,
                                                       mps_mpm_settled *out, size_t size);

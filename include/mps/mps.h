@@ -51,6 +51,7 @@
 #include "mpm_settle.h"
 #include "neighbours.h"
 #include "particles.h"
+#include "pore_water.h"
 #include "signal.h"
 #include "soil.h"
 #include "solver.h"

@@ -202,6 +202,69 @@ static void mpm_settle_sized(api *a) {
   (void)api_end(a, status);
 }
 
+/* ---- pore water ------------------------------------------------------------------------------ */
+
+API_INIT(pore_water_def)
+API_INIT(pore_face_def)
+API_GETTER(mpm_get_pore_water_sized, mps_mpm_get_pore_water_sized, API_MPM, mps_mpm,
+           mps_pore_water_def)
+API_GETTER(mpm_get_pore_budget_sized, mps_mpm_get_pore_budget_sized, API_MPM, mps_mpm,
+           mps_pore_budget)
+
+static void mpm_add_pore_water(api *a) {
+  api_begin(a, "mps_mpm_add_pore_water");
+  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  mps_pore_water_def def = mps_pore_water_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.porosity = api_optional(a, "porosity", 5e-324, 1.0 - 0x1p-53, 0.3);
+  def.permeability = api_optional(a, "permeability", 5e-324, 1.0, 1e-4);
+  def.bulk = api_optional(a, "bulk", 5e-324, 1e15, 1e6);
+  def.density = api_real(a, "density", 5e-324, 1e6, 1.0);
+  def.exponent = api_real(a, "exponent", 0.0, 100.0, 1.0);
+  (void)api_end(a, mps_mpm_add_pore_water(mpm, &def));
+}
+
+static void mpm_set_pore_level(api *a) {
+  api_begin(a, "mps_mpm_set_pore_level");
+  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  double point[3];
+  api_vector(a, "point", mps_particles_dim(mps_mpm_particles(mpm)), 0.0, 1.0, point);
+  (void)api_end(a, mps_mpm_set_pore_level(mpm, api_null(a, "point") ? NULL : point));
+}
+
+static mps_pore_face_def draw_face(api *a) {
+  mps_pore_face_def def = mps_pore_face_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.kind = api_choice(a, "kind", 2);
+  def.at_rest = api_choice(a, "at_rest", 2);
+  def.pressure = api_real(a, "pressure", -1e15, 1e15, 100.0);
+  return def;
+}
+
+static void mpm_add_pore_face(api *a) {
+  api_begin(a, "mps_mpm_add_pore_face");
+  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  const mps_pore_face_def def = draw_face(a);
+  int32_t number = -1;
+  (void)api_end(a, mps_mpm_add_pore_face(mpm, &def, &number));
+}
+
+static void mpm_set_pore_face(api *a) {
+  api_begin(a, "mps_mpm_set_pore_face");
+  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 2);
+  const mps_pore_face_def def = draw_face(a);
+  (void)api_end(a, mps_mpm_set_pore_face(mpm, number, &def));
+}
+
+static void mpm_get_pore_flow(api *a) {
+  api_begin(a, "mps_mpm_get_pore_flow");
+  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", -1, 2);
+  double rate, mass;
+  (void)api_end(a, mps_mpm_get_pore_flow(mpm, number, &rate, &mass));
+}
+
 /* ---- contacts -------------------------------------------------------------------------------- */
 
 static void mpm_add_contact(api *a) {
@@ -369,6 +432,15 @@ static const api_call calls[] = {
     {"mps_mpm_boundary_def_init", 1, API_NOTHING, init_mpm_boundary_def},
     {"mps_mpm_load_def_init", 1, API_NOTHING, init_mpm_load_def},
     {"mps_mpm_settle_def_init", 1, API_NOTHING, init_mpm_settle_def},
+    {"mps_pore_water_def_init", 1, API_NOTHING, init_pore_water_def},
+    {"mps_pore_face_def_init", 1, API_NOTHING, init_pore_face_def},
+    {"mps_mpm_add_pore_water", 2, API_MPM, mpm_add_pore_water},
+    {"mps_mpm_get_pore_water_sized", 1, API_MPM, mpm_get_pore_water_sized},
+    {"mps_mpm_set_pore_level", 1, API_MPM, mpm_set_pore_level},
+    {"mps_mpm_add_pore_face", 2, API_MPM, mpm_add_pore_face},
+    {"mps_mpm_set_pore_face", 1, API_MPM, mpm_set_pore_face},
+    {"mps_mpm_get_pore_flow", 1, API_MPM, mpm_get_pore_flow},
+    {"mps_mpm_get_pore_budget_sized", 1, API_MPM, mpm_get_pore_budget_sized},
     {"mps_contact_def_init", 1, API_NOTHING, init_contact_def},
     {"mps_mpm_create", 8, API_MATERIAL, mpm_create},
     {"mps_mpm_kernel", 1, API_MPM, query_mpm_kernel},

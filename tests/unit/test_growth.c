@@ -23,6 +23,7 @@
 #include <mps/mpm_settle.h>
 #include <mps/neighbours.h>
 #include <mps/particles.h>
+#include <mps/pore_water.h>
 #include <mps/signal.h>
 #include <mps/wave_loads.h>
 #include <mps/waves.h>
@@ -162,6 +163,30 @@ static mps_status use_mpm_settle(const void *def) {
   mps_particles_destroy(&set);
   return status;
 }
+
+/* Of a solver with water where the definition is of faces. */
+static mps_status use_water(const void *def, bool faces) {
+  mps_particles *set = square();
+  mps_material *material = NULL;
+  mps_mpm_def solver = mps_mpm_defaults();
+  mps_pore_water_def water = mps_pore_water_defaults();
+  mps_mpm *made = NULL;
+  solver.cell = 1.0;
+  water.porosity = 0.4;
+  mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_mpm_create(context, set, material, &solver, &made));
+  if (faces) mps_assert_ok(context, mps_mpm_add_pore_water(made, &water));
+  const mps_status status =
+      faces ? mps_mpm_add_pore_face(made, def, NULL) : mps_mpm_add_pore_water(made, def);
+  mps_mpm_destroy(&made);
+  mps_material_destroy(&material);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void need_pore_water(void *def) { ((mps_pore_water_def *)def)->porosity = 0.4; }
+static mps_status use_pore_water(const void *def) { return use_water(def, false); }
+static mps_status use_pore_face(const void *def) { return use_water(def, true); }
 
 static mps_status use_dynamics(const void *def) {
   mps_particles *set = square();
@@ -653,6 +678,8 @@ static const user users[] = {
     {"mps_material_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},
     {"mps_mpm_def", need_mpm, use_mpm},
     {"mps_mpm_settle_def", need_nothing, use_mpm_settle},
+    {"mps_pore_face_def", need_nothing, use_pore_face},
+    {"mps_pore_water_def", need_pore_water, use_pore_water},
     {"mps_neighbours_def", need_neighbours, use_neighbours},
     {"mps_material_newtonian_def", need_newtonian, use_newtonian},
     {"mps_particles_def", need_particles, use_particles},

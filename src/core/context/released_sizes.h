@@ -49,6 +49,8 @@
   X(mps_mpm_settle_def, mps_mpm_settle_def_init, "0.3", 24) \
   X(mps_neighbours_def, mps_neighbours_def_init, "0.3", 24) \
   X(mps_particles_def, mps_particles_def_init, "0.3", 40) \
+  X(mps_pore_face_def, mps_pore_face_def_init, "0.3", 72) \
+  X(mps_pore_water_def, mps_pore_water_def_init, "0.3", 56) \
   X(mps_recorder_def, mps_recorder_def_init, "0.3", 40) \
   X(mps_sainflou_def, mps_sainflou_def_init, "0.3", 48) \
   X(mps_separation_def, mps_separation_def_init, "0.3", 88) \

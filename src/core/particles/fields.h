@@ -104,6 +104,16 @@
     "the caller (initial state; 0: of the law); WLS-MPM with Cam-Clay", "after a step or a run")     \
   X(void_ratio, F64, 1, "-", "volume of the pores over that of the grains, e", \
     "the caller (initial state; 0: of the law); WLS-MPM with Cam-Clay", "after a step or a run")     \
+  X(pore_pressure, F64, 1, "Pa", "pressure of the water in the pores", \
+    "the caller (initial state); WLS-MPM with pore water", "after a step or a run") \
+  X(pore_pressure_gradient, F64, MPSI_PER_DIM, "Pa/m", "gradient of pore_pressure", \
+    "WLS-MPM with pore water", "after a step or a run") \
+  X(porosity, F64, 1, "-", "volume of the pores over all volume", \
+    "the caller (initial state); WLS-MPM with pore water", "after a step or a run") \
+  X(permeability, F64, 1, "m/s", "permeability of the ground to water, at the present porosity", \
+    "the caller (initial state); WLS-MPM with pore water that flows", "after a step or a run") \
+  X(seepage, F64, MPSI_PER_DIM, "m/s", "flow of pore water relative to the grains, per area of ground", \
+    "WLS-MPM with pore water, where the set has it", "after a step or a run") \
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then in the order of mps_mpm_set_material", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
@@ -127,6 +137,8 @@
   X(poisson, -1.0, 0.5)                                                                            \
   X(mass, 0.0, 1e48)                                                                               \
   X(volume, 0.0, 1e36)                                                                             \
+  X(porosity, 0.0, 1.0)                                                                            \
+  X(permeability, 0.0, 1.0)                                                                        \
   X(volume_ratio, 0.0, 1e12)
 
 /* Number of components in a set of dimension `dim`, from the table's number or code. */

@@ -19,6 +19,7 @@
 #include "mpm/step/undo.h"
 
 struct mpsi_kernels;
+struct mpsi_water;
 
 /* Memory for each particle. */
 typedef struct mpsi_rooms {
@@ -60,6 +61,7 @@ struct mps_mpm {
   mpsi_undo undo;
   mpsi_energy energy;
   mpsi_settling settling;
+  struct mpsi_water *water;  /* in the pores: water/water.h; NULL: none */
   mpsi_identity *identity;   /* of its snapshots */
   mpsi_partition *partition; /* of several ranks; NULL: there is but one */
 };

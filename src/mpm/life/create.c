@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
+#include "mpm/water/water.h"
 
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
@@ -568,6 +569,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   *pointer = NULL;
   mpsi_mpm_end_contacts(mpm);
   free_rooms(mpm);
+  mpsi_pore_free(mpm);
   mpsi_mpm_free_impulses(mpm);
   mpsi_mpm_free_contact_exchange(mpm);
   mpsi_mpm_free_partners(&mpm->contact.partners, context);

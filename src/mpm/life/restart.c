@@ -5,6 +5,7 @@
 
 #include "rank_files.h"
 #include "mpm/particles/particles.h"
+#include "mpm/water/water.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -284,6 +285,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_bool(s, "stale", &mpm->run.stale);
   mpsi_state_bool(s, "moments", &mpm->run.moments);
   list_settling(s, &mpm->settling);
+  mpsi_pore_list_state(s, mpm);
   mpsi_state_i64(s, "energies", mpm->energy.sum[0].limb, MPSI_ENERGY_SUMS * MPSI_EXACT_LIMBS);
   mpsi_state_f64(s, "work_bodies", &mpm->energy.work_bodies, 1);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {

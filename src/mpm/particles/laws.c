@@ -1,6 +1,7 @@
 /* laws.c - the materials' laws on the particles of a block, Nakamura (45)-(48): a law is called
  * with runs of particles that have it. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
+#include "mpm/water/water.h"
 
 #include <stdio.h>
 
@@ -134,6 +135,21 @@ static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_
     moduli[k - begin] = fmax(moduli[k - begin], v * v * mpm->p.V[k] / mpm->p.m[k]);
 }
 
+/* Waves go through the water too. Where it flows, its pressures have the limit
+ * 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever the fraction of the limit that a step takes:
+ * cells at a surface, half full, need that. */
+static void stiffen_by_water(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
+  const mps_pore_water_def *water = &mpm->water->def;
+  const double v = 2.0 * mpm->dim * mpm->def.courant / 0.3 * mpm->grid.inverse *
+                   (water->bulk / (water->density * MPS_PORE_GRAVITY));
+  for (int64_t k = begin; k < end; k++) {
+    moduli[k - begin] += water->bulk / mpm->p.n[k];
+    if (!mpm->p.k) continue;
+    const double c = v * mpm->p.k[k] / mpm->p.n[k];
+    moduli[k - begin] = fmax(moduli[k - begin], c * c * mpm->p.m[k] / mpm->p.V[k]);
+  }
+}
+
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(mpm->p.law, k, end);
@@ -153,4 +169,5 @@ void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double
     }
     raise_to_viscous(mpm, law, k, next, moduli + (k - begin));
   }
+  if (mpm->water) stiffen_by_water(mpm, begin, end, moduli);
 }

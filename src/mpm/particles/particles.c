@@ -12,6 +12,13 @@
 
 /* ---- columns and room ------------------------------------------------------------------------ */
 
+static void bind_water(mps_particles *set, mpsi_columns *p) {
+  p->u = mpsi_particles_column(set, "pore_pressure", 0);
+  p->n = mpsi_particles_column(set, "porosity", 0);
+  p->k = mpsi_particles_column(set, "permeability", 0);
+  for (int c = 0; c < 3; c++) p->g[c] = mpsi_particles_column(set, "pore_pressure_gradient", c);
+}
+
 void mpsi_mpm_bind(mps_mpm *mpm) {
   mps_particles *set = mpm->particles;
   mpsi_columns *p = &mpm->p;
@@ -20,7 +27,9 @@ void mpsi_mpm_bind(mps_mpm *mpm) {
     p->x[c] = mpsi_particles_column(set, "position", c);
     p->v[c] = mpsi_particles_column(set, "velocity", c);
   }
-  for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
+  for (int c = 0; c < 2 * mpm->dim; c++)
+    p->t[c] = p->s[c] = mpsi_particles_column(set, "stress", c);
+  if (mpm->water) bind_water(set, p);
   for (int c = 0; c < 9; c++) /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
   p->V = mpsi_particles_column(set, "volume", 0);
@@ -215,6 +224,9 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   mpm->run.edited = true;
   mpm->run.stale = mpm->run.stale || moved;
   if (strcmp(field, "velocity_gradient") == 0) mpm->run.moments = false;
+  if (mpm->water && strcmp(field, "pore_pressure") == 0) /* the slopes were those of before */
+    for (int c = 0; c < mpm->dim; c++)
+      memset(mpm->p.g[c], 0, (size_t)mpm->p.count * sizeof *mpm->p.g[c]);
   return MPS_OK;
 }
 

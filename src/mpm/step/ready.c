@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
+#include "mpm/water/water.h"
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   if (!mpm->partition) return mpsi_mpm_sort_alone(mpm, function);
@@ -24,6 +25,7 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   if (!mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_check_deformations(mpm, function);
+  if (status == MPS_OK) status = mpsi_pore_check(mpm, function);
   if (mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
   status = mpsi_mpm_list_boundaries(mpm, function, status);

@@ -4,6 +4,7 @@
 #include "settle.h"
 
 #include "mpm/particles/particles.h"
+#include "mpm/water/water.h"
 
 #include <mps/mpm_settle.h>
 
@@ -22,6 +23,10 @@ mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
 /* ---- bodies stand still ---------------------------------------------------------------------- */
 
 static mps_status check_bodies(mps_mpm *mpm, const char *function) {
+  if (mpm->water && mpm->water->flows)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
+                     "the solver has pore water that flows, and no time passes while the particles "
+                     "settle: use mps_mpm_run");
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     if (mpm->contact.body[b]->def.motion == MPS_BODY_MOTION_FREE)
       return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
@@ -240,7 +245,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
     return mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
   mps_status status = mpsi_mpm_ready(mpm, function);
   if (status == MPS_OK) status = read_def(mpm, function, user, &def);
-  if (status == MPS_OK) status = check_bodies(mpm, function);
+  if (status == MPS_OK) status = check_still(mpm, function);
   if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
   if (mpm->partition) {
     mpsi_given given;

@@ -9,7 +9,7 @@
  *   finish     boundaries: boundary/walls.c
  *   gather     velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and
  *              their histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, laws.c
- *   complete   reactions, poses of bodies, energy budget, outflow
+ *   complete   reactions, poses of bodies, energy budget, pressures of pore water, outflow
  *
  * On an error nothing has moved, but where a particle has left the domain (run.lost: the step is
  * whole) or has got values that are no numbers (run.broken).
@@ -17,6 +17,7 @@
 #include "stages.h"
 
 #include "mpm/particles/particles.h"
+#include "mpm/water/water.h"
 
 static mps_status prepare(mps_mpm *mpm, const char *function) {
   mps_status status = MPS_OK;
@@ -96,6 +97,7 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   mps_status status = mpsi_mpm_evaluate_signals(mpm, function, dt, true);
   if (status == MPS_OK) status = prepare(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
+  if (status == MPS_OK) status = mpsi_pore_begin(mpm, function);
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
   status = mpsi_mpm_find_constraints(mpm, function);
@@ -105,6 +107,8 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   if (mpm->laws.refusal.cells) return mpsi_step_refuse(mpm, function);
   mpsi_step_complete(mpm);
   status = mpsi_mpm_collect_block_results(mpm, function);
-  if (!mpm->run.broken) mpsi_mpm_remove_leaving(mpm);
+  if (mpm->run.broken) return status;
+  mpsi_pore_update(mpm);
+  mpsi_mpm_remove_leaving(mpm);
   return status;
 }

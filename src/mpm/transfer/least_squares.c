@@ -214,11 +214,11 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
     if (c->f[a]) out.body[1 + a] += c->f[a][p];
     for (int d = 0; d < dim; d++) {
       if (!mpm->standard) out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
-      out.stress[d][1 + a] = -c->V[p] * c->s[symmetric[a][d]][p];
+      out.stress[d][1 + a] = -c->V[p] * c->t[symmetric[a][d]][p];
     }
   }
   if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
-    out.body[1] -= c->V[p] * c->s[2][p] / c->x[0][p];
+    out.body[1] -= c->V[p] * c->t[2][p] / c->x[0][p];
   return out;
 }
 

@@ -302,10 +302,10 @@ MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const batch *b, int64_t
     mpsi_quad body = out->m * mpm->def.gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
     if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
-      body -= V * mpsi_get_some(from->s[2] + p, n) / mpsi_get_some(from->x[0] + p, n);
+      body -= V * mpsi_get_some(from->t[2] + p, n) / mpsi_get_some(from->x[0] + p, n);
     for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
     for (int d = 0; d < dim; d++) {
-      const mpsi_quad stress = V * mpsi_get_some(from->s[symmetric[a][d]] + p, n);
+      const mpsi_quad stress = V * mpsi_get_some(from->t[symmetric[a][d]] + p, n);
       for (int c = 0; c <= dim; c++) out->force[a][c] -= stress * b->q[1 + d][c];
     }
   }

@@ -35,12 +35,12 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
       mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
       if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
       if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
-        force -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
+        force -= V * mpsi_get(p->t[2] + at) / mpsi_get(p->x[0] + at);
       mpsi_put(out->sum[0][to] + k, split ? momentum : momentum + force);
       if (split) mpsi_put(out->force[0][to] + k, force);
       MPSI_UNROLL for (int d = 0; d < dim; d++) {
         momentum = mh * mpsi_get(p->L[dim * c + d] + at);
-        force = Vs * mpsi_get(p->s[symmetric[c][d]] + at);
+        force = Vs * mpsi_get(p->t[symmetric[c][d]] + at);
         mpsi_put(out->sum[1 + d][to] + k, split ? momentum : momentum + force);
         if (split) mpsi_put(out->force[1 + d][to] + k, force);
       }

@@ -1,0 +1,330 @@
+/* pore_water.c - the water of a solver as the caller defines it (mps/pore_water.h): checks, fields,
+ * faces, budget. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/kernels.h"
+#include "mpm/particles/particles.h"
+#include "mpm/water/water.h"
+
+#include <string.h>
+
+#define STIFF 50.0 /* K_w/n over the wave modulus at rest: settlements are 2 % too large */
+#define SLOW 1e-3  /* m/s, above which the water's own inertia counts */
+#define LARGE 1e15 /* Pa */
+
+static const mps_pore_water_def water_defaults = {.struct_size = sizeof(mps_pore_water_def),
+                                                  .porosity = NAN,
+                                                  .permeability = NAN,
+                                                  .bulk = NAN,
+                                                  .density = 1000.0,
+                                                  .exponent = 0.0,
+                                                  .ratio_slope = INFINITY};
+static const mps_pore_face_def face_defaults = {.struct_size = sizeof(mps_pore_face_def),
+                                                .lower = {-INFINITY, -INFINITY, -INFINITY},
+                                                .upper = {INFINITY, INFINITY, INFINITY}};
+
+mps_status mps_pore_water_def_init(mps_pore_water_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_pore_water_def, def, size, &water_defaults);
+}
+
+mps_status mps_pore_face_def_init(mps_pore_face_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_pore_face_def, def, size, &face_defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static const char add[] = "mps_mpm_add_pore_water";
+
+static mps_status refuse(const mps_mpm *mpm, const char *name, double value, const char *allowed) {
+  return mpsi_fail(mpm->context, add, MPS_ERROR_ARGUMENT, "%s is %g, must be %s", name, value,
+                   allowed);
+}
+
+static mps_status check_definition(const mps_mpm *mpm, const mps_pore_water_def *d) {
+  if (!isnan(d->porosity) && !(d->porosity > 0.0 && d->porosity < 1.0))
+    return refuse(mpm, "porosity", d->porosity, "in (0, 1), or NaN for the field 'porosity'");
+  if (!isnan(d->permeability) && !(d->permeability > 0.0 && d->permeability <= MPSI_PORE_FASTEST))
+    return refuse(mpm, "permeability", d->permeability,
+                  "in (0, 1] m/s, or NaN for the field 'permeability' or undrained ground");
+  if (!isnan(d->bulk) && !(d->bulk > 0.0 && d->bulk <= LARGE))
+    return refuse(mpm, "bulk", d->bulk, "in (0, 1e15] Pa, or NaN for the default");
+  if (!(d->density > 0.0 && d->density <= 1e6))
+    return refuse(mpm, "density", d->density, "in (0, 1e6] kg/m3");
+  if (!(d->exponent >= 0.0 && d->exponent <= 100.0))
+    return refuse(mpm, "exponent", d->exponent, "0 to 100");
+  if (!(d->ratio_slope >= 1e-3))
+    return refuse(mpm, "ratio_slope", d->ratio_slope, "at least 0.001, or infinite");
+  return MPS_OK;
+}
+
+static mps_status check_solver(mps_mpm *mpm) {
+  mps_status status = mpsi_mpm_usable(mpm, add);
+  if (status != MPS_OK) return status;
+  if (mpm->partition || mpm->def.domain)
+    return mpsi_fail(mpm->context, add, MPS_ERROR_UNSUPPORTED,
+                     "the solver has a domain of several ranks: pore water needs one process");
+  if (mpm->energy.counts)
+    return mpsi_fail(mpm->context, add, MPS_ERROR_UNSUPPORTED,
+                     "budget is 1: the energy budget has no terms for pore water, must be 0");
+  if (mpm->water)
+    return mpsi_fail(mpm->context, add, MPS_ERROR_STATE, "the solver has pore water already");
+  if (mpm->run.steps > 0)
+    return mpsi_fail(mpm->context, add, MPS_ERROR_STATE,
+                     "the solver has taken %lld steps: water is added before the first",
+                     (long long)mpm->run.steps);
+  return MPS_OK;
+}
+
+/* ---- adding ---------------------------------------------------------------------------------- */
+
+/* Adds the field, and gives all particles the value unless it is NaN. */
+static mps_status fill(mps_mpm *mpm, const char *field, double value) {
+  mps_status status = mpsi_as(mpm->context, add, mps_particles_add_field(mpm->particles, field, 0));
+  double *column = status == MPS_OK ? mpsi_particles_column(mpm->particles, field, 0) : NULL;
+  for (int64_t k = 0; column && !isnan(value) && k < mpm->p.count; k++) column[k] = value;
+  return status;
+}
+
+/* K_w from the particles' moduli at rest, where the caller gave none. */
+static mps_status find_bulk(mps_mpm *mpm) {
+  double *bulk = &mpm->water->def.bulk, most = 0.0;
+  if (!isnan(*bulk)) return MPS_OK;
+  for (int64_t k = 0; k < mpm->p.count; k++) {
+    double wave, shear;
+    mpsi_mpm_elastic(mpm, k, &wave, &shear);
+    if (!(wave > 0.0 && wave <= LARGE))
+      return mpsi_fail(mpm->context, add, MPS_ERROR_ARGUMENT,
+                       "bulk is NaN and the law of particle %lld has no modulus at rest: give K_w",
+                       (long long)mpsi_particles_integers(mpm->particles, "id")[k]);
+    most = fmax(most, STIFF * wave * mpm->p.n[k]);
+  }
+  *bulk = most;
+  return MPS_OK;
+}
+
+/* The new limit, and a fixed step against it. */
+static mps_status renew_limit(mps_mpm *mpm) {
+  mpm->laws.one_modulus = false;
+  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  mps_status status = mpsi_mpm_collect_block_results(mpm, add);
+  if (status != MPS_OK || isnan(mpm->def.dt) || mpm->def.dt <= mps_mpm_limit(mpm)) return status;
+  return mpsi_fail(
+      mpm->context, add, MPS_ERROR_ARGUMENT,
+      "dt of the solver is %g s, above the limit with water, %g s: choose at most half "
+      "of that, or NaN for a step that follows the limit",
+      mpm->def.dt, mps_mpm_limit(mpm));
+}
+
+static mps_status begin(mps_mpm *mpm) {
+  const mps_pore_water_def *def = &mpm->water->def;
+  const bool layers = mpsi_particles_column(mpm->particles, "permeability", 0) != NULL;
+  mpm->water->flows = !isnan(def->permeability) || layers;
+  mps_status status = fill(mpm, "porosity", def->porosity);
+  if (status == MPS_OK) status = fill(mpm, "pore_pressure", NAN);
+  if (status == MPS_OK) status = fill(mpm, "pore_pressure_gradient", NAN);
+  if (status == MPS_OK && mpm->water->flows) status = fill(mpm, "permeability", def->permeability);
+  if (status != MPS_OK) return status;
+  mpsi_mpm_bind(mpm);
+  status = mpsi_pore_check(mpm, add);
+  if (status == MPS_OK) status = find_bulk(mpm);
+  if (status == MPS_OK) status = renew_limit(mpm);
+  return status;
+}
+
+static void warn(mps_mpm *mpm) {
+  double most = 0.0;
+  for (int64_t k = 0; mpm->p.k && k < mpm->p.count; k++) most = fmax(most, mpm->p.k[k]);
+  if (most > SLOW)
+    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+             "permeability is up to %g m/s: above %g m/s the inertia of the water, which is left "
+             "out, counts",
+             most, SLOW);
+}
+
+/* Columns that fill writes, for an error to restore. */
+typedef struct kept {
+  double *values;
+  double speed;
+  bool one_modulus;
+  int32_t fields;
+} kept;
+
+static double *written(const mps_mpm *mpm, int number) {
+  static const char *const names[] = {"porosity", "permeability"};
+  return mpsi_particles_column(mpm->particles, names[number], 0);
+}
+
+static mps_status keep(mps_mpm *mpm, kept *out) {
+  *out = (kept){.speed = mpm->run.speed,
+                .one_modulus = mpm->laws.one_modulus,
+                .fields = mps_particles_field_count(mpm->particles)};
+  out->values = mpsi_alloc(mpm->context, 2 * mpm->p.count, sizeof *out->values);
+  if (!out->values)
+    return mpsi_fail_memory(mpm->context, add, 2 * (size_t)mpm->p.count * sizeof *out->values);
+  for (int f = 0; f < 2; f++)
+    if (written(mpm, f))
+      memcpy(out->values + f * mpm->p.count, written(mpm, f),
+             (size_t)mpm->p.count * sizeof(double));
+  return MPS_OK;
+}
+
+static void restore(mps_mpm *mpm, const kept *before) {
+  mpsi_free(mpm->context, mpm->water);
+  mpm->water = NULL;
+  mpsi_particles_drop_fields(mpm->particles, before->fields);
+  mpm->run.speed = before->speed;
+  mpm->laws.one_modulus = before->one_modulus;
+  for (int f = 0; f < 2; f++)
+    if (written(mpm, f))
+      memcpy(written(mpm, f), before->values + f * mpm->p.count,
+             (size_t)mpm->p.count * sizeof(double));
+  mpsi_mpm_bind(mpm);
+}
+
+mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_def) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_pore_water_def def = water_defaults;
+  mps_status status = check_solver(mpm);
+  if (status == MPS_OK && user_def)
+    status = MPSI_DEF_READ(mpm->context, __func__, mps_pore_water_def, user_def, &def);
+  if (status == MPS_OK) status = check_definition(mpm, &def);
+  if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
+  if (status != MPS_OK) return status;
+  kept before;
+  status = keep(mpm, &before);
+  if (status != MPS_OK) return status;
+  mpm->water = mpsi_alloc(mpm->context, 1, sizeof *mpm->water);
+  if (!mpm->water) status = mpsi_fail_memory(mpm->context, __func__, sizeof *mpm->water);
+  if (status == MPS_OK) {
+    mpm->water->def = def;
+    status = begin(mpm);
+  }
+  if (status == MPS_OK)
+    warn(mpm);
+  else
+    restore(mpm, &before);
+  mpsi_free(mpm->context, before.values);
+  return status;
+}
+
+/* ---- questions ------------------------------------------------------------------------------- */
+
+static mps_status check_water(const mps_mpm *mpm, const char *function) {
+  if (mpm->water) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "the solver has no pore water: mps_mpm_add_pore_water adds it");
+}
+
+mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *out, size_t size) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_water(mpm, __func__);
+  if (status != MPS_OK) return status;
+  return mpsi_def_write(mpm->context, "mps_mpm_get_pore_water", out, size, &mpm->water->def,
+                        sizeof mpm->water->def);
+}
+
+mps_status mps_mpm_get_pore_budget_sized(const mps_mpm *mpm, mps_pore_budget *out, size_t size) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_water(mpm, __func__);
+  if (status != MPS_OK) return status;
+  mps_pore_budget budget = {.mass = mpsi_pore_mass(mpm), .start = mpm->water->start};
+  if (mpm->run.steps == 0) budget.start = budget.mass;
+  for (int f = 0; f < MPSI_PORE_FACES; f++) budget.drained += mpm->water->drained[f];
+  budget.residual = budget.start - budget.mass - budget.drained;
+  return mpsi_out_write(mpm->context, "mps_mpm_get_pore_budget", out, size, &budget, sizeof budget);
+}
+
+mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rate, double *mass) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_water(mpm, __func__);
+  if (status != MPS_OK) return status;
+  if (number < -1 || number >= mpm->water->faces)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "number is %d, must be -1 (the free surface) to %lld", number,
+                     (long long)mpm->water->faces - 1);
+  const int at = number < 0 ? MPS_PORE_MAX_FACES : number;
+  if (rate) *rate = mpm->water->rate[at];
+  if (mass) *mass = mpm->water->drained[at];
+  return MPS_OK;
+}
+
+/* ---- changes --------------------------------------------------------------------------------- */
+
+mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_mpm_usable(mpm, __func__);
+  if (status == MPS_OK) status = check_water(mpm, __func__);
+  if (status != MPS_OK) return status;
+  if (!point) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "point is NULL");
+  double square = 0.0;
+  for (int c = 0; c < mpm->dim; c++) {
+    if (!isfinite(point[c]))
+      return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "point[%d] is %g m, must be finite", c, point[c]);
+    square += mpm->def.gravity[c] * mpm->def.gravity[c];
+  }
+  if (square == 0.0)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "gravity of the solver is 0: water at rest has no level, must be above 0");
+  const mpsi_columns *p = &mpm->p;
+  for (int64_t k = 0; k < p->count; k++) {
+    double u = 0.0;
+    for (int c = 0; c < mpm->dim; c++)
+      u += mpm->water->def.density * mpm->def.gravity[c] * (p->x[c][k] - point[c]);
+    p->u[k] = fmax(0.0, u);
+    for (int c = 0; c < mpm->dim; c++)
+      p->g[c][k] = u > 0.0 ? mpm->water->def.density * mpm->def.gravity[c] : 0.0;
+  }
+  return MPS_OK;
+}
+
+static mps_status read_face(mps_mpm *mpm, const char *function, const mps_pore_face_def *user_def,
+                            mps_pore_face_def *def) {
+  *def = face_defaults;
+  mps_status status = mpsi_mpm_between_steps(mpm, function);
+  if (status == MPS_OK) status = check_water(mpm, function);
+  if (status == MPS_OK)
+    status = MPSI_DEF_READ(mpm->context, function, mps_pore_face_def, user_def, def);
+  if (status != MPS_OK) return status;
+  if (def->kind != MPS_PORE_FACE_IMPERVIOUS && def->kind != MPS_PORE_FACE_DRAINED)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d, allowed are 0 (impervious) and 1 (drained)", def->kind);
+  if (def->sides >> (2 * mpm->dim) != 0)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "sides is 0x%x, allowed are the bits 0 to %d", def->sides, 2 * mpm->dim - 1);
+  if (def->at_rest != 0 && def->at_rest != 1)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "at_rest is %d, allowed are 0 and 1", def->at_rest);
+  if (!(fabs(def->pressure) <= LARGE))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "pressure is %g Pa, must be within +-1e15", def->pressure);
+  for (int c = 0; c < mpm->dim; c++)
+    if (!(def->lower[c] < def->upper[c]))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "lower[%d] is %g m and upper[%d] %g m, the first must be below the second",
+                       c, def->lower[c], c, def->upper[c]);
+  return MPS_OK;
+}
+
+mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def, int32_t *number) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_pore_face_def def;
+  const mps_status status = read_face(mpm, __func__, user_def, &def);
+  if (status != MPS_OK) return status;
+  if (mpm->water->faces == MPS_PORE_MAX_FACES)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the solver has %d pore faces, the most that are allowed", MPS_PORE_MAX_FACES);
+  if (number) *number = (int32_t)mpm->water->faces;
+  mpm->water->face[mpm->water->faces++] = def;
+  return MPS_OK;
+}
+
+mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_face_def *user_def) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_pore_face_def def;
+  const mps_status status = read_face(mpm, __func__, user_def, &def);
+  if (status != MPS_OK) return status;
+  if (number < 0 || number >= mpm->water->faces)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is %d, must be 0 to %lld",
+                     number, (long long)mpm->water->faces - 1);
+  mpm->water->face[number] = def;
+  return MPS_OK;
+}

@@ -1,0 +1,167 @@
+/* cells.c - pressures of cells: sums over the particles of a cell, and what lies beyond its faces.
+ *
+ * A cell's pressure is the mean over its particles of p + g.(x_c - x), each particle carrying its
+ * own p and g = grad p; means are weighted by volumes. A cell at a free surface is filled in part,
+ * f = sum V/h^dim, along each of the m axes on which it has nothing beside it by f^(1/m); p is then
+ * the pressure at the centre of that part. At a drained surface a cell less than half full would
+ * need short steps: it stores nothing and lies on the line between its neighbour inside and the
+ * surface. SPDX-License-Identifier: BSD-3-Clause */
+#include "water.h"
+
+#include <string.h>
+
+static const int stride[3] = {1, MPSI_SIDE, MPSI_SIDE *MPSI_SIDE};
+
+mpsi_pore_cell *mpsi_pore_cell_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                  int64_t particle, double *centre) {
+  int at[3] = {0, 0, 0};
+  for (int c = 0; c < mpm->dim; c++) {
+    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+    int64_t own = mpsi_own_cell(mpm, c, X) - first;
+    own = own < 0                 ? 0
+          : own >= MPSI_TILE_SIDE ? MPSI_TILE_SIDE - 1
+                                  : own; /* it has left the domain */
+    at[c] = (int)own;
+    centre[c] = mpm->def.origin[c] + mpm->def.cell * ((double)(first + own) + 0.5);
+  }
+  return mpm->water->cell + mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
+}
+
+mpsi_pore_cell *mpsi_pore_beside(const mps_mpm *mpm, int64_t g, int k, int direction) {
+  const int axis = direction / 2, place = k / stride[axis] % MPSI_SIDE;
+  const int to = direction & 1 ? place + 1 : place - 1;
+  const int local = k + (to - place) * stride[axis];
+  if (to >= 0 && to < MPSI_SIDE) return mpm->water->cell + mpsi_first_node(mpm, g) + local;
+  const int32_t block = mpm->water->beside[6 * g + direction];
+  if (block < 0) return NULL;
+  const int wrapped = local + (to < 0 ? MPSI_SIDE : -MPSI_SIDE) * stride[axis];
+  return mpm->water->cell + mpsi_first_node(mpm, block) + wrapped;
+}
+
+/* ---- sums ------------------------------------------------------------------------------------ */
+
+static void clear(mps_mpm *mpm, int64_t g, int32_t worker) {
+  (void)worker;
+  memset(mpm->water->cell + mpsi_first_node(mpm, g), 0,
+         (size_t)mpm->grid.block_nodes * sizeof *mpm->water->cell);
+}
+
+static void sum_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_columns *p = &mpm->p;
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    double centre[3], there = p->u[k];
+    mpsi_pore_cell *cell = mpsi_pore_cell_of(mpm, cells, k, centre);
+    const double V = p->V[k];
+    for (int c = 0; c < mpm->dim; c++) {
+      there += p->g[c][k] * (centre[c] - p->x[c][k]);
+      cell->g[c] += V * p->g[c][k];
+    }
+    cell->volume += V;
+    cell->change += V - mpm->water->former[k];
+    cell->p += V * there;
+    cell->n += V * p->n[k];
+    if (p->k) cell->k += V * p->k[k];
+  }
+}
+
+static void find_means(mps_mpm *mpm, int64_t g, int32_t worker) {
+  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
+  (void)worker;
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    if (mpsi_pore_empty(&cell[k])) continue;
+    const double inverse = 1.0 / cell[k].volume;
+    cell[k].p *= inverse;
+    cell[k].n *= inverse;
+    cell[k].k *= inverse;
+    for (int c = 0; c < mpm->dim; c++) cell[k].g[c] *= inverse;
+  }
+}
+
+/* ---- faces ----------------------------------------------------------------------------------- */
+
+static bool in_body(const mps_mpm *mpm, const double *x) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    if (mpsi_body_foot(mpm->contact.body[b], x).distance < 0.0) return true;
+  return false;
+}
+
+/* The last definition that holds the face's centre x and direction, or -1. */
+static int find_face(const mps_mpm *mpm, const double *x, int direction) {
+  const struct mpsi_water *water = mpm->water;
+  for (int64_t f = water->faces - 1; f >= 0; f--) {
+    const mps_pore_face_def *def = &water->face[f];
+    bool in = def->sides == 0 || (def->sides >> direction & 1) != 0;
+    for (int c = 0; c < mpm->dim; c++) in = in && x[c] >= def->lower[c] && x[c] <= def->upper[c];
+    if (in) return (int)f;
+  }
+  return -1;
+}
+
+/* What is beyond face `direction` of cell k of block g, whose box has its centre at x. */
+static void find_beyond(mps_mpm *mpm, int64_t g, int k, int direction, const double *x,
+                        mpsi_pore_cell *cell) {
+  const int axis = direction / 2, up = direction & 1;
+  const int64_t at =
+      (int64_t)mpm->grid.nodes[g].at[axis] * MPSI_SIDE + k / stride[axis] % MPSI_SIDE;
+  const bool side = up ? at + 1 >= mpm->grid.high[axis] : at <= mpm->grid.low[axis];
+  const double half = up ? 0.5 * mpm->def.cell : -0.5 * mpm->def.cell;
+  double to[3] = {x[0], x[1], x[2]};
+  cell->beyond[direction] = MPSI_PORE_CELL;
+  cell->face[direction] = -1;
+  if (!side && !mpsi_pore_empty(mpsi_pore_beside(mpm, g, k, direction))) return;
+  to[axis] += 2.0 * half;
+  if (!side) cell->free |= (uint8_t)(1u << direction);
+  const bool closed = side || in_body(mpm, to);
+  to[axis] = x[axis] + half;
+  const int face = find_face(mpm, to, direction);
+  cell->face[direction] = (int8_t)face;
+  cell->beyond[direction] = closed ? MPSI_PORE_CLOSED : MPSI_PORE_DRAINED;
+  if (face >= 0)
+    cell->beyond[direction] =
+        mpm->water->face[face].kind == MPS_PORE_FACE_DRAINED ? MPSI_PORE_DRAINED : MPSI_PORE_CLOSED;
+}
+
+/* The filled part of a cell whose box is at radius r. */
+static void find_filled(const mps_mpm *mpm, double r, mpsi_pore_cell *cell) {
+  const double h = mpm->def.cell;
+  const double box = (mpm->dim == 3 ? h * h * h : h * h) * r;
+  int axes = 0;
+  for (int c = 0; c < mpm->dim; c++) axes += (cell->free >> (2 * c) & 3) != 0;
+  const double f = axes == 0 ? 1.0 : fmin(1.0, cell->volume / (mpm->def.measure * box));
+  const double part = axes <= 1 ? f : axes == 2 ? sqrt(f) : cbrt(f);
+  cell->space = box * f;
+  for (int c = 0; c < 3; c++) {
+    const int sides = c < mpm->dim ? cell->free >> (2 * c) & 3 : 0;
+    cell->fill[c] = sides != 0 ? part : 1.0;
+    cell->shift[c] = 0.5 * h * (1.0 - cell->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
+    cell->p += c < mpm->dim ? cell->g[c] * cell->shift[c] : 0.0;
+  }
+  for (int d = 0; d < 2 * mpm->dim && mpm->water->flows; d++)
+    if (f < 0.5 && (cell->free >> d & 1) && cell->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
+}
+
+static void find_faces(mps_mpm *mpm, int64_t g, int32_t worker) {
+  static const double middle[3] = {0.5, 0.5, 0.5};
+  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
+  (void)worker;
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    if (mpsi_pore_empty(&cell[k])) continue;
+    int place[3];
+    double local[3], x[3];
+    mpsi_unravel(k, MPSI_SIDE, place);
+    for (int c = 0; c < 3; c++) local[c] = place[c] + middle[c];
+    mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
+    for (int d = 0; d < 2 * mpm->dim; d++) find_beyond(mpm, g, k, d, x, &cell[k]);
+    find_filled(mpm, mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? x[0] : 1.0, &cell[k]);
+  }
+}
+
+void mpsi_pore_find_cells(mps_mpm *mpm) {
+  const mpsi_pass sums = {.clear = clear, .scatter = sum_particles, .update = find_means};
+  const mpsi_pass faces = {.finish = find_faces};
+  mpsi_mpm_run_pass(mpm, &sums);
+  mpsi_mpm_run_pass(mpm, &faces);
+}

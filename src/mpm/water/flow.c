@@ -1,0 +1,268 @@
+/* flow.c - the flow of water between cells, explicit in time, and the slopes of the pressures.
+ *
+ *   dp/dt = K_w/n [sum of fluxes/space - tr d]
+ *
+ * The flux between two cells is that of the harmonic mean of their permeabilities over the distance
+ * of the centres of their filled parts; to a drained face it goes over half the filled part, to one
+ * behind a thin cell over half a cell and the filled part of that one. The driving slope is that of
+ * p - rho_w b.x. A cell's own slope is interpolated to its centre from those on its side of two
+ * opposite faces, so that it is exact for a parabola at a surface and for layers of different
+ * permeability; at an impervious face it is that of water at rest.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "water.h"
+
+#include <string.h>
+
+/* Slope (Pa/m) of p along the axis of a face, on the cell's side of it, at a distance (m, from the
+ * cell's centre); flux (m3/s) into the cell. */
+typedef struct face_flow {
+  double slope, distance, flux;
+  bool known; /* else there is no condition at the face */
+} face_flow;
+
+static double weight_of_water(const mps_mpm *mpm) {
+  return mpm->water->def.density * MPS_PORE_GRAVITY;
+}
+
+/* Area (m2) of a face between the filled parts of a cell and of the one beside it. */
+static double area_of(const mps_mpm *mpm, const mpsi_pore_cell *cell, const mpsi_pore_cell *beside,
+                      int direction, double X) {
+  double area = mpsi_pore_radius(mpm, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
+  for (int c = 0; c < mpm->dim; c++)
+    if (c != direction / 2)
+      area *= mpm->def.cell * (beside ? fmin(cell->fill[c], beside->fill[c]) : cell->fill[c]);
+  return area;
+}
+
+/* Pressure (Pa) of a drained face at x[3]. */
+static double given_pressure(const mps_mpm *mpm, int face, const double *x) {
+  if (face < 0) return 0.0;
+  const mps_pore_face_def *def = &mpm->water->face[face];
+  double p = def->pressure;
+  for (int c = 0; c < mpm->dim && def->at_rest; c++)
+    p += mpm->water->def.density * mpm->def.gravity[c] * x[c];
+  return p;
+}
+
+/* Through `distance` (m) to a pressure that is given there, by face `number` of cell `at`. */
+static face_flow to_drained(const mps_mpm *mpm, const mpsi_pore_cell *cell, int face, int direction,
+                            const double *x, double distance, double p, double area) {
+  const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
+  const double still = mpm->water->def.density * mpm->def.gravity[axis];
+  double to[3] = {x[0], x[1], x[2]};
+  to[axis] += sign * distance;
+  const double slope = (given_pressure(mpm, face, to) - p) / distance; /* outwards */
+  return (face_flow){.slope = sign * slope,
+                     .distance = 0.5 * distance,
+                     .flux = area * cell->k / weight_of_water(mpm) * (slope - sign * still),
+                     .known = true};
+}
+
+static face_flow to_cell(const mps_mpm *mpm, const mpsi_pore_cell *cell,
+                         const mpsi_pore_cell *beside, int direction, double p, double p_beside,
+                         double area) {
+  const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
+  const double still = mpm->water->def.density * mpm->def.gravity[axis];
+  const double distance = mpm->def.cell + sign * (beside->shift[axis] - cell->shift[axis]);
+  const double drive = (p_beside - p) / distance - sign * still; /* outwards */
+  const double sum = cell->k + beside->k, own = sum > 0.0 ? 2.0 * beside->k / sum : 1.0;
+  return (face_flow){.slope = sign * drive * own + still,
+                     .distance = 0.5 * distance,
+                     .flux = area * own * cell->k / weight_of_water(mpm) * drive,
+                     .known = true};
+}
+
+/* Pressures at the beginning or at the end of the step. */
+static double pressure_of(const mpsi_pore_cell *cell, bool end) {
+  return end ? cell->now : cell->p;
+}
+
+/* What is at face `direction` of cell k of block g; x: centre of its filled part. `*behind`
+ * receives the cell whose drained face it is, and its number. */
+static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bool end,
+                         const mpsi_pore_cell *cell, const double *x, double X,
+                         const mpsi_pore_cell **behind) {
+  const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
+  const double h = mpm->def.cell, p = pressure_of(cell, end);
+  const face_flow none = {.known = false};
+  *behind = NULL;
+  if (!mpm->water->flows && cell->beyond[direction] != MPSI_PORE_CELL) return none;
+  if (cell->beyond[direction] == MPSI_PORE_CLOSED)
+    return (face_flow){.slope = mpm->water->def.density * mpm->def.gravity[axis],
+                       .distance = 0.5 * h * cell->fill[axis],
+                       .known = true};
+  if (cell->beyond[direction] == MPSI_PORE_DRAINED) {
+    *behind = cell;
+    return to_drained(mpm, cell, cell->face[direction], direction, x, 0.5 * h * cell->fill[axis], p,
+                      area_of(mpm, cell, NULL, direction, X));
+  }
+  const mpsi_pore_cell *beside = mpsi_pore_beside(mpm, g, k, direction);
+  const double area = area_of(mpm, cell, beside, direction, X);
+  if (!beside->thin)
+    return to_cell(mpm, cell, beside, direction, p, pressure_of(beside, end), area);
+  if (!(beside->free >> direction & 1) || beside->beyond[direction] != MPSI_PORE_DRAINED)
+    return none;
+  *behind = beside;
+  const double own = 0.5 * h + sign * -cell->shift[axis];
+  return to_drained(mpm, cell, beside->face[direction], direction, x, own + h * beside->fill[axis],
+                    p, area_of(mpm, cell, NULL, direction, X));
+}
+
+/* Centre of the filled part of cell k of a block of nodes; the coordinate of its box along x. */
+static double centre_of(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell,
+                        double *x) {
+  int place[3];
+  mpsi_unravel(k, MPSI_SIDE, place);
+  const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
+  mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
+  for (int c = 0; c < mpm->dim; c++) x[c] += cell->shift[c];
+  return (double)mpm->grid.nodes[g].at[0] * MPSI_SIDE + place[0];
+}
+
+/* ---- pressures at the end of the step -------------------------------------------------------- */
+
+static double *outflow_of(const mps_mpm *mpm, int64_t g, int face) {
+  return &mpm->water->outflow[g][face < 0 ? MPS_PORE_MAX_FACES : face];
+}
+
+/* What a thin cell loses goes through one of its drained faces. */
+static void squeeze(mps_mpm *mpm, int64_t g, mpsi_pore_cell *cell) {
+  int d = 0;
+  while (!((cell->free >> d & 1) && cell->beyond[d] == MPSI_PORE_DRAINED)) d++;
+  cell->gain = cell->change / (mpm->run.dt * mpm->def.measure);
+  *outflow_of(mpm, g, cell->face[d]) -= cell->gain;
+}
+
+static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
+  const struct mpsi_water *water = mpm->water;
+  const double dt = mpm->run.dt;
+  double x[3], flux = 0.0;
+  const double X = centre_of(mpm, g, k, cell, x);
+  for (int d = 0; d < 2 * mpm->dim && water->flows; d++) {
+    const mpsi_pore_cell *behind;
+    const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
+    if (f.known) flux += f.flux;
+    if (f.known && behind) *outflow_of(mpm, g, behind->face[d]) -= f.flux;
+  }
+  /* a cell less than half full at an impervious surface: else its steps would be short */
+  const double space = fmax(
+      cell->space, 0.5 * cell->space / fmax(1e-3, cell->fill[0] * cell->fill[1] * cell->fill[2]));
+  const double strain = cell->change / (cell->volume - cell->change);
+  cell->gain = flux;
+  cell->now = cell->p + water->def.bulk / cell->n * (dt * flux / space - strain);
+}
+
+static void find_pressures(mps_mpm *mpm, int64_t g, int32_t worker) {
+  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
+  (void)worker;
+  memset(mpm->water->outflow[g], 0, sizeof mpm->water->outflow[g]);
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    if (mpsi_pore_empty(&cell[k])) continue;
+    if (cell[k].thin)
+      squeeze(mpm, g, &cell[k]);
+    else
+      advance(mpm, g, k, &cell[k]);
+  }
+}
+
+/* ---- slopes ---------------------------------------------------------------------------------- */
+
+/* To the cell's centre between two faces. */
+static double between(const face_flow *below, const face_flow *above) {
+  if (below->known && above->known)
+    return (below->slope * above->distance + above->slope * below->distance) /
+           (below->distance + above->distance);
+  return below->known ? below->slope : above->known ? above->slope : 0.0;
+}
+
+static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
+  double x[3];
+  const double X = centre_of(mpm, g, k, cell, x);
+  for (int c = 0; c < mpm->dim; c++) {
+    const mpsi_pore_cell *behind;
+    const face_flow below = at_face(mpm, g, k, 2 * c, true, cell, x, X, &behind);
+    const face_flow above = at_face(mpm, g, k, 2 * c + 1, true, cell, x, X, &behind);
+    cell->g[c] = between(&below, &above);
+  }
+}
+
+/* On the line from the neighbours inside to the surface, the mean over the axes that have one. */
+static void interpolate(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
+  const double h = mpm->def.cell;
+  double x[3], sum = 0.0;
+  int lines = 0;
+  centre_of(mpm, g, k, cell, x);
+  for (int d = 0; d < 2 * mpm->dim; d++) {
+    const int axis = d / 2, sign = d & 1 ? 1 : -1;
+    if (!(cell->free >> d & 1) || cell->beyond[d] != MPSI_PORE_DRAINED) continue;
+    const mpsi_pore_cell *inside = mpsi_pore_beside(mpm, g, k, d ^ 1);
+    double at[3] = {x[0], x[1], x[2]};
+    at[axis] += sign * 0.5 * h * cell->fill[axis];
+    const double surface = given_pressure(mpm, cell->face[d], at);
+    cell->g[axis] = 0.0;
+    if (mpsi_pore_empty(inside) || inside->thin) continue;
+    const double way = 0.5 * h - sign * inside->shift[axis] + h * cell->fill[axis];
+    const double slope = (surface - inside->now) / way; /* outwards */
+    cell->g[axis] = sign * slope;
+    sum += surface - slope * 0.5 * h * cell->fill[axis];
+    lines++;
+  }
+  cell->now = lines > 0 ? sum / lines : 0.0;
+}
+
+static void find_slopes(mps_mpm *mpm, int64_t g, int32_t worker) {
+  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
+  (void)worker;
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    if (mpsi_pore_empty(&cell[k])) continue;
+    if (cell[k].thin)
+      interpolate(mpm, g, k, &cell[k]);
+    else
+      find_slope(mpm, g, k, &cell[k]);
+  }
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+/* Permeability after a change of volume by the factor `ratio`: v follows it, and e = v - 1. */
+static double permeability_after(const mps_pore_water_def *def, double k, double n, double ratio) {
+  const double v = 1.0 / (1.0 - n); /* before */
+  if (def->exponent != 0.0) k *= pow(ratio, def->exponent);
+  if (def->ratio_slope < INFINITY) k *= exp(v * (ratio - 1.0) / def->ratio_slope);
+  return k;
+}
+
+static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const struct mpsi_water *water = mpm->water;
+  const mpsi_columns *p = &mpm->p;
+  const double weight = weight_of_water(mpm);
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    double centre[3];
+    const mpsi_pore_cell *cell = mpsi_pore_cell_of(mpm, cells, k, centre);
+    const double ratio = p->V[k] / water->former[k];
+    double now = cell->now;
+    for (int c = 0; c < mpm->dim; c++) {
+      now += cell->g[c] * (p->x[c][k] - centre[c] - cell->shift[c]);
+      p->g[c][k] = cell->g[c];
+    }
+    p->u[k] = now;
+    if (water->flows) {
+      p->k[k] = permeability_after(&water->def, p->k[k], p->n[k], ratio);
+      p->m[k] += water->def.density * mpm->run.dt * cell->gain * mpm->def.measure *
+                 (p->V[k] / cell->volume);
+      for (int c = 0; c < mpm->dim && water->seepage[0]; c++)
+        water->seepage[c][k] =
+            -p->k[k] / weight * (cell->g[c] - water->def.density * mpm->def.gravity[c]);
+    }
+    p->n[k] = 1.0 - (1.0 - p->n[k]) / ratio;
+  }
+}
+
+void mpsi_pore_flow(mps_mpm *mpm) {
+  const mpsi_pass pressures = {.finish = find_pressures};
+  const mpsi_pass particles = {.finish = find_slopes, .gather = give_to_particles};
+  mpsi_mpm_run_pass(mpm, &pressures);
+  mpsi_mpm_run_pass(mpm, &particles);
+}

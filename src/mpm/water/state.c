@@ -1,0 +1,61 @@
+/* state.c - the water of a solver between steps: values that the caller has written, its mass, and
+ * what snapshots and checkpoints keep besides the fields. SPDX-License-Identifier: BSD-3-Clause */
+#include "water.h"
+
+static mps_status refuse_particle(const mps_mpm *mpm, const char *function, int64_t k,
+                                  const char *field, double value, const char *allowed) {
+  const int64_t id = mpsi_particles_integers(mpm->particles, "id")[k];
+  (void)mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                  "'%s' of particle %lld is %g, must be %s", field, (long long)id, value, allowed);
+  mpsi_fail_where(mpm->context, -1, id);
+  return MPS_ERROR_ARGUMENT;
+}
+
+mps_status mpsi_pore_check(const mps_mpm *mpm, const char *function) {
+  const mpsi_columns *p = &mpm->p;
+  const double rho = mpm->water ? mpm->water->def.density : 0.0;
+  for (int64_t k = 0; mpm->water && k < p->count; k++) {
+    const double mixture = p->m[k] / p->V[k];
+    if (!(p->n[k] > 0.0 && p->n[k] < 1.0))
+      return refuse_particle(mpm, function, k, "porosity", p->n[k], "in (0, 1)");
+    if (!isfinite(p->u[k]))
+      return refuse_particle(mpm, function, k, "pore_pressure", p->u[k], "finite");
+    if (p->k && !(p->k[k] > 0.0 && p->k[k] <= MPSI_PORE_FASTEST))
+      return refuse_particle(mpm, function, k, "permeability", p->k[k], "in (0, 1] m/s");
+    if (!(mixture > p->n[k] * rho))
+      return refuse_particle(
+          mpm, function, k, "density", mixture,
+          "that of grains and water together, above porosity times that of water");
+  }
+  return MPS_OK;
+}
+
+double mpsi_pore_mass(const mps_mpm *mpm) {
+  const mps_pore_water_def *def = &mpm->water->def;
+  double sum = 0.0;
+  for (int64_t k = 0; k < mpm->p.count; k++)
+    sum += def->density * mpm->p.n[k] * mpm->p.V[k] * (1.0 + mpm->p.u[k] / def->bulk);
+  return sum;
+}
+
+void mpsi_pore_free(mps_mpm *mpm) {
+  if (!mpm->water) return;
+  mpsi_free(mpm->context, mpm->water->cell_room.item);
+  mpsi_free(mpm->context, mpm->water->beside_room.item);
+  mpsi_free(mpm->context, mpm->water->outflow_room.item);
+  mpsi_free(mpm->context, mpm->water->column_room.item);
+  mpsi_free(mpm->context, mpm->water);
+  mpm->water = NULL;
+}
+
+void mpsi_pore_list_state(mpsi_state *state, mps_mpm *mpm) {
+  mpsi_state_agree_integer(state, "pore_water", mpm->water != NULL);
+  if (!mpm->water) return;
+  mpsi_state_enter(state, "water");
+  mpsi_state_agree_integer(state, "flows", mpm->water->flows);
+  mpsi_state_agree_integer(state, "faces", mpm->water->faces);
+  mpsi_state_f64(state, "start", &mpm->water->start, 1);
+  mpsi_state_f64(state, "drained", mpm->water->drained, MPSI_PORE_FACES);
+  mpsi_state_f64(state, "rate", mpm->water->rate, MPSI_PORE_FACES);
+  mpsi_state_leave(state);
+}

@@ -1,0 +1,98 @@
+/* update.c - the water's part of a step: what comes before the scatter, and what comes after the
+ * particles have moved. SPDX-License-Identifier: BSD-3-Clause */
+#include "water.h"
+
+#include <string.h>
+
+/* ---- before ---------------------------------------------------------------------------------- */
+
+enum { OWN_COLUMNS = 4 }; /* the normal components of the stress; volumes */
+
+static mps_status make_room(mps_mpm *mpm, const char *function) {
+  struct mpsi_water *water = mpm->water;
+  mps_context *context = mpm->context;
+  const int64_t blocks = mpm->grid.node_count, nodes = blocks * mpm->grid.block_nodes;
+  const int64_t stride = mpm->p.count + MPSI_PARTICLES_PADDING;
+  if (!mpsi_room_ensure(context, &water->cell_room, nodes, sizeof *water->cell) ||
+      !mpsi_room_ensure(context, &water->beside_room, 6 * blocks, sizeof *water->beside) ||
+      !mpsi_room_ensure(context, &water->outflow_room, blocks, sizeof *water->outflow) ||
+      !mpsi_room_ensure(context, &water->column_room, OWN_COLUMNS * stride, sizeof(double)))
+    return mpsi_fail_memory(context, function, (size_t)nodes * sizeof *water->cell);
+  water->cell = water->cell_room.item;
+  water->beside = water->beside_room.item;
+  water->outflow = water->outflow_room.item;
+  double *column = water->column_room.item;
+  for (int c = 0; c < 3; c++) mpm->p.t[c] = column + c * stride;
+  water->former = column + 3 * stride;
+  for (int64_t k = mpm->p.count; k < stride; k++) /* loops read some more */
+    for (int c = 0; c < 3; c++) mpm->p.t[c][k] = 0.0;
+  return MPS_OK;
+}
+
+/* Number of the block of nodes at `at`, or -1; the list is in order. */
+static int32_t find_block(const mpsi_grid *grid, const int32_t *at) {
+  int64_t low = 0, high = grid->node_count;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (mpsi_block_before(grid->nodes[middle].at, at))
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  const bool found = low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at);
+  return found ? (int32_t)low : -1;
+}
+
+static void link_blocks(mps_mpm *mpm) {
+  const mpsi_grid *grid = &mpm->grid;
+  for (int64_t g = 0; g < grid->node_count; g++)
+    for (int d = 0; d < 6; d++) {
+      int32_t at[3];
+      memcpy(at, grid->nodes[g].at, sizeof at);
+      at[d / 2] += d & 1 ? 1 : -1;
+      mpm->water->beside[6 * g + d] = d < 2 * mpm->dim ? find_block(grid, at) : -1;
+    }
+}
+
+static void add_pressure(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_columns *p = &mpm->p;
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    for (int c = 0; c < 3; c++) p->t[c][k] = p->s[c][k] - p->u[k];
+    mpm->water->former[k] = p->V[k];
+  }
+}
+
+mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
+  if (!mpm->water) return MPS_OK;
+  const mps_status status = make_room(mpm, function);
+  if (status != MPS_OK) return status;
+  for (int c = 0; c < 3; c++)
+    mpm->water->seepage[c] =
+        c < mpm->dim ? mpsi_particles_column(mpm->particles, "seepage", c) : NULL;
+  if (mpm->run.steps == 0) mpm->water->start = mpsi_pore_mass(mpm);
+  link_blocks(mpm);
+  mpsi_mpm_for_cells(mpm, add_pressure);
+  return MPS_OK;
+}
+
+/* ---- after ----------------------------------------------------------------------------------- */
+
+static void sum_outflow(mps_mpm *mpm) {
+  struct mpsi_water *water = mpm->water;
+  const double amount = water->def.density * mpm->def.measure;
+  for (int f = 0; f < MPSI_PORE_FACES; f++) {
+    double sum = 0.0; /* m3/s, in the order of the blocks */
+    for (int64_t g = 0; g < mpm->grid.node_count; g++) sum += water->outflow[g][f];
+    water->rate[f] = amount * sum;
+    water->drained[f] += water->rate[f] * mpm->run.dt;
+  }
+}
+
+void mpsi_pore_update(mps_mpm *mpm) {
+  if (!mpm->water) return;
+  mpsi_pore_find_cells(mpm);
+  mpsi_pore_flow(mpm);
+  if (mpm->water->flows) sum_outflow(mpm);
+}

@@ -1,0 +1,82 @@
+/* water.h - water in the pores (mps/pore_water.h): pressures of cells, the flow between them, and
+ * what the particles carry. A cell is the box above its node of the grid, and has the node's
+ * number. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_WATER_H
+#define MPSI_MPM_WATER_H
+
+#include "mpm/base/mpm_solver.h"
+
+#include <mps/pore_water.h>
+
+#define MPSI_PORE_FASTEST 1.0 /* m/s, of permeabilities */
+
+/* What is beyond a face of a cell. */
+enum { MPSI_PORE_CELL, MPSI_PORE_CLOSED, MPSI_PORE_DRAINED };
+
+/* Sums over the particles of a cell, and the means that follow; amounts are of the measure, the
+ * rest of 1 m or 1 rad. */
+typedef struct mpsi_pore_cell {
+  double volume;            /* sum V, m3; 0: there is nothing here */
+  double change;            /* sum of dV of the step, m3 */
+  double p, g[3];           /* Pa, at the centre of the cell's box; Pa/m */
+  double n, k;              /* porosity; m/s */
+  double fill[3], shift[3]; /* part of the box that is filled along each axis; m, from the box's
+                               centre to that of the filled part */
+  double space;             /* m3, of the filled part */
+  double now, gain;         /* Pa, at the end of the step; m3/s of water that flows in */
+  int8_t beyond[6];         /* MPSI_PORE_... of each face */
+  int8_t face[6];           /* number of the definition, -1: none */
+  uint8_t free;             /* bit d: nothing lies beyond face d, but perhaps a body */
+  bool thin;                /* less than half full at a drained surface: stores nothing */
+} mpsi_pore_cell;
+
+enum { MPSI_PORE_FACES = MPS_PORE_MAX_FACES + 1 }; /* the last: the free surface without one */
+
+struct mpsi_water {
+  mps_pore_water_def def;
+  bool flows;
+  mps_pore_face_def face[MPS_PORE_MAX_FACES];
+  int64_t faces;
+  double start;                       /* kg, of the measure */
+  double drained[MPSI_PORE_FACES];    /* kg */
+  double rate[MPSI_PORE_FACES];       /* kg/s, of the last step */
+  mpsi_pore_cell *cell;               /* by nodes of the grid */
+  int32_t *beside;                    /* by blocks of nodes: the 6 beside, or -1 */
+  double (*outflow)[MPSI_PORE_FACES]; /* m3/s, by blocks of nodes */
+  double *former;                     /* m3, volumes at the beginning of the step */
+  double *seepage[3];                 /* of the set, or NULL */
+  mpsi_room cell_room, beside_room, outflow_room, column_room;
+};
+
+static inline bool mpsi_pore_empty(const mpsi_pore_cell *cell) {
+  return !cell || !(cell->volume > 0.0);
+}
+/* Radius (m) that volumes and faces are multiplied by at grid coordinate X; 1 but in axisymmetry.
+ */
+static inline double mpsi_pore_radius(const mps_mpm *mpm, double X) {
+  if (mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) return 1.0;
+  return mpm->def.origin[0] + X * mpm->def.cell;
+}
+
+/* cells.c: the cell of a particle of a block; the one beside cell k of block g, or NULL. */
+mpsi_pore_cell *mpsi_pore_cell_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                  int64_t particle, double *centre);
+mpsi_pore_cell *mpsi_pore_beside(const mps_mpm *mpm, int64_t g, int k, int direction);
+/* cells.c: sums of the particles; then faces and the filled part of each cell. */
+void mpsi_pore_find_cells(mps_mpm *mpm);
+/* flow.c: pressures at the end of the step; then their slopes, and what the particles take. */
+void mpsi_pore_flow(mps_mpm *mpm);
+
+/* update.c: before the scatter of a step: room, and the stress with the water's part. */
+mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function);
+/* update.c: after a step whose values are numbers. */
+void mpsi_pore_update(mps_mpm *mpm);
+/* state.c: values that the caller has written: MPS_ERROR_ARGUMENT names the particle. */
+mps_status mpsi_pore_check(const mps_mpm *mpm, const char *function);
+/* state.c: of the water in the particles' pores, kg of the measure. */
+double mpsi_pore_mass(const mps_mpm *mpm);
+/* state.c: the state besides the fields; what is freed with the solver. */
+void mpsi_pore_list_state(mpsi_state *state, mps_mpm *mpm);
+void mpsi_pore_free(mps_mpm *mpm);
+
+#endif

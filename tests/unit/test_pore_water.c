@@ -1,0 +1,185 @@
+/* test_pore_water.c - what water in the pores refuses, and what an error leaves as it was; the same
+ * bits with threads, and after a snapshot and a checkpoint.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "pore_column.h"
+#include "test_fixture.h"
+
+#include <mps/mpm_settle.h>
+
+#include <stdio.h>
+#include <string.h>
+
+static void refused(pore_column *c, const mps_pore_water_def *def, mps_status expected,
+                    const char *word) {
+  const int32_t fields = mps_particles_field_count(c->s.particles);
+  const double dt = mps_mpm_dt(c->s.mpm);
+  assert_int_equal(mps_mpm_add_pore_water(c->s.mpm, def), expected);
+  if (!strstr(mps_context_error(context)->message, word))
+    fail_msg("'%s' does not name %s", mps_context_error(context)->message, word);
+  assert_int_equal(mps_particles_field_count(c->s.particles), fields);
+  assert_true(mps_mpm_dt(c->s.mpm) == dt);
+}
+
+static void definitions_are_checked(void **state) {
+  (void)state;
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
+  mps_pore_water_def def = mps_pore_water_defaults();
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "'porosity' of particle"); /* no field, no value */
+  static const double bad[] = {0.0, 1.0, -0.1, INFINITY};
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    def.porosity = bad[k];
+    refused(&c, &def, MPS_ERROR_ARGUMENT, "porosity");
+  }
+  def.porosity = 0.4;
+  static const double rates[] = {0.0, -1e-5, 2.0, INFINITY};
+  for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
+    def.permeability = rates[k];
+    refused(&c, &def, MPS_ERROR_ARGUMENT, "permeability");
+  }
+  def.permeability = 1e-4, def.bulk = 0.0;
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "bulk");
+  def.bulk = NAN, def.density = NAN;
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "density");
+  def.density = 6000.0;
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "'density' of particle");
+  def.density = 1000.0, def.exponent = -1.0;
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "exponent");
+  def.exponent = 0.0, def.ratio_slope = 0.0;
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "ratio_slope");
+  def.ratio_slope = INFINITY;
+  double number;
+  assert_int_equal(mps_mpm_get_pore_flow(c.s.mpm, -1, &number, NULL), MPS_ERROR_STATE);
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &def));
+  assert_int_equal(mps_mpm_add_pore_water(c.s.mpm, &def), MPS_ERROR_STATE);
+  assert_int_equal(mps_mpm_settle(c.s.mpm, NULL, NULL), MPS_ERROR_UNSUPPORTED);
+  assert_int_equal(mps_mpm_get_pore_flow(c.s.mpm, 0, &number, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_mpm_set_pore_level(c.s.mpm, NULL), MPS_ERROR_ARGUMENT);
+  mpm_scene_end(&c.s);
+}
+
+static void fields_are_checked(void **state) {
+  (void)state;
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
+  mps_assert_ok(context, mps_particles_set(c.s.particles, "porosity", 0, 0.4));
+  mps_assert_ok(context, mps_particles_add_field(c.s.particles, "permeability", 0));
+  mps_edit k = mpm_scene_edit(&c.s, "permeability");
+  for (int64_t i = 0; i < mps_particles_count(c.s.particles); i++)
+    *mps_edit_f64(&k, i, 0) = i == 3 ? 0.0 : 1e-4; /* one undrained among drained ones */
+  mpm_scene_commit(&c.s, &k);
+  mps_pore_water_def def = mps_pore_water_defaults();
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "'permeability' of particle");
+  mps_assert_ok(context, mps_particles_set(c.s.particles, "permeability", 0, 1e-4));
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &def));
+  mps_assert_ok(context, mps_mpm_step(c.s.mpm, 2));
+  mps_assert_ok(context, mps_particles_set(c.s.particles, "porosity", 0, 1.0));
+  assert_int_equal(mps_mpm_step(c.s.mpm, 1), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_mpm_steps(c.s.mpm), 2);
+  mps_assert_ok(context, mps_particles_set(c.s.particles, "porosity", 0, 0.4));
+  mps_assert_ok(context, mps_mpm_step(c.s.mpm, 1));
+  mpm_scene_end(&c.s);
+}
+
+static void faces_are_checked(void **state) {
+  (void)state;
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
+  mps_pore_face_def face = mps_pore_face_defaults();
+  mps_pore_water_def water = mps_pore_water_defaults();
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_STATE);
+  water.porosity = 0.4;
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  face.kind = 2;
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  face = mps_pore_face_defaults(), face.sides = 1u << 4;
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  face = mps_pore_face_defaults(), face.pressure = NAN;
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  face = mps_pore_face_defaults(), face.lower[0] = 1.0, face.upper[0] = 0.0;
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  face = mps_pore_face_defaults(), face.at_rest = 2;
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  face = mps_pore_face_defaults();
+  for (int32_t k = 0; k < MPS_PORE_MAX_FACES; k++)
+    mps_assert_ok(context, mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_mpm_set_pore_face(c.s.mpm, MPS_PORE_MAX_FACES, &face), MPS_ERROR_ARGUMENT);
+  mps_assert_ok(context, mps_mpm_set_pore_face(c.s.mpm, 0, &face));
+  mpm_scene_end(&c.s);
+}
+
+/* ---- the same bits --------------------------------------------------------------------------- */
+
+/* A block of ground that falls on a corner of the domain, so that surfaces cross cells. */
+static mpm_scene block(mps_context *where) {
+  mpm_scene s = mpm_scene_begin(where, 0.01, 0.0, 0.03, 1e5);
+  mpm_scene_box(&s, 0.1, 0.03, 0.9, 0.73);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  def.lower[0] = def.lower[1] = 0.0;
+  def.gravity[1] = -9.81;
+  mpm_scene_solve(&s, &def);
+  mps_pore_water_def water = mps_pore_water_defaults();
+  water.porosity = 0.4, water.permeability = 1e-4, water.exponent = 2.0, water.ratio_slope = 0.5;
+  mps_assert_ok(where, mps_mpm_add_pore_water(s.mpm, &water));
+  return s;
+}
+
+static void assert_same(mpm_scene *a, mpm_scene *b) {
+  static const char *const names[] = {"position", "stress",       "pore_pressure",
+                                      "porosity", "permeability", "mass"};
+  for (size_t f = 0; f < sizeof names / sizeof *names; f++) {
+    const mps_view x = mpm_scene_view(a, names[f]), y = mpm_scene_view(b, names[f]);
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      for (int64_t c = 0; c < x.shape[1]; c++)
+        assert_true(*mps_view_f64(&x, k, c) == *mps_view_f64(&y, k, c));
+  }
+  double p, q;
+  mps_assert_ok(a->context, mps_mpm_get_pore_flow(a->mpm, -1, NULL, &p));
+  mps_assert_ok(b->context, mps_mpm_get_pore_flow(b->mpm, -1, NULL, &q));
+  assert_true(p == q);
+}
+
+static void threads_change_no_bit(void **state) {
+  (void)state;
+  mps_context *many = test_context(MPS_CONTEXT_EXECUTOR_OPENMP, 3);
+  mpm_scene one = block(context), three = block(many);
+  mps_assert_ok(context, mps_mpm_step(one.mpm, 200));
+  mps_assert_ok(many, mps_mpm_step(three.mpm, 200));
+  assert_same(&one, &three);
+  mpm_scene_end(&one);
+  mpm_scene_end(&three);
+  mps_context_destroy(&many);
+}
+
+static void restarts_change_no_bit(void **state) {
+  (void)state;
+  mpm_scene whole = block(context), cut = block(context), other = block(context);
+  mps_snapshot *shot = NULL;
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, 150));
+  mps_assert_ok(context, mps_mpm_step(cut.mpm, 100));
+  mps_assert_ok(context, mps_mpm_snapshot(cut.mpm, &shot));
+  const mps_status saved = mps_mpm_save(cut.mpm, "pore_water.h5", NULL);
+  mps_assert_ok(context, mps_mpm_step(cut.mpm, 30));
+  mps_assert_ok(context, mps_mpm_rollback(cut.mpm, shot));
+  mps_assert_ok(context, mps_mpm_step(cut.mpm, 50));
+  assert_same(&whole, &cut);
+  if (saved == MPS_OK) {
+    mps_assert_ok(context, mps_mpm_restore(other.mpm, "pore_water.h5", NULL));
+    mps_assert_ok(context, mps_mpm_step(other.mpm, 50));
+    assert_same(&whole, &other);
+    (void)remove("pore_water.h5");
+  } else {
+    assert_int_equal(saved, MPS_ERROR_UNSUPPORTED); /* a build without HDF5 */
+  }
+  mps_snapshot_destroy(&shot);
+  mpm_scene_end(&whole);
+  mpm_scene_end(&cut);
+  mpm_scene_end(&other);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(definitions_are_checked), cmocka_unit_test(fields_are_checked),
+      cmocka_unit_test(faces_are_checked), cmocka_unit_test(threads_change_no_bit),
+      cmocka_unit_test(restarts_change_no_bit)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

@@ -1,0 +1,197 @@
+/* test_mpm_pore_water.c - pore water against exact solutions: a layer that consolidates under a
+ * load (Terzaghi) in plane strain, axisymmetry and space, water at rest under its weight with the
+ * surface at any part of a cell, undrained compression, flow through layers.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "pore_column.h"
+#include "test_fixture.h"
+
+#include <string.h>
+
+#define LOAD 1000.0 /* Pa */
+
+static void add_load(pore_column *c, double pressure) {
+  int64_t ids[16];
+  const double traction[] = {0.0, -pressure, 0.0};
+  const int64_t count = pore_column_top(c, ids, 16);
+  mps_mpm_load_def load = mpm_scene_load_def(count, ids, NULL, traction, 3, NULL);
+  mps_assert_ok(context, mps_mpm_add_load(c->s.mpm, &load, NULL));
+}
+
+static double volume_of(pore_column *c) { return mpm_scene_totals(&c->s).volume; }
+
+static void terzaghi(int32_t geometry) {
+  static const double times[] = {0.05, 0.2, 0.5};
+  pore_column c = pore_column_begin(context, geometry, 20, 0.0, 10.0);
+  mps_pore_water_def water = mps_pore_water_defaults();
+  water.porosity = 0.4;
+  water.bulk = 0.4 * 50.0 * c.modulus;
+  water.permeability =
+      0.25 * 1000.0 * MPS_PORE_GRAVITY / c.modulus; /* c_v = 0.25 m2/s: T = 1 is 4 s */
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  mps_assert_ok(context, mps_particles_set(c.s.particles, "pore_pressure", 0, LOAD));
+  const double volume = volume_of(&c);
+  add_load(&c, LOAD);
+  for (size_t t = 0; t < sizeof times / sizeof *times; t++) {
+    const double T = times[t];
+    mps_assert_ok(context, mps_mpm_run(c.s.mpm, T * 4.0, 1000000, NULL, NULL));
+    const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
+    double worst = 0.0;
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double y = *mps_view_f64(&x, k, 1);
+      worst = fmax(worst, fabs(*mps_view_f64(&u, k, 0) / LOAD - pore_terzaghi(1.0 - y, T)));
+    }
+    const double settled = (1.0 - volume_of(&c) / volume) * c.modulus / LOAD;
+    mps_pore_budget budget;
+    mps_assert_ok(context, mps_mpm_get_pore_budget(c.s.mpm, &budget));
+    print_message(
+        "geometry %d, T = %.2f: u/q within %.2f %%, S M'/(q H) = %.4f, exact %.4f; %.5g kg "
+        "drained, residual %.1e\n",
+        geometry, T, 100.0 * worst, settled, pore_terzaghi_degree(T), budget.drained,
+        budget.residual);
+    assert_true(worst < 0.01);
+    mps_assert_near(settled, pore_terzaghi_degree(T), 0.02);
+    assert_true(fabs(budget.residual) < 0.01 * budget.drained);
+  }
+  mpm_scene_end(&c.s);
+}
+
+static void consolidates_in_the_plane(void **state) {
+  (void)state;
+  terzaghi(MPS_MPM_GEOMETRY_PLANE_STRAIN);
+}
+
+static void consolidates_in_a_ring(void **state) {
+  (void)state;
+  terzaghi(MPS_MPM_GEOMETRY_AXISYMMETRIC);
+}
+
+static void consolidates_in_space(void **state) {
+  (void)state;
+  terzaghi(MPS_MPM_GEOMETRY_SPACE);
+}
+
+/* ---- water at rest --------------------------------------------------------------------------- */
+
+/* Pressure rho_w g depth, effective stress of the buoyant weight, the surface at any part of a
+ * cell: all stays as it is, within the half-filled cells of the surface. */
+static void at_rest(double cells) {
+  const double g = 10.0, water_weight = 1000.0 * g, weight = 2000.0 * g, K0 = 0.3 / 0.7;
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, cells, g, 4.0);
+  mps_pore_water_def water = mps_pore_water_defaults();
+  water.porosity = 0.4;
+  water.bulk = 0.4 * 10.0 * c.modulus;
+  water.permeability = 0.1 * 1000.0 * MPS_PORE_GRAVITY / c.modulus;
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  const double surface[] = {0.0, 1.0};
+  mps_assert_ok(context, mps_mpm_set_pore_level(c.s.mpm, surface));
+  mps_view x = mpm_scene_view(&c.s, "position");
+  mps_edit stress = mpm_scene_edit(&c.s, "stress");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double yy = -(weight - water_weight) * (1.0 - *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = K0 * yy;
+    *mps_edit_f64(&stress, k, 1) = yy;
+  }
+  mpm_scene_commit(&c.s, &stress);
+  mps_assert_ok(context, mps_mpm_run(c.s.mpm, 1.0, 1000000, NULL, NULL));
+  x = mpm_scene_view(&c.s, "position");
+  const mps_view u = mpm_scene_view(&c.s, "pore_pressure"), v = mpm_scene_view(&c.s, "velocity");
+  double worst = 0.0, fastest = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double exact = water_weight * (1.0 - *mps_view_f64(&x, k, 1));
+    worst = fmax(worst, fabs(*mps_view_f64(&u, k, 0) - exact) / water_weight);
+    fastest = fmax(fastest, fabs(*mps_view_f64(&v, k, 1)));
+  }
+  mps_pore_budget budget;
+  mps_assert_ok(context, mps_mpm_get_pore_budget(c.s.mpm, &budget));
+  print_message("%.1f cells: p_w within %.3f %% of the base's, %.1e m/s, %.1e of the water left\n",
+                cells, 100.0 * worst, fastest, budget.drained / budget.start);
+  assert_true(worst < 0.015);
+  assert_true(fastest < 3e-5);
+  assert_true(fabs(budget.drained) < 1e-3 * budget.start);
+  mpm_scene_end(&c.s);
+}
+
+static void stays_at_rest(void **state) {
+  (void)state;
+  at_rest(20.0);
+  at_rest(19.3);
+  at_rest(19.5);
+  at_rest(19.7);
+}
+
+/* ---- layers ---------------------------------------------------------------------------------- */
+
+/* Water that flows up through two layers at 4 : 1: the flux q = p/(rho_w g (H1/k1 + H2/k2)), and
+ * 4/5 of the pressure is left at their interface. */
+static void flows_through_layers(void **state) {
+  (void)state;
+  const double k1 = 4e-4, k2 = 1e-4, base = 1000.0, weight = 1000.0 * MPS_PORE_GRAVITY;
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 10.0, 0.0, 4.0);
+  mps_assert_ok(context, mps_particles_add_field(c.s.particles, "permeability", 0));
+  mps_assert_ok(context, mps_particles_add_field(c.s.particles, "seepage", 0));
+  mps_view x = mpm_scene_view(&c.s, "position");
+  mps_edit k_of = mpm_scene_edit(&c.s, "permeability");
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    *mps_edit_f64(&k_of, k, 0) = *mps_view_f64(&x, k, 1) < 0.5 ? k1 : k2;
+  mpm_scene_commit(&c.s, &k_of);
+  mps_pore_water_def water = mps_pore_water_defaults();
+  water.porosity = 0.4;
+  water.bulk = 0.4 * 4.0 * c.modulus;
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  mps_pore_face_def face = mps_pore_face_defaults();
+  int32_t number;
+  face.kind = MPS_PORE_FACE_DRAINED;
+  face.sides = 1u << MPS_MPM_SIDE_Y_LOWER;
+  face.pressure = base;
+  mps_assert_ok(context, mps_mpm_add_pore_face(c.s.mpm, &face, &number));
+  mps_assert_ok(context, mps_mpm_run(c.s.mpm, 100.0, 1000000, NULL, NULL));
+  const double flux = base / (weight * (0.5 / k1 + 0.5 / k2)),
+               middle = base * 0.5 / k2 * weight * flux / base;
+  double in, out, worst = 0.0;
+  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, number, &in, NULL));
+  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, -1, &out, NULL));
+  x = mpm_scene_view(&c.s, "position");
+  const mps_view u = mpm_scene_view(&c.s, "pore_pressure"), q = mpm_scene_view(&c.s, "seepage");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double y = *mps_view_f64(&x, k, 1);
+    const double exact = y < 0.5 ? base + (middle - base) * y / 0.5 : middle * (1.0 - y) / 0.5;
+    worst = fmax(worst, fabs(*mps_view_f64(&u, k, 0) - exact) / base);
+    mps_assert_near(*mps_view_f64(&q, k, 1), flux, 0.02 * flux);
+  }
+  print_message("layers: p within %.2f %%, %.6g kg/s in, %.6g kg/s out, exact %.6g\n",
+                100.0 * worst, -in, out, flux * 1000.0 * c.h);
+  mps_assert_near(-in, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
+  mps_assert_near(out, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
+  assert_true(worst < 0.01);
+  mpm_scene_end(&c.s);
+}
+
+/* ---- undrained ------------------------------------------------------------------------------- */
+
+/* A load on undrained ground between rollers: p = q/(1 + n M'/K_w). */
+static void undrained_column(void **state) {
+  (void)state;
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 10.0, 0.0, 200.0);
+  mps_pore_water_def water = mps_pore_water_defaults();
+  water.porosity = 0.4;
+  water.bulk = 0.4 * 4.0 * c.modulus;
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  add_load(&c, LOAD);
+  mps_assert_ok(context, mps_mpm_run(c.s.mpm, 0.3, 1000000, NULL, NULL));
+  const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
+  double worst = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    if (*mps_view_f64(&x, k, 1) < 0.75)
+      worst = fmax(worst, fabs(*mps_view_f64(&u, k, 0) / LOAD - 0.8));
+  print_message("undrained: p/q within %.2f %% of 0.8\n", 100.0 * worst);
+  assert_true(worst < 0.008);
+  mpm_scene_end(&c.s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stays_at_rest),          cmocka_unit_test(flows_through_layers),
+      cmocka_unit_test(undrained_column),       cmocka_unit_test(consolidates_in_the_plane),
+      cmocka_unit_test(consolidates_in_a_ring), cmocka_unit_test(consolidates_in_space)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
