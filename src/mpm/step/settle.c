@@ -22,7 +22,7 @@ mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
 
 /* ---- bodies stand still ---------------------------------------------------------------------- */
 
-static mps_status check_bodies(mps_mpm *mpm, const char *function) {
+static mps_status check_still(mps_mpm *mpm, const char *function) {
   if (mpm->water && mpm->water->flows)
     return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
                      "the solver has pore water that flows, and no time passes while the particles "
