@@ -341,11 +341,11 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
   json_number(f, "height_error_rms", wall.rms);
   json_number(f, "height_error_max", wall.worst);
   json_number(f, "detached_max", detached);
-  if (front.points > 0)
-    printf("front against the experiment: RMS %.3f, at most %+.3f (a)", front.rms, front.worst);
-  if (set.points > 0)
-    printf("; clock set at Z = 1.44: RMS %.3f, by all points: RMS %.3f", set.rms, fitted.rms);
-  if (front.points > 0) printf("\n");
+  if (front.points == 0) return;
+  printf("front against the experiment: RMS %.3f, at most %+.3f (a)", front.rms, front.worst);
+  if (set.points > 0) printf("; clock set at Z = 1.44: RMS %.3f", set.rms);
+  if (fitted.points > 0) printf("; by all points: RMS %.3f", fitted.rms);
+  printf("\n");
 }
 
 static bool finish(app *a, void *user) {

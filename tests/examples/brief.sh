@@ -10,6 +10,7 @@ run() { # run PROGRAM OPTIONS...: it ends well and writes a summary of numbers
     { cat "$work/log" >&2; fail "$program $*"; }
   grep -q '[0-9]' "$work/$program/summary.json" || fail "$program: no number in summary.json"
   ! grep -qiE 'nan|inf[,} ]' "$work/$program/summary.json" || fail "$program: NaN in summary.json"
+  ! grep -qiwE 'nan|inf' "$work/log" || fail "$program: NaN in what it prints"
 }
 programs=$1
 run mps-wave --width 4 --height 10 --duration 0.1 --frames 2
@@ -22,6 +23,7 @@ run mps-pile --h 0.02 --wall 0.04 --soil 0.4x0.8 --depth 0.01
 run mps-penetrometer --soil 2x2x2 --depth 0.002
 run mps-dam-break --base 0.05 --h 0.005 --duration 0.02
 run mps-dam-break --method mps --base 0.05 --h 0.01 --duration 0.02
+run mps-dam-break --base 0.05 --h 0.01 --duration 0.0632 # one point of the experiment
 run mps-column-collapse --h 0.02 --falls 0.01
 run mps-plate --case hole --cells 8
 run mps-cantilever --ny 4
