@@ -25,7 +25,7 @@
 typedef struct mpsi_cell_energy {
   double kinetic_before, kinetic;
   double loads;    /* work of gravity, loads and fields of forces */
-  double returned; /* its part by the velocities that light nodes give back (least_squares.c) */
+  double returned; /* its part by the velocities that light nodes give back (cut_gather.c) */
   double stresses; /* work of the nodes against the stresses at the beginning of the step */
   double seen;     /* the same by the gradient that the laws see */
   double warm;     /* work against the mean stresses of the step that the laws keep */

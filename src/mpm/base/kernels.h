@@ -1,5 +1,5 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * least_squares.c, least_squares_batch.c, search.c, sweep.c, and loops.h for what they have in
+ * cut_scatter.c, cut_gather.c, search.c, sweep.c, and loops.h for what they have in
  * common. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H

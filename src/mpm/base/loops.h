@@ -87,29 +87,6 @@ MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
 #endif
 }
 
-/* Inverse of a symmetric positive definite matrix by Gauss and Jordan; returns its determinant.
- * Rows are vectors: what is written by parts and read whole would wait for the memory. */
-MPSI_INLINE double mpsi_invert(int n, double m[4][4]) {
-  double determinant = 1.0;
-  mpsi_quad row[4] = {{0.0}};
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < 4; j++) row[i][j] = j >= n ? 0.0 : j < i ? m[j][i] : m[i][j];
-  MPSI_UNROLL for (int p = 0; p < n; p++) {
-    const double pivot = row[p][p];
-    determinant *= pivot;
-    row[p][p] = 1.0;
-    row[p] *= 1.0 / pivot;
-    MPSI_UNROLL for (int i = 0; i < n; i++) {
-      if (i == p) continue;
-      const double factor = row[i][p];
-      row[i][p] = 0.0;
-      row[i] -= factor * row[p];
-    }
-  }
-  for (int i = 0; i < n; i++) mpsi_put(m[i], row[i]);
-  return determinant;
-}
-
 /* c[i], and c[i + 1], ..., for all values of the nodes from i in a vector. */
 MPSI_INLINE mpsi_vec mpsi_by_node(const double *c, int i) {
 #if MPSI_WIDE == 2
@@ -246,40 +223,18 @@ typedef struct mpsi_gathered {
   double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
 } mpsi_gathered;
 
-/* ---- least_squares.c: particles whose support is cut ----------------------------------------- */
+/* ---- cut_scatter.c, cut_gather.c: particles whose support is cut ----------------------------- */
 
-/* Gives a particle to the tiles; at bodies also the sums of penalty contact. */
-void MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                            const mpsi_worker *worker, int64_t particle);
-/* What the nodes give to a particle: lanes 1 to 3 of each are components of the velocity. */
-typedef struct mpsi_fitted {
-  double v[4];
-  double slope[3][4];      /* 1/s, of the fit, by x, y, z, which the transfer takes */
-  double derivative[3][4]; /* 1/s, which the laws see: others along axes with a full stencil */
-  double own[3];           /* m/s, FLIP: what the particle keeps of its own */
-} mpsi_fitted;
-void MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                           const mpsi_worker *worker, int64_t particle,
-                                           mpsi_fitted *out);
-
-/* ---- least_squares_batch.c: particles beside bodies that act by impulses --------------------- */
-
-typedef enum mpsi_batched {
-  MPSI_BATCHED_NOT,  /* nothing is done: they are for least_squares.c; */
-  MPSI_BATCHED_FULL, /* their supports are full, they are as all others; the laws see the fit */
-  MPSI_BATCHED
-} mpsi_batched;
 /* Give particles [begin, end) of a chunk (that begins with particle `chunk`), all of one stencil,
- * to the tiles, and keep their fits; then take what the nodes give them, by the fits kept in the
- * same step. */
-mpsi_batched MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                                     const mpsi_worker *worker,
-                                                     const mpsi_places *places, int64_t chunk,
-                                                     int begin, int end);
-mpsi_batched MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                                    const mpsi_worker *worker,
-                                                    const mpsi_places *places, int64_t chunk,
-                                                    int begin, int end, mpsi_gathered *out);
+ * to the tiles, at bodies also the sums of penalty contact, and keep their fits; then take what the
+ * nodes give them. False: nothing is done, their supports are full and they are as all others, but
+ * the laws see the slopes of the fit. */
+bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                         const mpsi_worker *worker, const mpsi_places *places,
+                                         int64_t chunk, int begin, int end);
+bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                        const mpsi_worker *worker, const mpsi_places *places,
+                                        int64_t chunk, int begin, int end, mpsi_gathered *out);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
 void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,

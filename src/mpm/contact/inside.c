@@ -1,6 +1,6 @@
 /* inside.c - which nodes lie inside a body or outside the domain, and which are corners of cells
  * that hold particles, with the surface's normals there. These decide which nodes a particle near a
- * body may use (Nakamura 5.1, with the same-side test of least_squares.c).
+ * body may use (Nakamura 5.1, with the same-side test of support.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 

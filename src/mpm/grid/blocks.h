@@ -105,7 +105,7 @@ typedef struct mpsi_worker {
 } mpsi_worker;
 
 /* The fit of a particle beside bodies, from the scatter of a step to its gather
- * (least_squares_batch.c). */
+ * (least_squares.h). */
 typedef struct mpsi_kept_fit {
   double q[12];    /* the upper half of the inverse of M by rows, q00, q01, q02, ... (shape.h) */
   uint64_t active; /* bit 16 k + 4 j + i: node of the stencil that takes part */

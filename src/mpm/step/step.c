@@ -2,7 +2,7 @@
  *
  *   prepare    order of the particles, active nodes, pairs of blocks and bodies; nothing moves
  *   scatter    x, v, L, sigma, V, m --> mass, momentum and forces at the nodes: transfer/p2g.c
- *              (23)-(25), (39), least_squares.c (28)-(30)
+ *              (23)-(25), (39), cut_contact.h (28)-(30)
  *   update     velocities without and with the forces: node_update.c (26)
  *   contact    impulses between nodes and bodies: contact/constraints.c, impulses.c; or the penalty
  *              forces and friction of penalty_friction.c, src/contact/friction.c (31)-(34)

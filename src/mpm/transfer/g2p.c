@@ -1,6 +1,6 @@
 /* g2p.c - nodes to particles, Nakamura (41)-(43), (48), one block of cells at a time, and then,
  * while its particles are in the cache, their law and the speeds that bound the time step, (49),
- * (50). Particles with a cut support: least_squares.c. Compiled once for each instruction set.
+ * (50). Particles with a cut support: cut_gather.c. Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wall_support.h"
 
@@ -199,39 +199,6 @@ DEFINE_GATHER(3, 3)
 #define OF_KIND(name, dim, spline)                                                                 \
   ((dim) == 2 ? (spline) == 2 ? name##_2_2 : name##_2_3 : (spline) == 2 ? name##_3_2 : name##_3_3)
 
-/* One particle near bodies or corners. */
-static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                          int64_t particle, mpsi_gathered *out, int to) {
-  const int dim = mpm->dim;
-  mpsi_fitted one = {.own = {0.0}};
-  MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mpm, cells, worker, particle, &one);
-  for (int c = 0; c < dim; c++) {
-    out->v[c][to] = one.v[MPSI_VECTOR + c];
-    out->own[c][to] = one.own[c];
-    for (int d = 0; d < dim; d++) {
-      out->slope[dim * c + d][to] = one.slope[d][MPSI_VECTOR + c];
-      out->derivative[dim * c + d][to] = one.derivative[d][MPSI_VECTOR + c];
-    }
-  }
-}
-
-/* Particles [k, end) of a chunk, all of one stencil, beside bodies. */
-MPSI_INLINE void gather_beside(mps_mpm *mpm, const mpsi_cell_block *cells,
-                               const mpsi_worker *worker, int dim, int spline,
-                               const mpsi_places *places, int64_t chunk, int k, int end,
-                               const polynomials *rows, mpsi_gathered *out) {
-  const mpsi_node *tile = (const mpsi_node *)worker->tile;
-  const mpsi_batched done =
-      mpm->flip > 0.0
-          ? MPSI_BATCHED_NOT
-          : MPSI_LEVELLED(mpsi_mpm_gather_batches)(mpm, cells, worker, places, chunk, k, end, out);
-  if (done == MPSI_BATCHED_NOT)
-    for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, chunk + q, out, q);
-  else if (done == MPSI_BATCHED_FULL)
-    for (int q = k; q < end; q += MPSI_LANES)
-      OF_KIND(gather_lanes, dim, spline)(mpm, places, q, tile, rows, EVERY_AXIS, out);
-}
-
 /* The first `n` (at most 4) values of a vector. */
 MPSI_INLINE void store_some(double *to, mpsi_quad v, int n) {
   if (n >= 4) {
@@ -391,15 +358,14 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
     find_polynomials(dim, spline, first, tile, &rows);
     const uint32_t state = cells->cut ? mpsi_support_state(worker, dim, spline, first) : 0;
     const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
-    if (cells->light)
-      for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
-    else if (!state)
-      for (int q = k; q < end; q += MPSI_LANES)
-        OF_KIND(gather_lanes, dim, spline)(mpm, &places, q, tile, &rows, -1, out);
-    else if (axis >= 0)
+    if (!cells->light && axis >= 0)
       for (int q = k; q < end; q += MPSI_LANES) OF_KIND(gather_at_wall, dim, spline)
     (mpm, cells, &places, axis, q, end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &rows, out);
-    else gather_beside(mpm, cells, worker, dim, spline, &places, begin, k, end, &rows, out);
+    else if (!cells->light && !state) for (int q = k; q < end; q += MPSI_LANES)
+        OF_KIND(gather_lanes, dim, spline)(mpm, &places, q, tile, &rows, -1, out);
+    else if (!MPSI_LEVELLED(mpsi_mpm_gather_cut)(mpm, cells, worker, &places, begin, k, end,
+                                                 out)) for (int q = k; q < end; q += MPSI_LANES)
+        OF_KIND(gather_lanes, dim, spline)(mpm, &places, q, tile, &rows, EVERY_AXIS, out);
   }
   if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }

@@ -1,5 +1,5 @@
 /* p2g.c - particles to nodes, Nakamura (23)-(25), (39), one block of cells at a time, for particles
- * with a full support or at one wall; the others go to least_squares.c. Compiled once for each
+ * with a full support or at one wall; the others go to cut_scatter.c. Compiled once for each
  * instruction set.
  *
  * Consecutive particles with the same stencil, a segment, are summed in registers before they are
@@ -282,13 +282,9 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
       const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
       if (axis >= 0)
         add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
-      const mpsi_batched done =
-          axis >= 0
-              ? MPSI_BATCHED
-              : MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mpm, cells, worker, &places, begin, k, end);
-      for (int f = k; f < end && done == MPSI_BATCHED_NOT; f++)
-        MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mpm, cells, worker, begin + f);
-      if (done != MPSI_BATCHED_FULL) continue;
+      if (axis >= 0 ||
+          MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mpm, cells, worker, &places, begin, k, end))
+        continue;
     }
     add_segment(dim, spline, &places, &rows, k, end, &sum, worker->tile);
     if (cells->split) add_segment(dim, spline, &places, &rows, k, end, &force, worker->force);
@@ -300,14 +296,14 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
 MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end && k < begin + MPSI_CHUNK; k += 8) {
     for (int c = 0; c < 2; c++) __builtin_prefetch(p->x[c] + k), __builtin_prefetch(p->v[c] + k);
-    for (int c = 0; c < 4; c++) __builtin_prefetch(p->L[c] + k), __builtin_prefetch(p->s[c] + k);
+    for (int c = 0; c < 4; c++) __builtin_prefetch(p->L[c] + k), __builtin_prefetch(p->t[c] + k);
     __builtin_prefetch(p->V + k);
     __builtin_prefetch(p->m + k);
   }
 }
 
 /* Nodes across thin bodies. Particles whose supports these do not cut write nothing of it, but need
- * it in the transfer back where some node keeps momentum (give_back of least_squares.c). */
+ * it in the transfer back where some node keeps momentum (give_back of cut_gather.c). */
 static void begin_across(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
   const size_t count = (size_t)(cells->end - cells->begin);
   clear(cells, worker->across_tile);

@@ -10,76 +10,128 @@
  * is set such that the same formula holds, and on the way back to the nodes the particle turns so
  * much faster or slower that it gives just that moment. The laws see the derivatives, not L.
  *
- * For files that are compiled for several instruction sets, after loops.h. Lengths in cells.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * For files that are compiled for several instruction sets, after loops.h. Lengths in cells;
+ * particles in the lanes of a vector. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_SPIN_H
 #define MPSI_MPM_SPIN_H
 
-#include "mpm/base/loops.h"
+#include "least_squares.h"
 
 #define MPSI_LEAST_INERTIA 0.1 /* of a full support: below, turning would take too large a spin */
 
-/* Whether a particle whose stencil has nodes in bodies (`held`: MPSI_IMPULSE, MPSI_PENALTY or both)
- * keeps its moment: not in axisymmetry, where particles are rings, nor with penalty contact, which
- * is as published. */
-MPSI_INLINE bool mpsi_keeps_spin(const mps_mpm *mpm, uint32_t held) {
-  return (held & MPSI_IMPULSE) != 0 && mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC &&
-         !mpm->standard && !mpm->by_weight;
+/* Lanes of particles that keep their moment: those with nodes in bodies in their stencil, or parted
+ * from them by thin ones; but not in axisymmetry, where particles are rings, nor with penalty
+ * contact, which is as published. */
+MPSI_INLINE mpsi_mask mpsi_keeps_spin(const mps_mpm *mpm, const mpsi_cut *b) {
+  const mpsi_mask all = {-1, -1, -1, -1};
+  if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || mpm->by_weight) return ~all;
+  return b->held & MPSI_IMPULSE ? all : b->parted != 0;
 }
 
-/* Sets the spin of the slopes L (1/s) by sum phi s_a v of the nodes, one for each axis a. */
-MPSI_INLINE void mpsi_take_spin(int dim, int spline, double inverse, const mpsi_quad *moment,
-                                double (*L)[4]) {
+MPSI_INLINE bool mpsi_some(mpsi_mask lanes) {
+  return (lanes[0] | lanes[1] | lanes[2] | lanes[3]) != 0;
+}
+
+/* ---- particles to nodes ---------------------------------------------------------------------- */
+
+/* What the particles give to node i: its share w P_0 = phi of mass and momentum, and force by w:
+ * all of these are linear functions of s, 1, s_x, s_y, s_z side by side. */
+typedef struct mpsi_source {
+  mpsi_quad m;
+  mpsi_quad momentum[3][4];  /* kg m/s, by phi; by component */
+  mpsi_quad turn[3][3];      /* kg m2/s, by the derivative along each axis: see spin.h */
+  mpsi_quad by_weight[3][4]; /* kg m/s, what `turn` gives, by w */
+  mpsi_quad force[3][4];     /* N, by w */
+} mpsi_source;
+
+/* sum phi s s^T. */
+MPSI_INLINE void mpsi_find_second(int dim, int spline, const mpsi_cut *b, mpsi_quad K[3][3]) {
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) K[r][c] = (mpsi_quad){0.0};
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const mpsi_quad value = mpsi_across(dim, b, b->q[0], j, k), y = b->s[1][j];
+      mpsi_quad one = {0.0}, by_x = {0.0};
+      for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
+        const mpsi_quad x = b->s[0][i], phi = b->w[n] * (value + b->q[0][1] * x);
+        one += phi, by_x += phi * x, K[0][0] += phi * x * x;
+      }
+      K[0][1] += by_x * y, K[1][1] += one * y * y;
+      if (dim == 2) continue;
+      const mpsi_quad z = b->s[2][k];
+      K[0][2] += by_x * z, K[1][2] += one * y * z, K[2][2] += one * z * z;
+    }
+  for (int r = 0; r < dim; r++)
+    for (int c = 0; c < r; c++) K[r][c] = K[c][r];
+}
+
+/* Which lanes turn without giving by the derivative, and by how much about each axis. `lack` is
+ * what is missing of their moments. */
+MPSI_INLINE mpsi_mask mpsi_find_spin(int dim, double full, mpsi_quad K[3][3], const mpsi_quad *lack,
+                                     mpsi_quad *spin) {
+  const mpsi_quad trace = dim == 2 ? K[0][0] + K[1][1] : K[0][0] + K[1][1] + K[2][2];
+  mpsi_mask turns = trace > MPSI_LEAST_INERTIA * 2.0 * full;
+  if (dim == 2) {
+    spin[2] = lack[2] / trace;
+    return turns;
+  }
+  mpsi_quad inertia[4][4];
+  for (int a = 0; a < 3; a++)
+    for (int c = a; c < 3; c++) inertia[a][c] = (a == c ? trace : (mpsi_quad){0.0}) - K[a][c];
+  const mpsi_quad determinant = mpsi_invert_lanes(3, inertia);
+  turns &= determinant * 9.0 > MPSI_LEAST_INERTIA * 8.0 * full * trace * trace;
+  for (int a = 0; a < 3; a++)
+    spin[a] = inertia[a][0] * lack[0] + inertia[a][1] * lack[1] + inertia[a][2] * lack[2];
+  return turns;
+}
+
+/* The rotation by which the particles of `keeps` give their moments; or, where the inertia is too
+ * small for that, the momentum s->turn . grad phi besides, which gives nodes the same. Returns
+ * whether there are such. */
+MPSI_INLINE bool mpsi_give_spin(const mps_mpm *mpm, int dim, int spline, const mpsi_cut *b,
+                                mpsi_mask keeps, mpsi_source *s) {
+  const double full = 1.0 / mpsi_inverse_moment(spline);
+  mpsi_quad K[3][3], lack[3] = {{0.0}}, spin[3] = {{0.0}};
+  mpsi_find_second(dim, spline, b, K);
+  for (int a = 0; a < dim; a++) {
+    const int o = (a + 1) % 3, axis = (a + 2) % 3;
+    if (o >= dim) continue;
+    lack[axis] = full * (s->momentum[o][1 + a] - s->momentum[a][1 + o]);
+    for (int d = 0; d < dim; d++)
+      lack[axis] -= K[a][d] * s->momentum[o][1 + d] - K[o][d] * s->momentum[a][1 + d];
+  }
+  const mpsi_mask turns = mpsi_find_spin(dim, full, K, lack, spin) & keeps;
+  for (int a = 0; a < dim; a++) {
+    const int o = (a + 1) % 3, axis = (a + 2) % 3;
+    if (o >= dim) continue;
+    const mpsi_quad more = (mpsi_quad)((mpsi_mask)spin[axis] & turns);
+    const mpsi_quad turn =
+        (mpsi_quad)((mpsi_mask)(0.5 * mpm->def.cell * lack[axis]) & ~turns & keeps);
+    s->momentum[o][1 + a] += more, s->momentum[a][1 + o] -= more;
+    s->turn[o][a] = turn, s->turn[a][o] = -turn;
+  }
+  for (int a = 0; a < dim; a++)
+    for (int c = 0; c <= dim; c++) {
+      s->by_weight[a][c] = (mpsi_quad){0.0};
+      for (int d = 0; d < dim; d++) s->by_weight[a][c] += s->turn[a][d] * b->q[1 + d][c];
+    }
+  return mpsi_some(keeps & ~turns);
+}
+
+/* ---- nodes to particles ---------------------------------------------------------------------- */
+
+/* Sets the spin of the slopes L[component][axis] (1/s) of the particles of `keeps`, by sum phi s v
+ * of the nodes, moment[component][axis]. */
+MPSI_INLINE void mpsi_take_spin(int dim, int spline, double inverse, mpsi_mask keeps,
+                                mpsi_quad (*moment)[3], mpsi_quad (*L)[3]) {
   const double scale = mpsi_inverse_moment(spline) * inverse;
   for (int a = 0; a < dim; a++)
     for (int b = a + 1; b < dim; b++) {
-      const double spin = scale * (moment[a][1 + b] - moment[b][1 + a]);
-      const double more = 0.5 * (spin - (L[a][1 + b] - L[b][1 + a]));
-      L[a][1 + b] += more;
-      L[b][1 + a] -= more;
+      const mpsi_quad spin = scale * (moment[b][a] - moment[a][b]);
+      const mpsi_quad more = (mpsi_quad)((mpsi_mask)(0.5 * (spin - (L[b][a] - L[a][b]))) & keeps);
+      L[b][a] += more;
+      L[a][b] -= more;
     }
-}
-
-/* By `spin` more about each axis. */
-MPSI_INLINE void mpsi_add_spin(int dim, const double *spin, mpsi_quad *L) {
-  for (int a = 0; a < dim; a++) {
-    const int b = (a + 1) % 3, axis = (a + 2) % 3;
-    if (b >= dim) continue;
-    L[a][1 + b] += spin[axis];
-    L[b][1 + a] -= spin[axis];
-  }
-}
-
-/* `m`: sum phi P P^T with P = [1, s]; L: slopes, m/s a cell. Adds to L the rotation by which the
- * particle gives its moment, and returns true; or, where its inertia is too small for that, returns
- * false and sets `turn`: with momentum turn . grad phi (m2/s) besides, nodes get the same. */
-MPSI_INLINE bool mpsi_give_spin(int dim, int spline, double cell, double m[4][4], mpsi_quad *L,
-                                mpsi_quad *turn) {
-  const double full = 1.0 / mpsi_inverse_moment(spline);
-  double K[3][3] = {{0.0}}, lack[3] = {0.0}, spin[3] = {0.0}, inertia[4][4] = {{0.0}};
-  for (int a = 0; a < dim; a++)
-    for (int b = 0; b < dim; b++) K[a][b] = a < b ? m[1 + a][1 + b] : m[1 + b][1 + a];
-  for (int a = 0; a < dim; a++) {
-    const int b = (a + 1) % 3, axis = (a + 2) % 3;
-    if (b >= dim) continue;
-    lack[axis] = full * (L[a][1 + b] - L[b][1 + a]);
-    for (int d = 0; d < dim; d++) lack[axis] -= K[a][d] * L[d][1 + b] - K[b][d] * L[d][1 + a];
-  }
-  const double trace = K[0][0] + K[1][1] + K[2][2];
-  double least = trace / (2.0 * full); /* of the inertias about the axes; in space a bound below */
-  if (dim == 2) {
-    spin[2] = lack[2] / trace;
-  } else {
-    for (int a = 0; a < 3; a++)
-      for (int b = 0; b < 3; b++) inertia[a][b] = (a == b ? trace : 0.0) - K[a][b];
-    least = fmin(least, mpsi_invert(3, inertia) * 9.0 / (8.0 * full * trace * trace));
-    for (int a = 0; a < 3; a++)
-      for (int b = 0; b < 3; b++) spin[a] += inertia[a][b] * lack[b];
-  }
-  const bool turns = least > MPSI_LEAST_INERTIA;
-  for (int a = 0; a < 3 && !turns; a++) spin[a] = 0.5 * cell * lack[a];
-  mpsi_add_spin(dim, spin, turns ? L : turn);
-  return turns;
 }
 
 #endif

@@ -1,9 +1,37 @@
-/* support.h - the nodes of a stencil beside bodies and mirrors, for least_squares.c and
- * least_squares_batch.c. SPDX-License-Identifier: BSD-3-Clause */
+/* support.h - cut supports: which nodes particles take part with whose stencil bodies, edges of the
+ * domain or thin bodies cut. Up to four particles of one stencil at once, each a lane of a vector.
+ *
+ * Active are, of the stencil's nodes in the domain: those in no body; the corners of the particle's
+ * own cell; and corners of other cells that hold particles, if they lie on the particle's side of
+ * the surface, n . (x_p - x_i) > 0. Without the corners M can be singular; without the test of the
+ * side momentum passes through thin walls. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_SUPPORT_H
 #define MPSI_MPM_SUPPORT_H
 
 #include "mpm/base/loops.h"
+
+#define MPSI_HELD (MPSI_IMPULSE | MPSI_PENALTY)
+
+/* Particles of one stencil; lanes without one have the place of the first, and no mass. */
+typedef struct mpsi_cut {
+  int at[3];                      /* lowest node in the tile */
+  int lanes;                      /* with a particle, 1 to 4; */
+  int64_t first;                  /* that of lane 0 */
+  uint32_t held;                  /* MPSI_HELD bits of the bodies that hold any of the nodes */
+  mpsi_mask across, parted;       /* bit n: node n takes part with its values across a thin body, or
+                                     not at all (thin_bodies.h) */
+  mpsi_quad s[3][4], along[3][4]; /* cells, to the nodes of each axis; weights */
+  mpsi_quad w[MPSI_STENCIL];      /* of the active nodes, else 0 */
+  mpsi_quad q[4][4];              /* inverse of M; rows from 1 on over h */
+} mpsi_cut;
+
+/* All nodes n of a stencil, with their indices i, j, k. */
+#define MPSI_FOR_NODES(dim, spline)                                                                \
+  for (int k = 0; k <= ((dim) == 3 ? (spline) : 0); k++)                                           \
+    for (int j = 0; j <= (spline); j++)                                                            \
+      for (int i = 0, n = 16 * k + 4 * j; i <= (spline); i++, n++)
+
+/* ---- nodes under a stencil ------------------------------------------------------------------- */
 
 /* Where in the blocks of nodes the nodes of a stencil are. */
 typedef struct mpsi_support {
@@ -50,6 +78,19 @@ MPSI_INLINE int mpsi_support_local(const mpsi_support *s, int i, int j, int k) {
   return s->local[0][i] + s->local[1][j] + s->local[2][k];
 }
 
+MPSI_INLINE bool mpsi_is_folded(const mpsi_support *s, int i, int j, int k) {
+  return s->any_folds && (s->folds[0][i] || s->folds[1][j] || s->folds[2][k]);
+}
+
+/* The force of a contact on a node that is folded, or its slip; `impulse` times what that
+ * changes the walls give. */
+static inline void mpsi_reflect_at(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                   const mpsi_cut *b, int i, int j, int k, double *vector,
+                                   double impulse) {
+  int at[3] = {b->at[0] + i, b->at[1] + j, b->at[2] + k};
+  mpsi_mpm_reflect(mpm, cells, at, vector, impulse);
+}
+
 /* The normal of the next body that holds the node `local` of a block, which is MPSI_REACHED, from
  * its pair *pair on, which begins as nodes->first_pair; NULL behind the last. */
 MPSI_INLINE const double *mpsi_next_normal(const mps_mpm *mpm, const mpsi_node_block *nodes,
@@ -62,10 +103,160 @@ MPSI_INLINE const double *mpsi_next_normal(const mps_mpm *mpm, const mpsi_node_b
   return NULL;
 }
 
-/* All nodes n of a stencil, with their indices i, j, k. */
-#define MPSI_FOR_NODES(dim, spline)                                                                \
-  for (int k = 0; k <= ((dim) == 3 ? (spline) : 0); k++)                                           \
-    for (int j = 0; j <= (spline); j++)                                                            \
-      for (int i = 0, n = 16 * k + 4 * j; i <= (spline); i++, n++)
+/* ---- active nodes ---------------------------------------------------------------------------- */
+
+/* Particles [k, k + n) of a chunk, n at most 4, which begin with particle p. */
+MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_places *places, int k, int64_t p,
+                                int n, uint32_t held, mpsi_cut *out) {
+  out->first = p, out->lanes = n, out->held = held;
+  out->across = out->parted = (mpsi_mask){0};
+  mpsi_unravel(places->first[k], MPSI_TILE_SIDE, out->at);
+  for (int c = 0; c < dim; c++) {
+    const mpsi_quad t = mpsi_get_some(places->t[c] + k, n);
+    mpsi_lane_weights(spline, t, out->along[c]);
+    for (int i = 0; i <= spline; i++) out->s[c][i] = (double)i - t;
+  }
+}
+
+/* Which nodes of each axis are corners of the particles' own cells; on the upper side of the domain
+ * those of the last cell. */
+MPSI_INLINE void mpsi_find_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                   int spline, const mpsi_cut *b, mpsi_mask (*corner)[4]) {
+  for (int c = 0; c < dim; c++) {
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE + b->at[c];
+    const double last = (double)(mpm->grid.high[c] - first);
+    mpsi_quad t = -b->s[c][0];
+    for (int l = 0; l < 4 && last <= 2.0; l++) t[l] = t[l] < last ? t[l] : last - 0.5;
+    for (int i = 0; i <= spline; i++) {
+      const mpsi_quad s = (double)i - t;
+      corner[c][i] = (s > -1.0) & (s <= 1.0);
+    }
+  }
+}
+
+/* mpsi_contact_same_side for all bodies that hold the node. A ghost beyond a mirror has the normals
+ * of its partner, the other way across the mirror. */
+MPSI_INLINE mpsi_mask mpsi_same_side(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                     const mpsi_cut *b, int i, int j, int k) {
+  const int place[3] = {i, j, k};
+  mpsi_quad s[3];
+  int t[3] = {0};
+  for (int c = 0; c < dim; c++) {
+    const int node = b->at[c] + place[c];
+    const int partner = cells->mirrors ? mpsi_partner_of(mpm, cells, c, node) : -1;
+    t[c] = partner >= 0 ? partner : node;
+    s[c] = t[c] != node ? -b->s[c][place[c]] : b->s[c][place[c]];
+  }
+  const mpsi_node_block *nodes = &mpm->grid.nodes[mpsi_block_under(cells, t[0], t[1], t[2])];
+  const int local = mpsi_local_under(t[0], t[1], t[2]);
+  mpsi_mask same = {-1, -1, -1, -1};
+  int32_t pair = nodes->first_pair;
+  for (const double *n; (n = mpsi_next_normal(mpm, nodes, local, &pair)) != NULL;) {
+    const mpsi_quad across = n[0] * s[0] + n[1] * s[1];
+    same &= (dim == 3 ? across + n[2] * s[2] : across) < 0.0;
+  }
+  return same;
+}
+
+/* Whether particles may use a node that lies in a body. */
+MPSI_INLINE mpsi_mask mpsi_is_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                     uint8_t state, int dim, const mpsi_cut *b,
+                                     mpsi_mask (*corner)[4], int i, int j, int k) {
+  mpsi_mask active = corner[0][i] & corner[1][j];
+  if (dim == 3) active &= corner[2][k];
+  if ((active[0] & active[1] & active[2] & active[3]) != 0 || !(state & MPSI_REACHED))
+    return active;
+  return active | mpsi_same_side(mpm, cells, dim, b, i, j, k);
+}
+
+/* Which nodes thin bodies part from each particle, as found in this step (`known`) or now. Those of
+ * them that it does not use are never corners of its cell. */
+MPSI_INLINE void mpsi_find_parted(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                  int spline, bool known, mpsi_mask (*corner)[4], mpsi_cut *b) {
+  for (int l = 0; l < b->lanes; l++) {
+    const int64_t p = b->first + l;
+    mpsi_parted found = mpm->contact.across[p];
+    if (!known) {
+      double x[3] = {0.0};
+      for (int c = 0; c < dim; c++) x[c] = mpm->p.x[c][p];
+      found = mpsi_mpm_find_parted(mpm, cells, b->at, x);
+      MPSI_FOR_NODES(dim, spline) {
+        if (corner[0][i][l] & corner[1][j][l] & (dim == 3 ? corner[2][k][l] : -1))
+          found.cut &= ~(UINT64_C(1) << n);
+      }
+    }
+    b->across[l] = (int64_t)found.across;
+    b->parted[l] = (int64_t)found.cut;
+  }
+  for (int l = b->lanes; l < 4; l++) b->across[l] = b->across[0], b->parted[l] = b->parted[0];
+}
+
+/* Of node n, in the lanes of `bits`. */
+MPSI_INLINE mpsi_mask mpsi_has_node(mpsi_mask bits, int n) {
+  return (bits & (int64_t)(UINT64_C(1) << n)) != 0;
+}
+
+/* Weights of the active nodes; `thin`: thin bodies may part some from particles. */
+MPSI_INLINE void mpsi_find_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                  const mpsi_worker *worker, int dim, int spline, bool thin,
+                                  bool known, mpsi_cut *b) {
+  mpsi_mask corner[3][4];
+  mpsi_find_corners(mpm, cells, dim, spline, b, corner);
+  if (thin) mpsi_find_parted(mpm, cells, dim, spline, known, corner, b);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      mpsi_quad *w = b->w + 16 * k + 4 * j, across = b->along[1][j];
+      if (dim == 3) across *= b->along[2][k];
+      for (int i = 0; i <= spline; i++) w[i] = b->along[0][i] * across;
+      uint32_t any;
+      memcpy(&any, state, sizeof any);
+      for (int i = 0; i <= spline && any != 0; i++) {
+        if (state[i] & MPSI_OUTSIDE)
+          w[i] = (mpsi_quad){0.0};
+        else if (state[i] & MPSI_INSIDE)
+          w[i] = (mpsi_quad)((mpsi_mask)w[i] &
+                             mpsi_is_active(mpm, cells, state[i], dim, b, corner, i, j, k));
+      }
+    }
+  if (!thin) return;
+  MPSI_FOR_NODES(dim, spline) {
+    b->w[n] = (mpsi_quad)((mpsi_mask)b->w[n] & ~mpsi_has_node(b->parted, n));
+  }
+}
+
+/* Whether particles of the stencil from tile node `first` may all have a full support: nothing but
+ * bodies has any of its nodes, and those are corners of cells with particles. */
+MPSI_INLINE bool mpsi_may_be_full(const mpsi_worker *worker, int dim, int spline, int32_t first) {
+  const uint32_t in = spline == 3 ? 0x01010101u : 0x00010101u;
+  uint32_t other = 0;
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      uint32_t row;
+      memcpy(&row, worker->state + first + mpsi_tile_index(0, j, k), sizeof row);
+      row &= in * 0xffu;
+      other |= row & ~(in * (MPSI_INSIDE | MPSI_REACHED | MPSI_IMPULSE)); /* outside, ... */
+      other |= (row / MPSI_INSIDE ^ row / MPSI_REACHED) & in;
+    }
+  return other == 0;
+}
+
+/* Whether all particles of the batch may use all nodes of their stencil, of which mpsi_may_be_full.
+ */
+MPSI_INLINE bool mpsi_is_full(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                              const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b) {
+  mpsi_mask corner[3][4];
+  mpsi_find_corners(mpm, cells, dim, spline, b, corner);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      for (int i = 0; i <= spline; i++) {
+        if (state[i] == 0) continue;
+        const mpsi_mask active = mpsi_is_active(mpm, cells, state[i], dim, b, corner, i, j, k);
+        if ((active[0] & active[1] & active[2] & active[3]) == 0) return false;
+      }
+    }
+  return true;
+}
 
 #endif

@@ -4,7 +4,7 @@
  * M1, M2 of w over its active nodes, phi = w (M2 - M1 s)/D,  dphi/ds = w (M0 s - M1)/D,  D = M0 M2
  * - M1^2. The shape function is phi times the w of the other axes, and its derivative along the
  * wall's axis likewise; derivatives along the others are w s/m2 there times w/M0 here. So the loops
- * for full supports serve, with other weights, where least_squares.c would take a fit of all nodes.
+ * for full supports serve, with other weights, where cut_scatter.c would take a fit of all nodes.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_WALL_H
 #define MPSI_MPM_WALL_H
@@ -28,7 +28,7 @@ typedef struct mpsi_wall {
 
 /* The axis of the wall, where the stencil from tile node `first`, whose nodes have the states
  * `state` together, is cut by nothing but one; else -1. Momentum by weights goes with
- * least_squares.c. */
+ * cut_scatter.c. */
 MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                int spline, uint32_t state, int32_t first) {
   int place[3], axis = -1;

@@ -1,50 +1,39 @@
-/* test_mpm_batch.c - particles beside bodies, four of one stencil at once
- * (src/mpm/transfer/least_squares_batch.c), give to the nodes and take from them what
- * least_squares.c gives and takes one by one: to round-off, in all geometries, with both kernels,
- * at fitted and mirrored walls, beside thin walls and in corners, and with one to four particles a
- * stencil. SPDX-License-Identifier: BSD-3-Clause */
+/* test_mpm_cut.c - particles whose support bodies and sides cut give to the nodes and take from
+ * them, four of one stencil at once (src/mpm/transfer/cut_scatter.c, cut_gather.c), what a
+ * reference gives and takes particle by particle and node by node from their shape functions: to
+ * round-off, in all geometries, with both kernels, at fitted and mirrored walls, beside thin walls
+ * and in corners, and with one to four particles a stencil. SPDX-License-Identifier: BSD-3-Clause
+ */
 #define MPSI_LEVEL                                                                                 \
   1 /* of what is inline in the headers; nothing in them depends on it for memory */
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "mpm/base/loops.h"
+#include "mpm_cut_reference.h"
 
 /* ---- the functions of the level that the context has ----------------------------------------- */
 
-typedef mpsi_batched (*scatter_batches_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
-                                           const mpsi_places *, int64_t, int, int);
-typedef mpsi_batched (*gather_batches_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
-                                          const mpsi_places *, int64_t, int, int, mpsi_gathered *);
-typedef void (*scatter_fitted_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *, int64_t);
-typedef void (*gather_fitted_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *, int64_t,
-                                 mpsi_fitted *);
+typedef bool (*scatter_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
+                           const mpsi_places *, int64_t, int, int);
+typedef bool (*gather_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
+                          const mpsi_places *, int64_t, int, int, mpsi_gathered *);
 typedef struct functions {
-  scatter_batches_fn scatter_batches;
-  gather_batches_fn gather_batches;
-  scatter_fitted_fn scatter_fitted;
-  gather_fitted_fn gather_fitted;
+  scatter_fn scatter;
+  gather_fn gather;
 } functions;
 
 /* Weak: those of a level that this library does not have are NULL. */
 #define DECLARE(level)                                                                             \
-  mpsi_batched mpsi_mpm_scatter_batches_v##level(mps_mpm *, const mpsi_cell_block *,               \
-                                                 const mpsi_worker *, const mpsi_places *,         \
-                                                 int64_t, int, int) __attribute__((weak));         \
-  mpsi_batched mpsi_mpm_gather_batches_v##level(mps_mpm *, const mpsi_cell_block *,                \
-                                                const mpsi_worker *, const mpsi_places *, int64_t, \
-                                                int, int, mpsi_gathered *) __attribute__((weak));  \
-  void mpsi_mpm_scatter_fitted_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,   \
-                                        int64_t) __attribute__((weak));                            \
-  void mpsi_mpm_gather_fitted_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,    \
-                                       int64_t, mpsi_fitted *) __attribute__((weak));
+  bool mpsi_mpm_scatter_cut_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,      \
+                                     const mpsi_places *, int64_t, int, int)                       \
+      __attribute__((weak));                                                                       \
+  bool mpsi_mpm_gather_cut_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,       \
+                                    const mpsi_places *, int64_t, int, int, mpsi_gathered *)       \
+      __attribute__((weak));
 DECLARE(3)
 DECLARE(4)
 #define FUNCTIONS(level)                                                                           \
-  (functions) {                                                                                    \
-    mpsi_mpm_scatter_batches_v##level, mpsi_mpm_gather_batches_v##level,                           \
-        mpsi_mpm_scatter_fitted_v##level, mpsi_mpm_gather_fitted_v##level                          \
-  }
+  (functions) { mpsi_mpm_scatter_cut_v##level, mpsi_mpm_gather_cut_v##level }
 
 static functions functions_of(const mps_mpm *mpm) {
   if (mpm->kernels == mpsi_mpm_kernels(1)) return FUNCTIONS(1);
@@ -138,6 +127,7 @@ static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
 typedef struct compared {
   int64_t batches[5]; /* by the number of their particles */
   int64_t full;       /* stencils whose particles use all nodes */
+  int64_t sides;      /* that sides alone cut */
   double scatter, gather, feet;
 } compared;
 
@@ -183,16 +173,25 @@ static void compare_feet(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t beg
   }
 }
 
+static uint32_t held_by(const mps_mpm *mpm, const mpsi_places *places, int k) {
+  return mpsi_support_state(&mpm->grid.workers[0], mpm->dim, mpm->def.spline, places->first[k]) &
+         (MPSI_IMPULSE | MPSI_PENALTY);
+}
+
+/* Whether a particle keeps its moment. */
+static bool spins(const mps_mpm *mpm, uint32_t held) {
+  return held && mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC;
+}
+
 static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
                             int64_t chunk, int begin, int end, compared *out) {
   static double batch[2][MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE][4];
-  const functions by = functions_of(mpm);
   const mpsi_worker *worker = &mpm->grid.workers[0];
   const int64_t nodes = mpm->grid.tile_nodes;
+  const uint32_t held = held_by(mpm, places, begin);
   clear_tiles(mpm, worker);
-  const mpsi_batched done = by.scatter_batches(mpm, cells, worker, places, chunk, begin, end);
-  if (done == MPSI_BATCHED_NOT) return;
-  if (done == MPSI_BATCHED_FULL) { /* the kept fit says so; by themselves they have the same */
+  if (!functions_of(mpm).scatter(mpm, cells, worker, places, chunk, begin, end)) {
+    /* the kept fit says so; by themselves they have the same */
     compare_feet(mpm, cells, chunk + begin, chunk + end, out);
     out->full++;
     return;
@@ -200,31 +199,40 @@ static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
   memcpy(batch[0], worker->tile, (size_t)nodes * sizeof *worker->tile);
   memcpy(batch[1], worker->force, (size_t)nodes * sizeof *worker->force);
   clear_tiles(mpm, worker);
-  for (int k = begin; k < end; k++) by.scatter_fitted(mpm, cells, worker, chunk + k);
+  for (int k = begin; k < end; k++) {
+    mpsi_stencil at;
+    mpsi_shape_values f;
+    mpm->kernels->fit(mpm, cells, worker, chunk + k, &at, &f);
+    reference_scatter(mpm, &at, &f, chunk + k, mpm->run.moments && spins(mpm, held), worker->tile,
+                      worker->force);
+  }
   out->scatter = fmax(out->scatter, difference(mpm, worker->tile, batch[0]));
   out->scatter = fmax(out->scatter, difference(mpm, worker->force, batch[1]));
-  compare_feet(mpm, cells, chunk + begin, chunk + end, out);
+  if (cells->first_fit >= 0) compare_feet(mpm, cells, chunk + begin, chunk + end, out);
+  out->sides += !held;
   out->batches[end - begin < 4 ? end - begin : 4]++;
 }
 
 static void compare_gather(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
                            int64_t chunk, int begin, int end, compared *out) {
-  const functions by = functions_of(mpm);
   const mpsi_worker *worker = &mpm->grid.workers[0];
+  const uint32_t held = held_by(mpm, places, begin);
   mpsi_gathered batch;
   for (int64_t n = 0; n < mpm->grid.tile_nodes; n++)
     for (int c = 0; c < 4; c++) worker->tile[n][c] = uniform(-1.0, 1.0);
-  if (by.gather_batches(mpm, cells, worker, places, chunk, begin, end, &batch) != MPSI_BATCHED)
-    return;
+  if (!functions_of(mpm).gather(mpm, cells, worker, places, chunk, begin, end, &batch)) return;
   for (int k = begin; k < end; k++) {
-    mpsi_fitted one = {.own = {0.0}};
-    by.gather_fitted(mpm, cells, worker, chunk + k, &one);
+    mpsi_stencil at;
+    mpsi_shape_values f;
+    mpm->kernels->fit(mpm, cells, worker, chunk + k, &at, &f);
+    const reference one = reference_gather(mpm, cells, &at, &f, held != 0, spins(mpm, held),
+                                           (const mpsi_node *)worker->tile);
     for (int c = 0; c < mpm->dim; c++) {
-      out->gather = fmax(out->gather, fabs(batch.v[c][k] - one.v[MPSI_VECTOR + c]));
+      out->gather = fmax(out->gather, fabs(batch.v[c][k] - one.v[c]));
       for (int d = 0; d < mpm->dim; d++) {
-        const int at = mpm->dim * c + d;
-        const double slope = fabs(batch.slope[at][k] - one.slope[d][MPSI_VECTOR + c]);
-        const double rise = fabs(batch.derivative[at][k] - one.derivative[d][MPSI_VECTOR + c]);
+        const int to = mpm->dim * c + d;
+        const double slope = fabs(batch.slope[to][k] - one.slope[c][d]);
+        const double rise = fabs(batch.derivative[to][k] - one.derivative[c][d]);
         out->gather = fmax(out->gather, CELL * fmax(slope, rise));
       }
     }
@@ -239,6 +247,9 @@ static void compare_block(mps_mpm *mpm, const mpsi_cell_block *cells, compared *
     mpsi_find_places(mpm, cells, mpm->dim, mpm->def.spline, chunk, n, &places);
     for (int k = 0, end; k < n; k = end) {
       for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
+      if (mpsi_support_state(&mpm->grid.workers[0], mpm->dim, mpm->def.spline, places.first[k]) ==
+          0)
+        continue;
       compare_scatter(mpm, cells, &places, chunk, k, end, out);
       compare_gather(mpm, cells, &places, chunk, k, end, out);
     }
@@ -247,7 +258,7 @@ static void compare_block(mps_mpm *mpm, const mpsi_cell_block *cells, compared *
 
 /* ---- tests ----------------------------------------------------------------------------------- */
 
-static void batches_do_as_the_fit(void **state) {
+static void vectors_do_as_the_reference(void **state) {
   (void)state;
   for (int variant = 0; variant < 24; variant++) {
     const int32_t geometry = variant / 8, spline = 2 + variant % 2;
@@ -257,13 +268,15 @@ static void batches_do_as_the_fit(void **state) {
     s.mpm->run.moments = (variant & 4) != 0; /* spins of particles beside bodies */
     for (int64_t b = 0; b < s.mpm->grid.cell_count; b++)
       if (s.mpm->grid.cells[b].cut) compare_block(s.mpm, &s.mpm->grid.cells[b], &c);
-    print_message("%d, spline %d, walls %d, moments %d: %lld %lld %lld %lld batches, %lld full, "
-                  "scatter %.2g, gather %.2g, feet %.2g\n",
-                  geometry, spline, s.mpm->def.walls, s.mpm->run.moments, (long long)c.batches[1],
-                  (long long)c.batches[2], (long long)c.batches[3], (long long)c.batches[4],
-                  (long long)c.full, c.scatter, c.gather, c.feet);
+    print_message(
+        "%d, spline %d, walls %d, moments %d: %lld %lld %lld %lld batches, %lld full, %lld sides, "
+        "scatter %.2g, gather %.2g, feet %.2g\n",
+        geometry, spline, s.mpm->def.walls, s.mpm->run.moments, (long long)c.batches[1],
+        (long long)c.batches[2], (long long)c.batches[3], (long long)c.batches[4],
+        (long long)c.full, (long long)c.sides, c.scatter, c.gather, c.feet);
     for (int n = 1; n <= 4; n++) assert_true(c.batches[n] >= 5);
     assert_true(c.full >= 7);
+    assert_true(variant & 2 || c.sides >= 5);
     assert_true(c.scatter <= 1e-12);
     assert_true(c.gather <= 1e-13 && c.feet <= 1e-13);
     mpm_scene_end(&s);
@@ -335,7 +348,7 @@ static void solids_of_revolution_are_convex_or_not(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(batches_do_as_the_fit),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(vectors_do_as_the_reference),
                                      cmocka_unit_test(tangent_planes_leave_out_nothing_near),
                                      cmocka_unit_test(solids_of_revolution_are_convex_or_not)};
   return cmocka_run_group_tests(tests, make_context, drop_context);

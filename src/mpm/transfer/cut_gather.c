@@ -1,0 +1,368 @@
+/* cut_gather.c - nodes to particles where bodies or edges cut the support, by the fits that the
+ * scatter of the step has kept or by new ones; the momentum that nodes of small mass have kept;
+ * velocity gradients for the laws; and, by the same fits, weights at a foot on a body. Particle by
+ * particle in the lanes of a vector, as cut_scatter.c. Compiled once for each instruction set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "cut_contact.h"
+#include "spin.h"
+
+/* ---- sums over the nodes --------------------------------------------------------------------- */
+
+/* Sums over the nodes, by component of their velocities. */
+typedef struct node_sums {
+  mpsi_quad by[3][4];     /* w by 1, s_x, s_y, s_z */
+  mpsi_quad v[3];         /* phi, */
+  mpsi_quad moment[3][3]; /* and that by s of the other axes */
+} node_sums;
+
+/* Component `c` of node i of a row, number n of the stencil, as each particle sees it. */
+MPSI_INLINE mpsi_quad value_at(const mpsi_cut *b, const mpsi_node *node, const mpsi_node *across,
+                               int n, int i, int c) {
+  const double v = node[i][c];
+  const mpsi_quad own = {v, v, v, v};
+  if (!across) return own;
+  const double w = across[i][c];
+  const mpsi_mask parted = mpsi_has_node(b->across, n);
+  return (mpsi_quad)(((mpsi_mask)(mpsi_quad){w, w, w, w} & parted) | ((mpsi_mask)own & ~parted));
+}
+
+/* `across`: NULL where no thin body parts nodes from particles. */
+MPSI_INLINE void sum_row(int dim, int spline, const mpsi_cut *b, const mpsi_node *node,
+                         const mpsi_node *across, int j, int k, node_sums *out) {
+  const mpsi_quad value = mpsi_across(dim, b, b->q[0], j, k);
+  mpsi_quad one[3] = {{0.0}}, by_x[3] = {{0.0}}, partition[3] = {{0.0}};
+  for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
+    const mpsi_quad x = b->s[0][i], phi = value + b->q[0][1] * x;
+    for (int a = 0; a < dim; a++) {
+      const mpsi_quad v = b->w[n] * value_at(b, node, across, n, i, MPSI_VECTOR + a);
+      const mpsi_quad by_phi = phi * v;
+      one[a] += v;
+      by_x[a] += v * x;
+      partition[a] += by_phi;
+      if (a != 0) out->moment[a][0] += by_phi * x;
+    }
+  }
+  for (int a = 0; a < dim; a++) {
+    out->v[a] += partition[a];
+    out->by[a][0] += one[a];
+    out->by[a][1] += by_x[a];
+    for (int d = 1; d < dim; d++) {
+      const mpsi_quad s = d == 1 ? b->s[1][j] : b->s[2][k];
+      out->by[a][1 + d] += one[a] * s;
+      if (a != d) out->moment[a][d] += partition[a] * s;
+    }
+  }
+}
+
+/* Velocities of the nodes of a row. */
+MPSI_INLINE const mpsi_node *row_of(const mpsi_cut *b, mpsi_node *tile, int j, int k) {
+  return (const mpsi_node *)tile + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+}
+
+MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+                        bool thin, const mpsi_cut *b, mpsi_gathered *out, int at) {
+  node_sums sum = {.v = {{0.0}}};
+  mpsi_quad L[3][3];
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++)
+      sum_row(dim, spline, b, row_of(b, worker->tile, j, k),
+              thin ? row_of(b, worker->across_tile, j, k) : NULL, j, k, &sum);
+  for (int a = 0; a < dim; a++)
+    for (int d = 0; d < dim; d++) {
+      L[a][d] = b->q[1 + d][0] * sum.by[a][0];
+      for (int c = 1; c <= dim; c++) L[a][d] += b->q[1 + d][c] * sum.by[a][c];
+      mpsi_put(out->derivative[dim * a + d] + at, L[a][d]);
+    }
+  const mpsi_mask keeps = mpsi_keeps_spin(mpm, b);
+  if (mpsi_some(keeps)) mpsi_take_spin(dim, spline, mpm->grid.inverse, keeps, sum.moment, L);
+  for (int a = 0; a < dim; a++) {
+    mpsi_put(out->v[a] + at, sum.v[a]);
+    for (int d = 0; d < dim; d++) mpsi_put(out->slope[dim * a + d] + at, L[a][d]);
+  }
+}
+
+/* ---- derivatives along full axes ------------------------------------------------------------- */
+
+/* dw/w at the nodes of one axis, 1/m. */
+MPSI_INLINE void find_ratios(const mps_mpm *mpm, int spline, const mpsi_cut *b, int axis,
+                             mpsi_quad *ratio) {
+  for (int l = 0; l < 4; l++) {
+    double slope[4];
+    mpsi_slopes(spline, -b->s[axis][0][l], slope);
+    for (int i = 0; i <= spline; i++) {
+      const double w = b->along[axis][i][l];
+      ratio[i][l] = w > 0.0 ? mpm->grid.inverse * slope[i] / w : 0.0;
+    }
+  }
+}
+
+/* Derivatives along the axes whose stencil is full, ghosts of mirrors included, where nothing but
+ * sides of the domain cuts the support: there the fit falls apart into one along each axis
+ * (wall_support.h), so that phi/w along such an axis is constant and d phi = phi dw/w. Along the
+ * other axes, and near bodies, the slopes serve. */
+MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int dim, int spline, bool thin,
+                             const mpsi_cut *b, mpsi_gathered *out, int at) {
+  const mpsi_mask beside = b->parted != 0;
+  for (int d = 0; d < dim; d++) {
+    const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + b->at[d];
+    if (low < mpm->grid.use_low[d] || low + spline > mpm->grid.use_high[d]) continue;
+    mpsi_quad ratio[4], sum[3] = {{0.0}};
+    find_ratios(mpm, spline, b, d, ratio);
+    MPSI_FOR_NODES(dim, spline) {
+      const mpsi_quad by = ratio[d == 0 ? i : d == 1 ? j : k] * mpsi_phi(dim, b, n, i, j, k);
+      const mpsi_node *across = thin ? row_of(b, worker->across_tile, j, k) : NULL;
+      for (int a = 0; a < dim; a++)
+        sum[a] += by * value_at(b, row_of(b, worker->tile, j, k), across, n, i, MPSI_VECTOR + a);
+    }
+    for (int a = 0; a < dim; a++) {
+      double *to = out->derivative[dim * a + d] + at;
+      mpsi_put(to, (mpsi_quad)(((mpsi_mask)mpsi_get(to) & beside) | ((mpsi_mask)sum[a] & ~beside)));
+    }
+  }
+}
+
+/* ---- momentum that nodes have kept ----------------------------------------------------------- */
+
+/* Momentum that a node has and its particles would not get: all is done with a mass m that is never
+ * less than MPSI_LEAST_MASS of that by weights, and they take with their own, M. */
+static void find_kept(const mps_mpm *mpm, const mpsi_node_block *nodes, int32_t g, int local,
+                      double *weight, double *warm) {
+  const double *node = mpm->grid.node[mpsi_first_node(mpm, g) + local];
+  const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + local];
+  const double m = node[MPSI_MASS], own = mpsi_own_mass(m, side[MPSI_EXCESS]);
+  *weight = own + side[MPSI_EXCESS];
+  const bool moves = nodes->split && mpsi_carried_mass(own, *weight) < 0.0; /* as they do */
+  for (int c = 0; c < 3; c++)
+    warm[c] =
+        own < m ? (m - own) * (node[MPSI_VECTOR + c] - (moves ? side[MPSI_VECTOR + c] : 0.0)) : 0.0;
+}
+
+/* That momentum, back to the particles by their weights: all of it. */
+static void give_back(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                      const mpsi_cut *b, int lane, double *v) {
+  mpsi_support at;
+  mpsi_make_support(mpm, cells, dim, b->at, &at);
+  MPSI_FOR_NODES(dim, spline) {
+    const double w = b->w[n][lane];
+    int32_t g = mpsi_support_block(cells, &at, i, j, k);
+    if (w == 0.0) continue;
+    if (b->across[lane] >> n & 1) g = mpm->grid.nodes[g].across;
+    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    double weight, warm[3];
+    if (!nodes->light) continue;
+    find_kept(mpm, nodes, g, mpsi_support_local(&at, i, j, k), &weight, warm);
+    for (int c = 0; c < 3 && weight > 0.0; c++) warm[c] *= w / weight;
+    if (mpsi_is_folded(&at, i, j, k))
+      mpsi_reflect_at(mpm, cells, b, i, j, k, warm, mpm->p.m[b->first + lane]);
+    for (int c = 0; c < dim && weight > 0.0; c++) v[c] += warm[c];
+  }
+}
+
+MPSI_APART void give_all_back(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                              const mpsi_cut *b, mpsi_gathered *out, int at) {
+  for (int lane = 0; lane < b->lanes; lane++) {
+    double v[3] = {0.0}, before[3] = {0.0};
+    for (int c = 0; c < dim; c++) before[c] = v[c] = out->v[c][at + lane];
+    give_back(mpm, cells, dim, spline, b, lane, v);
+    for (int c = 0; c < dim; c++) {
+      out->v[c][at + lane] = v[c];
+      before[c] = v[c] - before[c];
+    }
+    if (mpm->energy.counts) mpsi_mpm_energy_given_back(mpm, cells, b->first + lane, before);
+  }
+}
+
+/* ---- the standard scheme --------------------------------------------------------------------- */
+
+/* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
+ * the forces. */
+MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                          int64_t p, const mpsi_support *at, const mpsi_shape_values *f,
+                          double *own) {
+  mpsi_quad before = {0.0};
+  MPSI_FOR_NODES(dim, spline) {
+    const int32_t side = mpm->grid.nodes[mpsi_support_block(cells, at, i, j, k)].side;
+    const mpsi_node *node = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, side));
+    before += f->phi[n] * mpsi_get(node[mpsi_support_local(at, i, j, k)]);
+  }
+  for (int c = 0; c < dim; c++) own[c] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+}
+
+/* One particle by its shape functions. */
+MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                            const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b,
+                            const mpsi_support *at, const mpsi_shape_values *f, int64_t p,
+                            mpsi_gathered *out, int to) {
+  mpsi_quad v = {0.0}, by[3] = {{0.0}};
+  double own[3] = {0.0};
+  MPSI_FOR_NODES(dim, spline) {
+    const mpsi_quad node = mpsi_get(row_of(b, worker->tile, j, k)[i]);
+    v += f->phi[n] * node;
+    for (int d = 0; d < dim; d++) by[d] += f->gradient[d][n] * node;
+  }
+  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, p, at, f, own);
+  for (int c = 0; c < dim; c++) {
+    out->v[c][to] = v[MPSI_VECTOR + c];
+    out->own[c][to] = own[c];
+    for (int d = 0; d < dim; d++)
+      out->slope[dim * c + d][to] = out->derivative[dim * c + d][to] = by[d][MPSI_VECTOR + c];
+  }
+}
+
+/* All that is to be done for each particle by itself. */
+MPSI_APART void gather_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                            int dim, int spline, const mpsi_cut *b, mpsi_gathered *out, int to) {
+  mpsi_support at;
+  mpsi_make_support(mpm, cells, dim, b->at, &at);
+  for (int lane = 0; lane < b->lanes; lane++) {
+    const int64_t p = b->first + lane;
+    mpsi_shape_values f;
+    mpsi_values_of(mpm, dim, spline, b, lane, &f);
+    if (mpm->standard) gather_one(mpm, cells, worker, dim, spline, b, &at, &f, p, out, to + lane);
+    for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
+      if (mpsi_holds_some(mpm, cells, dim, spline, &at, q))
+        mpsi_share_friction(mpm, cells, dim, spline, p, b, &at, &f,
+                            &mpm->contact.cell_pair[cells->first_pair + q]);
+  }
+}
+
+/* ---- segments -------------------------------------------------------------------------------- */
+
+MPSI_INLINE bool are_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t chunk,
+                          int begin, int end) {
+  const uint8_t *fitted = mpm->grid.fitted + cells->first_fit + (chunk - cells->begin);
+  bool full = true;
+  for (int k = begin; k < end; k++) full = full && fitted[k] == MPSI_FITTED_FULL;
+  return full;
+}
+
+MPSI_INLINE void gather_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                            int dim, int spline, bool thin, mpsi_cut *b, mpsi_gathered *out,
+                            int at) {
+  if (!mpm->standard) {
+    if (mpsi_has_fits(mpm, cells, b))
+      mpsi_take_fit(mpm, cells, dim, spline, b);
+    else
+      mpsi_find_fit(mpm, cells, worker, dim, spline, thin, true, b);
+    gather(mpm, worker, dim, spline, thin, b, out, at);
+    if (b->held == 0) find_strain(mpm, cells, worker, dim, spline, thin, b, out, at);
+    if (cells->light) give_all_back(mpm, cells, dim, spline, b, out, at);
+  }
+  if (mpm->standard || b->held & MPSI_PENALTY)
+    gather_each(mpm, cells, worker, dim, spline, b, out, at);
+}
+
+MPSI_INLINE bool gather_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                             int dim, int spline, uint32_t held, const mpsi_places *places,
+                             int64_t chunk, int begin, int end, mpsi_gathered *out) {
+  for (int k = begin; k < end; k += 4) {
+    mpsi_cut b;
+    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
+    gather_cut(mpm, cells, worker, dim, spline, true, &b, out, k);
+  }
+  return true;
+}
+
+MPSI_INLINE bool gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                             int dim, int spline, uint32_t held, const mpsi_places *places,
+                             int64_t chunk, int begin, int end, mpsi_gathered *out) {
+  if (cells->first_fit >= 0 && !cells->light && are_full(mpm, cells, chunk, begin, end))
+    return false;
+  for (int k = begin; k < end; k += 4) {
+    mpsi_cut b;
+    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
+    gather_cut(mpm, cells, worker, dim, spline, false, &b, out, k);
+  }
+  return true;
+}
+
+bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                        const mpsi_worker *worker, const mpsi_places *places,
+                                        int64_t chunk, int begin, int end, mpsi_gathered *out) {
+  const uint32_t held =
+      mpsi_support_state(worker, mpm->dim, mpm->def.spline, places->first[begin]) & MPSI_HELD;
+  return cells->thin ? MPSI_CHOOSE(gather_thin, held, places, chunk, begin, end, out)
+                     : MPSI_CHOOSE(gather_body, held, places, chunk, begin, end, out);
+}
+
+/* ---- one particle ---------------------------------------------------------------------------- */
+
+MPSI_INLINE bool fit_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                          const mpsi_worker *worker, int dim, int spline, int64_t particle,
+                          mpsi_shape_values *out) {
+  mpsi_cut b;
+  double determinant = 1.0;
+  mpsi_place_one(mpm, cells, dim, spline, particle, &b);
+  if (!mpm->standard && cells->thin)
+    determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, true, false, &b)[0];
+  else if (!mpm->standard)
+    determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, false, false, &b)[0];
+  mpsi_values_of(mpm, dim, spline, &b, 0, out);
+  out->determinant = determinant;
+  return true;
+}
+
+void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                 const mpsi_worker *worker, int64_t particle, mpsi_stencil *at,
+                                 mpsi_shape_values *out) {
+  memset(out, 0, sizeof *out);
+  mpsi_make_stencil(mpm, cells, mpm->dim, mpm->def.spline, particle, at);
+  MPSI_CHOOSE(fit_body, particle, out);
+}
+
+/* By the fit that the scatter has kept for the particle in this step. */
+MPSI_INLINE bool foot_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                           const mpsi_worker *worker, int dim, int spline, const double *q,
+                           const mpsi_stencil *at, const double *d, double *psi) {
+  double r[4] = {0.0};
+  (void)cells, (void)worker;
+  for (int row = 0, n = 0; row <= dim; row++)
+    for (int c = row; c <= dim; c++, n++) {
+      const double by_row = row == 0 ? 1.0 : d[row - 1] * mpm->grid.inverse;
+      const double by_column = c == 0 ? 1.0 : d[c - 1] * mpm->grid.inverse;
+      r[c] += by_row * q[n];
+      if (c != row) r[row] += by_column * q[n];
+    }
+  const mpsi_quad x = mpsi_get(at->s[0]), w = mpsi_get(at->w[0]);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      double across = r[0] + r[2] * at->s[1][j], weight = at->w[1][j];
+      if (dim == 3) across += r[3] * at->s[2][k], weight *= at->w[2][k];
+      mpsi_put(psi + 16 * k + 4 * j, w * weight * (across + r[1] * x));
+    }
+  return true;
+}
+
+/* By a fit of its own. */
+static void foot_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                        int64_t particle, const double *d, mpsi_foot_weights *out) {
+  mpsi_stencil at;
+  mpsi_shape_values f;
+  MPSI_LEVELLED(mpsi_mpm_fit)(mpm, cells, worker, particle, &at, &f);
+  memcpy(out->at, at.at, sizeof out->at);
+  out->active = 0;
+  out->across = f.across;
+  for (int n = 0; n < MPSI_STENCIL; n++) {
+    if (f.w[n] == 0.0) continue;
+    out->active |= UINT64_C(1) << n;
+    out->psi[n] = f.phi[n];
+    for (int a = 0; a < mpm->dim; a++) out->psi[n] += f.gradient[a][n] * d[a];
+  }
+}
+
+void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                  const mpsi_worker *worker, int64_t particle, const double *d,
+                                  mpsi_foot_weights *out) {
+  const int64_t slot = cells->first_fit + (particle - cells->begin);
+  mpsi_stencil at;
+  if (cells->first_fit < 0 || !mpm->grid.fitted[slot]) {
+    foot_by_fit(mpm, cells, worker, particle, d, out);
+    return;
+  }
+  mpsi_make_stencil(mpm, cells, mpm->dim, mpm->def.spline, particle, &at);
+  memcpy(out->at, at.at, sizeof out->at);
+  out->active = mpm->grid.fit[slot].active;
+  out->across = 0;
+  MPSI_CHOOSE(foot_body, mpm->grid.fit[slot].q, &at, d, out->psi);
+}

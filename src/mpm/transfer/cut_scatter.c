@@ -1,0 +1,285 @@
+/* cut_scatter.c - particles to nodes where bodies or edges cut the support: momentum, force and
+ * excess mass by the least-squares fit, particle by particle in the lanes of a vector; penalty
+ * contact of each. With the variants for comparison (standard scheme, momentum by weights) one
+ * particle after the other, by its shape functions. Compiled once for each instruction set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "cut_contact.h"
+#include "spin.h"
+
+/* ---- what the particles give ----------------------------------------------------------------- */
+
+/* V sigma and the forces by phi of the particles, to what they give by w: grad phi of axis d
+ * is w q[1 + d]. */
+MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const mpsi_cut *b, mpsi_source *out) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const mpsi_columns *from = &mpm->p;
+  const int64_t p = b->first;
+  const int n = b->lanes;
+  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
+  const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
+  for (int a = 0; a < dim; a++) {
+    mpsi_quad body = out->m * mpm->def.gravity[a];
+    if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
+    if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
+      body -= V * mpsi_get_some(from->t[2] + p, n) / mpsi_get_some(from->x[0] + p, n);
+    for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
+    for (int d = 0; d < dim; d++) {
+      const mpsi_quad stress = V * mpsi_get_some(from->t[symmetric[a][d]] + p, n);
+      for (int c = 0; c <= dim; c++) out->force[a][c] -= stress * b->q[1 + d][c];
+    }
+  }
+}
+
+/* Lanes without a particle have no mass and no volume. */
+MPSI_INLINE void find_source(const mps_mpm *mpm, int dim, const mpsi_cut *b, mpsi_source *out) {
+  const mpsi_columns *from = &mpm->p;
+  const int64_t p = b->first;
+  const int n = b->lanes;
+  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
+  out->m = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->m + p, n) & there);
+  const mpsi_quad mh = out->m * mpm->def.cell;
+  for (int a = 0; a < dim; a++) {
+    out->momentum[a][0] = out->m * mpsi_get_some(from->v[a] + p, n);
+    for (int d = 0; d < dim; d++) {
+      out->momentum[a][1 + d] = mh * mpsi_get_some(from->L[dim * a + d] + p, n);
+      out->turn[a][d] = (mpsi_quad){0.0};
+    }
+  }
+  find_force(mpm, dim, b, out);
+}
+
+/* The same of one row of nodes along x, by particle: at s_x = 0, and by s_x. */
+typedef struct row_source {
+  mpsi_quad phi, momentum[3], by_weight[3], force[3];
+} row_source;
+
+MPSI_INLINE void find_row(int dim, const mpsi_cut *b, const mpsi_source *s, bool turns, int j,
+                          int k, row_source *out) {
+  out->phi = mpsi_across(dim, b, b->q[0], j, k);
+  for (int a = 0; a < dim; a++) {
+    out->momentum[a] = mpsi_across(dim, b, s->momentum[a], j, k);
+    out->force[a] = mpsi_across(dim, b, s->force[a], j, k);
+    if (turns) out->by_weight[a] = mpsi_across(dim, b, s->by_weight[a], j, k);
+  }
+}
+
+/* Sums of a row: mass, momentum; mass by weights, force. The nodes side by side. */
+MPSI_INLINE void add_row(int dim, const mpsi_cut *b, const mpsi_source *s, const row_source *row,
+                         bool turns, int lanes, const mpsi_quad *w, mpsi_quad *sum,
+                         mpsi_quad *force) {
+  const mpsi_quad nodes = {0.0, 1.0, 2.0, 3.0};
+  for (int l = 0; l < lanes; l++) {
+    const mpsi_quad x = nodes + b->s[0][0][l];
+    const mpsi_quad phi = w[l] * (row->phi[l] + b->q[0][1][l] * x);
+    sum[0] += s->m[l] * phi;
+    force[0] += s->m[l] * w[l];
+    for (int a = 0; a < dim; a++) {
+      sum[1 + a] += phi * (row->momentum[a][l] + s->momentum[a][1][l] * x);
+      force[1 + a] += w[l] * (row->force[a][l] + s->force[a][1][l] * x);
+      if (turns) sum[1 + a] += w[l] * (row->by_weight[a][l] + s->by_weight[a][1][l] * x);
+    }
+  }
+  force[0] -= sum[0];
+}
+
+/* To the nodes: momentum to the tile, force and excess mass to the tile of forces. */
+MPSI_INLINE void give_rows(int dim, int spline, const mpsi_cut *b, const mpsi_source *s, bool turns,
+                           const mpsi_quad *weight, mpsi_node *tile, mpsi_node *forces) {
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const int t = mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      mpsi_quad w[4] = {{0.0}}, sum[4] = {{0.0}}, force[4] = {{0.0}};
+      row_source row;
+      find_row(dim, b, s, turns, j, k, &row);
+      for (int i = 0; i <= spline; i++) w[i] = weight[16 * k + 4 * j + i];
+      mpsi_transpose(w);
+      add_row(dim, b, s, &row, turns, b->lanes, w, sum, force);
+      mpsi_transpose(sum);
+      mpsi_transpose(force);
+      for (int i = 0; i <= spline; i++) {
+        mpsi_put(tile[t + i], mpsi_get(tile[t + i]) + sum[i]);
+        mpsi_put(forces[t + i], mpsi_get(forces[t + i]) + force[i]);
+      }
+    }
+}
+
+/* The same, where thin bodies part nodes from some particles: to the tiles on their side. */
+MPSI_INLINE void give_parted(const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b,
+                             const mpsi_source *s) {
+  mpsi_quad w[2][MPSI_STENCIL];
+  MPSI_FOR_NODES(dim, spline) {
+    const mpsi_mask across = mpsi_has_node(b->across, n);
+    w[0][n] = (mpsi_quad)((mpsi_mask)b->w[n] & ~across);
+    w[1][n] = (mpsi_quad)((mpsi_mask)b->w[n] & across);
+  }
+  give_rows(dim, spline, b, s, true, w[0], worker->tile, worker->force);
+  if (mpsi_some(b->across != 0))
+    give_rows(dim, spline, b, s, true, w[1], worker->across_tile, worker->across_force);
+}
+
+MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+                         bool thin, const mpsi_cut *b) {
+  mpsi_source s;
+  find_source(mpm, dim, b, &s);
+  const mpsi_mask keeps = mpsi_keeps_spin(mpm, b);
+  const bool turns =
+      mpm->run.moments && mpsi_some(keeps) && mpsi_give_spin(mpm, dim, spline, b, keeps, &s);
+  if (thin) {
+    if (!turns) memset(s.by_weight, 0, sizeof s.by_weight);
+    give_parted(worker, dim, spline, b, &s);
+  } else if (turns) {
+    give_rows(dim, spline, b, &s, true, b->w, worker->tile, worker->force);
+  } else {
+    give_rows(dim, spline, b, &s, false, b->w, worker->tile, worker->force);
+  }
+}
+
+/* ---- variants for comparison ----------------------------------------------------------------- */
+
+/* What a particle gives besides mass: momentum m (v + L dx), force by phi and by its gradient. */
+typedef struct one_source {
+  mpsi_quad v, L[3];   /* 1, v; 0, h dv/ds */
+  mpsi_quad body;      /* 0, force by phi */
+  mpsi_quad stress[3]; /* 0, -V sigma by the derivative along each axis */
+} one_source;
+
+static one_source source_of(const mps_mpm *mpm, int dim, int64_t p) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const mpsi_columns *c = &mpm->p;
+  one_source out = {.v = {1.0}};
+  for (int a = 0; a < dim; a++) {
+    out.v[1 + a] = c->v[a][p];
+    out.body[1 + a] = c->m[p] * mpm->def.gravity[a];
+    if (c->f[a]) out.body[1 + a] += c->f[a][p];
+    for (int d = 0; d < dim; d++) {
+      if (!mpm->standard) out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
+      out.stress[d][1 + a] = -c->V[p] * c->t[symmetric[a][d]][p];
+    }
+  }
+  if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+    out.body[1] -= c->V[p] * c->t[2][p] / c->x[0][p];
+  return out;
+}
+
+/* One particle by its shape functions: momentum by them or by the weights. */
+MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+                             int64_t p, const mpsi_cut *b, int lane, const mpsi_shape_values *f) {
+  const double m = mpm->p.m[p];
+  const one_source s = source_of(mpm, dim, p);
+  MPSI_FOR_NODES(dim, spline) {
+    const double w = f->w[n], phi = f->phi[n];
+    if (w == 0.0) continue;
+    const int t = mpsi_tile_index(b->at[0] + i, b->at[1] + j, b->at[2] + k);
+    mpsi_quad v = s.v + s.L[0] * b->s[0][i][lane] + s.L[1] * b->s[1][j][lane];
+    mpsi_quad force =
+        s.body * phi + s.stress[0] * f->gradient[0][n] + s.stress[1] * f->gradient[1][n];
+    if (dim == 3) {
+      v += s.L[2] * b->s[2][k][lane];
+      force += s.stress[2] * f->gradient[2][n];
+    }
+    mpsi_quad sum = v * (m * (mpm->by_weight ? w : phi));
+    sum[MPSI_MASS] = m * phi;
+    force[MPSI_EXCESS] = m * (w - phi);
+    const bool across = f->across >> n & 1;
+    double *to = (across ? worker->across_tile : worker->tile)[t];
+    double *force_to = (across ? worker->across_force : worker->force)[t];
+    mpsi_put(to, mpsi_get(to) + sum);
+    mpsi_put(force_to, mpsi_get(force_to) + force);
+  }
+}
+
+/* All that is to be done for each particle by itself. */
+MPSI_APART void scatter_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                             int dim, int spline, bool variant, const mpsi_cut *b) {
+  mpsi_support at;
+  mpsi_make_support(mpm, cells, dim, b->at, &at);
+  for (int lane = 0; lane < b->lanes; lane++) {
+    const int64_t p = b->first + lane;
+    mpsi_shape_values f;
+    mpsi_values_of(mpm, dim, spline, b, lane, &f);
+    if (variant) scatter_one(mpm, worker, dim, spline, p, b, lane, &f);
+    for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
+      if (mpsi_holds_some(mpm, cells, dim, spline, &at, q))
+        mpsi_scatter_contact(mpm, cells, worker, dim, spline, p, b, &at, &f, q);
+  }
+}
+
+/* ---- full supports --------------------------------------------------------------------------- */
+
+/* Keeps the fit of particles p, p + 1, ... with a full support: see shape.h. */
+MPSI_INLINE void keep_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                           int64_t p, int particles) {
+  const int64_t slot = cells->first_fit + (p - cells->begin);
+  mpsi_kept_fit fit = {.q = {1.0}};
+  int count = 0;
+  for (int r = 0; r <= dim; r++)
+    for (int c = r; c <= dim; c++, count++)
+      if (r == c && r > 0) fit.q[count] = mpsi_inverse_moment(spline);
+  MPSI_FOR_NODES(dim, spline) fit.active |= UINT64_C(1) << n;
+  for (int l = 0; l < particles; l++) {
+    mpm->grid.fit[slot + l] = fit;
+    mpm->grid.fitted[slot + l] = MPSI_FITTED_FULL;
+  }
+}
+
+/* Nodes in bodies cut no support where particles may use all of them. */
+MPSI_INLINE bool find_full(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                           int dim, int spline, const mpsi_places *places, int64_t chunk, int begin,
+                           int end) {
+  if (!mpsi_may_be_full(worker, dim, spline, places->first[begin])) return false;
+  for (int k = begin; k < end; k += 4) {
+    mpsi_cut b;
+    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, 0, &b);
+    if (!mpsi_is_full(mpm, cells, worker, dim, spline, &b)) return false;
+  }
+  keep_full(mpm, cells, dim, spline, chunk + begin, end - begin);
+  return true;
+}
+
+/* ---- segments -------------------------------------------------------------------------------- */
+
+MPSI_INLINE void scatter_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                             int dim, int spline, bool thin, mpsi_cut *b) {
+  const bool variant = mpm->standard || mpm->by_weight;
+  if (!mpm->standard) mpsi_make_fit(mpm, cells, worker, dim, spline, thin, b);
+  for (int l = 0; l < b->lanes && thin; l++) /* for the way back */
+    mpm->contact.across[b->first + l] =
+        (mpsi_parted){(uint64_t)b->across[l], (uint64_t)b->parted[l]};
+  if (!variant) scatter(mpm, worker, dim, spline, thin, b);
+  if (variant || b->held & MPSI_PENALTY) scatter_each(mpm, cells, worker, dim, spline, variant, b);
+}
+
+/* Beside thin bodies no support counts as full. */
+MPSI_INLINE bool scatter_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                              int dim, int spline, uint32_t held, const mpsi_places *places,
+                              int64_t chunk, int begin, int end) {
+  for (int k = begin; k < end; k += 4) {
+    mpsi_cut b;
+    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
+    scatter_cut(mpm, cells, worker, dim, spline, true, &b);
+  }
+  return true;
+}
+
+MPSI_INLINE bool scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                              int dim, int spline, uint32_t held, const mpsi_places *places,
+                              int64_t chunk, int begin, int end) {
+  if (held == MPSI_IMPULSE && cells->first_fit >= 0 && !mpm->by_weight && !mpm->standard &&
+      find_full(mpm, cells, worker, dim, spline, places, chunk, begin, end))
+    return false;
+  for (int k = begin; k < end; k += 4) {
+    mpsi_cut b;
+    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
+    scatter_cut(mpm, cells, worker, dim, spline, false, &b);
+  }
+  return true;
+}
+
+bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                         const mpsi_worker *worker, const mpsi_places *places,
+                                         int64_t chunk, int begin, int end) {
+  const uint32_t held =
+      mpsi_support_state(worker, mpm->dim, mpm->def.spline, places->first[begin]) & MPSI_HELD;
+  return cells->thin ? MPSI_CHOOSE(scatter_thin, held, places, chunk, begin, end)
+                     : MPSI_CHOOSE(scatter_body, held, places, chunk, begin, end);
+}
