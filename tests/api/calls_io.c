@@ -17,6 +17,7 @@ static void recorder_create(api *a) {
   mps_recorder_def def = mps_recorder_defaults();
   def.struct_size = api_struct_size(a, sizeof def);
   def.compression = (int32_t)api_whole(a, "compression", 0, 9);
+  def.xdmf = (int32_t)api_whole(a, "xdmf", 0, 1);
   const char *names[2] = {"position", "id"};
   if (api_chance(a, 40)) {
     const int before = a->wrong;

@@ -368,6 +368,48 @@ static void only_the_fields_of_the_list_are_written(void **state) {
   mps_particles_destroy(&set);
 }
 
+/* How often a text stands in a file, which must end with `end`. */
+static int occurrences(const char *path, const char *text, const char *end) {
+  static char all[1 << 16];
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  const size_t size = fread(all, 1, sizeof all - 1, file);
+  fclose(file);
+  all[size] = '\0';
+  assert_true(size > strlen(end) && strcmp(all + size - strlen(end), end) == 0);
+  int count = 0;
+  for (const char *at = all; (at = strstr(at, text)) != NULL; at++) count++;
+  return count;
+}
+
+/* After each frame the text beside the series is whole; a frame at the same time is replaced, a
+ * shorter one too, and one without particles is left out. tests/vtk compares what it names with the
+ * values. */
+static void the_text_beside_it_is_whole_after_each_frame(void **state) {
+  (void)state;
+  static const char text[] = TEST_TMP "/recorder-text.xdmf",
+                    end[] = "</Grid>\n</Domain>\n</Xdmf>\n";
+  mps_particles *set = make_set(1200);
+  mps_recorder *recorder = record(set, TEST_TMP "/recorder-text.vtkhdf", 0);
+  assert_int_equal(occurrences(text, "<Time", end), 0);
+  frame(recorder, set, 0.0);
+  frame(recorder, set, 0.25);
+  assert_int_equal(occurrences(text, "<Time", end), 2);
+  assert_int_equal(occurrences(text, "NumberOfElements=\"1200\"", end), 2);
+  int64_t ids[1200];
+  for (int64_t k = 0; k < 1200; k++) ids[k] = k;
+  mps_assert_ok(context, mps_particles_remove(set, 1195, ids));
+  frame(recorder, set, 0.25);
+  assert_int_equal(occurrences(text, "<Time", end), 2);
+  assert_int_equal(occurrences(text, "NumberOfElements=\"5\"", end), 1);
+  mps_assert_ok(context, mps_particles_remove(set, 5, ids + 1195));
+  frame(recorder, set, 0.5);
+  assert_int_equal(occurrences(text, "<Time", end), 2);
+  assert_int_equal(occurrences(text, "recorder-text.vtkhdf:/VTKHDF/Points<", end), 2);
+  mps_assert_ok(context, mps_recorder_close(&recorder));
+  mps_particles_destroy(&set);
+}
+
 static void bad_arguments_are_refused_before_the_file_is_touched(void **state) {
   (void)state;
   static const char path[] = TEST_TMP "/recorder-untouched.vtkhdf";
@@ -408,6 +450,14 @@ static void bad_arguments_are_refused_before_the_file_is_touched(void **state) {
   def.fields = hole;
   def.field_count = 1;
   REFUSED(MPS_ERROR_ARGUMENT, "fields[0] is NULL");
+  def = mps_recorder_defaults();
+  def.path = path;
+  def.xdmf = 2;
+  REFUSED(MPS_ERROR_ARGUMENT, "xdmf is 2, must be 0 or 1");
+  def.xdmf = 1;
+  def.path = TEST_TMP "/recorder:untouched.vtkhdf";
+  REFUSED(MPS_ERROR_ARGUMENT, "must have none of : < >");
+  assert_int_equal(access(def.path, F_OK), -1);
   assert_int_equal(access(path, F_OK), -1);
   def = mps_recorder_defaults();
   def.path = TEST_TMP "/no such directory/x.vtkhdf";
@@ -630,6 +680,7 @@ int main(void) {
       cmocka_unit_test(in_three_dimensions_nothing_is_padded),
       cmocka_unit_test(the_same_time_again_replaces_the_frame),
       cmocka_unit_test(only_the_fields_of_the_list_are_written),
+      cmocka_unit_test(the_text_beside_it_is_whole_after_each_frame),
       cmocka_unit_test(bad_arguments_are_refused_before_the_file_is_touched),
       cmocka_unit_test(bad_times_are_refused_and_write_nothing),
       cmocka_unit_test(a_full_disk_costs_the_last_frame_only),
