@@ -122,15 +122,15 @@ double mpsi_material_viscosity(const mps_material *material) { return material->
 
 void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *user) {
   const mpsi_law *l = &m->law;
-  const double constants[] = {l->shear,       l->bulk,          l->lambda,         l->per_bulk,
-                              l->yield,       l->hardening,     l->alpha,          l->kappa,
-                              l->alpha_flow,  l->cone,          l->tension,        l->q_tension,
-                              l->sin_phi,     l->sin_psi,       l->c_cos_phi,      l->apex,
-                              l->cut,         l->residual,      l->per_strain,     l->rate_factor,
-                              l->per_rate,    l->tan_phi,       l->tan_phi_last,   l->tan_psi,
-                              l->cohesion,    l->cohesion_last, l->given_cut,      l->slope,
-                              l->compression, l->swelling,      l->shear_ratio,    l->lode,
-                              l->first_pc,    l->first_void,    l->least_pressure, l->viscosity};
+  const double constants[] = {
+      l->shear,         l->bulk,      l->lambda,       l->per_bulk,    l->yield,
+      l->hardening,     l->alpha,     l->kappa,        l->alpha_flow,  l->cone,
+      l->tension,       l->q_tension, l->sin_phi,      l->sin_psi,     l->c_cos_phi,
+      l->apex,          l->cut,       l->residual,     l->per_strain,  l->rate_factor,
+      l->per_rate,      l->tan_phi,   l->tan_phi_last, l->tan_psi,     l->cohesion,
+      l->cohesion_last, l->given_cut, l->slope,        l->compression, l->swelling,
+      l->shear_ratio,   l->lode,      l->first_pc,     l->first_void,  l->least_pressure,
+      l->log_least,     l->viscosity};
   const double settings[] = {
       l->tait,         l->no_tension,    l->turns_stress, l->needs_deformation, l->has_moduli,
       m->wave_modulus, m->history_count, l->softens,      l->softens_linearly,  l->moduli != NULL};

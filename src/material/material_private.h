@@ -35,8 +35,9 @@ typedef struct mpsi_law {
   double residual, per_strain, rate_factor, per_rate;
   double tan_phi, tan_phi_last, tan_psi, cohesion, cohesion_last, given_cut;
   /* Cam-Clay: M, lambda, kappa, G/K (0: `shear` is constant), a^4 of the Lode angle (1: a circle),
-   * pc and e of the definition, p below which grains part. */
-  double slope, compression, swelling, shear_ratio, lode, first_pc, first_void, least_pressure;
+   * pc and e of the definition, p below which grains part and its logarithm. */
+  double slope, compression, swelling, shear_ratio, lode, first_pc, first_void, least_pressure,
+      log_least;
   double viscosity;                     /* Pa s */
   bool tait, no_tension;                /* fluid */
   bool turns_stress, needs_deformation; /* user */
