@@ -63,6 +63,9 @@ bool mpsi_material_opens(const mps_material *material);
 bool mpsi_material_dilates(const mps_material *material);
 /* True: a user's law, which may fail for a block. */
 bool mpsi_material_may_refuse(const mps_material *material);
+/* The column of the factors of E of each particle among those of its history, in which 0 stands for
+ * 1; NULL: E is the same for all. */
+const double *mpsi_material_stiffness(const mps_material *material, double *const *history);
 /* True: values of history that are not 0 at the start are kept, and stress and history must fit one
  * another (mpsi_material_check_state). */
 bool mpsi_material_has_start(const mps_material *material);

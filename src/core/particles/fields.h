@@ -104,6 +104,10 @@
     "the caller (initial state; 0: of the law); WLS-MPM with Cam-Clay", "after a step or a run")     \
   X(void_ratio, F64, 1, "-", "volume of the pores over that of the grains, e", \
     "the caller (initial state; 0: of the law); WLS-MPM with Cam-Clay", "after a step or a run")     \
+  X(stiffness_factor, F64, 1, "-", "factor of E of the particle's law; 0: 1", \
+    "the caller; a law of mps_material_create_by_field reads it", "as written")                      \
+  X(strength_factor, F64, 1, "-", "factor of the strengths of the particle's law; 0: 1", \
+    "the caller; a law of mps_material_create_by_field reads it", "as written")                      \
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then in the order of mps_mpm_set_material", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
@@ -122,6 +126,8 @@
   X(pressure_velocity, 0.0, 3e8)                                                                   \
   X(damping, 0.0, 1e6)                                                                             \
   X(preconsolidation, 0.0, 1e18)                                                                    \
+  X(stiffness_factor, 0.0, 1e9)                                                                     \
+  X(strength_factor, 0.0, 1e9)                                                                      \
   X(void_ratio, 0.0, 1e3)                                                                          \
   X(young, 0.0, 1e24)                                                                              \
   X(poisson, -1.0, 0.5)                                                                            \

@@ -26,14 +26,14 @@ typedef struct mpsi_shape_values {
   double w[MPSI_STENCIL], phi[MPSI_STENCIL]; /* 0 where a node does not take part */
   double gradient[3][MPSI_STENCIL];          /* of phi, 1/m */
   double determinant;                        /* det M / M00^(dim + 1) */
-  uint64_t across;                           /* nodes whose values across take part: thin_bodies.h */
+  uint64_t across; /* nodes whose values across take part: thin_bodies.h */
 } mpsi_shape_values;
 
 /* phi + grad phi . d at the nodes of a stencil whose lowest is tile node `at`: what a particle's
  * shape functions are, prolonged linearly, at the distance d (m) from it. */
 typedef struct mpsi_foot_weights {
   int at[3];
-  uint64_t active, across;  /* bit n: node n takes part, and with its value across (thin_bodies.h) */
+  uint64_t active, across; /* bit n: node n takes part, and with its value across (thin_bodies.h) */
   double psi[MPSI_STENCIL]; /* of the former */
 } mpsi_foot_weights;
 
