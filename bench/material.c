@@ -2,7 +2,7 @@
  * in the first cache, as a solver's do, with about half the particles yielding. The laws are timed
  * in turn, in rounds, in one process; minima are compared, so that the differences from linear
  * elastic hold when the machine's speed drifts. SPDX-License-Identifier: BSD-3-Clause */
-#include <mps/material.h>
+#include <mps/soil.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 #define ROUNDS 7
 #define BLOCK 136
 #define REPEATS 4000
-#define LAWS 6
+#define LAWS 8
 
 static double seconds(void) {
   struct timespec now;
@@ -35,6 +35,11 @@ static mps_material *make(mps_context *context, int law) {
   mises.young = cone.young = pyramid.young = 1e6;
   mises.yield_stress = 1e3, mises.hardening = 1e5;
   cone.friction = pyramid.friction = 0.6, cone.cohesion = pyramid.cohesion = 100.0;
+  mps_material_von_mises_def soft = mises;
+  soft.hardening = 0.0, soft.residual = 0.5, soft.slip = soft.band = 1.0;
+  mps_material_cam_clay_def clay = mps_material_cam_clay_defaults();
+  clay.critical_slope = 0.92, clay.compression = 0.205, clay.swelling = 0.044;
+  clay.void_ratio = 1.4, clay.preconsolidation = 1e3;
   fluid.bulk_modulus = 1e6, fluid.viscosity = 1.0;
   if (law == 0) check(context, mps_material_create_linear_elastic(context, 1e6, 0.3, &material));
   if (law == 1) check(context, mps_material_create_von_mises(context, &mises, &material));
@@ -42,17 +47,21 @@ static mps_material *make(mps_context *context, int law) {
   if (law == 3) check(context, mps_material_create_mohr_coulomb(context, &pyramid, &material));
   if (law == 4) check(context, mps_material_create_neo_hookean(context, 1e6, 0.3, &material));
   if (law == 5) check(context, mps_material_create_newtonian(context, &fluid, &material));
+  if (law == 6) check(context, mps_material_create_von_mises(context, &soft, &material));
+  if (law == 7) check(context, mps_material_create_cam_clay(context, &clay, &material));
   return material;
 }
 
+enum { HISTORY = 4 };
+
 /* Columns of a block; the gradient changes sign each step, so that the state stays bounded. */
 typedef struct columns {
-  double gradient[2][9][BLOCK], deformation[9][BLOCK], stress[6][BLOCK], history[BLOCK];
+  double gradient[2][9][BLOCK], deformation[9][BLOCK], stress[6][BLOCK], history[HISTORY][BLOCK];
   double volume[BLOCK];
   int64_t flags[BLOCK];
 } columns;
 
-static void fill(columns *c) {
+static void fill(const mps_material *material, columns *c) {
   srand(1);
   for (int k = 0; k < BLOCK; k++) {
     for (int i = 0; i < 9; i++) {
@@ -61,7 +70,7 @@ static void fill(columns *c) {
       c->deformation[i][k] = i % 4 == 0;
     }
     for (int i = 0; i < 6; i++) c->stress[i][k] = i < 3 ? -1e3 : 0.0;
-    c->history[k] = 0.0;
+    for (int i = 0; i < HISTORY; i++) c->history[i][k] = mps_material_history_initial(material, i);
     c->volume[k] = 1.0;
   }
 }
@@ -70,7 +79,8 @@ static void fill(columns *c) {
 static double run(mps_context *context, const mps_material *material, int32_t dim, columns *c,
                   double *plastic) {
   mps_material_block block[2];
-  double *const history[1] = {c->history};
+  double *history[HISTORY];
+  for (int i = 0; i < HISTORY; i++) history[i] = c->history[i];
   for (int turn = 0; turn < 2; turn++) {
     block[turn] = (mps_material_block){.struct_size = sizeof block[turn],
                                        .dim = dim,
@@ -84,9 +94,9 @@ static double run(mps_context *context, const mps_material *material, int32_t di
       block[turn].deformation[i] = c->deformation[i];
     }
     for (int i = 0; i < 6; i++) block[turn].stress[i] = c->stress[i];
-    block[turn].history = history, block[turn].history_count = 1;
+    block[turn].history = history, block[turn].history_count = HISTORY;
   }
-  fill(c);
+  fill(material, c);
   const double start = seconds();
   for (int step = 0; step < REPEATS; step++)
     check(context, mps_material_update(context, material, &block[step % 2]));

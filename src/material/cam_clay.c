@@ -46,6 +46,10 @@ static bool solve_newton(const clay_return *c, clay_point *out) {
   double x = c->start, g = 0.0;
   for (int i = 0; i < 25; i++) {
     const clay_point a = evaluate(c, x, g);
+    if (fabs(a.r1) <= 1e-14 * c->vm && fabs(a.r2) <= 1e-13 * (1.0 + a.p * a.p)) {
+      *out = a;
+      return a.p > 0.0;
+    }
     const double xx = -c->kappa - c->vm * g * (2.0 * a.p + fall * a.pc);
     const double xg = -c->vm * (2.0 * a.p - a.pc);
     const double gx = a.p * (2.0 * a.p - a.pc) + fall * a.p * a.pc;
@@ -53,15 +57,9 @@ static bool solve_newton(const clay_return *c, clay_point *out) {
         -2.0 * c->q * c->q * c->shear6 / (c->slope2 * c->slope2 * a.rate * a.rate * a.rate);
     const double det = xx * gg - xg * gx;
     if (!(fabs(det) > 1e-300)) return false;
-    const double dx = fmax(-1.0, fmin(1.0, (xg * a.r2 - gg * a.r1) / det));
-    const double next = fmax(0.0, g + (gx * a.r1 - xx * a.r2) / det), dg = next - g;
-    x += dx;
-    g = next;
-    if (fabs(dx) <= 1e-11 && fabs(dg) * c->shear6 <= 1e-11 * (c->slope2 + c->shear6 * g)) {
-      *out = evaluate(c, x, g);
-      return out->p > 0.0 && fabs(out->r1) <= 1e-13 * (fabs(c->dv) + c->kappa + c->vm) &&
-             fabs(out->r2) <= 1e-12 * (1.0 + out->p * out->p);
-    }
+    const double per_det = 1.0 / det;
+    x += fmax(-1.0, fmin(1.0, (xg * a.r2 - gg * a.r1) * per_det));
+    g = fmax(0.0, g + (gx * a.r1 - xx * a.r2) * per_det);
   }
   return false;
 }
@@ -146,7 +144,7 @@ static int64_t find_invariants(const mpsi_law *law, double p0, double growth, do
                                double m2, double q, mpsi_clay *clay, double *scale, double *p) {
   const double v0 = 1.0 + clay->void_ratio, half = 0.5 * growth;
   const double v1 = v0 * ((1.0 + half) / (1.0 - half)), x0 = log(p0);
-  const double x = x0 + (v0 - v1) / law->swelling, least = log(law->least_pressure);
+  const double x = x0 + (v0 - v1) / law->swelling, least = law->log_least;
   if (x < least) {
     const double v = v0 - law->swelling * (least - x0);
     clay->gap += log(v1 / v);

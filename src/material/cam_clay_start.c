@@ -74,6 +74,7 @@ mps_status mpsi_define_cam_clay(mps_context *context, const char *function, cons
                     .first_void = d->void_ratio,
                     .least_pressure =
                         isnan(d->least_pressure) ? 1e-3 * d->preconsolidation : d->least_pressure};
+  law->log_least = log(law->least_pressure);
   return MPS_OK;
 }
 

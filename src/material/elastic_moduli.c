@@ -86,6 +86,11 @@ static const char set_material[] = "mps_particles_set_material";
 mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
                                        const mps_material *material) {
   if (!material) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
+  if (material->by_field)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "the law %s has factors of each particle, which solvers of elasticity do not "
+                     "read: set their fields young or shear_velocity",
+                     material->name);
   if (material->type->traits & MPSI_LAW_IS_LINEAR) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                    "the law is %s: fields and solvers of elasticity hold linear_elastic ground "

@@ -1,11 +1,12 @@
 /* geostatic.c - geostatic stress: weight of the layers above, K0 horizontally; or by a caller's
- * function.
+ * function. A field by depth below the surface.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "core/base/ranges.h"
 #include "core/base/digits.h"
 
 #include <mps/geostatic.h>
+#include <mps/soil.h>
 
 #define ON_SURFACE 1e-9 /* spacings: a centre this little above the surface lies on it */
 
@@ -26,6 +27,7 @@ typedef struct geostatic {
   mps_particles *set;
   mps_context *context;
   mps_geostatic_def def;
+  const char *function; /* that is called */
   int64_t count;
   int32_t dim, up; /* the vertical axis */
   const double *x[3];
@@ -47,12 +49,12 @@ static const mps_geostatic_layer *layer_of(const geostatic *g, int32_t k) {
 static mps_status check_layers(const geostatic *g) {
   const mps_geostatic_def *d = &g->def;
   if (d->layer_count < 1 || !d->layers)
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                      "layer_count is %d%s, must be >= 1", (int)d->layer_count,
                      d->layers ? "" : " and layers is NULL");
   if (d->layer_size != 0 && (d->layer_size < FIRST_LAYER || d->layer_size > MOST_LAYER ||
                              d->layer_size % (int32_t)sizeof(double) != 0))
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                      "layer_size is %d, must be sizeof(mps_geostatic_layer) (%d to %d, a multiple "
                      "of 8), or 0",
                      (int)d->layer_size, FIRST_LAYER, MOST_LAYER);
@@ -61,22 +63,22 @@ static mps_status check_layers(const geostatic *g) {
     const bool lowest = k == d->layer_count - 1;
     if (!mpsi_in_range(MPSI_RANGE_LENGTH, layer->thickness) &&
         !(lowest && layer->thickness == INFINITY))
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "layers: layer %d has thickness %s m, must be > 0 (1e-9 to 1e9)%s", (int)k,
                        mpsi_outside(layer->thickness, 1e-9, 1e9).text,
                        lowest ? "" : "; only the lowest may be infinite");
     if (layer->k0 != 0.0 && !mpsi_in_range(MPSI_RANGE_STRESS_RATIO, layer->k0))
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "layers: layer %d has k0 %s, must be 0 or 1e-9 to 1e6", (int)k,
                        mpsi_outside(layer->k0, 1e-9, 1e6).text);
     if (!isnan(layer->density) && !mpsi_in_range(MPSI_RANGE_DENSITY, layer->density))
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "layers: layer %d has density %g kg/m3, must be 1e-9 to 1e9, or NaN for "
                        "that of the particles",
                        (int)k, layer->density);
     if (isnan(layer->density) && !g->density_field)
       return mpsi_fail(
-          g->context, set_geostatic, MPS_ERROR_FIELD,
+          g->context, g->function, MPS_ERROR_FIELD,
           "layers: layer %d has density NaN, but the set has no field 'density' to take it "
           "from",
           (int)k);
@@ -89,16 +91,16 @@ static mps_status check_line(const geostatic *g) {
   const int32_t n = d->surface_points;
   if (!d->surface_line && n == 0) return MPS_OK;
   if (!d->surface_line || n < 2)
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                      "surface_points is %d%s, must be >= 2 with a line", (int)n,
                      d->surface_line ? "" : " and surface_line is NULL");
   if (g->dim != 2 || g->up != 1)
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_UNSUPPORTED,
+    return mpsi_fail(g->context, g->function, MPS_ERROR_UNSUPPORTED,
                      "a surface_line is for 2D with y upwards: use surface_level");
   for (int32_t k = 0; k < n; k++) {
     const double x = d->surface_line[2 * k], y = d->surface_line[2 * k + 1];
     if (!isfinite(x) || !isfinite(y) || (k > 0 && x <= d->surface_line[2 * k - 2]))
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "point %d of surface_line is (%g, %g) m: must be finite, and x larger than "
                        "that of the point before",
                        (int)k, x, y);
@@ -109,20 +111,20 @@ static mps_status check_line(const geostatic *g) {
 static mps_status check_numbers(const geostatic *g) {
   const mps_geostatic_def *d = &g->def;
   mps_status status =
-      mpsi_check_range(g->context, set_geostatic, "gravity", d->gravity, MPSI_RANGE_ACCELERATION);
+      mpsi_check_range(g->context, g->function, "gravity", d->gravity, MPSI_RANGE_ACCELERATION);
   if (status == MPS_OK)
-    status = mpsi_check_range_or_0(g->context, set_geostatic, "surcharge", d->surcharge,
+    status = mpsi_check_range_or_0(g->context, g->function, "surcharge", d->surcharge,
                                    MPSI_RANGE_STRESS);
   if (status == MPS_OK && !isnan(d->surface))
-    status = mpsi_check_range(g->context, set_geostatic, "surface", d->surface, MPSI_RANGE_LEVEL);
+    status = mpsi_check_range(g->context, g->function, "surface", d->surface, MPSI_RANGE_LEVEL);
   if (status != MPS_OK) return status;
   if (g->up < 0 || g->up >= g->dim)
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                      "vertical is %d, must be 0..%d, or -1 for the last axis", (int)d->vertical,
                      (int)g->dim - 1);
   const int given = !isnan(d->surface) + (d->surface_line != NULL) + (d->surface_level != NULL);
   if (given > 1)
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                      "%d of surface, surface_line and surface_level are given, only one may be",
                      given);
   return MPS_OK;
@@ -161,7 +163,7 @@ static mps_status find_depths(geostatic *g) {
     /* of a set in parts the highest particle may lie on another rank */
     const mps_status here = d->surface_line || d->surface_level
                                 ? MPS_OK
-                                : mpsi_particles_check_deal(g->set, set_geostatic, NULL);
+                                : mpsi_particles_check_deal(g->set, g->function, NULL);
     if (here != MPS_OK) return here;
     flat = -INFINITY;
     for (int64_t k = 0; k < g->count; k++) flat = fmax(flat, g->x[g->up][k]);
@@ -173,10 +175,10 @@ static mps_status find_depths(geostatic *g) {
     double level = d->surface_line ? level_of_line(d, x[0]) : flat;
     const mps_status status = d->surface_level ? d->surface_level(d->user, x, &level) : MPS_OK;
     if (status != MPS_OK)
-      return refused(g, set_geostatic, "surface_level refused the position of", status, k);
+      return refused(g, g->function, "surface_level refused the position of", status, k);
     const double depth = level - x[g->up];
     if (!isfinite(depth) || depth < -ON_SURFACE * spacing)
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "particle %lld lies at the level %g m, above the surface at %g m there",
                        (long long)g->id[k], x[g->up], level);
     g->depth[k] = fmax(depth, 0.0);
@@ -202,7 +204,7 @@ static mps_status take_densities(geostatic *g, double *density) {
   for (int64_t k = 0; k < g->count; k++) {
     const int32_t layer = layer_at(g, g->depth[k]);
     if (layer == n)
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "particle %lld is %g m deep, the layers reach down to %g m (the lowest may "
                        "be infinite)",
                        (long long)g->id[k], g->depth[k],
@@ -210,19 +212,19 @@ static mps_status take_densities(geostatic *g, double *density) {
     if (!isnan(layer_of(g, layer)->density)) continue;
     const double rho = g->density_field[k];
     if (!mpsi_in_range(MPSI_RANGE_DENSITY, rho))
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "particles: particle %lld has density %g kg/m3, must be 1e-9 to 1e9",
                        (long long)g->id[k], rho);
     if (isnan(density[layer])) density[layer] = rho;
     if (rho != density[layer])
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "layer %d has particles of %g and of %g kg/m3 (particle %lld), must be one "
                        "value, or give the layer's density",
                        (int)layer, density[layer], rho, (long long)g->id[k]);
   }
   for (int32_t k = 0; k < n; k++)
     if (isnan(density[k]) && k < n - 1)
-      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
                        "layers: layer %d has density NaN and no particle to take it from", (int)k);
   return MPS_OK;
 }
@@ -274,8 +276,10 @@ static void look_at_set(geostatic *g) {
 
 mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geostatic_def *def) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  geostatic g = {
-      .set = particles, .context = mpsi_particles_context(particles), .def = geostatic_defaults};
+  geostatic g = {.set = particles,
+                 .context = mpsi_particles_context(particles),
+                 .def = geostatic_defaults,
+                 .function = set_geostatic};
   mps_status status = MPSI_DEF_READ(g.context, set_geostatic, mps_geostatic_def, def, &g.def);
   if (status == MPS_OK) status = mpsi_particles_writable(particles, set_geostatic);
   if (status != MPS_OK) return status;
@@ -331,5 +335,82 @@ mps_status mps_particles_set_stress(mps_particles *particles, mps_geostatic_stre
     for (int64_t k = 0; k < g.count; k++) column[k] = s[6 * k + c];
   }
   mpsi_free(g.context, s);
+  return status;
+}
+
+/* ---- a field by depth ------------------------------------------------------------------------ */
+
+static mps_status check_profile(const geostatic *g, const char *field, int32_t count,
+                                const double *depth, const double *value) {
+  if (!field || !depth || !value)
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     !field   ? "field"
+                     : !depth ? "depth"
+                              : "value");
+  if (count < 1)
+    return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT, "count is %d, must be >= 1",
+                     (int)count);
+  for (int32_t k = 0; k < count; k++)
+    if (!isfinite(depth[k]) || !isfinite(value[k]) || (k > 0 && depth[k] <= depth[k - 1]))
+      return mpsi_fail(g->context, g->function, MPS_ERROR_ARGUMENT,
+                       "depth[%d] is %g m and value[%d] %g: must be finite, and depths ascend",
+                       (int)k, depth[k], (int)k, value[k]);
+  return MPS_OK;
+}
+
+/* Linear between the points, constant beyond. */
+static double profile_at(int32_t count, const double *depth, const double *value, double at) {
+  if (at <= depth[0]) return value[0];
+  for (int32_t k = 1; k < count; k++) {
+    if (at > depth[k]) continue;
+    const double share = (at - depth[k - 1]) / (depth[k] - depth[k - 1]);
+    return value[k - 1] + share * (value[k] - value[k - 1]);
+  }
+  return value[count - 1];
+}
+
+static mps_status write_profile(const geostatic *g, const char *field, int32_t count,
+                                const double *depth, const double *value) {
+  mps_edit edit;
+  mps_status status = mpsi_as(g->context, g->function, mps_particles_edit(g->set, field, &edit));
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < g->count; k++)
+    *mps_edit_f64(&edit, k, 0) = profile_at(count, depth, value, g->depth[k]);
+  return mpsi_as(g->context, g->function, mps_particles_commit(g->set, &edit));
+}
+
+mps_status mps_particles_set_profile(mps_particles *particles, const char *field, int32_t count,
+                                     const double *depth, const double *value,
+                                     const mps_geostatic_def *ground) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  geostatic g = {.set = particles,
+                 .context = mpsi_particles_context(particles),
+                 .def = geostatic_defaults,
+                 .function = __func__};
+  mps_view view;
+  mps_status status = check_profile(&g, field, count, depth, value);
+  if (status == MPS_OK && ground)
+    status = MPSI_DEF_READ(g.context, __func__, mps_geostatic_def, ground, &g.def);
+  if (status == MPS_OK) status = mpsi_particles_writable(particles, __func__);
+  if (status != MPS_OK) return status;
+  look_at_set(&g);
+  g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
+  status = check_numbers(&g);
+  if (status == MPS_OK) status = check_line(&g);
+  if (status != MPS_OK) return status;
+  g.depth = mpsi_alloc(g.context, g.count, sizeof *g.depth);
+  if (!g.depth) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * sizeof *g.depth);
+  const int32_t fields = mps_particles_field_count(particles);
+  status = find_depths(&g);
+  if (status == MPS_OK)
+    status = mpsi_as(g.context, __func__, mps_particles_add_field(particles, field, 1));
+  if (status == MPS_OK)
+    status = mpsi_as(g.context, __func__, mps_particles_view(particles, field, &view));
+  if (status == MPS_OK && view.dtype.code != 2)
+    status = mpsi_fail(g.context, __func__, MPS_ERROR_FIELD,
+                       "field '%s' is of int64, must be float64", field);
+  if (status == MPS_OK) status = write_profile(&g, field, count, depth, value);
+  if (status != MPS_OK) mpsi_particles_drop_fields(particles, fields);
+  mpsi_free(g.context, g.depth);
   return status;
 }

@@ -43,6 +43,7 @@ void mpsi_material_give(mpsi_given *list, const mps_material *material) {
                    {"G/K of the material", law->shear_ratio},
                    {"the Lode option of the material", law->lode},
                    {"the least pressure of the material", law->least_pressure},
+                   {"the material's having factors by field", material->by_field},
                    {"pc of the material", law->first_pc},
                    {"the void ratio of the material", law->first_void},
                    {"the material's having moduli by the state", law->moduli != NULL},

@@ -110,6 +110,10 @@ bool mpsi_material_dilates(const mps_material *material) {
          (material->law.sin_psi > 0.0 || material->law.alpha_flow > 0.0);
 }
 
+const double *mpsi_material_stiffness(const mps_material *material, double *const *history) {
+  return material->by_field ? history[material->history_count - 2] : NULL;
+}
+
 bool mpsi_material_has_start(const mps_material *material) {
   return (material->type->traits & MPSI_LAW_HAS_START) != 0;
 }
@@ -122,18 +126,18 @@ double mpsi_material_viscosity(const mps_material *material) { return material->
 
 void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *user) {
   const mpsi_law *l = &m->law;
-  const double constants[] = {l->shear,       l->bulk,          l->lambda,         l->per_bulk,
-                              l->yield,       l->hardening,     l->alpha,          l->kappa,
-                              l->alpha_flow,  l->cone,          l->tension,        l->q_tension,
-                              l->sin_phi,     l->sin_psi,       l->c_cos_phi,      l->apex,
-                              l->cut,         l->residual,      l->per_strain,     l->rate_factor,
-                              l->per_rate,    l->tan_phi,       l->tan_phi_last,   l->tan_psi,
-                              l->cohesion,    l->cohesion_last, l->given_cut,      l->slope,
-                              l->compression, l->swelling,      l->shear_ratio,    l->lode,
-                              l->first_pc,    l->first_void,    l->least_pressure, l->viscosity};
+  const double constants[] = {
+      l->shear,         l->bulk,      l->lambda,       l->per_bulk,    l->yield,
+      l->hardening,     l->alpha,     l->kappa,        l->alpha_flow,  l->cone,
+      l->tension,       l->q_tension, l->sin_phi,      l->sin_psi,     l->c_cos_phi,
+      l->apex,          l->cut,       l->residual,     l->per_strain,  l->rate_factor,
+      l->per_rate,      l->tan_phi,   l->tan_phi_last, l->tan_psi,     l->cohesion,
+      l->cohesion_last, l->given_cut, l->slope,        l->compression, l->swelling,
+      l->shear_ratio,   l->lode,      l->first_pc,     l->first_void,  l->least_pressure,
+      l->log_least,     l->viscosity};
   const double settings[] = {
       l->tait,         l->no_tension,    l->turns_stress, l->needs_deformation, l->has_moduli,
-      m->wave_modulus, m->history_count, l->softens,      l->softens_linearly,  l->moduli != NULL};
+      m->wave_modulus, m->history_count, l->softens,      l->softens_linearly,  l->moduli != NULL, m->by_field};
   _Static_assert(sizeof constants == offsetof(mpsi_law, tait) - offsetof(mpsi_law, shear),
                  "every constant of a law stands in the list");
   add(user, (double)m->type->kind);
@@ -145,7 +149,7 @@ void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *
 
 void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
                          int64_t end) {
-  const bool starts = mpsi_material_has_start(material);
+  const bool starts = mpsi_material_has_start(material) || material->by_field;
   for (int32_t c = 0; c < material->history_count; c++) {
     const double initial = material->history_initial[c];
     const bool given = starts && initial != 0.0; /* a value of the caller's stays */
@@ -162,6 +166,7 @@ static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
 }
 
 mps_status mpsi_material_apply(const mps_material *material, const mps_material_block *block) {
+  if (material->by_field) return mpsi_apply_by_field(material, block);
   return material->table->apply[material->type->kind][geometry_of(block)](&material->law, block);
 }
 

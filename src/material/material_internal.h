@@ -70,6 +70,9 @@ typedef enum mpsi_volume {
 mpsi_volume mpsi_material_volume(const mps_material *material);
 /* True: a user's law, which may fail for a block. */
 bool mpsi_material_may_refuse(const mps_material *material);
+/* The column of the factors of E of each particle among those of its history, in which 0 stands for
+ * 1; NULL: E is the same for all. */
+const double *mpsi_material_stiffness(const mps_material *material, double *const *history);
 /* True: values of history that are not 0 at the start are kept, and stress and history must fit one
  * another (mpsi_material_check_state). */
 bool mpsi_material_has_start(const mps_material *material);

@@ -35,8 +35,9 @@ typedef struct mpsi_law {
   double residual, per_strain, rate_factor, per_rate;
   double tan_phi, tan_phi_last, tan_psi, cohesion, cohesion_last, given_cut;
   /* Cam-Clay: M, lambda, kappa, G/K (0: `shear` is constant), a^4 of the Lode angle (1: a circle),
-   * pc and e of the definition, p below which grains part. */
-  double slope, compression, swelling, shear_ratio, lode, first_pc, first_void, least_pressure;
+   * pc and e of the definition, p below which grains part and its logarithm. */
+  double slope, compression, swelling, shear_ratio, lode, first_pc, first_void, least_pressure,
+      log_least;
   double viscosity;                     /* Pa s */
   bool tait, no_tension;                /* fluid */
   bool turns_stress, needs_deformation; /* user */
@@ -71,6 +72,7 @@ struct mps_material {
   void *owned; /* data of law.user that the library allocated, freed with the material; or NULL */
   const double *owned_constants; /* in `owned`: those of a UMAT */
   int32_t owned_count;
+  bool by_field; /* the last two columns of history are factors of stiffness and strength */
 };
 
 /* A material of one owner with room for its history, or NULL after recording that memory is short.
@@ -103,6 +105,11 @@ int64_t mpsi_cam_clay_step(const mpsi_law *law, int32_t dim, const double *d, do
 
 /* K0 of its one-dimensional virgin compression. */
 double mpsi_cam_clay_k0(const mpsi_law *law);
+
+/* by_field.c: the law with the factors of each particle. */
+mps_status mpsi_apply_by_field(const mps_material *material, const mps_material_block *block);
+/* Factor of a column's value: 0 stands for 1. */
+static inline double mpsi_factor(double value) { return value > 0.0 ? value : 1.0; }
 
 /* soften.c: share of the strength beyond the residual one that is left after a plastic strain. */
 double mpsi_softening_share(const mpsi_law *law, double plastic_strain);

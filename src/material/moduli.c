@@ -3,6 +3,7 @@
 #include "constants.h"
 
 bool mpsi_material_stiffens(const mps_material *material) {
+  if (material->by_field) return true;
   return material->type->moduli != NULL &&
          (material->type->kind != MPSI_LAW_USER || material->law.moduli != NULL);
 }
@@ -59,7 +60,11 @@ void mpsi_neo_hookean_moduli(const mpsi_law *law, const mps_material_block *bloc
 
 void mpsi_material_wave_moduli(const mps_material *material, const mps_material_block *block,
                                double *moduli) {
-  if (mpsi_material_stiffens(material))
+  if (material->by_field) {
+    const double *factor = mpsi_material_stiffness(material, block->history);
+    for (int64_t k = 0; k < block->count; k++)
+      moduli[k] = mpsi_factor(factor[k]) * material->wave_modulus;
+  } else if (mpsi_material_stiffens(material))
     material->type->moduli(&material->law, block, moduli);
   else
     for (int64_t k = 0; k < block->count; k++) moduli[k] = material->wave_modulus;

@@ -114,6 +114,16 @@ static void material_cam_clay(api *a) {
       a, mps_material_create_cam_clay(context, &def, api_null(a, "out") ? NULL : &made), &made);
 }
 
+static void material_by_field(api *a) {
+  api_begin(a, "mps_material_create_by_field");
+  mps_material *made = NULL;
+  mps_context *context = api_context(a);
+  const mps_material *law = api_any(a, API_MATERIAL)->handle;
+  api_loosen(a);
+  (void)made_material(
+      a, mps_material_create_by_field(context, law, api_null(a, "out") ? NULL : &made), &made);
+}
+
 static void normal_k0(api *a) {
   api_begin(a, "mps_material_normal_k0");
   const mps_material *material = api_any(a, API_MATERIAL)->handle;
@@ -378,6 +388,7 @@ static const api_call calls[] = {
     {"mps_material_create_mohr_coulomb", 2, API_CONTEXT, material_mohr_coulomb},
     {"mps_material_cam_clay_def_init", 1, API_NOTHING, init_material_cam_clay_def},
     {"mps_material_create_cam_clay", 2, API_CONTEXT, material_cam_clay},
+    {"mps_material_create_by_field", 1, API_MATERIAL, material_by_field},
     {"mps_material_normal_k0", 1, API_MATERIAL, normal_k0},
     {"mps_material_create_newtonian", 2, API_CONTEXT, material_newtonian},
     {"mps_material_create_user", 3, API_CONTEXT, material_user},

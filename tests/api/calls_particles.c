@@ -392,6 +392,15 @@ static void particles_set_consolidation(api *a) {
   (void)api_end(a, mps_particles_set_consolidation(set, material, &def));
 }
 
+static void particles_set_profile(api *a) {
+  api_begin(a, "mps_particles_set_profile");
+  mps_particles *set = api_any(a, API_SET)->handle;
+  double depth[2] = {api_near(a, "depth", 0.5, 0.5), 2.0}, value[2] = {0.5, 1.5};
+  value[0] = api_real(a, "value", 0.0, 1e9, 0.5);
+  api_loosen(a);
+  (void)api_end(a, mps_particles_set_profile(set, "strength_factor", 2, depth, value, NULL));
+}
+
 static mps_status some_stress(void *user, const double *x, double *stress) {
   for (int k = 0; k < 4; k++) stress[k] = -100.0 * x[1];
   return api_callback(user, stress, 4);
@@ -442,6 +451,7 @@ static const api_call calls[] = {
     {"mps_particles_nearest", 2, API_SET, particles_nearest},
     {"mps_geostatic_def_init", 1, API_NOTHING, init_geostatic_def},
     {"mps_consolidation_def_init", 1, API_NOTHING, init_consolidation_def},
+    {"mps_particles_set_profile", 1, API_SET, particles_set_profile},
     {"mps_particles_set_consolidation", 1, API_SET, particles_set_consolidation},
     {"mps_particles_set_geostatic", 4, API_SET, particles_set_geostatic},
     {"mps_particles_set_stress", 4, API_SET, particles_set_stress},

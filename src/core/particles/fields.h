@@ -114,6 +114,10 @@
     "the caller (initial state); WLS-MPM with pore water that flows", "after a step or a run") \
   X(seepage, F64, MPSI_PER_DIM, "m/s", "flow of pore water relative to the grains, per area of ground", \
     "WLS-MPM with pore water, where the set has it", "after a step or a run") \
+  X(stiffness_factor, F64, 1, "-", "factor of E of the particle's law; 0: 1", \
+    "the caller; a law of mps_material_create_by_field reads it", "as written")                      \
+  X(strength_factor, F64, 1, "-", "factor of the strengths of the particle's law; 0: 1", \
+    "the caller; a law of mps_material_create_by_field reads it", "as written")                      \
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then in the order of mps_mpm_set_material", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
@@ -132,6 +136,8 @@
   X(pressure_velocity, 0.0, 3e8)                                                                   \
   X(damping, 0.0, 1e6)                                                                             \
   X(preconsolidation, 0.0, 1e18)                                                                    \
+  X(stiffness_factor, 0.0, 1e9)                                                                     \
+  X(strength_factor, 0.0, 1e9)                                                                      \
   X(void_ratio, 0.0, 1e3)                                                                          \
   X(young, 0.0, 1e24)                                                                              \
   X(poisson, -1.0, 0.5)                                                                            \

@@ -120,7 +120,9 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
     if (warm == MPSI_KEPT_PRESSURE)
       stays = trace;
     else if (warm == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
-      stays = 0.5 * (V0 + V1) * (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear));
+      stays = 0.5 * (V0 + V1) *
+              (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear)) /
+              mpsi_mpm_stiffness(mpm, begin + k);
     sum->warm += stays;
     sum->spent += work - stays;
   }

@@ -75,12 +75,19 @@ static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t partic
   return &mpm->laws.law[mpm->p.law ? mpm->p.law[particle] : 0];
 }
 
+/* Factor of the moduli of a particle's law. */
+static inline double mpsi_mpm_stiffness(const mps_mpm *mpm, int64_t particle) {
+  const double *factor = mpsi_law_of(mpm, particle)->stiffness;
+  return factor && factor[particle] > 0.0 ? factor[particle] : 1.0;
+}
+
 /* K + 4G/3 and G (Pa) of a particle's material at zero strain. */
 static inline void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave,
                                     double *shear) {
   const mps_material *material = mpsi_law_of(mpm, particle)->material;
-  *wave = mpsi_material_rest_modulus(material);
-  *shear = mpsi_material_shear(material);
+  const double factor = mpsi_mpm_stiffness(mpm, particle);
+  *wave = factor * mpsi_material_rest_modulus(material);
+  *shear = factor * mpsi_material_shear(material);
 }
 
 /* Coordinate of x in cells from the origin along axis c. */

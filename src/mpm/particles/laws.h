@@ -18,6 +18,7 @@ typedef struct mpsi_law_use {
   bool filtered;   /* its mean stress is filtered (filter.c); its last column is the opening */
   int32_t columns;
   double **history; /* columns over all particles; NULL for none */
+  const double *stiffness; /* factor of the moduli of each particle, 0 for 1; NULL: 1 */
 } mpsi_law_use;
 
 /* Why a law has refused a block in the step being made: that of the first block with one. */

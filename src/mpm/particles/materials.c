@@ -25,6 +25,7 @@ void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law) {
     mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
   for (int32_t h = 0; h < law->columns; h++)
     law->history[h] = mpsi_particles_column(set, mps_material_history_field(law->material, h), 0);
+  law->stiffness = mpsi_material_stiffness(law->material, law->history);
   mpm->laws.ids = mpsi_particles_integers(set, "id");
   mpm->laws.temperature = mpsi_particles_column(set, "temperature", 0);
 }

@@ -1,0 +1,88 @@
+/* by_field.c - a law whose moduli and strengths are multiplied by factors of each particle: its
+ * constants are scaled for one particle after the other. SPDX-License-Identifier: BSD-3-Clause */
+#include "material_private.h"
+
+#include <mps/soil.h>
+
+enum { FACTORS = 2, MOST = 8 }; /* columns of history: of the law, and in all at most */
+
+static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
+  if (block->dim == 3) return MPSI_SPACE;
+  return block->gradient[8] ? MPSI_AXIAL : MPSI_PLANE;
+}
+
+/* Stresses times `strength`, moduli times `stiff`. */
+static void scale_law(mpsi_law *to, const mpsi_law *law, double stiff, double strength) {
+  to->shear = stiff * law->shear, to->bulk = stiff * law->bulk, to->lambda = stiff * law->lambda;
+  to->per_bulk = law->per_bulk / stiff, to->hardening = stiff * law->hardening;
+  to->cone = law->cone / stiff;
+  to->yield = strength * law->yield;
+  to->kappa = strength * law->kappa, to->q_tension = strength * law->q_tension;
+  to->tension = strength * law->tension;
+  to->c_cos_phi = strength * law->c_cos_phi;
+  to->apex = strength * law->apex, to->cut = strength * law->cut;
+  to->cohesion = strength * law->cohesion, to->cohesion_last = strength * law->cohesion_last;
+  to->given_cut = strength * law->given_cut;
+}
+
+/* The block of its particle k alone. */
+static void take_particle(const mps_material_block *block, int64_t k, double **history,
+                          mps_material_block *one) {
+  for (int c = 0; c < 9; c++)
+    if (block->gradient[c]) one->gradient[c] = block->gradient[c] + k;
+  for (int c = 0; c < 2 * block->dim; c++) one->stress[c] = block->stress[c] + k;
+  for (int c = 0; c < one->history_count; c++) history[c] = block->history[c] + k;
+  one->volume_ratio = block->volume_ratio + k;
+  one->flags = block->flags + k;
+}
+
+mps_status mpsi_apply_by_field(const mps_material *material, const mps_material_block *block) {
+  const int32_t columns = material->history_count - FACTORS;
+  const double *stiff = block->history[columns], *strength = block->history[columns + 1];
+  const mpsi_law_fn apply = material->table->apply[material->type->kind][geometry_of(block)];
+  double *history[MOST];
+  mps_material_block one = *block;
+  mpsi_law law = material->law;
+  one.count = 1;
+  one.history = history;
+  one.history_count = columns;
+  for (int64_t k = 0; k < block->count; k++) {
+    take_particle(block, k, history, &one);
+    scale_law(&law, &material->law, mpsi_factor(stiff[k]), mpsi_factor(strength[k]));
+    const mps_status status = apply(&law, &one);
+    if (status != MPS_OK) return status;
+  }
+  return MPS_OK;
+}
+
+mps_status mps_material_create_by_field(mps_context *context, const mps_material *law,
+                                        mps_material **out) {
+  static const char *const names[FACTORS] = {"stiffness_factor", "strength_factor"};
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!law) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law is NULL");
+  if (law->context != context)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law was made from another context");
+  const mpsi_law_kind kind = law->type->kind;
+  if (law->by_field || (kind != MPSI_LAW_LINEAR_ELASTIC && kind != MPSI_LAW_VON_MISES &&
+                        kind != MPSI_LAW_DRUCKER_PRAGER && kind != MPSI_LAW_MOHR_COULOMB))
+    return mpsi_fail(context, __func__, MPS_ERROR_UNSUPPORTED,
+                     "law: it is %s%s, must be linear_elastic, von_mises, drucker_prager or "
+                     "mohr_coulomb",
+                     law->name, law->by_field ? " by field already" : "");
+  const int32_t columns = law->history_count;
+  mps_material *m = mpsi_material_new(context, __func__, law->type, law->name, columns + FACTORS);
+  if (!m) return MPS_ERROR_MEMORY;
+  m->law = law->law;
+  m->wave_modulus = law->wave_modulus;
+  m->by_field = true;
+  for (int32_t c = 0; c < columns + FACTORS; c++) {
+    const char *name = c < columns ? law->history_names[c] : names[c - columns];
+    strcpy(m->history_names[c], name);
+    strcpy(m->history_fields[c], name);
+    m->history_initial[c] = c < columns ? law->history_initial[c] : 1.0;
+  }
+  *out = m;
+  return MPS_OK;
+}
