@@ -27,8 +27,8 @@ static void place_gauges(flume *m) {
 }
 
 static int check_wall(const options_program *program, const flume_settings *s) {
-  if (flume_has_body(s) && s->wall != FLUME_PROFILE && s->crest < 2.0 * s->spacing)
-    return options_refuse(program, "--crest must be at least 2 times --spacing");
+  if (flume_has_body(s) && s->wall != FLUME_PROFILE && s->crest < s->spacing)
+    return options_refuse(program, "--crest must be at least --spacing");
   if (flume_has_body(s) && s->width < s->spacing)
     return options_refuse(program, "--width must be at least --spacing");
   if (s->absorb == FLUME_ZONE && s->wall != FLUME_OPEN_END)

@@ -308,11 +308,11 @@ typedef struct mps_separation {
 MPS_API MPS_NODISCARD mps_status mps_separation_find_sized(
     mps_context *context, const mps_separation_def *def, int64_t capacity, int64_t *count,
     double *frequency, double *incident, double *reflected, mps_separation *out, size_t size);
-static inline mps_status mps_separation_find(mps_context *context, const mps_separation_def *def,
+static inline mps_status mps_separation_find(mps_context *context_, const mps_separation_def *def,
                                              int64_t capacity, int64_t *count, double *frequency,
                                              double *incident, double *reflected,
                                              mps_separation *out) {
-  return mps_separation_find_sized(context, def, capacity, count, frequency, incident, reflected,
+  return mps_separation_find_sized(context_, def, capacity, count, frequency, incident, reflected,
                                    out, sizeof *out);
 }
 
