@@ -193,8 +193,9 @@ typedef struct mps_absorber_def {
   double gravity;   /* m/s2, > 0; default 9.81 */
   double period;    /* s, > 0: of the waves, which TUNED absorbs and the rates below refer to; NaN
                        (default): that of `waves` */
-  double high_pass; /* rad/s, >= 0, TUNED: rate of the high-pass of the displacement; NaN (default):
-                       .15 of 2 pi/period */
+  double high_pass; /* rad/s, TUNED: rate f of the high-pass of the displacement, above s C, C the
+                       evanescent transfer at `period`: two pistons would else run away together.
+                       NaN (default): the larger of .15 times 2 pi/period and 2 s C */
   double leak;      /* 1/s, >= 0: rate at which the correction's displacement is withdrawn; NaN
                        (default): .02/period */
   double stroke;    /* m, > 0: the piston stays within; NaN (default): depth */
