@@ -27,12 +27,18 @@ static void place_gauges(flume *m) {
 }
 
 static int check_wall(const options_program *program, const flume_settings *s) {
-  if (flume_has_body(s) && s->crest < 2.0 * s->spacing)
-    return options_refuse(program, "--crest must be at least 2 times --spacing");
+  if (flume_has_body(s) && s->wall != FLUME_PROFILE && s->crest < s->spacing)
+    return options_refuse(program, "--crest must be at least --spacing");
   if (flume_has_body(s) && s->width < s->spacing)
     return options_refuse(program, "--width must be at least --spacing");
   if (s->absorb == FLUME_ZONE && s->wall != FLUME_OPEN_END)
     return options_refuse(program, "--absorb zone is a zone at the far end: it needs --wall none");
+  int parts = 0;
+  for (int k = 1; k < s->points; k++) parts += s->profile[k][0] > s->profile[k - 1][0];
+  if (s->wall == FLUME_PROFILE && parts > FLUME_BODIES)
+    return options_refuse(program, "--profile must have at most four parts that are not upright");
+  if (s->wall == FLUME_PROFILE && s->profile[s->points - 1][1] < s->depth + 2.0 * s->spacing)
+    return options_refuse(program, "--profile must end at least 2 times --spacing above --depth");
   if (s->waves == FLUME_FILE && !s->file)
     return options_refuse(program, "--waves file needs --file");
   if (s->waves == FLUME_FOCUSED && (isnan(s->focus[0]) || isnan(s->focus[1])))
@@ -75,17 +81,34 @@ static int complete(const options_program *program, flume *m) {
   return check_wall(program, s);
 }
 
-static bool read_gauges(const char *text, flume *m) {
-  for (m->gauges = 0; text; m->gauges++) {
+static bool read_lengths(const char *text, int most, double *value, int *count) {
+  for (*count = 0; text; (*count)++) {
     char number[64];
     const size_t length = strcspn(text, ",");
-    if (m->gauges == FLUME_GAUGES || length >= sizeof number) return false;
+    if (*count == most || length >= sizeof number) return false;
     memcpy(number, text, length);
     number[length] = '\0';
-    if (units_read(number, "m", &m->s.gauge[m->gauges]) != UNITS_GOOD) return false;
+    if (units_read(number, "m", &value[*count]) != UNITS_GOOD) return false;
     text = text[length] ? text + length + 1 : NULL;
   }
   return true;
+}
+
+/* Pairs of lengths; X does not fall, and no point is twice. */
+static bool read_profile(const char *text, flume_settings *s) {
+  double value[2 * FLUME_POINTS];
+  int count = 0;
+  if (!text) return s->wall != FLUME_PROFILE;
+  if (!read_lengths(text, 2 * FLUME_POINTS, value, &count) || count % 2 || count < 6) return false;
+  s->points = count / 2;
+  for (int k = 0; k < s->points; k++) {
+    const double x = value[2 * k], y = value[2 * k + 1];
+    const double *last = k ? s->profile[k - 1] : NULL;
+    if (k == 0 ? x != 0.0 || y != 0.0 : x < last[0] || y < 0.0 || (x == last[0] && y == last[1]))
+      return false;
+    s->profile[k][0] = x, s->profile[k][1] = y;
+  }
+  return value[2 * s->points - 2] > 0.0 && value[2 * s->points - 1] > 0.0;
 }
 
 /* ---- the program ----------------------------------------------------------------------------- */
@@ -169,7 +192,7 @@ int main(int argc, char **argv) {
                           .frames = 60,
                           .out = "out/flume"}};
   flume_settings *s = &m.s;
-  const char *gauges = NULL;
+  const char *gauges = NULL, *profile = NULL;
   option table[] = {
       OPTION_HEADING("Waves"),
       OPTION_CHOICE(
@@ -195,7 +218,7 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("order", "second|linear|narrow", &s->order,
                     "theory of the maker: sums and differences of all pairs of components; linear; "
                     "differences alone, as of a narrow band"),
-      COMMON_NUMBER("ramp", &s->ramp, "(default 2 periods)"),
+      COMMON_NUMBER("ramp", &s->ramp, "default 2 periods"),
       OPTION_NUMBER("stroke", "m", OPTION_LENGTH, &s->stroke,
                     "farthest position of the maker: waves that need more are refused"),
       OPTION_NUMBER("speed", "m/s", OPTION_SPEED, &s->speed,
@@ -215,24 +238,28 @@ int main(int argc, char **argv) {
                     "length of the zone"),
       OPTION_NUMBER("zone-rate", "1/periods", OPTION_FROM_TO(0.0, 1000.0), &s->rate,
                     "rate at its end"),
-      OPTION_CHOICE(
-          "wall", "none|vertical|caisson|slope", &s->wall,
-          "at the far end; caisson and slope (a dike) end at --crest, and water that passes "
-          "them falls behind and leaves"),
+      OPTION_CHOICE("wall", "none|vertical|caisson|slope|profile", &s->wall,
+                    "at the far end; caisson and slope (a dike) end at --crest, a profile where it "
+                    "ends, and water that "
+                    "passes them falls behind and leaves"),
       OPTION_NUMBER("crest", "m", OPTION_LENGTH, &s->crest, "above the water at rest"),
       OPTION_NUMBER("slope", "1", OPTION_FROM_TO(0.1, 3.7), &s->cotangent,
                     "cotangent of the dike's face"),
       OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width, "of the crest"),
+      OPTION_TEXT(
+          "profile", "m,...", &profile,
+          "X,Y,X,Y,...: the face from the toe 0,0 over slopes, berms and crest to its rear edge, "
+          "distance from the toe and height above the bed; upright and at most four other parts"),
       OPTION_NUMBER("wall-density", "kg/m3", OPTION_DENSITY, &s->density,
                     "of the caisson, for its safeties"),
-      COMMON_NUMBER("friction", &s->friction, "below the caisson"),
+      COMMON_NUMBER_IN("friction", OPTION_FROM_TO(1e-3, 10.0), &s->friction, "below the caisson"),
       OPTION_HEADING("Particles"),
-      COMMON_NUMBER("spacing", &s->spacing, "(default a sixteenth of the depth)"),
+      COMMON_NUMBER("spacing", &s->spacing, "default a sixteenth of the depth"),
       COMMON_NUMBER("disturb", &s->disturb, NULL),
       WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
-      COMMON_NUMBER("duration", &s->duration, "(default 20 periods)"),
-      COMMON_NUMBER("sample", &s->sample, "(default a sixtieth of the period)"),
+      COMMON_NUMBER("duration", &s->duration, "default 20 periods"),
+      COMMON_NUMBER("sample", &s->sample, "default a sixtieth of the period"),
       OPTION_TEXT(
           "gauge", "m,...", &gauges,
           "stations of level gauges, at most 16; incident and reflected waves follow from all of "
@@ -254,8 +281,12 @@ int main(int argc, char **argv) {
       "mps-flume", "A wave flume by moving particles (MPS): seas, absorption, loads, overtopping.",
       table};
   int code = options_parse(&program, argc, argv);
-  if (code < 0 && !read_gauges(gauges, &m))
+  if (code < 0 && !read_lengths(gauges, FLUME_GAUGES, s->gauge, &m.gauges))
     code = options_refuse(&program, "--gauge must be at most 16 lengths in m separated by commas");
+  if (code < 0 && !read_profile(profile, s))
+    code = options_refuse(&program,
+                          "--profile must be 3 to 12 points X,Y in m separated by commas, the "
+                          "first 0,0, X not falling, Y not below 0, no point twice");
   if (code < 0) code = complete(&program, &m);
   if (code >= 0) return code;
   app a;

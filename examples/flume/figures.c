@@ -168,7 +168,7 @@ static void find_discharge(app *a, const flume *m, flume_figures *f) {
   mps_eurotop_def def = mps_eurotop_defaults();
   if (!flume_has_body(s)) return;
   f->discharge = (passed_at(m, f->to) - passed_at(m, f->from)) / (f->to - f->from);
-  if (s->waves == FLUME_REGULAR) return;
+  if (s->waves == FLUME_REGULAR || s->wall == FLUME_PROFILE) return;
   def.wall = s->wall == FLUME_SLOPE ? MPS_EUROTOP_WALL_SLOPE : MPS_EUROTOP_WALL_VERTICAL;
   def.height = f->split.incident_height, def.period = f->split.energy_period;
   def.depth = s->depth, def.crest = s->crest, def.cotangent = s->cotangent;
@@ -186,10 +186,11 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
   f->force_still = 0.5 * WAVES_DENSITY * WAVES_G * m->s.depth * m->s.depth;
   if (!find_window(m, f)) {
-    app_warn(a,
-             "the run is too short for incident and reflected waves: its window, %.4g to %.4g s, "
-             "has less than two periods",
-             f->from, f->to);
+    app_warn(
+        a,
+        "the run is too short for incident and reflected waves, which need two periods from %.4g s "
+        "on",
+        f->from);
     return true;
   }
   if (m->gauges >= 2 && !separate(a, m, f)) return false;

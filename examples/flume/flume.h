@@ -13,8 +13,9 @@
 #include <mps/waves.h>
 
 enum { FLUME_REGULAR = 0, FLUME_JONSWAP, FLUME_PM, FLUME_FOCUSED, FLUME_FILE };
-enum { FLUME_OPEN_END = 0, FLUME_VERTICAL, FLUME_CAISSON, FLUME_SLOPE };
+enum { FLUME_OPEN_END = 0, FLUME_VERTICAL, FLUME_CAISSON, FLUME_SLOPE, FLUME_PROFILE };
 enum { FLUME_ACTIVE = 0, FLUME_ZONE, FLUME_NONE };
+enum { FLUME_POINTS = 12, FLUME_BODIES = 4 }; /* of a profile */
 enum { FLUME_GAUGES = 16, FLUME_BED = 0, FLUME_MAKER, FLUME_END };
 
 typedef struct flume_settings {
@@ -30,6 +31,8 @@ typedef struct flume_settings {
   double density, friction;                     /* kg/m3, 1: of the caisson */
   double duration, sample, disturb;             /* s, s, spacings */
   double gauge[FLUME_GAUGES], window[2];        /* m, s */
+  double profile[FLUME_POINTS][2];              /* m, from the toe, on the bed */
+  int points;
   int64_t seed, frames, threads;
   double every_checkpoint; /* s */
   const char *file, *out, *checkpoint, *restart;
@@ -54,15 +57,16 @@ typedef struct flume {
   flume_settings s;
   const option *table;
   int gauges;
-  double wave_length, heel, outlet; /* m; x of the rear foot of the body, of the open side */
-  double corner[5][2];              /* m: outline of the body */
+  double wave_length, heel, outlet;   /* m; x of the rear foot of the body, of the open side */
+  double corner[FLUME_POINTS + 1][2]; /* m: face from the toe to the rear edge of the crest */
   int corners;
   mps_waves *waves;
   mps_absorber *maker, *end;
   mps_particles *water;
   mps_fluid *fluid;
-  mps_body *body;
-  mps_contact *contact;
+  mps_body *body[FLUME_BODIES];
+  mps_contact *contact[FLUME_BODIES];
+  int bodies;
   mps_recorder *series;
   flume_sample *sample;
   int64_t samples, capacity;
@@ -74,9 +78,7 @@ typedef struct flume {
   char why[400];    /* reason against a restart; "": recorded by the library */
 } flume;
 
-static inline bool flume_has_body(const flume_settings *s) {
-  return s->wall == FLUME_CAISSON || s->wall == FLUME_SLOPE;
-}
+static inline bool flume_has_body(const flume_settings *s) { return s->wall >= FLUME_CAISSON; }
 
 /* waves.c: the sea, and the pistons that absorb. */
 mps_status flume_make_waves(app *a, flume *m);
@@ -84,6 +86,7 @@ mps_status flume_make_pistons(app *a, flume *m);
 /* model.c: water, walls, structure. */
 mps_status flume_build(app *a, flume *m);
 void flume_free(flume *m);
+double flume_ground(const flume *m, double x);
 /* run.c: steps to the end, or until Ctrl-C, which leaves a checkpoint. */
 mps_status flume_run(app *a, flume *m);
 /* restart.c. flume_peek compares the options of the file with these before the model is built. */

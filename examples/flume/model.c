@@ -6,27 +6,67 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define CLEAR 0.45 /* spacings between the water's particles and a slope */
+#define CLEAR 0.45 /* spacings between the water's particles and the face of a structure */
 
-/* Distance (m) of a point in the water from the face of the dike. */
-static double from_slope(const flume_settings *s, const double *x) {
-  return (s->length - x[0] + s->cotangent * x[1]) / hypot(1.0, s->cotangent);
+/* ---- the structure --------------------------------------------------------------------------- */
+
+/* The face from the toe over the crest to its rear edge, below which it stands upright. */
+static void make_face(flume *m) {
+  const flume_settings *s = &m->s;
+  const double high = s->depth + s->crest,
+               lean = s->wall == FLUME_SLOPE ? s->cotangent * high : 0.0;
+  const double simple[3][2] = {{0.0, 0.0}, {lean, high}, {lean + s->width, high}};
+  const bool profile = s->wall == FLUME_PROFILE;
+  m->corners = profile ? s->points : 3;
+  for (int k = 0; k < m->corners; k++) {
+    const double *point = profile ? s->profile[k] : simple[k];
+    m->corner[k][0] = s->length + point[0], m->corner[k][1] = point[1];
+  }
+  m->heel = m->corner[m->corners - 1][0];
+  m->outlet = m->heel + fmax(0.3, 8.0 * s->spacing);
 }
 
-/* Columns and rows of the spacing from the origin, and over a slope up to its face. */
-static mps_status fill(const flume_settings *s, mps_particles *water) {
-  const double reach = s->length + (s->wall == FLUME_SLOPE ? s->cotangent * s->depth : 0.0);
+/* Height (m) of the face above the bed. */
+double flume_ground(const flume *m, double x) {
+  double y = 0.0;
+  for (int k = 0; k + 1 < m->corners; k++) {
+    const double *p = m->corner[k], *q = m->corner[k + 1];
+    if (x >= p[0] && x <= q[0] && q[0] > p[0])
+      y = p[1] + (q[1] - p[1]) * (x - p[0]) / (q[0] - p[0]);
+  }
+  return x <= m->heel ? y : 0.0;
+}
+
+/* Distance (m) of a point from the face. */
+static double from_face(const flume *m, const double *x) {
+  double least = INFINITY;
+  for (int k = 0; k + 1 < m->corners; k++) {
+    const double *p = m->corner[k], *q = m->corner[k + 1], e[2] = {q[0] - p[0], q[1] - p[1]};
+    const double along =
+        ((x[0] - p[0]) * e[0] + (x[1] - p[1]) * e[1]) / (e[0] * e[0] + e[1] * e[1]);
+    const double s = fmin(fmax(along, 0.0), 1.0);
+    least = fmin(least, hypot(x[0] - p[0] - s * e[0], x[1] - p[1] - s * e[1]));
+  }
+  return least;
+}
+
+/* Columns and rows of the spacing from the origin, up to the face of a structure. */
+static mps_status fill(const flume *m, mps_particles *water) {
+  const flume_settings *s = &m->s;
+  const double reach = flume_has_body(s) ? m->heel : s->length;
   const int64_t columns = llround(reach / s->spacing), rows = llround(s->depth / s->spacing);
   double *x = malloc((size_t)(columns * rows) * 2 * sizeof *x);
   int64_t count = 0;
   uint64_t state = (uint64_t)s->seed;
+  bool dry = false;
   if (!x) return MPS_ERROR_MEMORY;
-  for (int64_t j = 0; j < rows; j++)
+  for (int64_t j = 0; j < rows; j++, dry = false)
     for (int64_t i = 0; i < columns; i++) {
       double *at = x + 2 * count;
       at[0] = ((double)i + 0.5) * s->spacing, at[1] = ((double)j + 0.5) * s->spacing;
+      dry = dry || at[1] < flume_ground(m, at[0]) || (flume_has_body(s) && at[0] > m->heel);
       for (int c = 0; c < 2; c++) at[c] += s->disturb * s->spacing * waves_noise(&state);
-      if (s->wall == FLUME_SLOPE && from_slope(s, at) < CLEAR * s->spacing) continue;
+      if (dry || (m->corners > 0 && from_face(m, at) < CLEAR * s->spacing)) continue;
       count++;
     }
   const mps_status status = mps_particles_append(water, count, x);
@@ -34,30 +74,35 @@ static mps_status fill(const flume_settings *s, mps_particles *water) {
   return status;
 }
 
-/* The outline, anticlockwise from the toe. */
-static void outline(flume *m) {
-  const flume_settings *s = &m->s;
-  const double high = s->depth + s->crest;
-  const double lean = s->wall == FLUME_SLOPE ? s->cotangent * high : 0.0;
-  m->heel = s->length + lean + s->width;
-  m->outlet = m->heel + fmax(0.3, 8.0 * s->spacing);
-  const double corner[4][2] = {
-      {s->length, 0.0}, {m->heel, 0.0}, {m->heel, high}, {s->length + lean, high}};
-  m->corners = 4;
-  for (int k = 0; k < 4; k++)
-    for (int c = 0; c < 2; c++) m->corner[k][c] = corner[k][c];
-}
-
-static mps_status add_body(app *a, flume *m) {
+/* One convex body, of the whole face where that is convex, else below each part of it. */
+static mps_status add_part(app *a, flume *m, int count, const double *xy) {
   mps_body_def def = mps_body_defaults();
   mps_fluid_contact_def contact = mps_fluid_contact_defaults();
-  double xy[8];
-  for (int k = 0; k < 8; k++) xy[k] = m->corner[k / 2][k % 2];
+  const int n = m->bodies;
   contact.kind = MPS_BOUNDARY_ROLLER; /* slip */
-  mps_status status = mps_body_create_polygon(a->context, &def, m->corners, xy, &m->body);
-  if (status == MPS_OK) status = mps_fluid_add_contact(m->fluid, m->body, &contact, &m->contact);
+  mps_status status = mps_body_create_polygon(a->context, &def, count, xy, &m->body[n]);
+  if (status != MPS_OK) return status;
+  m->bodies++;
+  return mps_fluid_add_contact(m->fluid, m->body[n], &contact, &m->contact[n]);
+}
+
+static mps_status add_structure(app *a, flume *m) {
+  const bool whole = m->s.wall != FLUME_PROFILE;
+  mps_status status = MPS_OK;
+  for (int k = 0; k + 1 < m->corners && status == MPS_OK; k++) {
+    const double *p = m->corner[k], *q = m->corner[k + 1];
+    if (whole) { /* toe, heel, rear and front edge of the crest */
+      const double *front = m->corner[1];
+      const double xy[8] = {p[0], 0.0, m->heel, 0.0, m->heel, front[1], front[0], front[1]};
+      return add_part(a, m, 4, xy);
+    }
+    const double xy[8] = {p[0], 0.0, q[0], 0.0, q[0], q[1], p[0], p[1]};
+    if (q[0] > p[0]) status = add_part(a, m, p[1] > 0.0 ? 4 : 3, xy);
+  }
   return status;
 }
+
+/* ---- the flume ------------------------------------------------------------------------------- */
 
 /* The far end: a wall that may be a piston, or the side over which water leaves. */
 static mps_status add_end(flume *m) {
@@ -87,7 +132,7 @@ static mps_status make_fluid(app *a, flume *m) {
   def.density = WAVES_DENSITY, def.level = s->depth;
   def.tolerance = s->tolerance;
   mps_status status = mps_particles_create(a->context, &set, &m->water);
-  if (status == MPS_OK) status = fill(s, m->water);
+  if (status == MPS_OK) status = fill(m, m->water);
   status = app_settle(a, status);
   if (status == MPS_OK) status = mps_fluid_create(a->context, m->water, &def, &m->fluid);
   if (status == MPS_OK && !waves_choose_solver(a, s->solver, m->fluid, m->why, sizeof m->why))
@@ -95,14 +140,14 @@ static mps_status make_fluid(app *a, flume *m) {
   if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 0.0, 1.0, NULL, NULL);
   if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 1.0, 0.0, NULL, NULL);
   if (status == MPS_OK) status = add_end(m);
-  if (status == MPS_OK && flume_has_body(s)) status = add_body(a, m);
+  if (status == MPS_OK && flume_has_body(s)) status = add_structure(a, m);
   if (status == MPS_OK && s->absorb == FLUME_ZONE) status = add_zone(m);
   return status;
 }
 
 mps_status flume_build(app *a, flume *m) {
   mps_status status = flume_make_pistons(a, m);
-  if (flume_has_body(&m->s)) outline(m);
+  if (flume_has_body(&m->s)) make_face(m);
   if (status == MPS_OK) status = make_fluid(a, m);
   m->restarted = NAN;
   m->capacity = (int64_t)ceil(m->s.duration / m->s.sample - 1e-9);
@@ -114,9 +159,9 @@ mps_status flume_build(app *a, flume *m) {
 
 void flume_free(flume *m) {
   mps_recorder_destroy(&m->series);
-  mps_contact_destroy(&m->contact);
+  for (int k = 0; k < FLUME_BODIES; k++) mps_contact_destroy(&m->contact[k]);
   mps_fluid_destroy(&m->fluid);
-  mps_body_destroy(&m->body);
+  for (int k = 0; k < FLUME_BODIES; k++) mps_body_destroy(&m->body[k]);
   mps_particles_destroy(&m->water);
   mps_absorber_destroy(&m->maker);
   mps_absorber_destroy(&m->end);

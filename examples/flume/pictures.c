@@ -101,10 +101,8 @@ static bool draw_discharge(app *a, const flume *m, const flume_figures *g) {
 
 static bool in_body(const void *user, double x, double y) {
   const flume *m = user;
-  if (y < 0.0) return true;
-  if (m->corners == 0) return m->s.wall == FLUME_VERTICAL && x > m->s.length;
-  return y < m->corner[2][1] && x < m->heel &&
-         x > m->s.length + (m->s.wall == FLUME_SLOPE ? m->s.cotangent * y : 0.0);
+  if (m->s.wall == FLUME_VERTICAL && x > m->s.length) return true;
+  return y < 0.0 || (m->corners > 0 && y < flume_ground(m, x));
 }
 
 static bool image(app *a, const flume *m, const double *lower, const double *upper, area *out) {
@@ -133,7 +131,8 @@ static bool draw_water(app *a, const flume *m) {
   const double right = (body ? m->outlet : s->length) + 2.0 * s->spacing;
   const double left = fmax(-0.2 * s->depth, s->length - m->wave_length - 2.0 * s->depth);
   const double lower[2] = {s->wall == FLUME_OPEN_END ? -0.2 * s->depth : left, -2.0 * s->spacing};
-  const double upper[2] = {right, fmax(1.6 * s->depth, body ? 1.3 * m->corner[2][1] : 0.0)};
+  const double upper[2] = {right,
+                           fmax(1.6 * s->depth, body ? 1.3 * m->corner[m->corners - 1][1] : 0.0)};
   const double shape = (upper[1] - lower[1]) / (upper[0] - lower[0]);
   area picture;
   output f;
@@ -152,12 +151,13 @@ static bool draw_water(app *a, const flume *m) {
       lower[0], upper[0], lower[1], upper[1], plot_tics(upper[1] - lower[1], 4.0), m->look.t,
       s->wall == FLUME_OPEN_END ? "" : ", at the largest force");
   if (body) {
-    output_text(&f, "set object 1 polygon from ");
-    for (int k = 0; k <= m->corners; k++)
-      output_text(&f, "%s%.6g,%.6g", k ? " to " : "", m->corner[k % m->corners][0],
-                  m->corner[k % m->corners][1]);
-    output_text(&f,
-                " fillstyle solid 1.0 border linecolor rgb '#444444' fillcolor rgb '#8a8f98'\n");
+    output_text(&f, "set object 1 polygon from %.6g,0", m->heel);
+    for (int k = 0; k < m->corners; k++)
+      output_text(&f, " to %.6g,%.6g", m->corner[k][0], m->corner[k][1]);
+    output_text(
+        &f,
+        " to %.6g,0 fillstyle solid 1.0 border linecolor rgb '#444444' fillcolor rgb '#8a8f98'\n",
+        m->heel);
   }
   plot_colours(&f, least, most, least, most);
   output_text(&f, "plot ");

@@ -62,34 +62,44 @@ static mps_status measure_passed(flume *m, flume_sample *sample) {
   return MPS_OK;
 }
 
-static mps_status measure_force(flume *m, flume_sample *sample) {
-  const double foot[3] = {m->s.length - 0.5 * m->s.spacing, 0.0, 0.0};
-  mps_reaction r;
-  mps_body_state body;
-  mps_status status = mps_fluid_get_pressure(m->fluid, FLUME_BED, 1, foot, &sample->foot);
-  if (status == MPS_OK)
-    status = m->contact ? mps_contact_get_reaction(m->contact, -1, &r)
-                        : mps_fluid_get_reaction(m->fluid, FLUME_END, &r);
-  if (status == MPS_OK && m->contact) status = mps_body_get_state(m->body, &body);
-  if (status != MPS_OK) return status;
-  if (!m->contact) { /* opposite forces on wall and water */
-    sample->force = -r.force[0], sample->moment = r.moment[2];
-    return MPS_OK;
+/* Towards the lee, and about the heel: a moment that tips it over is positive. */
+static mps_status measure_bodies(const flume *m, flume_sample *sample) {
+  for (int k = 0; k < m->bodies; k++) {
+    mps_reaction r;
+    mps_body_state body;
+    mps_status status = mps_contact_get_reaction(m->contact[k], -1, &r);
+    if (status == MPS_OK) status = mps_body_get_state(m->body[k], &body);
+    if (status != MPS_OK) return status;
+    const double arm[2] = {body.position[0] - m->heel, body.position[1]};
+    sample->force += r.force[0];
+    sample->moment -= r.moment[2] + arm[0] * r.force[1] - arm[1] * r.force[0];
   }
-  const double arm[2] = {body.position[0] - m->heel, body.position[1]};
-  sample->force = r.force[0]; /* towards the lee; a moment that tips it over the heel is positive */
-  sample->moment = -(r.moment[2] + arm[0] * r.force[1] - arm[1] * r.force[0]);
   return MPS_OK;
 }
 
-/* Keeps the water of the largest force, without a structure of the last sample. */
+static mps_status measure_force(flume *m, flume_sample *sample) {
+  const double foot[3] = {m->s.length - 0.5 * m->s.spacing, 0.0, 0.0};
+  mps_reaction r;
+  mps_status status = mps_fluid_get_pressure(m->fluid, FLUME_BED, 1, foot, &sample->foot);
+  if (status != MPS_OK || m->bodies > 0)
+    return status == MPS_OK ? measure_bodies(m, sample) : status;
+  status = mps_fluid_get_reaction(m->fluid, FLUME_END, &r);
+  if (status == MPS_OK) /* opposite forces on wall and water */
+    sample->force = -r.force[0], sample->moment = r.moment[2];
+  return status;
+}
+
+/* Keeps the water of the largest force once the maker has its amplitude, without a structure that
+ * of the last sample. */
 static mps_status take_look(flume *m, const flume_sample *sample) {
   mps_view x, p;
-  if (m->s.wall != FLUME_OPEN_END && !(sample->force > m->look.force)) return MPS_OK;
+  const bool most = sample->t >= m->s.ramp && sample->force > m->look.force;
+  if (m->s.wall != FLUME_OPEN_END && m->look.count > 0 && !most) return MPS_OK;
   mps_status status = mps_particles_view(m->water, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(m->water, "pressure", &p);
   if (status != MPS_OK) return status;
-  m->look.t = sample->t, m->look.force = sample->force;
+  m->look.t = sample->t;
+  m->look.force = sample->t >= m->s.ramp ? sample->force : -INFINITY;
   m->look.count = x.shape[0] < m->look.room ? x.shape[0] : m->look.room;
   for (int64_t i = 0; i < m->look.count; i++) {
     for (int c = 0; c < 2; c++) m->look.value[3 * i + c] = (float)*mps_view_f64(&x, i, c);

@@ -241,7 +241,8 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
 
 /** Adds a rigid body to the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
- *  together may have 16 edges. `def` NULL: the defaults. The caller moves it (mps_body_advance,
+ *  together may have 16 edges. Bodies side by side make a face of several parts, with concave
+ * corners between them too. `def` NULL: the defaults. The caller moves it (mps_body_advance,
  *  mps_body_set_motion), or another solver does: its pose and velocity when a step is made, or
  *  solved for in parts, are those of the end of that step. At the end of each step it receives
  *  the water's forces (mps_body_get_reaction; a free body moves by them), in addition to those of

@@ -48,9 +48,9 @@ typedef struct mps_sainflou {
 MPS_API MPS_NODISCARD mps_status mps_sainflou_evaluate_sized(mps_context *context,
                                                              const mps_sainflou_def *def,
                                                              mps_sainflou *out, size_t size);
-static inline mps_status mps_sainflou_evaluate(mps_context *context, const mps_sainflou_def *def,
+static inline mps_status mps_sainflou_evaluate(mps_context *context_, const mps_sainflou_def *def,
                                                mps_sainflou *out) {
-  return mps_sainflou_evaluate_sized(context, def, out, sizeof *out);
+  return mps_sainflou_evaluate_sized(context_, def, out, sizeof *out);
 }
 
 /* ---- Goda ------------------------------------------------------------------------------------ */
@@ -104,9 +104,9 @@ typedef struct mps_goda {
 MPS_API MPS_NODISCARD mps_status mps_goda_evaluate_sized(mps_context *context,
                                                          const mps_goda_def *def, mps_goda *out,
                                                          size_t size);
-static inline mps_status mps_goda_evaluate(mps_context *context, const mps_goda_def *def,
+static inline mps_status mps_goda_evaluate(mps_context *context_, const mps_goda_def *def,
                                            mps_goda *out) {
-  return mps_goda_evaluate_sized(context, def, out, sizeof *out);
+  return mps_goda_evaluate_sized(context_, def, out, sizeof *out);
 }
 
 /* ---- EurOtop --------------------------------------------------------------------------------- */
@@ -165,9 +165,9 @@ typedef struct mps_eurotop {
 MPS_API MPS_NODISCARD mps_status mps_eurotop_evaluate_sized(mps_context *context,
                                                             const mps_eurotop_def *def,
                                                             mps_eurotop *out, size_t size);
-static inline mps_status mps_eurotop_evaluate(mps_context *context, const mps_eurotop_def *def,
+static inline mps_status mps_eurotop_evaluate(mps_context *context_, const mps_eurotop_def *def,
                                               mps_eurotop *out) {
-  return mps_eurotop_evaluate_sized(context, def, out, sizeof *out);
+  return mps_eurotop_evaluate_sized(context_, def, out, sizeof *out);
 }
 
 MPS_EXTERN_C_END

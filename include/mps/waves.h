@@ -193,8 +193,9 @@ typedef struct mps_absorber_def {
   double gravity;   /* m/s2, > 0; default 9.81 */
   double period;    /* s, > 0: of the waves, which TUNED absorbs and the rates below refer to; NaN
                        (default): that of `waves` */
-  double high_pass; /* rad/s, >= 0, TUNED: rate of the high-pass of the displacement; NaN (default):
-                       .15 of 2 pi/period */
+  double high_pass; /* rad/s, TUNED: rate f of the high-pass of the displacement, above s C, C the
+                       evanescent transfer at `period`: two pistons would else run away together.
+                       NaN (default): the larger of .15 times 2 pi/period and 2 s C */
   double leak;      /* 1/s, >= 0: rate at which the correction's displacement is withdrawn; NaN
                        (default): .02/period */
   double stroke;    /* m, > 0: the piston stays within; NaN (default): depth */
@@ -308,11 +309,11 @@ typedef struct mps_separation {
 MPS_API MPS_NODISCARD mps_status mps_separation_find_sized(
     mps_context *context, const mps_separation_def *def, int64_t capacity, int64_t *count,
     double *frequency, double *incident, double *reflected, mps_separation *out, size_t size);
-static inline mps_status mps_separation_find(mps_context *context, const mps_separation_def *def,
+static inline mps_status mps_separation_find(mps_context *context_, const mps_separation_def *def,
                                              int64_t capacity, int64_t *count, double *frequency,
                                              double *incident, double *reflected,
                                              mps_separation *out) {
-  return mps_separation_find_sized(context, def, capacity, count, frequency, incident, reflected,
+  return mps_separation_find_sized(context_, def, capacity, count, frequency, incident, reflected,
                                    out, sizeof *out);
 }
 

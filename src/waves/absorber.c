@@ -1,13 +1,19 @@
 /* absorber.c - a piston that absorbs: u = u_asked + s (eta_asked - eta), after Schaeffer and
  * Klopman (2000), with the level at its face.
  *
- * SHALLOW: s = (g/d)^1/2. TUNED: s = omega/c0 at one period, and eta less C X_hp, the level of the
- * evanescent modes of the correction X, high-passed (rate `high_pass`), as C X alone is positive
- * feedback of slow motions. The correction's displacement leaks at the rate `leak`: the mean level
- * at the face would else move the piston off. By linear theory the piston reflects
+ * SHALLOW: s = (g/d)^1/2. TUNED: s = omega/c0 at one period, and eta less C X, the level of the
+ * evanescent modes of the correction X. C X alone is positive feedback of slow motions, dX/dt = s C
+ * X where the level stays, as between two pistons that move together: X goes through a high-pass of
+ * the rate f, X_h' = X' - f X_h, which is stable for f > s C, and what that turns at omega is
+ * turned back,
  *
- *   R = |i w + leak - i s c0 + s C'|/|i w + leak + i s c0 + s C'|,  C' = C(w) - C i w/(i w +
- * high_pass),
+ *   X -> (1 + f^2/omega^2) X_h - f/omega^2 X'.
+ *
+ * The correction's displacement leaks at the rate `leak`: the mean level at the face would else
+ * move the piston off. By linear theory the piston reflects, of waves of w,
+ *
+ *   R = |i w + leak - i s c0 + s C'|/|i w + leak + i s c0 + s C'|,
+ *   C' = C(w) - C ((1 + f^2/omega^2) i w/(i w + f) - f/omega^2 i w),
  *
  * C(w) and c0(w) the transfers of a piston (dispersion.c).
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -18,7 +24,7 @@
 struct mps_absorber {
   mps_context *context;
   mps_absorber_def def;          /* with its defaults computed */
-  double gain;                   /* s, 1/s */
+  double gain, omega;            /* s, 1/s; of the period, rad/s */
   double near;                   /* C that is subtracted */
   double displacement, velocity; /* m, m/s */
   double correction, pass;       /* m: of the displacement; high-passed */
@@ -72,19 +78,26 @@ static mps_status check_def(mps_context *context, const mps_absorber_def *d) {
 }
 
 /* The rates that are not given, and the gain. */
-static void complete(mps_absorber *a) {
+static mps_status complete(mps_absorber *a) {
   mps_absorber_def *d = &a->def;
   const double omega = 2.0 * MPSI_WAVES_PI / d->period;
-  if (isnan(d->high_pass)) d->high_pass = 0.15 * omega;
   if (isnan(d->leak)) d->leak = 0.02 / d->period;
   if (isnan(d->stroke)) d->stroke = d->depth;
   if (isnan(d->acceleration)) d->acceleration = 2.0 * d->gravity;
+  a->omega = omega;
   a->gain = sqrt(d->gravity / d->depth);
   a->near = 0.0;
-  if (d->form == MPS_ABSORBER_FORM_SHALLOW) return;
+  if (d->form == MPS_ABSORBER_FORM_SHALLOW) return MPS_OK;
   const double y = omega * omega * d->depth / d->gravity;
   a->gain = omega / mpsi_waves_far(mpsi_waves_depths(y));
   a->near = mpsi_waves_near(y);
+  const double least = a->gain * a->near;
+  if (isnan(d->high_pass)) d->high_pass = fmax(0.15 * omega, 2.0 * least);
+  if (d->high_pass > least) return MPS_OK;
+  return mpsi_fail(
+      a->context, "mps_absorber_create", MPS_ERROR_ARGUMENT,
+      "high_pass of the absorber is %s rad/s, must be above %g: the piston would run away",
+      mpsi_outside(d->high_pass, least, INFINITY).text, least);
 }
 
 mps_status mps_absorber_create(mps_context *context, const mps_absorber_def *user_def,
@@ -105,9 +118,10 @@ mps_status mps_absorber_create(mps_context *context, const mps_absorber_def *use
   a->context = mpsi_context_retain(context);
   a->def = def;
   if (def.waves) a->def.waves = mpsi_waves_retain(def.waves);
-  complete(a);
+  status = complete(a);
   *out = a;
-  return MPS_OK;
+  if (status != MPS_OK) mps_absorber_destroy(out);
+  return status;
 }
 
 void mps_absorber_destroy(mps_absorber **absorber) {
@@ -126,11 +140,15 @@ static double within(double value, double low, double high) {
   return value < low ? low : value > high ? high : value;
 }
 
-/* The velocity of the correction's displacement at the end of the step, and its high-passed part.
- */
+/* The velocity of the correction at the end of the step; the part of X' on the right is taken
+ * there. */
 static double correct(mps_absorber *a, double asked, double level, double moved, double dt) {
-  a->pass = (a->pass + moved) / (1.0 + dt * a->def.high_pass);
-  return a->gain * (asked - level + a->near * a->pass) - a->def.leak * a->correction;
+  const double drift = a->def.leak * a->correction;
+  if (a->near == 0.0) return a->gain * (asked - level) - drift;
+  const double f = a->def.high_pass, w2 = a->omega * a->omega;
+  a->pass = (a->pass + moved) / (1.0 + dt * f);
+  const double near = a->near * (1.0 + f * f / w2) * a->pass;
+  return (a->gain * (asked - level + near) - drift) / (1.0 + a->gain * a->near * f / w2);
 }
 
 mps_status mps_absorber_advance(mps_absorber *a, double t, double dt, double level,
@@ -158,7 +176,7 @@ mps_status mps_absorber_advance(mps_absorber *a, double t, double dt, double lev
   if (isnan(level)) level = now[3];
   const double wanted = next[1] + correct(a, now[3], level, moved, dt);
   /* the reserve of stroke is used up in no less than 1/omega, and the correction has a limit */
-  const double omega = 2.0 * MPSI_WAVES_PI / d->period, change = d->acceleration * dt;
+  const double omega = a->omega, change = d->acceleration * dt;
   const double asked = a->velocity + next[1] - now[1];
   double u = within(wanted, asked - change, asked + change);
   u = within(u, -(d->stroke + a->displacement) * omega, (d->stroke - a->displacement) * omega);
@@ -182,7 +200,10 @@ mps_status mps_absorber_get_reflection(const mps_absorber *a, double period, dou
   const double omega = 2.0 * MPSI_WAVES_PI / period, y = omega * omega * depth / g;
   const double far = mpsi_waves_far(mpsi_waves_depths(y));
   const double complex rate = I * omega;
-  const double complex near = mpsi_waves_near(y) - a->near * rate / (rate + a->def.high_pass);
+  const double f = a->def.high_pass, w2 = a->omega * a->omega;
+  const double complex known =
+      a->near == 0.0 ? 0.0 : (1.0 + f * f / w2) * rate / (rate + f) - f / w2 * rate;
+  const double complex near = mpsi_waves_near(y) - a->near * known;
   const double complex base = rate + a->def.leak + a->gain * near, wave = I * a->gain * far;
   *reflection = cabs(base - wave) / cabs(base + wave);
   return MPS_OK;

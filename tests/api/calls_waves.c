@@ -135,7 +135,7 @@ static void absorber_create(api *a) {
   def.depth = api_real(a, "depth", 5e-324, 1e12, 0.5);
   def.period = api_real(a, "period", 5e-324, 1e12, 1.5);
   def.leak = api_optional(a, "leak", 0.0, 1e12, 0.01);
-  def.high_pass = api_optional(a, "high_pass", 0.0, 1e12, 0.5);
+  def.high_pass = api_optional(a, "high_pass", 0.0, 1e12, 5.0);
   def.stroke = api_optional(a, "stroke", 5e-324, 1e12, 0.5);
   def.waves = api_maybe(a, API_WAVES, "waves");
   const bool none = api_null(a, "def");

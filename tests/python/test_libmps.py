@@ -547,14 +547,16 @@ class Whole(unittest.TestCase):
     def test_every_array_has_a_length(self):
         """Pointers to numbers in the headers: one result, or an array whose length is known."""
         single = {"added", "angle", "apart", "columns", "count", "done", "end", "number", "out", "part",
-                  "strain", "stabilising", "start", "index", "indices", "offsets"}
+                  "strain", "stabilising", "start", "index", "indices", "offsets", "progressive",
+                  "evanescent", "reflection"}
+        of_one = {"mps_absorber_advance: displacement", "mps_absorber_advance: velocity"}
         lacking = []
         for function, listed in re.findall(r"(mps_\w+)\(([^()]*)\);", _cdef.TEXT):
             for parameter in listed.split(","):
                 name = re.search(r"(\w+)(\[\d*\])?\s*$", parameter)
                 if re.search(r"(double|int64_t|int32_t)\s*\*|\[", parameter) and \
                         name[1] not in _shapes.FUNCTIONS.get(function.removesuffix("_sized"), {}) and \
-                        name[1] not in single:
+                        name[1] not in single and f"{function}: {name[1]}" not in of_one:
                     lacking.append(f"{function}: {name[1]}")
         for kind, members in re.findall(r"typedef struct (mps_\w+_def) \{(.*?)\}", _cdef.TEXT, re.S):
             for name in re.findall(r"(?:double|int64_t|int32_t)\s*\*\s*(\w+);", members):

@@ -238,6 +238,66 @@ static mps_status use_coupling(const void *def) {
   return status;
 }
 
+static void need_waves(void *def) {
+  mps_waves_def *d = def;
+  d->depth = 0.5, d->height = 0.03, d->period = 1.4;
+}
+static mps_status use_waves(const void *def) {
+  mps_waves *made = NULL;
+  const mps_status status = mps_waves_create(context, def, &made);
+  mps_waves_destroy(&made);
+  return status;
+}
+
+static void need_absorber(void *def) {
+  ((mps_absorber_def *)def)->depth = 0.5, ((mps_absorber_def *)def)->period = 1.4;
+}
+static mps_status use_absorber(const void *def) {
+  mps_absorber *made = NULL;
+  const mps_status status = mps_absorber_create(context, def, &made);
+  mps_absorber_destroy(&made);
+  return status;
+}
+
+static void need_separation(void *def) {
+  static double x[2] = {1.0, 1.3}, t[16], levels[32];
+  mps_separation_def *d = def;
+  for (int k = 0; k < 16; k++) t[k] = 0.1 * k, levels[2 * k] = 0.01 * (k % 5);
+  d->gauges = 2, d->depth = 0.5, d->lower = 0.5, d->upper = 2.0;
+  d->position = x, d->samples = 16, d->times = t, d->levels = levels;
+}
+static mps_status use_separation(const void *def) {
+  mps_separation result;
+  return mps_separation_find(context, def, 0, NULL, NULL, NULL, NULL, &result);
+}
+
+static void need_sainflou(void *def) {
+  mps_sainflou_def *d = def;
+  d->height = 0.05, d->period = 1.4, d->depth = 0.5;
+}
+static mps_status use_sainflou(const void *def) {
+  mps_sainflou result;
+  return mps_sainflou_evaluate(context, def, &result);
+}
+
+static void need_goda(void *def) {
+  mps_goda_def *d = def;
+  d->height = 0.05, d->period = 1.4, d->depth = 0.5, d->crest = 0.1, d->width = 0.3;
+}
+static mps_status use_goda(const void *def) {
+  mps_goda result;
+  return mps_goda_evaluate(context, def, &result);
+}
+
+static void need_eurotop(void *def) {
+  mps_eurotop_def *d = def;
+  d->height = 0.05, d->period = 1.4, d->depth = 0.5, d->crest = 0.05;
+}
+static mps_status use_eurotop(const void *def) {
+  mps_eurotop result;
+  return mps_eurotop_evaluate(context, def, &result);
+}
+
 static mps_status use_body_motion(const void *def) {
   mps_body *body = NULL;
   mps_assert_ok(context, mps_body_create_disc(context, NULL, 1.0, &body));
@@ -665,6 +725,12 @@ static const user users[] = {
     {"mps_consolidation_def", need_nothing, use_consolidation},
     {"mps_context_def", need_nothing, use_context},
     {"mps_coupling_def", need_coupling, use_coupling},
+    {"mps_waves_def", need_waves, use_waves},
+    {"mps_absorber_def", need_absorber, use_absorber},
+    {"mps_separation_def", need_separation, use_separation},
+    {"mps_sainflou_def", need_sainflou, use_sainflou},
+    {"mps_goda_def", need_goda, use_goda},
+    {"mps_eurotop_def", need_eurotop, use_eurotop},
     {"mps_domain_def", need_domain, use_domain},
     {"mps_material_cam_clay_def", need_cam_clay, use_cam_clay},
     {"mps_material_drucker_prager_def", need_drucker_prager, use_drucker_prager},
