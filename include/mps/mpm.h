@@ -73,7 +73,7 @@ typedef enum mps_mpm_volumetric {
                               it, other laws approach it by 0.03 c dt/h a step. Mohr-Coulomb and
                               Drucker-Prager keep their own tr(d); every eighth step (a step whose
                               number, from creation, 8 divides) their mean stress is filtered:
-                              docs/theory/walls.md */
+                              docs/theory/pressures.md */
 } mps_mpm_volumetric;
 
 /** Shape functions of particles near a roller, a fixed side or the axis. */

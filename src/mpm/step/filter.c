@@ -23,7 +23,7 @@
 
 #include <string.h>
 
-#define BETA 0.01
+#define BETA 0.03
 #define EVERY 8 /* steps */
 
 bool mpsi_mpm_filters(const mps_mpm *mpm) {
