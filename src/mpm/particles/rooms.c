@@ -2,6 +2,8 @@
  * of volume and the filter of stresses need. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 
+#include <string.h>
+
 /* So many columns, each over the particles, in one room. */
 static bool make_columns(mps_mpm *mpm, mpsi_room *room, int64_t particles, int32_t columns,
                          double **column) {
@@ -20,6 +22,7 @@ bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
 
 bool mpsi_mpm_volume_room(mps_mpm *mpm, int64_t particles, bool means, bool filter) {
   mpsi_rooms *r = &mpm->rooms;
+  means = means || r->strain.item, filter = filter || r->rough.item; /* G2P writes what is there */
   const bool stencil = means || filter;
   const bool good =
       (!stencil ||
@@ -48,5 +51,7 @@ bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
     mpsi_free(mpm->context, rooms[k]->item);
     *rooms[k] = (mpsi_room){0};
   }
+  memset(mpm->p.D, 0, sizeof mpm->p.D);
+  mpm->p.rough = NULL;
   return mpsi_mpm_make_room(mpm, particles);
 }
