@@ -33,9 +33,9 @@ typedef struct mpsi_refusal {
 typedef struct mpsi_laws {
   mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
   int32_t count;
-  bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
-  bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
-  bool some_own;    /* some law takes each particle's own change of volume, */
+  bool one_modulus;   /* law[0].modulus holds for all particles, whatever their state */
+  bool at_once;       /* all laws act within G2P, by each particle's own change of volume */
+  bool some_own;      /* some law takes each particle's own change of volume, */
   bool some_filtered; /* its mean stress is filtered */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */
