@@ -31,7 +31,8 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Ground"),
-      OPTION_CHOICE("model", "vonmises|druckerprager", &s->model, "law of the ground; under a circle Tresca's in place of von Mises'"),
+      OPTION_CHOICE("model", "vonmises|druckerprager", &s->model,
+                    "law of the ground; under a circle Tresca's in place of von Mises'"),
       OPTION_TEXT("domain", "WxH", &s->domain,
                   "width of the half model and depth of the ground in m, whole cells"),
       COMMON_NUMBER_IN("cohesion", OPTION_FROM_TO(1.0, 1e11), &s->cohesion, "von Mises: undrained"),

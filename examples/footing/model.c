@@ -55,8 +55,8 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
   mps_body_def def = mps_body_defaults();
   const double height = s->half_width;
   def.position[1] = s->depth + 0.5 * height;
-  const double half[8] = {0.0, -0.5 * height, s->half_width, -0.5 * height,
-                          s->half_width, 0.5 * height, 0.0, 0.5 * height};
+  const double half[8] = {0.0,           -0.5 * height, s->half_width, -0.5 * height,
+                          s->half_width, 0.5 * height,  0.0,           0.5 * height};
   if (status == MPS_OK)
     status = s->shape == CIRCLE
                  ? mps_body_create_polygon(context, &def, 4, half, &sim->m.body[0])
@@ -96,7 +96,8 @@ static mps_status make_ground(mps_context *context, const settings *s, mpm_model
   return status == MPS_OK && s->gravity > 0.0 ? set_stress(m->particles, s) : status;
 }
 
-/* In plane strain von Mises' law has the shear strength c of Tresca's; under a circle it has not. */
+/* In plane strain von Mises' law has the shear strength c of Tresca's; under a circle it has not.
+ */
 static mps_status make_clay(mps_context *context, const settings *s, mps_material **out) {
   if (s->shape == CIRCLE) {
     mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
@@ -137,8 +138,7 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_ground(context, s, &sim->m);
   if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry =
-      s->shape == CIRCLE ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_PLANE_STRAIN;
+  def.geometry = s->shape == CIRCLE ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = s->h;
   def.spline = s->spline + 2;
   def.volumetric = s->volumetric;

@@ -37,8 +37,8 @@ static void fit_path(const simulation *sim, capacity *c) {
   for (int k = sim->rows - fifth; k < sim->rows; k++) c->last += sim->q[k] / unit / fifth;
 }
 
-/* Cohesive ground: Prandtl (52), whatever the weight and the base. A circle: smooth, R. T. Shield, J.
- * Mech. Phys. Solids 4 (1955) 10-16; rough, G. Eason and R. T. Shield, Z. angew. Math. Phys. 11
+/* Cohesive ground: Prandtl (52), whatever the weight and the base. A circle: smooth, R. T. Shield,
+ * J. Mech. Phys. Solids 4 (1955) 10-16; rough, G. Eason and R. T. Shield, Z. angew. Math. Phys. 11
  * (1960) 33-43. Coulomb's friction lets the base bear c, as a rough one does, where mu q > c. */
 static void find_cohesive_limits(const settings *s, capacity *c) {
   if (s->shape == STRIP) return;

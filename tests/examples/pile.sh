@@ -48,13 +48,15 @@ cmp "$work/a/load.csv" "$work/b/load.csv" || fail "three threads give another lo
 "$1/mps-pile" $coarse --friction 0 --frames 1 --threads 1 --out "$work/smooth" >/dev/null
 in_range "$work/smooth/summary.json" force_inside -1e-9 1e-9
 in_range "$work/smooth/summary.json" force_outside -1e-9 1e-9
-# By springs, an independent way of contact: as much in all and at the tip, the plug as high.
+# By springs, an independent way of contact: as much in all and at the tip, the plug as high
+# within a third of a cell.
 "$1/mps-pile" $coarse --contact penalty --rest 0.3 --frames 1 --threads 1 --out "$work/springs" >/dev/null
 in_range "$work/springs/summary.json" particles_inside_pile 0 0
 bears springs
-for name in force_total force_tip plug_height; do
+for name in force_total force_tip; do
   within "$(value a $name)" 0.95 1.05 "$(value springs $name)" || fail "$name by impulses and by springs"
 done
+within "$(value a plug_height)" 0.93 1.07 "$(value springs plug_height)" || fail "plug_height by impulses and by springs"
 
 # A checkpoint that cannot be written is noticed at the start.
 status=0

@@ -235,8 +235,7 @@ static void ground_at_rest_does_not_move(void **state) {
       double start[800];
       mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
       assert_int_equal(x.shape[0], 800);
-      for (int64_t k = 0; k < 800; k++)
-        start[*mps_view_i64(&id, k, 0)] = *mps_view_f64(&x, k, 1);
+      for (int64_t k = 0; k < 800; k++) start[*mps_view_i64(&id, k, 0)] = *mps_view_f64(&x, k, 1);
       mps_assert_ok(context, mps_mpm_step(s.mpm, 800));
       mps_view stress = mpm_scene_view(&s, "stress");
       x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
@@ -331,10 +330,10 @@ static double compare(mpm_scene *a, mpm_scene *b) {
 static void each_law_has_what_suits_it(void **state) {
   (void)state;
   static const int32_t expected[CHOICES] = {
-      [SAND] = MPS_MPM_VOLUMETRIC_NODES,     [CONE] = MPS_MPM_VOLUMETRIC_NODES,
-      [CLAY] = MPS_MPM_VOLUMETRIC_CELL,      [CONE_CLAY] = MPS_MPM_VOLUMETRIC_CELL,
-      [METAL] = MPS_MPM_VOLUMETRIC_CELL,     [RUBBER] = MPS_MPM_VOLUMETRIC_CELL,
-      [JELLY] = MPS_MPM_VOLUMETRIC_CELL,     [SOIL] = MPS_MPM_VOLUMETRIC_POINT,
+      [SAND] = MPS_MPM_VOLUMETRIC_NODES, [CONE] = MPS_MPM_VOLUMETRIC_NODES,
+      [CLAY] = MPS_MPM_VOLUMETRIC_CELL,  [CONE_CLAY] = MPS_MPM_VOLUMETRIC_CELL,
+      [METAL] = MPS_MPM_VOLUMETRIC_CELL, [RUBBER] = MPS_MPM_VOLUMETRIC_CELL,
+      [JELLY] = MPS_MPM_VOLUMETRIC_CELL, [SOIL] = MPS_MPM_VOLUMETRIC_POINT,
       [WATER] = MPS_MPM_VOLUMETRIC_POINT};
   for (int which = 0; which < CHOICES; which++) {
     mpm_scene by_law = strike(which, MPS_MPM_VOLUMETRIC_BY_LAW, false);

@@ -330,7 +330,7 @@ static footing make_footing(void) {
   mps_assert_ok(context, mps_material_create_von_mises(context, &law, &f.s.material));
   mpm_scene_box(&f.s, 0.0, 0.0, 2.0, 1.2);
   mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.1;
+  def.cell = 0.1, def.volumetric = MPS_MPM_VOLUMETRIC_POINT; /* the loading is compared */
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
   mpm_scene_solve(&f.s, &def);
   mpm_scene_side(&f.s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);

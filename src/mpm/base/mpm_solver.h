@@ -26,8 +26,8 @@ typedef struct mpsi_rooms {
   mpsi_room radix, stencil;
   mpsi_room strain; /* of the columns D */
   mpsi_room rough;
-  mpsi_room gone;   /* marks of what leaves at the end of a step; none where nothing can */
-  mpsi_room force;  /* of the columns f; none without loads */
+  mpsi_room gone;  /* marks of what leaves at the end of a step; none where nothing can */
+  mpsi_room force; /* of the columns f; none without loads */
 } mpsi_rooms;
 
 /* The handle of mps/grid.h: lent, a part of the solver. */

@@ -442,6 +442,7 @@ static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
   mpm->energy.counts = def->budget != 0;
   mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
   mpm->p.count = mps_particles_count(mpm->particles);
+  mpm->laws.at_once = true; /* until some law waits for means */
   mpm->grid.inverse = 1.0 / def->cell;
   mpm->grid.dim = mpm->dim, mpm->grid.spline = mpm->def.spline;
   mpm->grid.cell = mpm->def.cell;

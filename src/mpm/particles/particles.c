@@ -1,5 +1,5 @@
-/* particles.c - the particles of the set as the solver has them: where their columns lie, what it
- * keeps for each, the state in which they begin, and what follows where the caller writes a field.
+/* particles.c - the particles of the set as the solver has them: where their columns lie, the state
+ * in which they begin, and what follows where the caller writes a field.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 
@@ -10,7 +10,7 @@
 #define DENSITY_MIN 1e-9 /* kg/m3 */
 #define DENSITY_MAX 1e12
 
-/* ---- columns and room ------------------------------------------------------------------------ */
+/* ---- columns --------------------------------------------------------------------------------- */
 
 static void bind_water(mps_particles *set, mpsi_columns *p) {
   p->u = mpsi_particles_column(set, "pore_pressure", 0);
@@ -36,55 +36,6 @@ void mpsi_mpm_bind(mps_mpm *mpm) {
   p->m = mpsi_particles_column(set, "mass", 0);
   if (p->law) p->law = mpsi_particles_integers(set, "material");
   for (int32_t k = 0; k < mpm->laws.count; k++) mpsi_mpm_bind_law(mpm, &mpm->laws.law[k]);
-}
-
-/* So many columns, each over the particles, in one room. */
-static bool make_columns(mps_mpm *mpm, mpsi_room *room, int64_t particles, int32_t columns,
-                         double **column) {
-  const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
-  const int64_t stride = (particles + MPSI_PARTICLES_PADDING + line - 1) / line * line;
-  if (!mpsi_room_ensure(mpm->context, room, columns * stride, sizeof(double))) return false;
-  const int64_t widest = room->capacity / columns / line * line;
-  for (int c = 0; c < columns; c++)
-    column[c] = (double *)room->item + c * (widest > stride ? widest : stride);
-  return true;
-}
-
-bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
-  return make_columns(mpm, &mpm->rooms.force, particles, mpm->dim, mpm->p.f);
-}
-
-bool mpsi_mpm_volume_room(mps_mpm *mpm, int64_t particles, bool means, bool filter) {
-  mpsi_rooms *r = &mpm->rooms;
-  const bool stencil = means || filter;
-  const bool good =
-      (!stencil ||
-       mpsi_room_ensure(mpm->context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
-      (!means || make_columns(mpm, &r->strain, particles, mpm->dim * mpm->dim, mpm->p.D)) &&
-      (!filter || make_columns(mpm, &r->rough, particles, 1, &mpm->p.rough));
-  mpm->p.stencil = r->stencil.item;
-  return good;
-}
-
-bool mpsi_mpm_make_room(void *solver, int64_t particles) {
-  mps_mpm *mpm = solver;
-  mpsi_rooms *r = &mpm->rooms;
-  const bool good =
-      mpsi_room_ensure(mpm->context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
-      mpsi_mpm_volume_room(mpm, particles, !mpm->laws.at_once, mpm->laws.some_filtered) &&
-      (!r->force.item || mpsi_mpm_force_room(mpm, particles));
-  mpm->grid.radix = r->radix.item;
-  return good;
-}
-
-bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
-  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.stencil, &mpm->rooms.strain,
-                              &mpm->rooms.rough};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
-    mpsi_free(mpm->context, rooms[k]->item);
-    *rooms[k] = (mpsi_room){0};
-  }
-  return mpsi_mpm_make_room(mpm, particles);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */

@@ -23,7 +23,7 @@
 
 #include <string.h>
 
-#define BETA 0.01
+#define BETA 0.03
 #define EVERY 8 /* steps */
 
 bool mpsi_mpm_filters(const mps_mpm *mpm) {
@@ -60,8 +60,8 @@ static double decay(const mps_mpm *mpm, int64_t k) {
 
 /* ---- supports -------------------------------------------------------------------------------- */
 
-/* Along each axis the nodes of the block's tile, those beyond a mirror by their partners: where they
- * are, in cells, and as offsets into the tile. */
+/* Along each axis the nodes of the block's tile, those beyond a mirror by their partners: where
+ * they are, in cells, and as offsets into the tile. */
 typedef struct axes {
   double place[3][MPSI_TILE_SIDE];
   int offset[3][MPSI_TILE_SIDE];
@@ -77,9 +77,9 @@ static void find_axes(const mps_mpm *mpm, const mpsi_cell_block *cells, axes *ou
 }
 
 typedef struct support {
-  const int *at[3]; /* offsets of its nodes along each axis */
+  const int *at[3];           /* offsets of its nodes along each axis */
   double w[3][4], away[3][4]; /* weights; cells from the particle to the node */
-  uint64_t across; /* bit 16 k + 4 j + i: the node's values across (thin_bodies.h) */
+  uint64_t across;            /* bit 16 k + 4 j + i: the node's values across (thin_bodies.h) */
 } support;
 
 /* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
@@ -93,8 +93,7 @@ MPSI_INLINE void find_support(const mps_mpm *mpm, const mpsi_cell_block *cells, 
     const double x = mpm->p.x[c][k] - dt * mpm->p.v[c][k];
     const double t = mpsi_grid_coordinate(mpm, c, x) - (cells->at[c] * (double)MPSI_SIDE + base[c]);
     mpsi_weights(spline, t < least ? least : t > least + 1.0 ? least + 1.0 : t, out->w[c]);
-    for (int i = 0; i <= spline; i++)
-      out->away[c][i] = all->place[c][base[c] + i] - (base[c] + t);
+    for (int i = 0; i <= spline; i++) out->away[c][i] = all->place[c][base[c] + i] - (base[c] + t);
     out->at[c] = all->offset[c] + base[c];
   }
   out->across = 0;
@@ -185,16 +184,15 @@ MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
   for (int64_t k = cells->begin; k < cells->end; k++) {
     if (!is_filtered(mpm, k)) continue;
     find_support(mpm, cells, &all, dim, spline, thin, k, &s);
-    const double closed = which == SUM_STRESS || which == FIND_ROUGH
-                              ? closed_stress(mpm, k, slope)
-                              : 0.0;
+    const double closed =
+        which == SUM_STRESS || which == FIND_ROUGH ? closed_stress(mpm, k, slope) : 0.0;
     if (which == SUM_STRESS)
       give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope);
     else if (which == SUM_ROUGH)
       give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k], NULL);
     else if (which == FIND_ROUGH)
-      rough[k] = decay(mpm, k) * (closed + rise(dim, spline, &s, slope) -
-                                  take(worker, dim, spline, thin, &s));
+      rough[k] = decay(mpm, k) *
+                 (closed + rise(dim, spline, &s, slope) - take(worker, dim, spline, thin, &s));
     else
       rough[k] -= take(worker, dim, spline, thin, &s);
   }

@@ -1,0 +1,57 @@
+/* rooms.c - memory for each particle beside its fields: what the sort, the loads, means of the
+ * change of volume and the filter of stresses need. SPDX-License-Identifier: BSD-3-Clause */
+#include "particles.h"
+
+#include <string.h>
+
+/* So many columns, each over the particles, in one room. */
+static bool make_columns(mps_mpm *mpm, mpsi_room *room, int64_t particles, int32_t columns,
+                         double **column) {
+  const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
+  const int64_t stride = (particles + MPSI_PARTICLES_PADDING + line - 1) / line * line;
+  if (!mpsi_room_ensure(mpm->context, room, columns * stride, sizeof(double))) return false;
+  const int64_t widest = room->capacity / columns / line * line;
+  for (int c = 0; c < columns; c++)
+    column[c] = (double *)room->item + c * (widest > stride ? widest : stride);
+  return true;
+}
+
+bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
+  return make_columns(mpm, &mpm->rooms.force, particles, mpm->dim, mpm->p.f);
+}
+
+bool mpsi_mpm_volume_room(mps_mpm *mpm, int64_t particles, bool means, bool filter) {
+  mpsi_rooms *r = &mpm->rooms;
+  means = means || r->strain.item, filter = filter || r->rough.item; /* G2P writes what is there */
+  const bool stencil = means || filter;
+  const bool good =
+      (!stencil ||
+       mpsi_room_ensure(mpm->context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
+      (!means || make_columns(mpm, &r->strain, particles, mpm->dim * mpm->dim, mpm->p.D)) &&
+      (!filter || make_columns(mpm, &r->rough, particles, 1, &mpm->p.rough));
+  mpm->p.stencil = r->stencil.item;
+  return good;
+}
+
+bool mpsi_mpm_make_room(void *solver, int64_t particles) {
+  mps_mpm *mpm = solver;
+  mpsi_rooms *r = &mpm->rooms;
+  const bool good =
+      mpsi_room_ensure(mpm->context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
+      mpsi_mpm_volume_room(mpm, particles, !mpm->laws.at_once, mpm->laws.some_filtered) &&
+      (!r->force.item || mpsi_mpm_force_room(mpm, particles));
+  mpm->grid.radix = r->radix.item;
+  return good;
+}
+
+bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
+  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.stencil, &mpm->rooms.strain,
+                              &mpm->rooms.rough};
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
+    mpsi_free(mpm->context, rooms[k]->item);
+    *rooms[k] = (mpsi_room){0};
+  }
+  memset(mpm->p.D, 0, sizeof mpm->p.D);
+  mpm->p.rough = NULL;
+  return mpsi_mpm_make_room(mpm, particles);
+}
