@@ -9,6 +9,7 @@
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.nu = 0.2,
                                  .young = 1e6,
+                                 .cells = NAN,
                                  .load = NAN,
                                  .duration = NAN,
                                  .damping = NAN,
@@ -36,8 +37,8 @@ int main(int argc, char **argv) {
                     "that T = 1 lasts, which gives the permeability; default 300 times that of a "
                     "wave through H, mandel 1000"),
       OPTION_HEADING("Grid"),
-      OPTION_INTEGER("cells", "1", OPTION_FROM_TO(2.0, MOST_CELLS), &s->cells,
-                     "along H, a or B; default 20, mandel 10, strip 4"),
+      OPTION_NUMBER("cells", "1", OPTION_FROM_TO(2.0, MOST_CELLS), &s->cells,
+                    "along H, a or B, a whole number; default 20, mandel 10, strip 4"),
       OPTION_CHOICE("scheme", "explicit|implicit", &s->scheme,
                     "pressures in time; implicit is not there yet"),
       OPTION_NUMBER("mass-damping", "1/s", OPTION_FROM_TO(0.0, 1e6), &s->damping,

@@ -12,7 +12,8 @@ enum { MOST_TIMES = 32, MOST_POINTS = 1024, MOST_CELLS = 256 };
 
 typedef struct settings {
   int kase, scheme;
-  int64_t cells, threads;   /* along H; of the strip along B */
+  int64_t threads;
+  double cells;             /* along H; of the strip along B */
   double nu, young, load;   /* Pa; load: u0 */
   double duration, damping; /* s that T = 1 lasts; 1/s */
   double stiffness;         /* (K_w/n)/M' */

@@ -56,7 +56,8 @@ const char *consolidation_settle(simulation *sim, const option *table) {
   if (s->scheme == IMPLICIT)
     return "--scheme implicit is not there yet: pressures are explicit in time";
   sim->modulus = s->young * (1.0 - s->nu) / ((1.0 + s->nu) * (1.0 - 2.0 * s->nu));
-  if (s->cells == 0) s->cells = s->kase == STRIP ? 4 : s->kase == MANDEL ? 10 : 20;
+  if (isnan(s->cells)) s->cells = s->kase == STRIP ? 4 : s->kase == MANDEL ? 10 : 20;
+  if (s->cells != floor(s->cells)) return "--cells must be a whole number";
   if (isnan(s->load)) s->load = sim->modulus * (s->kase == LARGE ? 0.5 : 1e-3);
   if (s->kase == LARGE && !(exp(-s->load / sim->modulus) > 0.41))
     return "--load must leave pores: at most 0.89 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
@@ -74,7 +75,7 @@ const char *consolidation_settle(simulation *sim, const option *table) {
 /* ---- ground ---------------------------------------------------------------------------------- */
 
 static double porosity_of(const settings *s) { return s->kase == LARGE ? 0.6 : 0.4; }
-static double cell_of(const settings *s) { return 1.0 / (double)s->cells; }
+static double cell_of(const settings *s) { return 1.0 / s->cells; }
 static bool is_column(const settings *s) { return s->kase == TERZAGHI || s->kase == LARGE; }
 
 static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {

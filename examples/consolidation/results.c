@@ -58,7 +58,7 @@ static bool write_summary(app *a, const simulation *sim) {
   for (int r = 0; r < sim->rows; r++) worst = fmax(worst, pressure_error(sim, r));
   if (!mpm_model_summary(a, &sim->m, sim->s.out, &f)) return false;
   json_text(&f, "case", names[sim->s.kase]);
-  json_integer(&f, "cells", sim->s.cells);
+  json_integer(&f, "cells", (int64_t)sim->s.cells);
   json_number(&f, "T", last->T);
   json_number(&f, "load", sim->s.load);
   json_number(&f, "settlement", last->settlement);
@@ -81,9 +81,9 @@ static bool draw_profile(app *a, const simulation *sim) {
   output f;
   if (!plot_open(&f, a, sim->s.out, "profile", 900, 700)) return false;
   output_text(&f,
-              "set title 'Pore pressure: %s, %lld cells'\nset xlabel 'u/u_0'\nset ylabel '%s'\n"
+              "set title 'Pore pressure: %s, %g cells'\nset xlabel 'u/u_0'\nset ylabel '%s'\n"
               "set yrange [*:*] reverse\nset xrange [0:*]\nset key outside right top\nplot ",
-              titles[sim->s.kase], (long long)sim->s.cells, depths[sim->s.kase]);
+              titles[sim->s.kase], sim->s.cells, depths[sim->s.kase]);
   for (int r = 0; r < sim->rows; r++) {
     const char *colour = colours[r % 8];
     char title[48] = "strip";
@@ -93,7 +93,8 @@ static bool draw_profile(app *a, const simulation *sim) {
                 "linecolor rgb '%s' title '%s', \\\n  '' every ::%d::%d using 4:2 with lines "
                 "linecolor rgb '%s' title '%s'",
                 r ? ", \\\n  " : "", r * sim->points + 1, (r + 1) * sim->points, colour, title,
-                r * sim->points + 1, (r + 1) * sim->points, colour, r ? "" : "exact");
+                r * sim->points + 1, (r + 1) * sim->points, colour,
+                r + 1 < sim->rows ? "" : "exact");
   }
   output_text(&f, "\n");
   return plot_close(&f, sim->s.out, "profile");
