@@ -19,6 +19,8 @@ run mps-element --steps 20
 run mps-sliding-box --h 0.1
 run mps-rolling-disc --h 0.02 --duration 0.02
 run mps-footing --h 0.25 --domain 3x1 --settlement 0.05mm
+run mps-consolidation --cells 3 --stiffness 10 --times 0.01
+run mps-consolidation --case mandel --cells 3 --stiffness 10 --times 0.001
 run mps-pile --h 0.02 --wall 0.04 --soil 0.4x0.8 --depth 0.01
 run mps-penetrometer --soil 2x2x2 --depth 0.002
 run mps-dam-break --base 0.05 --h 0.005 --duration 0.02

@@ -43,7 +43,7 @@ for program in mps-sliding-box mps-rolling-disc mps-footing mps-pile mps-dam-bre
   "$1/$program" --help >"$work/help"
   has "$work/help" "degree of the weights (default 3)"
 done
-for program in mps-tank mps-flume mps-seawall mps-dam-break mps-wave mps-pile mps-footing mps-penetrometer \
+for program in mps-tank mps-flume mps-seawall mps-dam-break mps-wave mps-pile mps-footing mps-consolidation mps-penetrometer \
   mps-column-collapse mps-sliding-box mps-rolling-disc; do
   [ -x "$1/$program" ] || continue
   "$1/$program" --help >"$work/help" || fail "$program --help"

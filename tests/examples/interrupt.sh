@@ -73,6 +73,8 @@ wrote disc motion.csv summary.json
 has "$work/disc/summary.json" '"x_error_05": null'
 interrupt footing 1 mps-footing
 wrote footing pressure.csv particles.csv summary.json
+interrupt layer 1 mps-consolidation --cells 40 --times 0.0001,0.0002,0.0003,10
+wrote layer profile.csv times.csv summary.json
 interrupt pile 1 mps-pile --soil 0.4x2
 wrote pile load.csv summary.json
 interrupt dam 1 mps-dam-break

@@ -21,4 +21,5 @@ again mps-sliding-box 0.7 --h 0.1 --young 5kPa --density 10
 again mps-rolling-disc 8ms --h 0.025 --duration 20ms
 again mps-column-collapse 12ms --width 0.1 --h 0.025 --falls 0.2 --compare
 again mps-penetrometer 3ms --soil 4x4x2 --h 0.025 --depth 1cm --rate 2 --ppc 1 --axisymmetric
+again mps-consolidation 1 --cells 5 --stiffness 10 --times 0.05,0.1,0.2
 again mps-footing 8ms --h 0.25 --domain 3x1 --settlement 1mm --rate 100mm/s

@@ -12,18 +12,22 @@
 
 static const int stride[3] = {1, MPSI_SIDE, MPSI_SIDE *MPSI_SIDE};
 
+/* Which cell of a tile holds the local coordinate, in cells; the nearest where none does: then the
+ * particle has left the domain. */
+static int cell_in_tile(double local, int64_t most) {
+  const int cell = local > 0.0 ? (int)local : 0; /* without a call of floor */
+  const int last = most < MPSI_TILE_SIDE - 1 ? (int)most : MPSI_TILE_SIDE - 1;
+  return cell < last ? cell : last;
+}
+
 mpsi_pore_cell *mpsi_pore_cell_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                   int64_t particle, double *centre) {
   int at[3] = {0, 0, 0};
   for (int c = 0; c < mpm->dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-    int64_t own = mpsi_own_cell(mpm, c, X) - first;
-    own = own < 0                 ? 0
-          : own >= MPSI_TILE_SIDE ? MPSI_TILE_SIDE - 1
-                                  : own; /* it has left the domain */
-    at[c] = (int)own;
-    centre[c] = mpm->def.origin[c] + mpm->def.cell * ((double)(first + own) + 0.5);
+    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
+    at[c] = cell_in_tile(X - (double)first, mpm->grid.high[c] - 1 - first);
+    centre[c] = mpm->def.origin[c] + mpm->def.cell * ((double)(first + at[c]) + 0.5);
   }
   return mpm->water->cell + mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
 }
@@ -100,6 +104,17 @@ static int find_face(const mps_mpm *mpm, const double *x, int direction) {
   return -1;
 }
 
+/* Whether cell k of block g has others on all its faces: most have. */
+static bool is_inside(const mps_mpm *mpm, int64_t g, int k, const int *place) {
+  for (int c = 0; c < mpm->dim; c++) {
+    const int64_t at = (int64_t)mpm->grid.nodes[g].at[c] * MPSI_SIDE + place[c];
+    if (at + 1 >= mpm->grid.high[c] || at <= mpm->grid.low[c]) return false;
+    if (mpsi_pore_empty(mpsi_pore_beside(mpm, g, k, 2 * c))) return false;
+    if (mpsi_pore_empty(mpsi_pore_beside(mpm, g, k, 2 * c + 1))) return false;
+  }
+  return true;
+}
+
 /* What is beyond face `direction` of cell k of block g, whose box has its centre at x. */
 static void find_beyond(mps_mpm *mpm, int64_t g, int k, int direction, const double *x,
                         mpsi_pore_cell *cell) {
@@ -146,16 +161,24 @@ static void find_filled(const mps_mpm *mpm, double r, mpsi_pore_cell *cell) {
 static void find_faces(mps_mpm *mpm, int64_t g, int32_t worker) {
   static const double middle[3] = {0.5, 0.5, 0.5};
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
+  const double h = mpm->def.cell, box = mpm->dim == 3 ? h * h * h : h * h;
+  const bool ring = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (mpsi_pore_empty(&cell[k])) continue;
     int place[3];
     double local[3], x[3];
     mpsi_unravel(k, MPSI_SIDE, place);
+    cell[k].inside = !ring && is_inside(mpm, g, k, place);
+    if (cell[k].inside) { /* its faces and its free ones are those of an emptied cell: none */
+      cell[k].space = box;
+      for (int c = 0; c < 3; c++) cell[k].fill[c] = 1.0;
+      continue;
+    }
     for (int c = 0; c < 3; c++) local[c] = place[c] + middle[c];
     mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
     for (int d = 0; d < 2 * mpm->dim; d++) find_beyond(mpm, g, k, d, x, &cell[k]);
-    find_filled(mpm, mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? x[0] : 1.0, &cell[k]);
+    find_filled(mpm, ring ? x[0] : 1.0, &cell[k]);
   }
 }
 

@@ -119,6 +119,47 @@ static double centre_of(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_ce
   return (double)mpm->grid.nodes[g].at[0] * MPSI_SIDE + place[0];
 }
 
+/* ---- cells among whole cells ----------------------------------------------------------------- */
+
+/* The cells on all faces of one that is inside; false where one of them is filled in part. */
+static bool find_whole(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell,
+                       const mpsi_pore_cell **beside) {
+  if (!cell->inside) return false;
+  for (int d = 0; d < 2 * mpm->dim; d++) {
+    beside[d] = mpsi_pore_beside(mpm, g, k, d);
+    if (beside[d]->free) return false;
+  }
+  return true;
+}
+
+/* The cell's part of the slope to the one beside it, outwards, without that of water at rest. */
+static double drive_to(const mps_mpm *mpm, const mpsi_pore_cell *cell, const mpsi_pore_cell *beside,
+                       int direction, double difference) {
+  const double still = mpm->water->def.density * mpm->def.gravity[direction / 2];
+  const double drive = difference * mpm->grid.inverse + (direction & 1 ? -still : still);
+  return mpm->water->flows ? 2.0 * beside->k / (cell->k + beside->k) * drive : drive;
+}
+
+/* Flux (m3/s) into it, as to_cell has for each face. */
+static double flux_among_whole(const mps_mpm *mpm, const mpsi_pore_cell *cell,
+                               const mpsi_pore_cell *const *beside) {
+  const double h = mpm->def.cell;
+  double sum = 0.0;
+  for (int d = 0; d < 2 * mpm->dim; d++)
+    sum += drive_to(mpm, cell, beside[d], d, beside[d]->p - cell->p);
+  return sum * (mpm->dim == 3 ? h * h : h) * cell->k / weight_of_water(mpm);
+}
+
+static void slope_among_whole(const mps_mpm *mpm, mpsi_pore_cell *cell,
+                              const mpsi_pore_cell *const *beside) {
+  for (int c = 0; c < mpm->dim; c++) {
+    const mpsi_pore_cell *below = beside[2 * c], *above = beside[2 * c + 1];
+    cell->g[c] = mpm->water->def.density * mpm->def.gravity[c] +
+                 0.5 * (drive_to(mpm, cell, above, 2 * c + 1, above->now - cell->now) -
+                        drive_to(mpm, cell, below, 2 * c, below->now - cell->now));
+  }
+}
+
 /* ---- pressures at the end of the step -------------------------------------------------------- */
 
 static double *outflow_of(const mps_mpm *mpm, int64_t g, int face) {
@@ -133,17 +174,23 @@ static void squeeze(mps_mpm *mpm, int64_t g, mpsi_pore_cell *cell) {
   *outflow_of(mpm, g, cell->face[d]) -= cell->gain;
 }
 
-static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
-  const struct mpsi_water *water = mpm->water;
-  const double dt = mpm->run.dt;
+static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell) {
+  const mpsi_pore_cell *beside[6], *behind;
   double x[3], flux = 0.0;
+  if (find_whole(mpm, g, k, cell, beside)) return flux_among_whole(mpm, cell, beside);
   const double X = centre_of(mpm, g, k, cell, x);
-  for (int d = 0; d < 2 * mpm->dim && water->flows; d++) {
-    const mpsi_pore_cell *behind;
+  for (int d = 0; d < 2 * mpm->dim; d++) {
     const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
     if (f.known) flux += f.flux;
     if (f.known && behind) *outflow_of(mpm, g, behind->face[d]) -= f.flux;
   }
+  return flux;
+}
+
+static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
+  const struct mpsi_water *water = mpm->water;
+  const double dt = mpm->run.dt;
+  const double flux = water->flows ? flux_into(mpm, g, k, cell) : 0.0;
   /* a cell less than half full at an impervious surface: else its steps would be short */
   const double space = fmax(
       cell->space, 0.5 * cell->space / fmax(1e-3, cell->fill[0] * cell->fill[1] * cell->fill[2]));
@@ -176,10 +223,14 @@ static double between(const face_flow *below, const face_flow *above) {
 }
 
 static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
+  const mpsi_pore_cell *beside[6], *behind;
   double x[3];
+  if (find_whole(mpm, g, k, cell, beside)) {
+    slope_among_whole(mpm, cell, beside);
+    return;
+  }
   const double X = centre_of(mpm, g, k, cell, x);
   for (int c = 0; c < mpm->dim; c++) {
-    const mpsi_pore_cell *behind;
     const face_flow below = at_face(mpm, g, k, 2 * c, true, cell, x, X, &behind);
     const face_flow above = at_face(mpm, g, k, 2 * c + 1, true, cell, x, X, &behind);
     cell->g[c] = between(&below, &above);

@@ -27,6 +27,7 @@ typedef struct mpsi_pore_cell {
   int8_t beyond[6];         /* MPSI_PORE_... of each face */
   int8_t face[6];           /* number of the definition, -1: none */
   uint8_t free;             /* bit d: nothing lies beyond face d, but perhaps a body */
+  bool inside;              /* there are cells on all its faces; never in axisymmetry */
   bool thin;                /* less than half full at a drained surface: stores nothing */
 } mpsi_pore_cell;
 

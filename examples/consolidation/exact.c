@@ -1,0 +1,146 @@
+/* exact.c - exact solutions of mps-consolidation, for water and grains that keep their volume.
+ *
+ * terzaghi  Terzaghi and Froehlich (1936): u/q = sum 2/M sin(M z/H) exp(-M^2 T), M = (i + 1/2) pi
+ * large     Xie and Leo (2004): sigma' = M' ln(V/V0), k = k0 (V/V0)^2, m = q/M':
+ *           u/q = 1 + ln[e^-m + (1 - e^-m) u_T]/m, S/H = (1 - e^-m) U, u_T and U of Terzaghi
+ * mandel    Mandel (1953); tan(a)/a = (1 - nu)/(1/2 - nu)
+ * cryer     Cryer (1963); (1 - eta x^2/2) tan(x) = x, eta = (1 - nu)/(1 - 2 nu)
+ * strip     half space under a strip load, undrained: p = q alpha/pi, alpha = 2 atan(B/z)
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "consolidation.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+
+enum { TERMS = 400 };
+
+/* ---- Terzaghi -------------------------------------------------------------------------------- */
+
+static double terzaghi(double depth, double T) {
+  double u = 0.0;
+  for (int i = 0; i < TERMS; i++) {
+    const double M = (i + 0.5) * PI;
+    u += 2.0 / M * sin(M * depth) * exp(-M * M * T);
+  }
+  return u;
+}
+
+static double terzaghi_degree(double T) {
+  double left = 0.0;
+  for (int i = 0; i < TERMS; i++) {
+    const double M = (i + 0.5) * PI;
+    left += 2.0 / (M * M) * exp(-M * M * T);
+  }
+  return 1.0 - left;
+}
+
+/* ---- roots ----------------------------------------------------------------------------------- */
+
+typedef double (*function)(double x, double parameter);
+
+/* Between a and b, where the function changes its sign. */
+static double root(function f, double parameter, double a, double b) {
+  const bool rises = f(b, parameter) > 0.0;
+  for (int k = 0; k < 80; k++) {
+    const double middle = 0.5 * (a + b);
+    if ((f(middle, parameter) > 0.0) == rises)
+      b = middle;
+    else
+      a = middle;
+  }
+  return 0.5 * (a + b);
+}
+
+/* ---- Mandel ---------------------------------------------------------------------------------- */
+
+static double mandel_equation(double a, double nu) {
+  return sin(a) - (1.0 - nu) / (0.5 - nu) * a * cos(a);
+}
+
+static double mandel_root(int i, double nu) {
+  return root(mandel_equation, nu, i * PI + 1e-9, (i + 0.5) * PI);
+}
+
+/* p/p0 at x/a, p0 = F/(2 a). */
+static double mandel(double nu, double x, double T) {
+  double p = 0.0;
+  for (int i = 0; i < TERMS; i++) {
+    const double a = mandel_root(i, nu), s = sin(a), c = cos(a);
+    p += 2.0 * s / (a - s * c) * (cos(a * x) - c) * exp(-a * a * T);
+  }
+  return p;
+}
+
+double exact_plate(double nu, double T) {
+  double sum = 0.0, start = 0.5 - nu; /* that sum at T = 0 */
+  for (int i = 0; i < TERMS && T > 0.0; i++) {
+    const double a = mandel_root(i, nu), s = sin(a), c = cos(a);
+    sum += s * c / (a - s * c) * exp(-a * a * T);
+  }
+  if (!(T > 0.0)) sum = start;
+  /* F/(2 G a) (start - sum) = u0/G (...) */
+  return (start - sum) * 2.0 * (1.0 - nu) / (1.0 - 2.0 * nu);
+}
+
+/* ---- Cryer ----------------------------------------------------------------------------------- */
+
+static double eta_of(double nu) { return (1.0 - nu) / (1.0 - 2.0 * nu); }
+
+static double cryer_equation(double x, double eta) {
+  return (1.0 - 0.5 * eta * x * x) * sin(x) - x * cos(x);
+}
+
+static double cryer_root(int i, double eta) {
+  return root(cryer_equation, eta, i > 0 ? i * PI : 1e-3, (i + 1) * PI);
+}
+
+static double cryer_weight(double x, double eta) {
+  return eta / (0.5 * eta * x * cos(x) + (eta - 1.0) * sin(x));
+}
+
+/* p/p0 at r/a. */
+static double cryer(double nu, double r, double T) {
+  const double eta = eta_of(nu);
+  double p = 0.0;
+  for (int i = 0; i < TERMS; i++) {
+    const double x = cryer_root(i, eta);
+    const double profile = r > 1e-9 ? sin(x * r) / r : x;
+    p += cryer_weight(x, eta) * (sin(x) - profile) * exp(-x * x * T);
+  }
+  return p;
+}
+
+/* Radial displacement over a u0/M': the water that has left through the surface. */
+static double cryer_settlement(double nu, double T) {
+  const double eta = eta_of(nu);
+  double sum = 0.0;
+  for (int i = 0; i < TERMS; i++) {
+    const double x = cryer_root(i, eta);
+    sum += cryer_weight(x, eta) * (x * cos(x) - sin(x)) / (x * x) * (1.0 - exp(-x * x * T));
+  }
+  return sum;
+}
+
+/* ---- all ------------------------------------------------------------------------------------- */
+
+double exact_pressure(const settings *s, double m, double depth, double T) {
+  switch (s->kase) {
+  case TERZAGHI:
+    return terzaghi(depth, T);
+  case LARGE:
+    return 1.0 + log(exp(-m) + (1.0 - exp(-m)) * terzaghi(depth, T)) / m;
+  case MANDEL:
+    return mandel(s->nu, 1.0 - depth, T);
+  case CRYER:
+    return cryer(s->nu, 1.0 - depth, T);
+  default:
+    return 2.0 * atan(1.0 / depth) / PI;
+  }
+}
+
+double exact_settlement(const settings *s, double m, double T) {
+  if (s->kase == TERZAGHI) return m * terzaghi_degree(T);
+  if (s->kase == LARGE) return (1.0 - exp(-m)) * terzaghi_degree(T);
+  return s->kase == CRYER ? m * cryer_settlement(s->nu, T) : NAN;
+}

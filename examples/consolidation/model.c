@@ -1,0 +1,311 @@
+/* model.c - ground and water of mps-consolidation, and the run.
+ *
+ * A load q on a drained surface is given by its difference: all pressures, and so the total
+ * stresses, are less q. The surface is then free, its water has the pressure -q, and the ground
+ * begins without stress; effective stresses and u = p + q are those under the load. Mandel's plate
+ * moves as its exact solution, and begins with the stresses of the undrained load.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "consolidation.h"
+
+#include <mps/mpm_settle.h>
+#include <mps/pore_water.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+#define DENSITY 2000.0 /* kg/m3, of grains and water */
+#define WATER 1000.0
+#define STRIP_WIDTHS 10 /* half widths B of the ground, each way */
+#define COURANT 0.7
+
+enum { PLATE_POINTS = 2000 };
+
+/* ---- settings -------------------------------------------------------------------------------- */
+
+static const char *read_times(simulation *sim, const option *table) {
+  const char *text = sim->s.times;
+  char number[64];
+  if (sim->s.kase == STRIP) {
+    if (options_given(table, "times")) return "--times is not for --case strip, which is undrained";
+    sim->time[0] = 0.0;
+    sim->times = 1;
+    return NULL;
+  }
+  if (!text) text = sim->s.kase == CRYER ? "0.01,0.05,0.1,0.2" : "0.05,0.1,0.2,0.5,1";
+  for (sim->times = 0; *text || sim->times == 0; sim->times++) {
+    const size_t length = strcspn(text, ",");
+    if (sim->times == MOST_TIMES) return "--times must be at most 32 numbers";
+    if (length >= sizeof number) return "--times must be numbers with commas between them";
+    memcpy(number, text, length);
+    number[length] = '\0';
+    double *T = &sim->time[sim->times];
+    if (!options_number(number, T) || !(*T >= 1e-4 && *T <= 10.0))
+      return "--times must be numbers from 1e-4 to 10 with commas between them";
+    if (sim->times > 0 && !(*T > T[-1])) return "--times must ascend";
+    text += length + (text[length] == ',');
+    if (text[-1] == ',' && !*text) return "--times must not end with a comma";
+  }
+  return NULL;
+}
+
+const char *consolidation_settle(simulation *sim, const option *table) {
+  settings *s = &sim->s;
+  if (s->kase == MCC) return "--case mcc is not there yet: it needs the Modified Cam-Clay law";
+  if (s->scheme == IMPLICIT)
+    return "--scheme implicit is not there yet: pressures are explicit in time";
+  sim->modulus = s->young * (1.0 - s->nu) / ((1.0 + s->nu) * (1.0 - 2.0 * s->nu));
+  if (isnan(s->cells)) s->cells = s->kase == STRIP ? 4 : s->kase == MANDEL ? 10 : 20;
+  if (s->cells != floor(s->cells)) return "--cells must be a whole number";
+  if (isnan(s->load)) s->load = sim->modulus * (s->kase == LARGE ? 0.5 : 1e-3);
+  if (s->kase == LARGE && !(exp(-s->load / sim->modulus) > 0.41))
+    return "--load must leave pores: at most 0.89 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
+           "nu))";
+  if (s->kase != LARGE && !(s->load <= 0.02 * sim->modulus))
+    return "--load must be small, at most 0.02 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
+           "nu)): "
+           "the exact solution is of small strains";
+  if (isnan(s->damping)) s->damping = 0.5 * sqrt(sim->modulus / DENSITY);
+  if (isnan(s->duration))
+    s->duration = (s->kase == MANDEL ? 1000.0 : 300.0) / sqrt(sim->modulus / DENSITY);
+  return read_times(sim, table);
+}
+
+/* ---- ground ---------------------------------------------------------------------------------- */
+
+static double porosity_of(const settings *s) { return s->kase == LARGE ? 0.6 : 0.4; }
+static double cell_of(const settings *s) { return 1.0 / s->cells; }
+static bool is_column(const settings *s) { return s->kase == TERZAGHI || s->kase == LARGE; }
+
+static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
+  const double h = cell_of(s), size = s->kase == STRIP ? STRIP_WIDTHS : 1.0;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {is_column(s) ? h : size, size};
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = 0.5 * h;
+  mps_status status = mpm_model_particles(m, context, &def);
+  if (status == MPS_OK)
+    status = s->kase == CRYER ? mps_particles_fill_ball(m->particles, lo, 1.0, NULL)
+                              : mps_particles_fill_box(m->particles, lo, hi, NULL);
+  return status == MPS_OK ? mps_particles_set(m->particles, "density", 0, DENSITY) : status;
+}
+
+/* A ball fills its four quarters: those beyond the axes go. */
+static mps_status cut_ball(mps_particles *set) {
+  mps_view x, id;
+  mps_status status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(set, "id", &id);
+  if (status != MPS_OK) return status;
+  int64_t count = 0, *gone = malloc((size_t)(x.shape[0] + 1) * sizeof *gone);
+  if (!gone) return MPS_ERROR_MEMORY;
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    if (*mps_view_f64(&x, k, 0) < 0.0 || *mps_view_f64(&x, k, 1) < 0.0)
+      gone[count++] = *mps_view_i64(&id, k, 0);
+  if (count > 0) status = mps_particles_remove(set, count, gone);
+  free(gone);
+  return status;
+}
+
+/* The particles on the line that the profile is of: the lowest row or the first column. */
+static mps_status find_profile(simulation *sim) {
+  const settings *s = &sim->s;
+  mps_view x, id;
+  mps_status status = mps_particles_view(sim->m.particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "id", &id);
+  const int along = s->kase == MANDEL || s->kase == CRYER ? 0 : 1;
+  const double size = s->kase == STRIP ? STRIP_WIDTHS : 1.0;
+  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
+    const double place = *mps_view_f64(&x, k, along), across = *mps_view_f64(&x, k, 1 - along);
+    const double depth = size - place;
+    if (across > 0.5 * cell_of(s) || (s->kase == STRIP && depth > 4.0)) continue;
+    int i = sim->points++; /* by depth */
+    for (; i > 0 && sim->at[i - 1] > depth; i--)
+      sim->at[i] = sim->at[i - 1], sim->id[i] = sim->id[i - 1];
+    sim->at[i] = depth;
+    sim->id[i] = *mps_view_i64(&id, k, 0);
+  }
+  return status;
+}
+
+/* ---- water and loads ------------------------------------------------------------------------- */
+
+static mps_status add_water(simulation *sim) {
+  const settings *s = &sim->s;
+  mps_pore_water_def water = mps_pore_water_defaults();
+  water.density = WATER;
+  water.porosity = porosity_of(s);
+  water.bulk = s->stiffness * sim->modulus * water.porosity;
+  if (s->kase != STRIP) /* c_v = 1 m2 over the duration */
+    water.permeability = WATER * MPS_PORE_GRAVITY / (sim->modulus * s->duration);
+  if (s->kase == LARGE) water.exponent = 2.0;
+  return mps_mpm_add_pore_water(sim->m.mpm, &water);
+}
+
+static mps_status drain_surface(simulation *sim) {
+  mps_pore_face_def face = mps_pore_face_defaults();
+  face.kind = MPS_PORE_FACE_DRAINED;
+  face.pressure = -sim->s.load;
+  face.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
+  if (sim->s.kase == CRYER) face.sides |= 1u << MPS_MPM_SIDE_X_UPPER;
+  return mps_mpm_add_pore_face(sim->m.mpm, &face, NULL);
+}
+
+/* Undrained between the plates: u0 = F/(2 a), vertical effective stress -u0, horizontal u0. */
+static mps_status begin_mandel(simulation *sim) {
+  mps_particles *set = sim->m.particles;
+  mps_status status = mps_particles_set(set, "pore_pressure", 0, sim->s.load);
+  if (status == MPS_OK) status = mps_particles_set(set, "stress", 0, sim->s.load);
+  return status == MPS_OK ? mps_particles_set(set, "stress", 1, -sim->s.load) : status;
+}
+
+/* The plate: the upper side of the domain, which moves as in the exact solution. The side itself
+ * stays where it is, and the way is small beside a cell. */
+static mps_status drive_plate(mps_context *context, simulation *sim) {
+  const settings *s = &sim->s;
+  static double t[PLATE_POINTS], w[PLATE_POINTS];
+  const double end = 1.01 * s->duration * sim->time[sim->times - 1];
+  for (int k = 0; k < PLATE_POINTS; k++) {
+    const double part = (double)k / (PLATE_POINTS - 1);
+    t[k] = end * part * part; /* it begins as the root of time */
+    w[k] = exact_plate(s->nu, t[k] / s->duration) * s->load / sim->modulus;
+  }
+  mps_signal *down = NULL;
+  mps_mpm_boundary_def plate = mps_mpm_boundary_defaults();
+  mps_status status =
+      mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, PLATE_POINTS, t, w, &down);
+  plate.kind = MPS_BOUNDARY_ROLLER;
+  plate.signal[1] = down;
+  plate.factor[1] = -1.0;
+  if (status == MPS_OK) status = mps_mpm_set_boundary(sim->m.mpm, MPS_MPM_SIDE_Y_UPPER, &plate);
+  mps_signal_destroy(&down);
+  return status;
+}
+
+/* Pressure q on the strip x < B: 3/2 of it on the highest row of particles less 1/2 on the next,
+ * whose resultant acts at the surface. */
+static mps_status load_strip(simulation *sim) {
+  const double spacing = 0.5 * cell_of(&sim->s);
+  mps_view x, id;
+  mps_status status = mps_particles_view(sim->m.particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "id", &id);
+  for (int layer = 0; layer < 2 && status == MPS_OK; layer++) {
+    int64_t ids[2 * MOST_CELLS], count = 0;
+    mps_mpm_load_def load = mps_mpm_load_defaults();
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double depth = STRIP_WIDTHS - *mps_view_f64(&x, k, 1);
+      if (*mps_view_f64(&x, k, 0) < 1.0 && (int)floor(depth / spacing) == layer)
+        ids[count++] = *mps_view_i64(&id, k, 0);
+    }
+    load.ids = ids, load.id_count = count;
+    load.traction[1] = sim->s.load * (layer == 0 ? -1.5 : 0.5);
+    status = mps_mpm_add_load(sim->m.mpm, &load, NULL);
+  }
+  return status;
+}
+
+static mps_status add_case(mps_context *context, simulation *sim) {
+  mps_status status = add_water(sim);
+  if (status != MPS_OK) return status;
+  if (sim->s.kase == STRIP) return load_strip(sim);
+  if (sim->s.kase != MANDEL) return drain_surface(sim);
+  status = begin_mandel(sim);
+  return status == MPS_OK ? drive_plate(context, sim) : status;
+}
+
+/* ---- building -------------------------------------------------------------------------------- */
+
+static mps_mpm_def solver_of(const settings *s) {
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = s->kase == CRYER ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_PLANE_STRAIN;
+  def.cell = cell_of(s);
+  def.courant = COURANT;
+  def.lower[0] = def.lower[1] = 0.0;
+  if (is_column(s)) def.upper[0] = def.cell;
+  if (s->kase == MANDEL) def.upper[1] = 1.0;
+  if (s->kase == STRIP) def.upper[0] = STRIP_WIDTHS;
+  if (s->kase != STRIP) def.viscous_damping = s->damping; /* which settles by itself */
+  return def;
+}
+
+mps_status consolidation_build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  sim->course = (mpm_course){.options = &s->course,
+                             .m = &sim->m,
+                             .directory = s->out,
+                             .what = "ground",
+                             .duration = s->duration * sim->time[sim->times - 1],
+                             .key = "mps-consolidation 1",
+                             .table = options_read(),
+                             .pass = consolidation_pass,
+                             .user = sim};
+  mps_mpm_def def = solver_of(s);
+  mps_totals totals;
+  mps_status status = mpm_course_peek(&sim->course, context);
+  if (status == MPS_OK) status = make_ground(context, s, &sim->m);
+  if (status == MPS_OK && s->kase == CRYER) status = cut_ball(sim->m.particles);
+  if (status == MPS_OK) status = find_profile(sim);
+  if (status == MPS_OK)
+    status = mps_material_create_linear_elastic(context, s->young, s->nu, &sim->m.material);
+  status = mpm_model_create(&sim->m, context, status, &def);
+  if (status == MPS_OK && s->kase == STRIP)
+    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  if (status == MPS_OK) status = add_case(context, sim);
+  if (status == MPS_OK) status = mps_mpm_get_totals(sim->m.mpm, &totals);
+  if (status == MPS_OK) sim->volume = totals.volume;
+  if (status == MPS_OK) status = mpm_course_begin(&sim->course, context, true);
+  sim->m.samples = sim->rows;
+  return status;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+static mps_status measure(simulation *sim) {
+  const settings *s = &sim->s;
+  instant *now = &sim->row[sim->rows];
+  mps_view u;
+  mps_totals totals;
+  mps_pore_budget water;
+  mps_reaction plate = {0};
+  mps_status status = mps_particles_view(sim->m.particles, "pore_pressure", &u);
+  if (status == MPS_OK) status = mps_mpm_get_totals(sim->m.mpm, &totals);
+  if (status == MPS_OK) status = mps_mpm_get_pore_budget(sim->m.mpm, &water);
+  if (status == MPS_OK && sim->s.kase == MANDEL)
+    status = mps_mpm_get_reaction(sim->m.mpm, MPS_MPM_SIDE_Y_UPPER, &plate);
+  if (status != MPS_OK) return status;
+  const bool shifted = is_column(s) || s->kase == CRYER;
+  for (int k = 0; k < sim->points; k++) {
+    const int64_t at = mps_particles_index(sim->m.particles, sim->id[k]);
+    now->u[k] = *mps_view_f64(&u, at, 0) / s->load + (shifted ? 1.0 : 0.0);
+  }
+  const double m = s->load / sim->modulus, lost = 1.0 - totals.volume / sim->volume;
+  now->T = sim->time[sim->rows];
+  now->settlement = is_column(s) ? lost : s->kase == CRYER ? lost / 3.0 : NAN;
+  now->settlement_exact = exact_settlement(s, m, now->T);
+  now->force = sim->s.kase == MANDEL ? fabs(plate.force[1]) / (2.0 * s->load) : NAN;
+  now->drained = water.drained;
+  sim->m.samples = ++sim->rows;
+  return MPS_OK;
+}
+
+mps_status consolidation_march(void *user) {
+  simulation *sim = user;
+  mps_particles *whole;
+  const double end = sim->s.duration * sim->time[sim->times - 1];
+  mps_status status = MPS_OK;
+  if (sim->s.kase != STRIP) progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, end);
+  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, sim->times);
+  while (sim->rows < sim->times && status == MPS_OK) {
+    mps_mpm_settle_def rest = mps_mpm_settle_defaults();
+    rest.max_steps = 200000;
+    status = sim->s.kase == STRIP
+                 ? mps_mpm_settle(sim->m.mpm, &rest, NULL)
+                 : mpm_model_advance(&sim->m, sim->s.duration * sim->time[sim->rows], INT64_MAX,
+                                     NULL, NULL);
+    if (status == MPS_OK) status = measure(sim);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, sim->times);
+  }
+  status = mpm_course_end(&sim->course, status);
+  const mps_status brought = mpm_model_whole(&sim->m, &whole);
+  return status == MPS_OK ? brought : status;
+}

@@ -1,0 +1,64 @@
+/* mps-consolidation - water in the pores of ground against exact solutions: a layer that
+ * consolidates under a load (Terzaghi; with large strains Xie and Leo), Mandel's plate, Cryer's
+ * sphere, and the undrained ground under a strip load.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "consolidation/consolidation.h"
+
+#include <math.h>
+
+int main(int argc, char **argv) {
+  static simulation sim = {.s = {.nu = 0.2,
+                                 .young = 1e6,
+                                 .cells = NAN,
+                                 .load = NAN,
+                                 .duration = NAN,
+                                 .damping = NAN,
+                                 .stiffness = 100.0,
+                                 .course = MPM_COURSE_DEFAULTS,
+                                 .out = "out/consolidation"}};
+  settings *s = &sim.s;
+  option table[] = {
+      OPTION_HEADING("Ground and water"),
+      OPTION_CHOICE("case", "terzaghi|large|mcc|mandel|cryer|strip", &s->kase,
+                    "layer of height H = 1 m, small or large strains; block of half width a = 1 m "
+                    "between plates; sphere of radius a = 1 m; half space under a strip of half "
+                    "width B = 1 m, undrained. mcc is not there yet"),
+      OPTION_NUMBER("nu", "1", OPTION_FROM_TO(0.0, 0.45), &s->nu,
+                    "Poisson's ratio of the grains' frame"),
+      COMMON_NUMBER("young", &s->young, "of the grains' frame"),
+      OPTION_NUMBER("load", "Pa", OPTION_ABOVE_TO(0.0, 1e12), &s->load,
+                    "u0, default 0.001 of M' = E (1 - nu)/((1 + nu)(1 - 2 nu)); large 0.5"),
+      OPTION_NUMBER("stiffness", "1", OPTION_FROM_TO(5.0, 1e4), &s->stiffness,
+                    "of the water, (K_w/n)/M'"),
+      OPTION_TEXT("times", "T,...", &s->times,
+                  "T = c_v t/H^2, ascending, of the profiles; default 0.05,0.1,0.2,0.5,1, cryer "
+                  "0.01,0.05,0.1,0.2"),
+      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
+                    "that T = 1 lasts, which gives the permeability; default 300 times that of a "
+                    "wave through H, mandel 1000"),
+      OPTION_HEADING("Grid"),
+      OPTION_NUMBER("cells", "1", OPTION_FROM_TO(2.0, MOST_CELLS), &s->cells,
+                    "along H, a or B, a whole number; default 20, mandel 10, strip 4"),
+      OPTION_CHOICE("scheme", "explicit|implicit", &s->scheme,
+                    "pressures in time; implicit is not there yet"),
+      OPTION_NUMBER("mass-damping", "1/s", OPTION_FROM_TO(0.0, 1e6), &s->damping,
+                    "viscous; default half a wave velocity over H; strip none"),
+      OPTION_HEADING("Run"),
+      MPM_COURSE_OPTIONS(&s->course, MOST_TIMES),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {"mps-consolidation",
+                                   "Saturated elastic ground by WLS-MPM with the pressures of "
+                                   "cells (u-p), against exact solutions:\n"
+                                   "profiles of the pore pressure, settlement, water drained.",
+                                   table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  const char *reason = consolidation_settle(&sim, table);
+  if (reason) return options_refuse(&program, reason);
+  static const mpm_model_parts parts = {consolidation_build, consolidation_march,
+                                        consolidation_finish};
+  const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
+  return mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
+}

@@ -1,0 +1,30 @@
+#!/bin/sh
+# consolidation.sh DIRECTORY: mps-consolidation against its exact solutions, on coarse grids.
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+
+value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$work/$1/summary.json"; }
+within() { # within CASE ERROR SETTLEMENT: of the pressures, and of the settlement over the exact one
+  awk -v u="$(value "$1" pressure_error)" -v s="$(value "$1" settlement)" \
+    -v e="$(value "$1" settlement_exact)" -v most="$2" -v off="$3" 'BEGIN {
+      exit !(u > 0 && u < most && (off == 0 || (s > (1 - off) * e && s < (1 + off) * e))) }' ||
+    fail "$1: pressures off by $(value "$1" pressure_error), settlement $(value "$1" settlement)"
+}
+run() {
+  case=$1
+  shift
+  "$programs/mps-consolidation" --case "$case" --threads 1 --out "$work/$case" "$@" >"$work/log"
+}
+programs=$1
+run terzaghi --cells 10 --stiffness 50 --times 0.1,0.5 --nu 0.3
+within terzaghi 0.015 0.02
+[ "$(head -1 "$work/terzaghi/profile.csv")" = "T,depth/H,u/u0,exact" ] || fail "columns of profile.csv"
+run large --cells 20 --stiffness 50 --times 0.2 --load 300kPa
+within large 0.03 0.02
+run mandel --cells 5 --stiffness 50 --times 0.05,0.2
+within mandel 0.03 0
+run cryer --cells 8 --stiffness 20 --times 0.05,0.1 --nu 0
+within cryer 0.1 0.1
+run strip --cells 2
+within strip 0.03 0
+exit 0
