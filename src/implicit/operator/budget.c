@@ -118,7 +118,7 @@ mps_status mps_elastic_get_totals_sized(const mps_elastic *handle, mps_totals *o
   status = mpsi_elastic_strain_energy(e, function, &t.strain);
   e->agreed = agreed;
   if (status != MPS_OK) return status;
-  t.scheme = t.dissipated = -l->left;
+  t.scheme = t.dissipated = 0.0 - l->left; /* 0, not -0 */
   if (m) {
     t.kinetic = kinetic_energy(e, m->velocity);
     const double kept = mpsi_elastic_former_strain(e, t.strain) - l->strain;
