@@ -88,6 +88,11 @@ class Pages(unittest.TestCase):
             with self.assertRaisesRegex(SystemExit, "mps-new"):
                 stage.check_gallery(root)
 
+    def test_the_citation_names_this_version(self):
+        header = (ROOT / "include/mps/base.h").read_text()
+        version = ".".join(re.findall(r"#define MPS_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", header))
+        self.assertIn(f"\nversion: {version}\n", (ROOT / "CITATION.cff").read_text())
+
     def test_every_page_is_in_the_navigation(self):
         index = (ROOT / "docs/site/index.md").read_text()
         listed = set(re.findall(r"^(?:.* <)?([\w/-]+)>?$", "".join(re.findall(r"```\{toctree\}(.*?)```", index, re.S)), re.M))
