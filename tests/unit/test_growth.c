@@ -634,69 +634,6 @@ static mps_status use_fluid_solver(const void *def) {
   return status;
 }
 
-static void need_waves(void *def) {
-  mps_waves_def *d = def;
-  d->depth = 0.4, d->height = 0.02, d->period = 1.5;
-}
-static mps_status use_waves(const void *def) {
-  mps_waves *waves = NULL;
-  const mps_status status = mps_waves_create(context, def, &waves);
-  mps_waves_destroy(&waves);
-  return status;
-}
-
-static void need_absorber(void *def) {
-  mps_absorber_def *d = def;
-  d->depth = 0.4, d->period = 1.5;
-}
-static mps_status use_absorber(const void *def) {
-  mps_absorber *absorber = NULL;
-  const mps_status status = mps_absorber_create(context, def, &absorber);
-  mps_absorber_destroy(&absorber);
-  return status;
-}
-
-#define SAMPLES 64
-static void need_separation(void *def) {
-  static const double position[3] = {0.0, 0.3, 0.75};
-  static double times[SAMPLES], levels[3 * SAMPLES];
-  mps_separation_def *d = def;
-  for (int i = 0; i < SAMPLES; i++) times[i] = 0.1 * i;
-  d->gauges = 3, d->depth = 0.4, d->lower = 0.3, d->upper = 1.5;
-  d->position = position, d->samples = SAMPLES, d->times = times, d->levels = levels;
-}
-static mps_status use_separation(const void *def) {
-  mps_separation out;
-  return mps_separation_find(context, def, 0, NULL, NULL, NULL, NULL, &out);
-}
-
-static void need_sainflou(void *def) {
-  mps_sainflou_def *d = def;
-  d->height = 0.02, d->period = 1.5, d->depth = 0.4;
-}
-static mps_status use_sainflou(const void *def) {
-  mps_sainflou out;
-  return mps_sainflou_evaluate(context, def, &out);
-}
-
-static void need_goda(void *def) {
-  mps_goda_def *d = def;
-  d->height = 6.0, d->period = 11.0, d->depth = 12.0, d->crest = 4.0, d->width = 15.0;
-}
-static mps_status use_goda(const void *def) {
-  mps_goda out;
-  return mps_goda_evaluate(context, def, &out);
-}
-
-static void need_eurotop(void *def) {
-  mps_eurotop_def *d = def;
-  d->height = 1.0, d->period = 6.0, d->depth = 6.0, d->crest = 2.0;
-}
-static mps_status use_eurotop(const void *def) {
-  mps_eurotop out;
-  return mps_eurotop_evaluate(context, def, &out);
-}
-
 typedef struct user {
   const char *type;
   void (*need)(void *def);
@@ -751,12 +688,6 @@ static const user users[] = {
     {"mps_particles_def", need_particles, use_particles},
     {"mps_signal_record_def", need_nothing, use_record},
     {"mps_material_von_mises_def", need_von_mises, use_von_mises},
-    {"mps_waves_def", need_waves, use_waves},
-    {"mps_absorber_def", need_absorber, use_absorber},
-    {"mps_separation_def", need_separation, use_separation},
-    {"mps_sainflou_def", need_sainflou, use_sainflou},
-    {"mps_goda_def", need_goda, use_goda},
-    {"mps_eurotop_def", need_eurotop, use_eurotop},
 };
 
 /* ---- every struct ---------------------------------------------------------------------------- */
