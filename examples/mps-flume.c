@@ -68,6 +68,8 @@ static int complete(const options_program *program, flume *m) {
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
     return options_refuse(program,
                           "--sample must be between a millionth of --duration and all of it");
+  if (s->sample > 0.1 * s->period)
+    return options_refuse(program, "--sample must be at most a tenth of --period");
   if (m->gauges == 0) place_gauges(m), m->gauges = 4;
   for (int k = 0; k < m->gauges; k++)
     if (s->gauge[k] < 0.0 || s->gauge[k] > s->length)

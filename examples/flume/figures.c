@@ -40,51 +40,68 @@ static bool find_window(const flume *m, flume_figures *f) {
 
 /* ---- waves ----------------------------------------------------------------------------------- */
 
-/* Levels of the gauges, of the run or of the linear target. */
-static bool fill_levels(app *a, const flume *m, bool target, double *t, double *level) {
-  double *one = malloc((size_t)m->samples * sizeof *one);
-  bool good = one != NULL;
-  for (int64_t k = 0; k < m->samples; k++) t[k] = m->sample[k].t;
-  for (int g = 0; good && g < m->gauges; g++) {
-    if (target)
-      good = app_check(a, mps_waves_get_levels(m->waves, m->s.gauge[g], m->samples, t, one, NULL));
-    for (int64_t k = 0; k < m->samples; k++)
-      level[k * m->gauges + g] = target ? one[k] : m->sample[k].level[g];
+/* Levels of the gauges, of the run (where there is no surface the last one before) or of the linear
+ * target. */
+static mps_status fill_levels(const flume *m, bool target, const double *t, double *one,
+                              double *level) {
+  for (int g = 0; g < m->gauges; g++) {
+    mps_status status = MPS_OK;
+    double last = 0.0;
+    if (target) status = mps_waves_get_levels(m->waves, m->s.gauge[g], m->samples, t, one, NULL);
+    if (status != MPS_OK) return status;
+    for (int64_t k = 0; k < m->samples; k++) {
+      const double now = target ? one[k] : m->sample[k].level[g];
+      if (isfinite(now)) last = now;
+      level[k * m->gauges + g] = last;
+    }
   }
-  free(one);
-  return good;
+  return MPS_OK;
 }
 
-static bool separate(app *a, flume *m, flume_figures *f) {
-  const size_t n = (size_t)m->samples;
-  double *t = malloc(n * sizeof *t), *level = malloc(n * (size_t)m->gauges * sizeof *level);
-  mps_separation target;
+static mps_separation_def band_of(const flume *m, const flume_figures *f) {
+  const bool regular = m->s.waves == FLUME_REGULAR;
   mps_separation_def def = mps_separation_defaults();
   def.gauges = m->gauges, def.position = m->s.gauge;
   def.depth = m->s.depth, def.gravity = WAVES_G;
   def.from = f->from, def.to = f->to;
-  const bool regular = m->s.waves == FLUME_REGULAR;
   def.lower = (regular ? REGULAR_LOWEST : LOWEST) / m->s.period;
   def.upper = (regular ? REGULAR_HIGHEST : HIGHEST) / m->s.period;
-  def.samples = m->samples, def.times = t, def.levels = level;
+  def.samples = m->samples;
+  return def;
+}
+
+/* False without memory. A separation that is not possible, as with too few samples a wave, is a
+ * warning. */
+static bool separate(app *a, flume *m, flume_figures *f) {
+  const size_t n = (size_t)m->samples;
+  double *room = malloc(n * (size_t)(m->gauges + 2) * sizeof *room);
+  mps_separation target;
+  mps_separation_def def = band_of(m, f);
   const int64_t most = (int64_t)(def.upper * (f->to - f->from)) + 2;
   f->frequency = calloc(4 * (size_t)most, sizeof(double));
-  bool good = t && level && f->frequency;
-  if (!good) app_no_memory(a);
-  f->incident = f->frequency ? f->frequency + most : NULL;
-  f->reflected = f->frequency ? f->incident + most : NULL;
-  f->target = f->frequency ? f->reflected + most : NULL;
-  good = good && fill_levels(a, m, true, t, level) &&
-         app_check(a, mps_separation_find(a->context, &def, most, &f->bands, NULL, f->target, NULL,
-                                          &target));
-  good = good && fill_levels(a, m, false, t, level) &&
-         app_check(a, mps_separation_find(a->context, &def, most, &f->bands, f->frequency,
-                                          f->incident, f->reflected, &f->split));
-  free(t);
-  free(level);
-  f->separated = good;
-  f->target_height = good ? target.incident_height : NAN;
-  return good;
+  if (!room || !f->frequency) {
+    free(room);
+    return app_no_memory(a);
+  }
+  double *t = room, *one = room + n, *level = one + n;
+  f->incident = f->frequency + most, f->reflected = f->incident + most;
+  f->target = f->reflected + most;
+  for (int64_t k = 0; k < m->samples; k++) t[k] = m->sample[k].t;
+  def.times = t, def.levels = level;
+  mps_status status = fill_levels(m, true, t, one, level);
+  if (status == MPS_OK)
+    status = mps_separation_find(a->context, &def, most, &f->bands, NULL, f->target, NULL, &target);
+  if (status == MPS_OK) status = fill_levels(m, false, t, one, level);
+  if (status == MPS_OK)
+    status = mps_separation_find(a->context, &def, most, &f->bands, f->frequency, f->incident,
+                                 f->reflected, &f->split);
+  free(room);
+  f->separated = status == MPS_OK;
+  if (f->separated)
+    f->target_height = target.incident_height;
+  else
+    app_warn(a, "no incident and reflected waves: %s", mps_context_error(a->context)->message);
+  return true;
 }
 
 /* Slope of the logarithm of the levels' deviations over gauges that span a wave length at least. */
@@ -94,7 +111,7 @@ static void find_loss(const flume *m, flume_figures *f) {
     double sum = 0.0, square = 0.0, n = 0.0;
     for (int64_t k = 0; k < m->samples; k++) {
       const double level = m->sample[k].level[g];
-      if (!in_window(f, m->sample[k].t)) continue;
+      if (!in_window(f, m->sample[k].t) || isnan(level)) continue;
       sum += level, square += level * level, n += 1.0;
     }
     least = fmin(least, m->s.gauge[g]), most = fmax(most, m->s.gauge[g]);

@@ -11,7 +11,7 @@ s=$work/a/summary.json
 in_range "$s" H_incident 0.09 0.105
 in_range "$s" Hm0_target 0.140 0.143
 in_range "$s" reflection 0 0.06
-in_range "$s" reflection_theory 0.003 0.008
+in_range "$s" reflection_theory 0.001 0.003
 in_range "$s" collisions 0 0
 has "$work/a/gauges.csv" "level_at_2.6_m"
 has "$work/a/force.csv" "t_s,maker_m,end_m"
