@@ -237,9 +237,9 @@ static inline mps_status mps_body_get_totals(const mps_body *body, mps_body_tota
  *  NULL. The normal is the gradient of the distance; on a corner it is the mean of the two edges'
  *  (mesh: of the triangles', weighted with their angles), and where two feet are equally near, that
  *  of the lower face. MPS_ERROR_ARGUMENT: `count` out of range, or a point that is not finite. */
-MPS_API MPS_NODISCARD mps_status mps_body_distance(mps_body *body, int64_t count, const double *x,
-                                                   double *distance, double *normal, double *foot,
-                                                   int64_t *face);
+MPS_API MPS_NODISCARD mps_status mps_body_distance(const mps_body *body, int64_t count,
+                                                   const double *x, double *distance,
+                                                   double *normal, double *foot, int64_t *face);
 
 /** Names the faces (2D: edges) first, ..., first + count - 1 (around the end of the list if need
  *  be) a part of the surface, whose reaction is reported separately: tip, inside, outside. `part`

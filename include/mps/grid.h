@@ -72,7 +72,7 @@ typedef enum mps_grid_point {
  *  on both sides of a thin body count. On several ranks (collective, the same points on all) each
  *  gets the values of one rank. MPS_ERROR_FIELD: the set has no such field of float64;
  *  MPS_ERROR_STATE: a step has failed. */
-MPS_API MPS_NODISCARD mps_status mps_grid_evaluate(mps_grid *grid, const char *field,
+MPS_API MPS_NODISCARD mps_status mps_grid_evaluate(const mps_grid *grid, const char *field,
                                                    int32_t component, int64_t count,
                                                    const double *points, double *values,
                                                    int32_t *states);

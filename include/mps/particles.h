@@ -176,7 +176,7 @@ MPS_NODISCARD static inline mps_status mps_particles_get_field_info(const mps_pa
  *  ascending order. Writes at most `capacity` of them to `ids` (may be NULL when capacity is 0);
  *  `count` receives their number. MPS_ERROR_ARGUMENT: a NULL array, `capacity` below 0, lo above
  *  hi; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_particles_select_box(mps_particles *particles,
+MPS_API MPS_NODISCARD mps_status mps_particles_select_box(const mps_particles *particles,
                                                           const double *lo, const double *hi,
                                                           int64_t capacity, int64_t *count,
                                                           int64_t *ids);

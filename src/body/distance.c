@@ -193,7 +193,7 @@ bool mpsi_body_reaches_next(const mps_body *body, const double *x, double reach,
 
 #define MAX_POINTS (INT64_C(1) << 40)
 
-mps_status mps_body_distance(mps_body *body, int64_t count, const double *x, double *distance,
+mps_status mps_body_distance(const mps_body *body, int64_t count, const double *x, double *distance,
                              double *normal, double *foot, int64_t *face) {
   if (!body) return MPS_ERROR_ARGUMENT;
   if (count < 0 || count > MAX_POINTS || (count > 0 && !x))

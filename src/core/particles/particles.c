@@ -256,8 +256,9 @@ static mps_status select_few(const mps_particles *p, const char *function, const
   return MPS_OK;
 }
 
-mps_status mps_particles_select_box(mps_particles *particles, const double *lo, const double *hi,
-                                    int64_t capacity, int64_t *count, int64_t *ids) {
+mps_status mps_particles_select_box(const mps_particles *particles, const double *lo,
+                                    const double *hi, int64_t capacity, int64_t *count,
+                                    int64_t *ids) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
   if (status != MPS_OK) return status;

@@ -323,8 +323,8 @@ static mps_status agree_on_points(mps_mpm *mpm, const char *function, mps_status
   return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
 }
 
-mps_status mps_grid_evaluate(mps_grid *grid, const char *field, int32_t component, int64_t count,
-                             const double *points, double *values, int32_t *states) {
+mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t component,
+                             int64_t count, const double *points, double *values, int32_t *states) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   mps_mpm *mpm = grid->mpm;
   near list = {.mpm = mpm};
