@@ -248,8 +248,7 @@ def page(name, text):
     """The page of the header `name`."""
     introduction, entries = parse(text)
     introduction = re.sub(r"\s*SPDX-License-Identifier:.*", "", introduction)
-    title, _, rest = introduction.partition(" - ")
-    title = f"mps/{name}"
+    title, rest = f"mps/{name}", introduction.partition(" - ")[2]
     rest = rest[:1].upper() + rest[1:]
     lines = [title, "=" * len(title), "", *paragraphs(rest, 0)]
     groups = [("Types", ("type", "struct", "enum")), ("Functions", ("function",)), ("Constants", ("macro",))]
