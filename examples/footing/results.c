@@ -148,14 +148,14 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
   if (!s->settled) snprintf(loading, sizeof loading, "%g mm/s", 1e3 * s->rate);
   output_text(&f,
-              "set title \"%s footing on %s ground\\n{/*0.85 h = %g m, half width %g m, "
+              "set title \"%s footing on %s ground\\n{/*0.85 h = %g m, %s %g m, "
               "%s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
               "set ylabel 'pressure over cohesion, q/c'\nset key right bottom opaque\n"
               "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:3 with lines "
               "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
               s->shape == CIRCLE ? "Circular" : "Strip",
-              s->model == VON_MISES ? "cohesive" : "frictional", s->h, s->half_width, loading,
-              s->mu);
+              s->model == VON_MISES ? "cohesive" : "frictional", s->h,
+              s->shape == CIRCLE ? "radius" : "half width", s->half_width, loading, s->mu);
   const bool cone = s->model == DRUCKER_PRAGER;
   const bool circle = s->shape == CIRCLE;
   if (!cone && !circle) draw_limit(&f, c->exact, "--", "Prandtl");
