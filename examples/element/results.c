@@ -49,6 +49,8 @@ static bool write_summary(element *x) {
   json_text(&f, "path", path_name(&x->s));
   json_integer(&f, "steps", x->rows - 1);
   json_number(&f, "strain", last->strain);
+  static const char *const components[] = {"sxx", "syy", "szz", "sxy"};
+  for (int c = 0; c < 4; c++) json_number(&f, components[c], last->stress[c]);
   json_number(&f, "p", last->p);
   json_number(&f, "q", last->q);
   json_number(&f, "u", last->u);

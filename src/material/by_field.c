@@ -2,9 +2,10 @@
  * constants are scaled for one particle after the other. SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
-#include <mps/soil.h>
-
-enum { FACTORS = 2, MOST = 8 }; /* columns of history: of the law, and in all at most */
+enum {
+  FACTORS = MPSI_FACTORS,
+  MOST = 8
+}; /* columns of history: of the factors, and in all at most */
 
 static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
   if (block->dim == 3) return MPSI_SPACE;
@@ -52,37 +53,5 @@ mps_status mpsi_apply_by_field(const mps_material *material, const mps_material_
     const mps_status status = apply(&law, &one);
     if (status != MPS_OK) return status;
   }
-  return MPS_OK;
-}
-
-mps_status mps_material_create_by_field(mps_context *context, const mps_material *law,
-                                        mps_material **out) {
-  static const char *const names[FACTORS] = {"stiffness_factor", "strength_factor"};
-  if (!context) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  *out = NULL;
-  if (!law) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law is NULL");
-  if (law->context != context)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law was made from another context");
-  const mpsi_law_kind kind = law->type->kind;
-  if (law->by_field || (kind != MPSI_LAW_LINEAR_ELASTIC && kind != MPSI_LAW_VON_MISES &&
-                        kind != MPSI_LAW_DRUCKER_PRAGER && kind != MPSI_LAW_MOHR_COULOMB))
-    return mpsi_fail(context, __func__, MPS_ERROR_UNSUPPORTED,
-                     "law: it is %s%s, must be linear_elastic, von_mises, drucker_prager or "
-                     "mohr_coulomb",
-                     law->name, law->by_field ? " by field already" : "");
-  const int32_t columns = law->history_count;
-  mps_material *m = mpsi_material_new(context, __func__, law->type, law->name, columns + FACTORS);
-  if (!m) return MPS_ERROR_MEMORY;
-  m->law = law->law;
-  m->wave_modulus = law->wave_modulus;
-  m->by_field = true;
-  for (int32_t c = 0; c < columns + FACTORS; c++) {
-    const char *name = c < columns ? law->history_names[c] : names[c - columns];
-    strcpy(m->history_names[c], name);
-    strcpy(m->history_fields[c], name);
-    m->history_initial[c] = c < columns ? law->history_initial[c] : 1.0;
-  }
-  *out = m;
   return MPS_OK;
 }

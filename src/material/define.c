@@ -119,6 +119,42 @@ CREATE(mohr_coulomb, MPSI_LAW_MOHR_COULOMB)
 CREATE(newtonian, MPSI_LAW_NEWTONIAN)
 CREATE(cam_clay, MPSI_LAW_CAM_CLAY)
 
+/* ---- factors of each particle ------------------------------------------------------------------
+ */
+
+mps_status mps_material_create_by_field(mps_context *context, const mps_material *law,
+                                        mps_material **out) {
+  static const char *const names[MPSI_FACTORS] = {"stiffness_factor", "strength_factor"};
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!law) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law is NULL");
+  if (law->context != context)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law was made from another context");
+  const mpsi_law_kind kind = law->type->kind;
+  if (law->by_field || (kind != MPSI_LAW_LINEAR_ELASTIC && kind != MPSI_LAW_VON_MISES &&
+                        kind != MPSI_LAW_DRUCKER_PRAGER && kind != MPSI_LAW_MOHR_COULOMB))
+    return mpsi_fail(context, __func__, MPS_ERROR_UNSUPPORTED,
+                     "law: it is %s%s, must be linear_elastic, von_mises, drucker_prager or "
+                     "mohr_coulomb",
+                     law->name, law->by_field ? " by field already" : "");
+  const int32_t columns = law->history_count;
+  mps_material *m =
+      mpsi_material_new(context, __func__, law->type, law->name, columns + MPSI_FACTORS);
+  if (!m) return MPS_ERROR_MEMORY;
+  m->law = law->law;
+  m->wave_modulus = law->wave_modulus;
+  m->by_field = true;
+  for (int32_t c = 0; c < columns + MPSI_FACTORS; c++) {
+    const char *name = c < columns ? law->history_names[c] : names[c - columns];
+    strcpy(m->history_names[c], name);
+    strcpy(m->history_fields[c], name);
+    m->history_initial[c] = c < columns ? law->history_initial[c] : 1.0;
+  }
+  *out = m;
+  return MPS_OK;
+}
+
 /* ---- a user's law ---------------------------------------------------------------------------- */
 
 mps_status mpsi_material_make_user(mps_context *context, const char *function,

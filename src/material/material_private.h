@@ -106,6 +106,8 @@ int64_t mpsi_cam_clay_step(const mpsi_law *law, int32_t dim, const double *d, do
 /* K0 of its one-dimensional virgin compression. */
 double mpsi_cam_clay_k0(const mpsi_law *law);
 
+/* Columns of the factors of stiffness and strength. */
+enum { MPSI_FACTORS = 2 };
 /* by_field.c: the law with the factors of each particle. */
 mps_status mpsi_apply_by_field(const mps_material *material, const mps_material_block *block);
 /* Factor of a column's value: 0 stands for 1. */
