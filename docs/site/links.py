@@ -48,7 +48,8 @@ class Sources:
             if here:
                 return here[0] if len(here) == 1 else None
         library = [place for place in places if place[0].startswith("src/")]
-        return library[0] if len(library) == 1 else None
+        chosen = places if len(places) == 1 else library
+        return chosen[0] if len(chosen) == 1 else None
 
 
 def reference_of(app):
