@@ -409,11 +409,13 @@ static void reactions_move_a_free_body(void **state) {
   const double force[3] = {1.0, 2.0, 3.0}, moment[3] = {0.1, -0.2, 0.3}, dt = 1e-3;
   mps_assert_ok(context, mps_body_set_load(body, force, moment));
   const mpsi_load load[2] = {{{0.5, 0.0, 4.0}, {0.0, 0.2, 0.0}}, {{0.0, -1.0, 0.0}, {0.3, 0, 0}}};
-  const int64_t contacts[2] = {3, 4};
   mpsi_body_source soil = {.moves = false};
+  assert_true(mpsi_body_make_source(body, &soil));
   mpsi_body_join(body, &soil);
+  soil.part[0] = (mpsi_part_load){.force = load[0], .count = 3};
+  soil.part[1] = (mpsi_part_load){.force = load[1], .count = 4};
   for (int step = 0; step < 2000; step++) {
-    mpsi_body_react(body, &soil, dt, load, contacts);
+    mpsi_body_react(body, &soil, dt);
     mps_assert_ok(context, mps_body_advance(body, dt));
   }
   const mps_body_state s = get_state(body);
@@ -429,6 +431,7 @@ static void reactions_move_a_free_body(void **state) {
     mps_assert_near(L[c], 2.0 * moment[c] + r.moment_impulse[c], 1e-11);
   }
   mpsi_body_leave(body, &soil);
+  mpsi_body_free_source(body, &soil);
   mps_body_destroy(&body);
 }
 
