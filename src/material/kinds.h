@@ -83,7 +83,7 @@ typedef struct mpsi_elastic_def {
   double young, poisson;
 } mpsi_elastic_def;
 
-/* parameters.c; user.c; cam_clay_start.c; moduli.c */
+/* parameters.c; user.c; cam_clay/start.c; moduli.c */
 mps_status mpsi_define_elastic(mps_context *context, const char *function, const void *def,
                                struct mpsi_law *law);
 mps_status mpsi_define_von_mises(mps_context *context, const char *function, const void *def,

@@ -10,7 +10,7 @@
  *
  * Below `least_pressure` grains part, as in the sand of laws.c: the volume strain of the gap is
  * kept and compression closes it first. SPDX-License-Identifier: BSD-3-Clause */
-#include "material_private.h"
+#include "material/material_private.h"
 
 #define LONGEST 1e-2  /* strain of a substep: G is that of its beginning */
 #define FARTHEST 10.0 /* strain of a step; a solver never comes near it */

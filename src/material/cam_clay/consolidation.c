@@ -4,7 +4,7 @@
 #include "core/base/digits.h"
 #include "core/base/ranges.h"
 #include "core/particles/particles_internal.h"
-#include "material_private.h"
+#include "material/material_private.h"
 
 #include <mps/soil.h>
 

@@ -1,7 +1,7 @@
-/* cam_clay_start.c - the definition of a modified Cam-Clay, K0 of one-dimensional virgin
+/* start.c - the definition of a modified Cam-Clay, K0 of one-dimensional virgin
  * compression, and whether a state can be a first one.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "constants.h"
+#include "material/constants.h"
 #include "core/base/digits.h"
 
 #include <mps/soil.h>
