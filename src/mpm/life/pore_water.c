@@ -1,5 +1,6 @@
 /* pore_water.c - the water of a solver as the caller defines it (mps/pore_water.h): checks, fields,
  * faces, budget. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/digits.h"
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
 #include "mpm/water/water.h"
@@ -33,25 +34,29 @@ mps_status mps_pore_face_def_init(mps_pore_face_def *def, size_t size) {
 
 static const char add[] = "mps_mpm_add_pore_water";
 
-static mps_status refuse(const mps_mpm *mpm, const char *name, double value, const char *allowed) {
-  return mpsi_fail(mpm->context, add, MPS_ERROR_ARGUMENT, "%s is %g, must be %s", name, value,
-                   allowed);
+/* A value that is not from `low` to `high`. */
+static mps_status refuse(const mps_mpm *mpm, const char *name, double value, double low,
+                         double high, const char *allowed) {
+  return mpsi_fail(mpm->context, add, MPS_ERROR_ARGUMENT, "%s is %s, must be %s", name,
+                   mpsi_outside(value, low, high).text, allowed);
 }
 
 static mps_status check_definition(const mps_mpm *mpm, const mps_pore_water_def *d) {
   if (!isnan(d->porosity) && !(d->porosity > 0.0 && d->porosity < 1.0))
-    return refuse(mpm, "porosity", d->porosity, "in (0, 1), or NaN for the field 'porosity'");
+    return refuse(mpm, "porosity", d->porosity, 0.0, 1.0,
+                  "in (0, 1), or NaN for the field 'porosity'");
   if (!isnan(d->permeability) && !(d->permeability > 0.0 && d->permeability <= MPSI_PORE_FASTEST))
-    return refuse(mpm, "permeability", d->permeability,
+    return refuse(mpm, "permeability", d->permeability, 0.0, MPSI_PORE_FASTEST,
                   "in (0, 1] m/s, or NaN for the field 'permeability' or undrained ground");
   if (!isnan(d->bulk) && !(d->bulk > 0.0 && d->bulk <= LARGE))
-    return refuse(mpm, "bulk", d->bulk, "in (0, 1e15] Pa, or NaN for the default");
+    return refuse(mpm, "bulk", d->bulk, 0.0, LARGE, "in (0, 1e15] Pa, or NaN for the default");
   if (!(d->density > 0.0 && d->density <= 1e6))
-    return refuse(mpm, "density", d->density, "in (0, 1e6] kg/m3");
+    return refuse(mpm, "density", d->density, 0.0, 1e6, "in (0, 1e6] kg/m3");
   if (!(d->exponent >= 0.0 && d->exponent <= 100.0))
-    return refuse(mpm, "exponent", d->exponent, "0 to 100");
+    return refuse(mpm, "exponent", d->exponent, 0.0, 100.0, "0 to 100");
   if (!(d->ratio_slope >= 1e-3))
-    return refuse(mpm, "ratio_slope", d->ratio_slope, "at least 0.001, or infinite");
+    return refuse(mpm, "ratio_slope", d->ratio_slope, 1e-3, INFINITY,
+                  "at least 0.001, or infinite");
   return MPS_OK;
 }
 
