@@ -376,7 +376,9 @@ static mps_status write_profile(const geostatic *g, const char *field, int32_t c
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < g->count; k++)
     *mps_edit_f64(&edit, k, 0) = profile_at(count, depth, value, g->depth[k]);
-  return mpsi_as(g->context, g->function, mps_particles_commit(g->set, &edit));
+  status = mpsi_as(g->context, g->function, mps_particles_commit(g->set, &edit));
+  if (status != MPS_OK && mps_particles_abandon(g->set, &edit) != MPS_OK) return MPS_ERROR_INTERNAL;
+  return status;
 }
 
 mps_status mps_particles_set_profile(mps_particles *particles, const char *field, int32_t count,

@@ -133,6 +133,9 @@ static void a_profile_by_depth(void **state) {
                    MPS_ERROR_ARGUMENT, "above the surface");
   mps_assert_ok(context,
                 mps_particles_set_profile(s.particles, "stiffness_factor", 3, depth, value, NULL));
+  mps_assert_fails(
+      context, mps_particles_set_profile(s.particles, "stiffness_factor", 1, depth, negative, NULL),
+      MPS_ERROR_ARGUMENT, "-1"); /* the former values stay */
   mps_view x = mpm_scene_view(&s, "position");
   view = mpm_scene_view(&s, "stiffness_factor");
   double largest = 0.0;

@@ -209,6 +209,7 @@ void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep) {
     mpsi_field *field = particles->fields[--particles->field_count];
     particles->columns -= field->components;
     mpsi_free(particles->context, field->block);
+    mpsi_free(particles->context, field->former);
     mpsi_free(particles->context, field);
   }
 }
