@@ -3,6 +3,8 @@
  * height. SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
+#include "common/progress.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -203,11 +205,12 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
   f->force_still = 0.5 * WAVES_DENSITY * WAVES_G * m->s.depth * m->s.depth;
   if (!find_window(m, f)) {
-    app_warn(
-        a,
-        "the run is too short for incident and reflected waves, which need two periods from %.4g s "
-        "on",
-        f->from);
+    if (!progress_interrupted()) /* else its own line says enough */
+      app_warn(
+          a,
+          "the run is too short for incident and reflected waves, which need two periods from %.4g "
+          "s on",
+          f->from);
     return true;
   }
   if (m->gauges >= 2 && !separate(a, m, f)) return false;

@@ -6,9 +6,11 @@
  * below 0 they are closed. p alone would not do: the law puts it back to 0 wherever there is a gap.
  * With the operator S of the means by node, (S e)_p = sum w_ip (sum w_iq V_q e_q/sum w_iq V_q),
  *
- *   r = a (e - S e),   e' = e - (r - S r),   a = min(1, 8 BETA c dt/h),
+ *   r = a (e - S e),   e' = e - (r - S r),   a = min(1, 8 dt min(BETA c/h, PER_STRAIN |D|)),
  *
- * so that sum V e is kept whatever a is from particle to particle, a smooth field to the fourth
+ * D being the rate of deformation: roughness comes with deformation, and ground at rest under a
+ * load does not creep, as it would if its true gradients were filtered for ever. It is such
+ * that sum V e is kept whatever a is from particle to particle, a smooth field to the fourth
  * order too, and what S does not see decays.
  * At a wall or a surface all particles of a node lie on one side of it. So e goes to the nodes and
  * back along the slope that it has in ground at rest (closed_stress), and stays as it is there.
@@ -24,6 +26,7 @@
 #include <string.h>
 
 #define BETA 0.03
+#define PER_STRAIN 3000.0 /* decay over strain: e-fold in 3e-4 */
 #define EVERY 8 /* steps */
 
 bool mpsi_mpm_filters(const mps_mpm *mpm) {
@@ -52,10 +55,23 @@ static double closed_stress(const mps_mpm *mpm, int64_t k, double *slope) {
   return mean_stress(mpm, k) + law->bulk * gap;
 }
 
+/* Norm of the rate of deformation, 1/s. */
+static double strain_rate(const mps_mpm *mpm, int64_t k) {
+  const int dim = mpm->dim;
+  double sum = 0.0;
+  for (int a = 0; a < dim; a++)
+    for (int d = 0; d < dim; d++) {
+      const double rate = 0.5 * (mpm->p.L[dim * a + d][k] + mpm->p.L[dim * d + a][k]);
+      sum += rate * rate;
+    }
+  return sqrt(sum);
+}
+
 /* a: the decay of what the nodes do not see. */
 static double decay(const mps_mpm *mpm, int64_t k) {
   const double wave = sqrt(mpsi_law_of(mpm, k)->modulus * mpm->p.V[k] / mpm->p.m[k]);
-  return fmin(1.0, EVERY * BETA * wave * mpm->run.dt * mpm->grid.inverse);
+  const double rate = fmin(BETA * wave * mpm->grid.inverse, PER_STRAIN * strain_rate(mpm, k));
+  return fmin(1.0, EVERY * rate * mpm->run.dt);
 }
 
 /* ---- supports -------------------------------------------------------------------------------- */
