@@ -6,7 +6,8 @@ set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mps)
 # As they lie here, so that the links between them hold.
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES share/paraview_libmps.py DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN docs/site EXCLUDE PATTERN Doxyfile EXCLUDE)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN docs/site EXCLUDE)
+install(FILES docs/site/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/site) # README.md links to it
 
 if(NOT PETSc_FOUND)
   set(without_petsc PATTERN petsc.h EXCLUDE)

@@ -64,6 +64,7 @@ static mps_status pull(mps_context *context, mps_material *law, double *length, 
   mps_view x, kept;
   mps_edit v;
   mps_mpm_def def = mps_mpm_defaults();
+  def.volumetric = MPS_MPM_VOLUMETRIC_POINT; /* by default a UMAT and von Mises differ here */
   of_set.spacing = 0.05;
   def.cell = 0.1;
   mps_status status = mps_particles_create(context, &of_set, &set);

@@ -18,7 +18,7 @@ for file in "$completions"/bash/*; do
   . "$file" || fail "$file"
   program=$(basename "$file") count=$((count + 1))
   # every option of --help, and no other
-  "$1/$program" --help | sed -n 's/^  \(--[a-z0-9-]*\).*/\1/p' | sort >"$work/there"
+  "$1/$program" --help | sed -n 's/^  \(--[A-Za-z0-9-]*\).*/\1/p' | sort >"$work/there"
   complete_line "$program" -- | tr ' ' '\n' | sort >"$work/offered"
   cmp "$work/there" "$work/offered" || fail "$program: other options than those of --help"
   if command -v zsh >/dev/null; then zsh -n "$completions/zsh/_$program" || fail "_$program"; fi
