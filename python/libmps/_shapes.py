@@ -59,6 +59,7 @@ FUNCTIONS = {
     "mps_fluid_get_pressure": {"x": "3 * count", "pressure": "count"},
     "mps_fluid_get_levels": {"station": "count", "level": "count"},
     "mps_mpm_set_material": {"ids": "count"},
+    "mps_mpm_set_pore_level": {"point": "dim"},
     "mps_fluid_set_material": {"ids": "count"},
     "mps_waves_get_components": {"frequency": "capacity", "amplitude": "capacity", "phase": "capacity"},
     "mps_waves_get_levels": {"t": "count", "linear": "count", "level": "count"},

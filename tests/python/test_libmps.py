@@ -549,7 +549,8 @@ class Whole(unittest.TestCase):
         single = {"added", "angle", "apart", "columns", "count", "done", "end", "number", "out", "part",
                   "strain", "stabilising", "start", "index", "indices", "offsets", "progressive",
                   "evanescent", "reflection"}
-        of_one = {"mps_absorber_advance: displacement", "mps_absorber_advance: velocity"}
+        of_one = {"mps_absorber_advance: displacement", "mps_absorber_advance: velocity",
+                  "mps_mpm_get_pore_flow: rate", "mps_mpm_get_pore_flow: mass"}
         lacking = []
         for function, listed in re.findall(r"(mps_\w+)\(([^()]*)\);", _cdef.TEXT):
             for parameter in listed.split(","):
