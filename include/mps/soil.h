@@ -37,7 +37,12 @@ typedef struct mps_material_cam_clay_def {
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
  *  this library. */
 MPS_API mps_status mps_material_cam_clay_def_init(mps_material_cam_clay_def *def, size_t size);
-MPS_MATERIAL_DEFAULTS(cam_clay)
+static inline mps_material_cam_clay_def mps_material_cam_clay_defaults(void) {
+  mps_material_cam_clay_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_material_cam_clay_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
 
 /** Modified Cam-Clay. Constants are copied. mps_material_wave_modulus and mps_material_get_moduli
  *  give those at pc and e of the definition; a solver's step follows the present state.
