@@ -57,7 +57,7 @@ static double round_up(double value) {
 
 void plot_key_below(output *script) {
   output_text(script,
-              "set key outside bottom center horizontal reverse Left\nset xlabel offset 0,0.5\n");
+              "set key outside bottom center horizontal reverse Left height 1\nset xlabel offset 0,0.5\n");
 }
 
 double plot_tics(double length, double most) { return round_up(length / fmax(most, 1.0)); }

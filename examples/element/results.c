@@ -90,11 +90,13 @@ static bool draw_q_p(element *x) {
     const double first = 1e-3 * x->table[0].pc, last = 1e-3 * x->table[x->rows - 1].pc;
     output_text(&f,
                 "set xrange [0:%.9g]\nset samples 400\nM = %.9g\n"
-                "surface(p, pc) = p < pc ? M*sqrt(p*(pc - p)) : NaN\n"
+                "p(t, pc) = 0.5*pc*(1 - cos(t))\nq(t, pc) = 0.5*M*pc*sin(t)\n"
                 "plot M*x dashtype '--' linecolor rgb '#777777' title 'critical state line', "
-                "surface(x, %.9g) linecolor rgb '#e08214' title 'first yield surface', "
-                "surface(x, %.9g) linecolor rgb '#c0392b' title 'last yield surface', %s\n",
-                1.05e-3 * most, s->M, first, last, path);
+                "[t=0:pi] '+' using (p($1, %.9g)):(q($1, %.9g)) with lines linecolor rgb '#e08214' "
+                "title 'first yield surface', "
+                "[t=0:pi] '+' using (p($1, %.9g)):(q($1, %.9g)) with lines linecolor rgb '#c0392b' "
+                "title 'last yield surface', %s\n",
+                1.05e-3 * most, s->M, first, first, last, last, path);
   } else {
     output_text(&f, "plot %s\n", path);
   }
