@@ -104,7 +104,7 @@ MPS_API double mps_material_normal_k0(const mps_material *material);
  * (the last and residual ones too). The caller sets these two fields, mps_particles_set_profile by
  * depth; 0, as in particles that have none, is 1. Constants are copied. Its history has the two as
  * last columns; mps_material_wave_modulus and mps_material_get_moduli are those of factor 1, and
- * the step of a solver follows the factors. Steps take about 0.03 us a particle more.
+ * the step of a solver follows the factors.
  *  MPS_ERROR_ARGUMENT: NULL, or a law of another context; MPS_ERROR_UNSUPPORTED: another law than
  *  linear elastic, von Mises, Drucker-Prager and Mohr-Coulomb, or one made by this function;
  *  MPS_ERROR_MEMORY. */

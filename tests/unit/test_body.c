@@ -300,7 +300,7 @@ static void keeps_its_books(void **state) {
     def.gravity[1] = -10.0, def.damping[0] = 0.5, def.damping[1] = 0.3;
     mps_body *body = free_body(dim, &def);
     const double force[] = {4.0, 0.0, 0.0}, moment[] = {0.0, 0.0, 0.25};
-    const mpsi_load touch = {{-1.0, 6.0, 0.0}, {0.0, 0.0, -0.4}};
+    const mpsi_load contact_force = {{-1.0, 6.0, 0.0}, {0.0, 0.0, -0.4}};
     mps_assert_ok(context, mps_body_set_load(body, force, moment));
     mps_body_totals start, t;
     mps_reaction r;
@@ -309,7 +309,7 @@ static void keeps_its_books(void **state) {
     mpsi_body_source source = {.moves = false};
     assert_true(mpsi_body_make_source(body, &source));
     mpsi_body_join(body, &source);
-    source.part[0] = (mpsi_part_load){.force = touch, .count = 1};
+    source.part[0] = (mpsi_part_load){.force = contact_force, .count = 1};
     for (int k = 0; k < 200; k++) {
       mpsi_body_react(body, &source, 0.01);
       mpsi_body_advance(body, 0.01);

@@ -38,7 +38,7 @@ static mps_body *round_polygon(double x, double y, double radius) {
   return body;
 }
 
-static mps_contact *touch(mpm_scene *s, mps_body *body, int32_t method) {
+static mps_contact *add_contact(mpm_scene *s, mps_body *body, int32_t method) {
   mps_contact *contact = NULL;
   mps_contact_def def = mps_contact_defaults();
   def.method = method;
@@ -73,7 +73,7 @@ static void bear_a_layer(int32_t method) {
   for (int b = 0; b < ROW; b++) {
     const double x = (b + 0.5) * pitch, y = -radius;
     body[b] = b == MIDDLE ? round_polygon(x, y, radius) : disc(x, y, radius);
-    contact[b] = touch(&s, body[b], method);
+    contact[b] = add_contact(&s, body[b], method);
   }
   mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
   for (int k = 0; k < EDGES; k++) {
@@ -119,7 +119,7 @@ static void hold_up_a_lump(int32_t method) {
   mps_contact *contact[CROWD];
   for (int b = 0; b < CROWD; b++) {
     body[b] = disc((b % 8 + 0.5) * pitch, -radius - b / 8 * pitch, radius);
-    contact[b] = touch(&s, body[b], method);
+    contact[b] = add_contact(&s, body[b], method);
   }
   mps_assert_ok(context, mps_mpm_step(s.mpm, STEPS));
   check_newton(&s, CROWD, body, 1e-11);
