@@ -210,6 +210,15 @@ typedef struct mps_material_user_def {
   /** The wave modulus by the present state; NULL (default): `wave_modulus` at all times. Contacts
    *  and absorbing walls take `wave_modulus`. */
   mps_material_moduli_fn moduli;
+  /** 1: a law with friction between grains that part from one another, which solvers treat as
+   *  Mohr-Coulomb: each particle has its own change of volume, and its mean stress is filtered
+   *  (mps_mpm_volumetric). `history` must name "plastic_strain", which grows where the law yields,
+   *  and "opening", the volume strain of the gap between the grains, >= 0; `bulk_modulus` must be
+   *  stated and needs_deformation be 0. The filter changes the mean stress and the opening, with
+   *  p + K opening for the mean stress of grains that have parted, and calls `update` once more
+   *  with velocity gradients 0: it returns to the yield surface then. 0 (default): not so */
+  int32_t frictional;
+  int32_t reserved;
 } mps_material_user_def;
 
 /** An Abaqus UMAT, as a C function or as a Fortran subroutine (`umat_` of gfortran): for each

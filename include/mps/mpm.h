@@ -58,22 +58,23 @@ typedef enum mps_mpm_step_from {
  *  laws, whose particles else share it unevenly once the ground has flowed. */
 typedef enum mps_mpm_volumetric {
   MPS_MPM_VOLUMETRIC_BY_LAW = 0, /* for each material: Mohr-Coulomb and Drucker-Prager with an angle
-                               of friction above 0 as NODES; those without friction or dilation
-                               (undrained clay), von Mises, and elastic laws (linear, neo-Hookean,
-                               users' that state their moduli) with nu >= 0.45 as CELL; all others,
-                               fluids among them, as POINT */
+                               of friction above 0, and users' frictional laws, as NODES; those
+                               without friction or dilation (undrained clay), von Mises, and elastic
+                               laws (linear, neo-Hookean, users' that state their moduli) with nu >=
+                               0.45 as CELL; all others, fluids among them, as POINT */
   MPS_MPM_VOLUMETRIC_POINT = 1,  /* each particle's own tr(d), in axisymmetry with the hoop */
   MPS_MPM_VOLUMETRIC_CELL = 2, /* F-bar: the mean of tr(d), weighted by volumes, over the particles
                              of the cell (quadratic: of the cell-sized box about a node); the part
                              of d without trace, the spin and `velocity_gradient` stay. Volumes,
                              `volume_ratio` and `deformation_gradient` follow the mean.
-                             Mohr-Coulomb and Drucker-Prager with an angle of dilation above 0
-                             keep their own tr(d), and are not in the mean */
+                             Mohr-Coulomb and Drucker-Prager with an angle of dilation above 0,
+                             and users' frictional laws keep their own tr(d), and are not in the
+                             mean */
   MPS_MPM_VOLUMETRIC_NODES = 3 /* the mean of tr(d) and of pressures over the nodes near: fluids use
-                              it, other laws approach it by 0.03 c dt/h a step. Mohr-Coulomb and
-                              Drucker-Prager keep their own tr(d); every eighth step (a step whose
-                              number, from creation, 8 divides) their mean stress is filtered:
-                              docs/theory/pressures.md */
+                              it, other laws approach it by 0.03 c dt/h a step. Mohr-Coulomb,
+                              Drucker-Prager and users' frictional laws keep their own tr(d); every
+                              eighth step (a step whose number, from creation, 8 divides) their mean
+                              stress is filtered: docs/theory/pressures.md */
 } mps_mpm_volumetric;
 
 /** Shape functions of particles near a roller, a fixed side or the axis. */

@@ -49,7 +49,7 @@ typedef enum mpsi_law_trait {
   MPSI_LAW_IS_LINEAR = 1,    /* stress and strain are proportional, at every strain */
   MPSI_LAW_READS_VOLUME = 2, /* V/V0 decides the stress */
   MPSI_LAW_MAY_REFUSE = 4,   /* a block, with a reason */
-  MPSI_LAW_OPENS = 8,        /* a gap opens between grains: its last column */
+  MPSI_LAW_OPENS = 8,        /* a gap opens between grains */
   MPSI_LAW_HAS_START = 16    /* history that is not 0 at the start stays, and must fit the stress */
 } mpsi_law_trait;
 

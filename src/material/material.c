@@ -102,12 +102,24 @@ bool mpsi_material_reads_volume(const mps_material *material) {
 }
 
 bool mpsi_material_opens(const mps_material *material) {
-  return (material->type->traits & MPSI_LAW_OPENS) != 0;
+  return (material->type->traits & MPSI_LAW_OPENS) != 0 || material->law.frictional;
+}
+
+static int32_t column_named(const mps_material *material, const char *name) {
+  int32_t c = 0;
+  while (c < material->history_count && strcmp(material->history_names[c], name) != 0) c++;
+  return c;
+}
+
+void mpsi_material_sand_columns(const mps_material *material, int32_t *strain, int32_t *gap) {
+  *strain = column_named(material, mpsi_sand_columns[0]);
+  *gap = column_named(material, mpsi_sand_columns[1]);
 }
 
 bool mpsi_material_dilates(const mps_material *material) {
   return mpsi_material_opens(material) &&
-         (material->law.sin_psi > 0.0 || material->law.alpha_flow > 0.0);
+         (material->law.sin_psi > 0.0 || material->law.alpha_flow > 0.0 ||
+          material->law.frictional);
 }
 
 const double *mpsi_material_stiffness(const mps_material *material, double *const *history) {
@@ -143,6 +155,7 @@ void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *
   add(user, (double)m->type->kind);
   for (size_t k = 0; k < sizeof constants / sizeof *constants; k++) add(user, constants[k]);
   for (size_t k = 0; k < sizeof settings / sizeof *settings; k++) add(user, settings[k]);
+  if (l->frictional) add(user, 1.0); /* files of laws without it stay valid */
   for (int32_t c = 0; c < m->history_count; c++) add(user, m->history_initial[c]);
   for (int32_t k = 0; k < m->owned_count; k++) add(user, m->owned_constants[k]);
 }

@@ -57,9 +57,12 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
 
 /* True: the value of volume_ratio decides the stress (fluids, neo-Hookean, users' laws). */
 bool mpsi_material_reads_volume(const mps_material *material);
-/* True: a frictional law with a gap between its grains; its history is plastic_strain, opening. */
+/* True: a frictional law with a gap between its grains; its history has plastic_strain and opening.
+ */
 bool mpsi_material_opens(const mps_material *material);
-/* True: such a law with plastic dilation, an angle above 0. */
+/* Where these two are among its columns. */
+void mpsi_material_sand_columns(const mps_material *material, int32_t *strain, int32_t *gap);
+/* True: such a law with plastic dilation, an angle above 0; of a user's law it is unknown. */
 bool mpsi_material_dilates(const mps_material *material);
 /* The volumetric strain that suits a law (MPS_MPM_VOLUMETRIC_BY_LAW of mps/mpm.h). */
 typedef enum mpsi_volume {

@@ -40,7 +40,7 @@ typedef struct mpsi_law {
       log_least;
   double viscosity;                     /* Pa s */
   bool tait, no_tension;                /* fluid */
-  bool turns_stress, needs_deformation; /* user */
+  bool turns_stress, needs_deformation, frictional; /* user */
   bool softens, softens_linearly;       /* or depends on the rate */
   int32_t history_count;                /* user */
   mps_material_fn update;

@@ -37,6 +37,33 @@ static mps_status check_history(mps_context *context, const char *function,
   return MPS_OK;
 }
 
+static bool has_column(const mps_material_user_def *def, const char *name) {
+  for (int32_t c = 0; c < def->history_count; c++)
+    if (strcmp(def->history[c], name) == 0) return true;
+  return false;
+}
+
+/* The filter of mean stresses reads and writes two columns, and calls the law without strain. */
+static mps_status check_frictional(mps_context *context, const char *function,
+                                   const mps_material_user_def *def) {
+  if (def->frictional != 0 && def->frictional != 1)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "frictional is %d, must be 0 or 1",
+                     (int)def->frictional);
+  if (def->frictional == 0) return MPS_OK;
+  for (int k = 0; k < 2; k++)
+    if (!has_column(def, mpsi_sand_columns[k]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "frictional is 1, then history must have a column \"%s\"",
+                       mpsi_sand_columns[k]);
+  if (isnan(def->bulk_modulus))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "frictional is 1, then bulk_modulus must be stated, it is NaN");
+  if (def->needs_deformation == 1)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "frictional is 1, then needs_deformation must be 0, it is 1");
+  return MPS_OK;
+}
+
 static mps_status check_user_law(mps_context *context, const char *function,
                                  const mps_material_user_def *def) {
   if (!def->update) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "update is NULL");
@@ -52,7 +79,9 @@ static mps_status check_user_law(mps_context *context, const char *function,
                      (int)def->turns_stress);
   const mps_status status =
       mpsi_check_range_or_0(context, function, "viscosity", def->viscosity, MPSI_RANGE_VISCOSITY);
-  return status == MPS_OK ? check_history(context, function, def) : status;
+  if (status != MPS_OK) return status;
+  const mps_status named = check_history(context, function, def);
+  return named == MPS_OK ? check_frictional(context, function, def) : named;
 }
 
 /* K and G, where the definition states them, and K + 4G/3, which may then be left to the default.
@@ -89,6 +118,7 @@ mps_status mpsi_define_user(mps_context *context, const char *function, const vo
                     .viscosity = def->viscosity,
                     .needs_deformation = def->needs_deformation == 1,
                     .turns_stress = def->turns_stress == 1,
+                    .frictional = def->frictional == 1,
                     .moduli = def->moduli,
                     .history_count = def->history_count,
                     .has_moduli = def->shear_modulus > 0.0,

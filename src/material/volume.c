@@ -8,7 +8,9 @@
 
 #define NEARLY_INCOMPRESSIBLE 0.45 /* Poisson's ratio */
 
-static bool is_frictional(const mpsi_law *law) { return law->alpha > 0.0 || law->sin_phi > 0.0; }
+static bool is_frictional(const mpsi_law *law) {
+  return law->alpha > 0.0 || law->sin_phi > 0.0 || law->frictional;
+}
 
 static bool is_nearly_incompressible(const mpsi_law *law) {
   const double poisson =

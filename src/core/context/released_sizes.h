@@ -41,7 +41,7 @@
   X(mps_material_mohr_coulomb_def, mps_material_mohr_coulomb_def_init, "0.3", 112) \
   X(mps_material_newtonian_def, mps_material_newtonian_def_init, "0.3", 32) \
   X(mps_material_umat_def, mps_material_umat_def_init, "0.3", 104) \
-  X(mps_material_user_def, mps_material_user_def_init, "0.3", 96) \
+  X(mps_material_user_def, mps_material_user_def_init, "0.3", 104) \
   X(mps_material_von_mises_def, mps_material_von_mises_def_init, "0.3", 80) \
   X(mps_mpm_boundary_def, mps_mpm_boundary_def_init, "0.3", 144) \
   X(mps_mpm_def, mps_mpm_def_init, "0.3", 192) \

@@ -12,8 +12,9 @@ typedef struct mpsi_columns {
   double *L[9];        /* 1/s, velocity gradient; 2D: xx, xy, yx, yy, hoop */
   double *D[9];        /* 1/s, derivatives of the velocity that the laws see, as L without the hoop;
                           NULL where no law waits for a mean: G2P passes them on */
-  double *rough;       /* Pa, what the nodes do not see of a filtered mean stress (filter.c), of the
-                          step being made; NULL where none is */
+  double *rough;       /* of the step being made, where a mean stress is filtered (filter.c): the
+                          plastic strain before the law, then, Pa, what the nodes do not see of the
+                          mean stress; NULL where none is */
   double *s[6];        /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *t[6];        /* Pa, the stress that forces come from: s, less the pressure of pore water */
   double *u, *g[3];    /* Pa, Pa/m: pressure of pore water and its gradient; NULL without water */

@@ -93,6 +93,8 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
   find_columns(mpm, law, begin, end, flags, block);
   take_strains(mpm, D, first, block);
   for (int c = 0; mean && c < 3; c++) block->gradient[4 * c] = mean[c] + first;
+  for (int64_t k = begin; law->filtered && k < end; k++)
+    p->rough[k] = law->history[law->strain][k]; /* filter.c subtracts it from the new one */
   mpsi_before_law before;
   if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */

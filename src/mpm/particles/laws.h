@@ -15,9 +15,10 @@ typedef struct mpsi_law_use {
   double bulk;    /* K at zero strain, Pa */
   bool reads_volume, needs_deformation;
   bool own_volume; /* it takes each particle's own change of volume, not a mean (volumetric.c) */
-  bool filtered;   /* its mean stress is filtered (filter.c); its last column is the opening */
+  bool filtered;   /* its mean stress is filtered (filter.c) */
+  int32_t strain, gap; /* then the columns of its plastic strain and of the opening */
   int32_t columns;
-  double **history; /* columns over all particles; NULL for none */
+  double **history;        /* columns over all particles; NULL for none */
   const double *stiffness; /* factor of the moduli of each particle, 0 for 1; NULL: 1 */
 } mpsi_law_use;
 
@@ -34,10 +35,10 @@ typedef struct mpsi_refusal {
 typedef struct mpsi_laws {
   mpsi_law_use *law; /* 0: of creation */
   int32_t count;
-  mpsi_room room;   /* of these */
-  bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
-  bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
-  bool some_own;    /* some law takes each particle's own change of volume, */
+  mpsi_room room;     /* of these */
+  bool one_modulus;   /* law[0].modulus holds for all particles, whatever their state */
+  bool at_once;       /* all laws act within G2P, by each particle's own change of volume */
+  bool some_own;      /* some law takes each particle's own change of volume, */
   bool some_filtered; /* its mean stress is filtered */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */

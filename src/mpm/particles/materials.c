@@ -64,6 +64,7 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
                               4.0 / 3.0 * mpsi_material_shear(material),
                       .columns = mps_material_history_count(material)};
   choose_volume(mpm, &law);
+  if (law.filtered) mpsi_material_sand_columns(material, &law.strain, &law.gap);
   const bool at_once = law.own_volume && mpm->laws.at_once;
   const bool some_filtered = law.filtered || mpm->laws.some_filtered;
   if (mpm->laws.count > 0 && !mpsi_mpm_volume_room(mpm, mpm->p.count, !at_once, some_filtered))

@@ -6,11 +6,15 @@
  * below 0 they are closed. p alone would not do: the law puts it back to 0 wherever there is a gap.
  * With the operator S of the means by node, (S e)_p = sum w_ip (sum w_iq V_q e_q/sum w_iq V_q),
  *
- *   r = a (e - S e),   e' = e - (r - S r),   a = min(1, 8 dt min(BETA c/h, PER_STRAIN |D|)),
+ *   r = a (e - S e), a = min(1, 8 dt BETA c/h), but at most 8 S(K dg) in size,   e' = e - (r - S
+ * r),
  *
- * D being the rate of deformation: roughness comes with deformation, and ground at rest under a
- * load does not creep, as it would if its true gradients were filtered for ever. It is such
- * that sum V e is kept whatever a is from particle to particle, a smooth field to the fourth
+ * dg being the plastic strain of the step: roughness is what plastic strains leave behind, each at
+ * most K times its own size of mean stress, in the particles that yield and in their neighbours,
+ * whose nodes share it out. So ground that stays elastic is left alone, whatever its loads do, as
+ * its true gradients would be filtered for ever; and how smooth flowed sand is does not depend on
+ * its stiffness. The filter's own returns are not in dg, else they would keep it going. The form is
+ * such that sum V e is kept whatever r is from particle to particle, a smooth field to the fourth
  * order too, and what S does not see decays.
  * At a wall or a surface all particles of a node lie on one side of it. So e goes to the nodes and
  * back along the slope that it has in ground at rest (closed_stress), and stays as it is there.
@@ -25,8 +29,7 @@
 
 #include <string.h>
 
-#define BETA 0.03
-#define PER_STRAIN 3000.0 /* decay over strain: e-fold in 3e-4 */
+#define BETA 0.06
 #define EVERY 8 /* steps */
 
 bool mpsi_mpm_filters(const mps_mpm *mpm) {
@@ -41,8 +44,11 @@ static double mean_stress(const mps_mpm *mpm, int64_t k) {
   return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) * (1.0 / 3.0);
 }
 
-static double *gap_of(const mpsi_law_use *law, int64_t k) {
-  return law->history[law->columns - 1] + k;
+static double *gap_of(const mpsi_law_use *law, int64_t k) { return law->history[law->gap] + k; }
+
+/* K, Pa. */
+static double bulk_of(const mps_mpm *mpm, int64_t k) {
+  return mpsi_law_of(mpm, k)->bulk * mpsi_mpm_stiffness(mpm, k);
 }
 
 /* e, Pa, and its slope (per cell along each axis) in ground at rest, compressed by its weight
@@ -52,26 +58,21 @@ static double closed_stress(const mps_mpm *mpm, int64_t k, double *slope) {
   const double gap = *gap_of(law, k), density = mpm->p.m[k] / mpm->p.V[k];
   const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * mpm->def.cell;
   for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
-  return mean_stress(mpm, k) + law->bulk * gap;
+  return mean_stress(mpm, k) + bulk_of(mpm, k) * gap;
 }
 
-/* Norm of the rate of deformation, 1/s. */
-static double strain_rate(const mps_mpm *mpm, int64_t k) {
-  const int dim = mpm->dim;
-  double sum = 0.0;
-  for (int a = 0; a < dim; a++)
-    for (int d = 0; d < dim; d++) {
-      const double rate = 0.5 * (mpm->p.L[dim * a + d][k] + mpm->p.L[dim * d + a][k]);
-      sum += rate * rate;
-    }
-  return sqrt(sum);
+/* K dg, Pa: the mean stress that the plastic strain of this step can have made. */
+static double made_stress(const mps_mpm *mpm, int64_t k) {
+  const mpsi_law_use *law = mpsi_law_of(mpm, k);
+  return bulk_of(mpm, k) * fmax(0.0, law->history[law->strain][k] - mpm->p.rough[k]);
 }
 
-/* a: the decay of what the nodes do not see. */
-static double decay(const mps_mpm *mpm, int64_t k) {
-  const double wave = sqrt(mpsi_law_of(mpm, k)->modulus * mpm->p.V[k] / mpm->p.m[k]);
-  const double rate = fmin(BETA * wave * mpm->grid.inverse, PER_STRAIN * strain_rate(mpm, k));
-  return fmin(1.0, EVERY * rate * mpm->run.dt);
+/* r: of the difference `off` from the nodes' mean; `made`, the nodes' mean of K dg. */
+static double find_rough_part(const mps_mpm *mpm, int64_t k, double off, double made) {
+  const double modulus = mpsi_law_of(mpm, k)->modulus * mpsi_mpm_stiffness(mpm, k);
+  const double wave = sqrt(modulus * mpm->p.V[k] / mpm->p.m[k]);
+  const double decay = fmin(1.0, EVERY * BETA * wave * mpm->grid.inverse * mpm->run.dt);
+  return copysign(fmin(decay * fabs(off), EVERY * made), off);
 }
 
 /* ---- supports -------------------------------------------------------------------------------- */
@@ -124,9 +125,10 @@ MPSI_INLINE mpsi_node *tile_of(const mpsi_worker *worker, bool thin, const suppo
   return thin && (s->across >> node & 1) ? worker->across_tile : worker->tile;
 }
 
-/* Adds {V, V value} by the weights, the value prolonged along its slope (per cell; NULL: none). */
+/* Adds {V, V value} by the weights, the value prolonged along its slope (per cell), and V made. No
+ * slope (NULL): the value alone. */
 MPSI_INLINE void give(const mpsi_worker *worker, int dim, int spline, bool thin, const support *s,
-                      double V, double value, const double *slope) {
+                      double V, double value, const double *slope, double made) {
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const double weight = V * s->w[1][j] * (dim == 3 ? s->w[2][k] : 1.0);
@@ -137,6 +139,7 @@ MPSI_INLINE void give(const mpsi_worker *worker, int dim, int spline, bool thin,
         double *to = tile_of(worker, thin, s, 16 * k + 4 * j + i)[from + s->at[0][i]];
         const double w = weight * s->w[0][i];
         to[MPSI_SUM_VOLUME] += w;
+        if (slope) to[MPSI_SUM_FLOW] += w * made;
         to[MPSI_SUM_VALUE] += w * (slope ? row + slope[0] * s->away[0][i] : row);
       }
     }
@@ -150,18 +153,17 @@ MPSI_INLINE double rise(int dim, int spline, const support *s, const double *slo
   return sum;
 }
 
-/* The mean of the nodes' means, which are in the tile. All nodes of the support have some volume,
- * this particle's, so that the weights add up to 1. */
-MPSI_INLINE double take(const mpsi_worker *worker, int dim, int spline, bool thin,
-                        const support *s) {
+/* The mean of the nodes' means of one of the sums, which are in the tile. All nodes of the support
+ * have some volume, this particle's, so that the weights add up to 1. */
+MPSI_INLINE double take(const mpsi_worker *worker, int dim, int spline, bool thin, const support *s,
+                        int which) {
   double sum = 0.0;
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const int from = s->at[1][j] + (dim == 3 ? s->at[2][k] : 0);
       double row = 0.0;
       for (int i = 0; i <= spline; i++)
-        row += s->w[0][i] *
-               tile_of(worker, thin, s, 16 * k + 4 * j + i)[from + s->at[0][i]][MPSI_SUM_VALUE];
+        row += s->w[0][i] * tile_of(worker, thin, s, 16 * k + 4 * j + i)[from + s->at[0][i]][which];
       sum += row * s->w[1][j] * (dim == 3 ? s->w[2][k] : 1.0);
     }
   return sum;
@@ -176,16 +178,17 @@ static void gather_means(const mps_mpm *mpm, const mpsi_cell_block *cells,
         for (int i = cells->low[0]; i < cells->high[0]; i++) {
           const double *from = mpsi_sums_at(mpm, cells, NULL, across != 0, i, j, k);
           const double volume = from[MPSI_SUM_VOLUME];
-          mpsi_sums_at(mpm, cells, worker, across != 0, i, j, k)[MPSI_SUM_VALUE] =
-              volume > 0.0 ? from[MPSI_SUM_VALUE] / volume : 0.0;
+          double *to = mpsi_sums_at(mpm, cells, worker, across != 0, i, j, k);
+          for (int c = MPSI_SUM_VALUE; c < MPSI_SUMS; c++)
+            to[c] = volume > 0.0 ? from[c] / volume : 0.0;
         }
 }
 
 /* ---- the four loops -------------------------------------------------------------------------- */
 
 typedef enum loop {
-  SUM_STRESS, /* e to the tile */
-  FIND_ROUGH, /* r by the means of e */
+  SUM_STRESS, /* e and K dg to the tile */
+  FIND_ROUGH, /* r by their means */
   SUM_ROUGH,  /* r to the tile */
   FIND_SMOOTH /* r - S r by the means of r */
 } loop;
@@ -203,14 +206,16 @@ MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
     const double closed =
         which == SUM_STRESS || which == FIND_ROUGH ? closed_stress(mpm, k, slope) : 0.0;
     if (which == SUM_STRESS)
-      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope);
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope, made_stress(mpm, k));
     else if (which == SUM_ROUGH)
-      give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k], NULL);
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k], NULL, 0.0);
     else if (which == FIND_ROUGH)
-      rough[k] = decay(mpm, k) *
-                 (closed + rise(dim, spline, &s, slope) - take(worker, dim, spline, thin, &s));
+      rough[k] = find_rough_part(mpm, k,
+                                 closed + rise(dim, spline, &s, slope) -
+                                     take(worker, dim, spline, thin, &s, MPSI_SUM_VALUE),
+                                 take(worker, dim, spline, thin, &s, MPSI_SUM_FLOW));
     else
-      rough[k] -= take(worker, dim, spline, thin, &s);
+      rough[k] -= take(worker, dim, spline, thin, &s, MPSI_SUM_VALUE);
   }
 }
 
@@ -265,12 +270,14 @@ static void change_stress(const mps_mpm *mpm, int64_t k) {
   const mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, k);
   double *gap = gap_of(law, k);
-  const double was = mean_stress(mpm, k), closed = was + law->bulk * *gap - p->rough[k];
+  const double bulk = bulk_of(mpm, k), was = mean_stress(mpm, k);
+  const double closed = was + bulk * *gap - p->rough[k];
   const double now =
       *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
-  *gap = fmax(0.0, (closed - now) / law->bulk);
+  *gap = fmax(0.0, (closed - now) / bulk);
   for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
-  p->V[k] = grown(p->V[k], (now - was) / law->bulk);
+  p->V[k] = grown(p->V[k], (now - was) / bulk);
+  if (law->reads_volume) p->J[k] = grown(p->J[k], (now - was) / bulk); /* of the same V0 */
 }
 
 static void filter_stress(mps_mpm *mpm, int64_t b, int32_t number) {

@@ -25,8 +25,7 @@ static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_work
         const double *from = mpsi_sums_at(mpm, cells, worker, across, i, j, k);
         if (from[MPSI_SUM_VOLUME] == 0.0) continue;
         double *to = mpsi_sums_at(mpm, cells, NULL, across, i, j, k);
-        to[MPSI_SUM_VOLUME] += from[MPSI_SUM_VOLUME];
-        to[MPSI_SUM_VALUE] += from[MPSI_SUM_VALUE];
+        for (int c = 0; c < MPSI_SUMS; c++) to[c] += from[c];
       }
 }
 

@@ -1,12 +1,12 @@
-/* means.h - sums over particles at the nodes, {sum V, sum V value}, for means by cell or by node
- * after the step's G2P, when the nodes have done their work: they take the place of mass and
- * momentum. SPDX-License-Identifier: BSD-3-Clause */
+/* means.h - sums over particles at the nodes, {sum V, sum V value} and in the filter a third, for
+ * means by cell or by node after the step's G2P, when the nodes have done their work: they take the
+ * place of mass and momentum. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_MEANS_H
 #define MPSI_MPM_MEANS_H
 
 #include "mpm/base/kernels.h"
 
-enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1 };
+enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1, MPSI_SUM_FLOW = 2, MPSI_SUMS = 3 };
 
 /* Place (m) of a particle when G2P found its stencil: it has moved by dt v since. */
 static inline void mpsi_former_place(const mps_mpm *mpm, int64_t k, double *x) {
