@@ -200,6 +200,19 @@ MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cel
   }
 }
 
+/* Zeros behind the `n` particles, for loops over MPSI_LANES of them: what happens to lie there can be
+ * a denormal number, as a pointer is, and its product then takes a hundred times as long. */
+MPSI_INLINE void mpsi_pad_places(int dim, int spline, int weights, int n, mpsi_places *out) {
+  const mpsi_lanes zero = {0.0};
+  for (int c = 0; c < dim; c++) {
+    mpsi_put_lanes(out->t[c] + n, zero);
+    for (int i = 0; i <= spline && (weights >> c & 1); i++) {
+      mpsi_put_lanes(out->w[c][i] + n, zero);
+      mpsi_put_lanes(out->ws[c][i] + n, zero);
+    }
+  }
+}
+
 /* The states of the nodes of the stencil from tile node `first`, all bits together: 0 where none is
  * outside the domain or in a body. */
 MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int spline,

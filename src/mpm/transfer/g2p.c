@@ -350,6 +350,7 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   mpsi_places places;
   polynomials rows;
   mpsi_find_places(mpm, cells, dim, spline, 5, 5, begin, n, &places); /* along y: polynomials */
+  mpsi_pad_places(dim, spline, 5, n, &places);
   if (mpm->p.stencil)
     memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
   for (int k = 0, end; k < n; k = end) {
