@@ -7,6 +7,7 @@
 #include "mpm_anchor.h"
 
 #include <mps/mpm.h>
+#include <mps/pore_water.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -90,8 +91,18 @@ static void check_anchor(int dim, int spline) {
 
 /* ---- the library ----------------------------------------------------------------------------- */
 
-typedef enum kind { ELASTIC, TWO_THREADS, MIXED, BODY, DRUCKER_PRAGER, KINDS } kind;
-static const char *const kind_name[KINDS] = {"elastic", "two", "mixed", "body", "drucker-prager"};
+typedef enum kind {
+  ELASTIC,
+  TWO_THREADS,
+  MIXED,
+  BODY,
+  DRUCKER_PRAGER,
+  UNDRAINED,
+  SEEPAGE,
+  KINDS
+} kind;
+static const char *const kind_name[KINDS] = {"elastic", "two", "mixed", "body", "drucker-prager",
+                                             "undrained", "seepage"};
 
 /* In the plane the body is that of MIXED. */
 static int is_there(const options *o, int dim, kind k) {
@@ -118,6 +129,13 @@ static mps_material *make_material(mps_context *context, kind k) {
     check(context, mps_material_create_linear_elastic(context, YOUNG, POISSON, &material),
           "material");
   return material;
+}
+
+static void add_water(contender *c, kind k) {
+  mps_pore_water_def def = mps_pore_water_defaults();
+  def.porosity = 0.4;
+  if (k == SEEPAGE) def.permeability = 1e-4;
+  check(c->context, mps_mpm_add_pore_water(c->mpm, &def), "pore water");
 }
 
 /* `side` cells each way; in 2D, MIXED, without the middle quarter, where a body is. */
@@ -195,6 +213,7 @@ static contender contender_create(const options *o, int dim, int spline, kind k,
   check(c.context, status, "solver");
   if (dim == 2 && k == MIXED) add_body(&c, side);
   if (k == BODY) add_cylinder(&c, side);
+  if (k == UNDRAINED || k == SEEPAGE) add_water(&c, k);
   return c;
 }
 
@@ -328,7 +347,7 @@ int main(int argc, char **argv) {
     fprintf(
         stderr,
         "usage: bench-mpm [--dim 2|3] [--spline 2|3] [--rounds N] [--particles N]\n"
-        "    [--only elastic|two|mixed|body|drucker-prager] [--instruction-level 0|1|3|4]\n"
+        "    [--only elastic|two|mixed|body|drucker-prager|undrained|seepage] [--instruction-level 0|1|3|4]\n"
         "N particles, 1e3 to 2e7; by default 1e4, 1e5 and 1e6.\n"
         "Other work on the machine disturbs two threads most: OMP_WAIT_POLICY=passive helps.\n");
     return 2;
@@ -339,13 +358,11 @@ int main(int argc, char **argv) {
   printf(
       "# minima of %d rounds, ns a particle-step of processor time, for `two` threads of the wall\n"
       "# clock; mixed: walls and a body in contact (3D: a floor); body: a cylinder on the block;\n"
-      "# d-p: Drucker-Prager; memory in bytes: fields a particle, grid a particle, grid a node\n"
-      "#                            ns                                           ratio to the "
-      "anchor"
-      "                memory\n"
-      "#dim spline particles  anchor elastic    two    mixed    body     d-p elasti    two  mixed  "
-      " "
-      "body    d-p fields   grid    node\n",
+      "# d-p: Drucker-Prager; undr, seep: pore water undrained and flowing; memory in bytes: fields a\n"
+      "# particle, grid a particle, grid a node\n"
+      "# ns, then ratios to the anchor, then memory\n"
+      "#dim spline particles  anchor elastic    two    mixed    body     d-p    undr    seep elasti    "
+      "two  mixed   body    d-p   undr   seep fields   grid    node\n",
       o.rounds);
   const int64_t sizes[] = {10000, 100000, 1000000};
   for (int dim = 2; dim <= 3; dim++)
