@@ -244,7 +244,7 @@ static void compare_block(mps_mpm *mpm, const mpsi_cell_block *cells, compared *
   for (int64_t chunk = cells->begin; chunk < cells->end; chunk += MPSI_CHUNK) {
     const int n = cells->end - chunk < MPSI_CHUNK ? (int)(cells->end - chunk) : MPSI_CHUNK;
     mpsi_places places;
-    mpsi_find_places(mpm, cells, mpm->dim, mpm->def.spline, chunk, n, &places);
+    mpsi_find_places(mpm, cells, mpm->dim, mpm->def.spline, 7, 7, chunk, n, &places);
     for (int k = 0, end; k < n; k = end) {
       for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
       if (mpsi_support_state(&mpm->grid.workers[0], mpm->dim, mpm->def.spline, places.first[k]) ==

@@ -126,17 +126,20 @@ MPSI_INLINE double mpsi_difference(int spline, int i) {
 #define MPSI_SEGMENT 16 /* particles of one stencil at most that are summed at once */
 
 #define MPSI_COLUMN (MPSI_CHUNK + 8) /* some from any particle of a chunk on are there */
+/* Of what lies on the stack: where it lands depends on the callers, and a vector that crosses the
+ * end of a cache line takes twice as long. */
+#define MPSI_LINE __attribute__((aligned(64)))
 
 /* Where the particles of a chunk are in the tile. */
 typedef struct mpsi_places {
-  double t[3][MPSI_COLUMN];                           /* from the lowest node */
+  double t[3][MPSI_COLUMN] MPSI_LINE;                 /* from the lowest node */
   double w[3][4][MPSI_COLUMN], ws[3][4][MPSI_COLUMN]; /* w, w s of each axis */
   int32_t first[MPSI_CHUNK];                          /* lowest node */
 } mpsi_places;
 
 /* The weights along x of each particle, of the four nodes of a row side by side. */
 typedef struct mpsi_rows {
-  double w[MPSI_CHUNK][4], ws[MPSI_CHUNK][4];
+  double w[MPSI_CHUNK][4] MPSI_LINE, ws[MPSI_CHUNK][4];
 } mpsi_rows;
 
 /* The first `n` values (at least 1), if fewer than four with the first again: what comes after may
@@ -169,35 +172,44 @@ MPSI_INLINE void mpsi_lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
   }
 }
 
-/* The same, each times s too, for particles of a chunk. */
-MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_COLUMN],
-                                   double (*ws)[MPSI_COLUMN]) {
-  mpsi_quad a[4];
-  mpsi_lane_weights(spline, t, a);
-  for (int i = 0; i <= spline; i++) {
-    mpsi_put(w[i], a[i]);
-    mpsi_put(ws[i], a[i] * ((double)i - t));
-  }
-}
-
+/* Their weights along the axes of `weights`, a bit each, and times s along those of `slopes`, which
+ * have weights too; both literal. */
 MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                  int spline, int64_t begin, int n, mpsi_places *out) {
+                                  int spline, int weights, int slopes, int64_t begin, int n,
+                                  mpsi_places *out) {
   for (int k = 0; k < n; k += 4) {
     mpsi_index first = {0};
-    int stride = 1;
-    for (int c = 0; c < dim; c++, stride *= MPSI_TILE_SIDE) {
+    for (int c = 0, stride = 1; c < dim; c++, stride *= MPSI_TILE_SIDE) {
       /* counted from the block: not negative, so that truncation is floor */
       const mpsi_quad X =
           mpsi_from_block(mpm, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
       const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
                                           : __builtin_convertvector(X - 0.5, mpsi_index);
       const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);
+      mpsi_quad w[4];
       first += base * stride;
       mpsi_put(out->t[c] + k, t);
-      mpsi_axis_weights(spline, t, (double(*)[MPSI_COLUMN])(out->w[c][0] + k),
-                        (double(*)[MPSI_COLUMN])(out->ws[c][0] + k));
+      if (!(weights >> c & 1)) continue;
+      mpsi_lane_weights(spline, t, w);
+      for (int i = 0; i <= spline; i++) {
+        mpsi_put(out->w[c][i] + k, w[i]);
+        if (slopes >> c & 1) mpsi_put(out->ws[c][i] + k, w[i] * ((double)i - t));
+      }
     }
     memcpy(out->first + k, &first, sizeof first);
+  }
+}
+
+/* Zeros behind the `n` particles, for loops over MPSI_LANES of them: what happens to lie there can be
+ * a denormal number, as a pointer is, and its product then takes a hundred times as long. */
+MPSI_INLINE void mpsi_pad_places(int dim, int spline, int weights, int n, mpsi_places *out) {
+  const mpsi_lanes zero = {0.0};
+  for (int c = 0; c < dim; c++) {
+    mpsi_put_lanes(out->t[c] + n, zero);
+    for (int i = 0; i <= spline && (weights >> c & 1); i++) {
+      mpsi_put_lanes(out->w[c][i] + n, zero);
+      mpsi_put_lanes(out->ws[c][i] + n, zero);
+    }
   }
 }
 
@@ -218,7 +230,7 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
 /* What the nodes give to the particles of a chunk: columns. A velocity's derivative of component c
  * by axis d is number dim c + d, as in the columns L of the set. */
 typedef struct mpsi_gathered {
-  double v[3][MPSI_COLUMN], own[3][MPSI_COLUMN]; /* m/s; FLIP: what a particle keeps of its own */
+  double v[3][MPSI_COLUMN] MPSI_LINE, own[3][MPSI_COLUMN]; /* m/s; FLIP: what a particle keeps of its own */
   double slope[9][MPSI_COLUMN];                  /* 1/s, of the fit, which the transfer takes */
   double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
 } mpsi_gathered;

@@ -30,8 +30,8 @@ MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, b
  * theirs, and its last coefficient, the third (quadratic: second) one, is their difference of
  * mpsi_excess over spline!. */
 typedef struct polynomials {
-  int32_t first;           /* lowest node of the stencil */
-  mpsi_node term[4][4][4]; /* by plane, place along x, power */
+  mpsi_node term[4][4][4] MPSI_LINE; /* by plane, place along x, power */
+  int32_t first;                     /* lowest node of the stencil */
 } polynomials;
 
 MPSI_INLINE void find_polynomials(int dim, int spline, int32_t first, const mpsi_node *tile,
@@ -318,7 +318,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
   const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
   const double *V = p->V + begin, *m = p->m + begin;
   const double moving = mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED ? 1.0 : 0.0;
-  double square[MPSI_COLUMN], largest;
+  double square[MPSI_COLUMN] MPSI_LINE, largest;
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double v = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) v += v2[k] * v2[k];
@@ -349,7 +349,8 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   const mpsi_node *tile = (const mpsi_node *)worker->tile;
   mpsi_places places;
   polynomials rows;
-  mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  mpsi_find_places(mpm, cells, dim, spline, 5, 5, begin, n, &places); /* along y: polynomials */
+  mpsi_pad_places(dim, spline, 5, n, &places);
   if (mpm->p.stencil)
     memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
   for (int k = 0, end; k < n; k = end) {

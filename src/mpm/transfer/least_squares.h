@@ -206,7 +206,7 @@ MPSI_INLINE void mpsi_values_of(const mps_mpm *mpm, int dim, int spline, const m
 MPSI_INLINE void mpsi_place_one(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                 int spline, int64_t p, mpsi_cut *out) {
   mpsi_places one;
-  mpsi_find_places(mpm, cells, dim, spline, p, 1, &one);
+  mpsi_find_places(mpm, cells, dim, spline, 0, 0, p, 1, &one);
   mpsi_place_cut(dim, spline, &one, 0, p, 1, 0, out);
 }
 

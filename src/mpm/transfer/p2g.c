@@ -9,65 +9,81 @@
 
 /* What particles give to their nodes, w (part 0 + part 1 s_x + part 2 s_y + part 3 s_z): columns
  * of the four values of a node. */
-typedef double columns[4][4][MPSI_CHUNK]; /* part, value, particle */
+typedef double columns[4][4][MPSI_CHUNK] MPSI_LINE; /* part, value, particle */
 typedef struct parts {
   columns sum;   /* mass, momentum */
   columns force; /* 0, force: of split blocks */
 } parts;
 
-/* With dt > 0 `sum` has dt times the force with the momentum; else (split) they are apart. */
-MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
-                            int n, parts *out) {
+/* The same of four particles. */
+typedef struct quad_parts {
+  mpsi_quad sum[4][4], force[4][4];
+} quad_parts;
+
+/* Of the particles from `at` on. Together `sum` has dt times the force with the momentum; else
+ * (split) they are apart. */
+MPSI_INLINE void find_quad_parts(const mps_mpm *mpm, int geometry, int spline, bool split,
+                                 int64_t at, quad_parts *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int dim = mpsi_dim_of(geometry);
   const mpsi_columns *p = &mpm->p;
   const double h = mpm->def.cell, stiff = -mpsi_inverse_moment(spline) * mpm->grid.inverse;
   const double dt = split ? 1.0 : mpm->run.dt;
-  const mpsi_quad zero = {0.0};
-  for (int k = 0; k < n; k += 4) {
-    const int64_t at = begin + k;
-    const mpsi_quad m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
-    const mpsi_quad mh = m * h, Vs = V * stiff;
-    mpsi_put(out->sum[0][MPSI_MASS] + k, m + zero); /* of a mere copy gcc makes a slow `rep movs` */
-    if (split) mpsi_put(out->force[0][MPSI_EXCESS] + k, zero);
-    MPSI_UNROLL for (int c = 0; c < dim; c++) {
-      const int to = MPSI_VECTOR + c;
-      mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
-      if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
-      if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
-        force -= V * mpsi_get(p->t[2] + at) / mpsi_get(p->x[0] + at);
-      mpsi_put(out->sum[0][to] + k, split ? momentum : momentum + force);
-      if (split) mpsi_put(out->force[0][to] + k, force);
-      MPSI_UNROLL for (int d = 0; d < dim; d++) {
-        momentum = mh * mpsi_get(p->L[dim * c + d] + at);
-        force = Vs * mpsi_get(p->t[symmetric[c][d]] + at);
-        mpsi_put(out->sum[1 + d][to] + k, split ? momentum : momentum + force);
-        if (split) mpsi_put(out->force[1 + d][to] + k, force);
-      }
+  const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
+  const mpsi_quad mh = m * h, Vs = V * stiff;
+  out->sum[0][MPSI_MASS] = m + zero; /* of a mere copy gcc makes a slow `rep movs` */
+  out->force[0][MPSI_EXCESS] = zero;
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    const int to = MPSI_VECTOR + c;
+    mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
+    if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
+    if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
+      force -= V * mpsi_get(p->t[2] + at) / mpsi_get(p->x[0] + at);
+    out->sum[0][to] = split ? momentum : momentum + force;
+    out->force[0][to] = force;
+    MPSI_UNROLL for (int d = 0; d < dim; d++) {
+      momentum = mh * mpsi_get(p->L[dim * c + d] + at);
+      force = Vs * mpsi_get(p->t[symmetric[c][d]] + at);
+      out->sum[1 + d][to] = split ? momentum : momentum + force;
+      out->force[1 + d][to] = force;
     }
   }
 }
 
-/* The weights along x, the four nodes of a row side by side. */
-MPSI_INLINE void find_rows(int spline, const mpsi_places *places, int n, mpsi_rows *out) {
+MPSI_INLINE void put_columns(int dim, mpsi_quad from[4][4], int k, columns to) {
+  mpsi_put(to[0][MPSI_MASS] + k, from[0][MPSI_MASS]);
+  MPSI_UNROLL for (int d = 0; d <= dim; d++)
+      MPSI_UNROLL for (int c = MPSI_VECTOR; c <= dim; c++) mpsi_put(to[d][c] + k, from[d][c]);
+}
+
+MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
+                            int n, parts *out) {
   for (int k = 0; k < n; k += 4) {
-    mpsi_quad w[4] = {{0.0}}, ws[4] = {{0.0}};
-    MPSI_UNROLL for (int i = 0; i <= spline; i++) {
-      w[i] = mpsi_get(places->w[0][i] + k);
-      ws[i] = mpsi_get(places->ws[0][i] + k);
-    }
-    mpsi_transpose(w);
-    mpsi_transpose(ws);
-    MPSI_UNROLL for (int i = 0; i < 4; i++) {
-      mpsi_put(out->w[k + i], w[i]);
-      mpsi_put(out->ws[k + i], ws[i]);
-    }
+    quad_parts part;
+    find_quad_parts(mpm, geometry, spline, split, begin + k, &part);
+    put_columns(mpsi_dim_of(geometry), part.sum, k, out->sum);
+    if (split) put_columns(mpsi_dim_of(geometry), part.force, k, out->force);
+  }
+}
+
+/* The weights along x, the four nodes of a row side by side. */
+MPSI_INLINE void find_row(int spline, double (*from)[MPSI_COLUMN], int k, double (*to)[4]) {
+  mpsi_quad w[4] = {{0.0}};
+  MPSI_UNROLL for (int i = 0; i <= spline; i++) w[i] = mpsi_get(from[i] + k);
+  mpsi_transpose(w);
+  MPSI_UNROLL for (int i = 0; i < 4; i++) mpsi_put(to[k + i], w[i]);
+}
+
+MPSI_INLINE void find_rows(int spline, bool slopes, mpsi_places *places, int n, mpsi_rows *out) {
+  for (int k = 0; k < n; k += 4) {
+    find_row(spline, places->w[0], k, out->w);
+    if (slopes) find_row(spline, places->ws[0], k, out->ws);
   }
 }
 
 /* Particles in the plane: what each gives to its rows along x, w (value + slope s_x). */
 typedef struct row_parts {
-  double mass[4][MPSI_CHUNK]; /* by row; it has no slope */
+  double mass[4][MPSI_CHUNK] MPSI_LINE; /* by row; it has no slope */
   double value[4][2][MPSI_CHUNK], slope[4][2][MPSI_CHUNK];
 } row_parts;
 
@@ -108,21 +124,31 @@ MPSI_INLINE void add_in_plane(int spline, const mpsi_places *places, const mpsi_
 
 /* Particles in space: the four values of a node side by side. */
 typedef struct node_parts {
-  double of[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
+  double of[MPSI_CHUNK][4][4] MPSI_LINE;
 } node_parts;
 
-MPSI_INLINE void find_node_parts(int n, columns part, node_parts *out) {
-  for (int k = 0; k < n; k += 4) MPSI_UNROLL for (int d = 0; d < 4; d++) {
-      mpsi_quad a[4];
-      MPSI_UNROLL for (int c = 0; c < 4; c++) a[c] =
-          d > 0 && c == MPSI_MASS ? (mpsi_quad){0.0} : mpsi_get(part[d][c] + k);
-      mpsi_transpose(a);
-      MPSI_UNROLL for (int i = 0; i < 4; i++) mpsi_put(out->of[k + i][d], a[i]);
-    }
+/* Those of four particles from `k` on. */
+MPSI_INLINE void put_nodes(mpsi_quad from[4][4], int k, node_parts *to) {
+  MPSI_UNROLL for (int d = 0; d < 4; d++) {
+    mpsi_quad a[4];
+    MPSI_UNROLL for (int c = 0; c < 4; c++) a[c] =
+        d > 0 && c == MPSI_MASS ? (mpsi_quad){0.0} : from[d][c];
+    mpsi_transpose(a);
+    MPSI_UNROLL for (int i = 0; i < 4; i++) mpsi_put(to->of[k + i][d], a[i]);
+  }
 }
 
-/* The same. What they give is spread along x once, and from there to each row by that row's
- * weights alone. */
+MPSI_INLINE void find_node_parts(int n, columns part, node_parts *out) {
+  for (int k = 0; k < n; k += 4) {
+    mpsi_quad a[4][4];
+    MPSI_UNROLL for (int d = 0; d < 4; d++)
+        MPSI_UNROLL for (int c = 0; c < 4; c++) a[d][c] = mpsi_get(part[d][c] + k);
+    put_nodes(a, k, out);
+  }
+}
+
+/* The same, by any weights. What they give is spread along x once, and from there to each row by
+ * that row's weights alone. */
 MPSI_INLINE void add_in_space(int spline, const mpsi_places *places, const mpsi_rows *rows,
                               int begin, int end, const node_parts *part, mpsi_node *tile) {
   mpsi_vec along[MPSI_SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
@@ -161,6 +187,105 @@ MPSI_INLINE void add_in_space(int spline, const mpsi_places *places, const mpsi_
     }
   }
 }
+
+/* ---- full supports in space ------------------------------------------------------------------ */
+
+/* The weights of the rows of a stencil, w_j w_k of row 4 k + j. */
+typedef struct row_weights {
+  double w[MPSI_STENCIL / 4][MPSI_COLUMN] MPSI_LINE;
+} row_weights;
+
+MPSI_INLINE void find_row_weights(int spline, const mpsi_places *places, int n, row_weights *out) {
+  for (int k = 0; k < n; k += 4) MPSI_UNROLL for (int plane = 0; plane <= spline; plane++) {
+      const mpsi_quad across = mpsi_get(places->w[2][plane] + k);
+      MPSI_UNROLL for (int j = 0; j <= spline; j++)
+          mpsi_put(out->w[4 * plane + j] + k, across * mpsi_get(places->w[1][j] + k));
+    }
+}
+
+/* Parts about the second node of the stencil: to all particles of it, nodes then have the same
+ * distances, whole numbers. */
+MPSI_INLINE void shift_parts(const mpsi_places *places, int k, mpsi_quad part[4][4]) {
+  MPSI_UNROLL for (int d = 0; d < 3; d++) {
+    const mpsi_quad f = mpsi_get(places->t[d] + k) - 1.0;
+    MPSI_UNROLL for (int c = MPSI_VECTOR; c < 4; c++) part[0][c] -= f * part[1 + d][c];
+  }
+}
+
+MPSI_INLINE void find_full_parts(const mps_mpm *mpm, int spline, bool split,
+                                 const mpsi_places *places, int64_t begin, int n, node_parts *sum,
+                                 node_parts *force) {
+  for (int k = 0; k < n; k += 4) {
+    quad_parts part;
+    find_quad_parts(mpm, MPS_MPM_GEOMETRY_SPACE, spline, split, begin + k, &part);
+    shift_parts(places, k, part.sum);
+    put_nodes(part.sum, k, sum);
+    if (!split) continue;
+    shift_parts(places, k, part.force);
+    put_nodes(part.force, k, force);
+  }
+}
+
+/* What nodes from number i of a row on are distant from the second. */
+MPSI_INLINE mpsi_vec find_distances(int i) {
+#if MPSI_WIDE == 2
+  const double a = i - 1.0, b = i;
+  return (mpsi_vec){a, a, a, a, b, b, b, b};
+#else
+  return mpsi_spread((mpsi_quad){0.0} + (i - 1.0));
+#endif
+}
+
+/* Planes of a stencil whose rows are summed at once: as many as the registers hold. */
+#if MPSI_LEVEL == 4
+#define PLANES(spline) ((spline) + 1)
+#elif MPSI_LEVEL == 3
+#define PLANES(spline) ((spline) == 2 ? 3 : 2)
+#else
+#define PLANES(spline) 1
+#endif
+
+/* Adds one particle's values, `value` at the second node of the first plane, to the sums of rows. */
+MPSI_INLINE void add_rows(int spline, int first, int planes, const row_weights *weights, int k,
+                          mpsi_vec value, mpsi_vec by_y, mpsi_vec by_z, mpsi_vec (*sum)[4]) {
+  const mpsi_vec twice = by_y + by_y;
+  MPSI_UNROLL for (int plane = 0; plane < planes; plane++) {
+    const double *w = weights->w[4 * (first + plane)] + k;
+    sum[plane][0] += w[0] * (value - by_y);
+    sum[plane][1] += w[MPSI_COLUMN] * value;
+    sum[plane][2] += w[2 * MPSI_COLUMN] * (value + by_y);
+    if (spline == 3) sum[plane][3] += w[3 * MPSI_COLUMN] * (value + twice);
+    value += by_z;
+  }
+}
+
+/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
+MPSI_INLINE void add_full(int spline, const mpsi_places *places, const mpsi_rows *rows,
+                          const row_weights *weights, int begin, int end, const node_parts *part,
+                          mpsi_node *tile) {
+  const int planes = PLANES(spline);
+  tile += places->first[begin];
+  for (int first = 0; first <= spline; first += planes)
+    MPSI_UNROLL for (int i = 0; i <= spline; i += MPSI_WIDE) {
+      const mpsi_vec distance = find_distances(i);
+      mpsi_vec sum[4][4] = {{{0.0}}};
+      for (int k = begin; k < end; k++) {
+        const mpsi_vec w = mpsi_by_node(rows->w[k], i);
+        mpsi_vec a[4];
+        MPSI_UNROLL for (int d = 0; d < 4; d++) a[d] = mpsi_spread(mpsi_get(part->of[k][d]));
+        const mpsi_vec by_z = w * a[3], value = w * (a[0] + distance * a[1]);
+        add_rows(spline, first, planes, weights, k, value + (first - 1.0) * by_z, w * a[2], by_z,
+                 sum);
+      }
+      MPSI_UNROLL for (int plane = 0; plane < planes; plane++)
+          MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+        double *at = tile[mpsi_tile_index(i, j, first + plane)];
+        mpsi_put_row(at, mpsi_get_row(at) + sum[plane][j]);
+      }
+    }
+}
+
+/* ---- at walls, and in the plane -------------------------------------------------------------- */
 
 /* The parts as they are added: of either kind. */
 typedef union added_parts {
@@ -258,21 +383,46 @@ MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q, 
     }
 }
 
+/* What the particles of a chunk give by full supports, in either dimension. */
+typedef struct chunk {
+  mpsi_rows rows;
+  row_weights weights; /* in space */
+  added_parts sum, force;
+} chunk;
+
+MPSI_INLINE void find_chunk(const mps_mpm *mpm, int geometry, int spline, bool split,
+                            mpsi_places *places, int64_t begin, int n, chunk *out) {
+  const int dim = mpsi_dim_of(geometry);
+  find_rows(spline, dim == 2, places, n, &out->rows);
+  if (dim == 3) {
+    find_row_weights(spline, places, n, &out->weights);
+    find_full_parts(mpm, spline, split, places, begin, n, &out->sum.node, &out->force.node);
+    return;
+  }
+  parts part;
+  find_parts(mpm, geometry, spline, split, begin, n, &part);
+  find_added(dim, spline, places, n, part.sum, &out->sum);
+  if (split) find_added(dim, spline, places, n, part.force, &out->force);
+}
+
+MPSI_INLINE void add_chunk(int dim, int spline, const mpsi_places *places, const chunk *from,
+                           const added_parts *part, int begin, int end, mpsi_node *tile) {
+  if (dim == 2)
+    add_in_plane(spline, places, &from->rows, begin, end, &part->row, tile);
+  else
+    add_full(spline, places, &from->rows, &from->weights, begin, end, &part->node, tile);
+}
+
 MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                            int geometry, int spline, int64_t begin, int n) {
   const int dim = mpsi_dim_of(geometry);
   mpsi_places places;
-  mpsi_rows rows;
-  parts part;
-  added_parts sum, force;
-  mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
-  find_rows(spline, &places, n, &rows);
+  chunk all;
+  mpsi_find_places(mpm, cells, dim, spline, dim == 2 ? 3 : 7, dim == 2 ? 3 : 0, begin, n, &places);
   if (cells->split)
-    find_parts(mpm, geometry, spline, true, begin, n, &part);
+    find_chunk(mpm, geometry, spline, true, &places, begin, n, &all);
   else
-    find_parts(mpm, geometry, spline, false, begin, n, &part);
-  find_added(dim, spline, &places, n, part.sum, &sum);
-  if (cells->split) find_added(dim, spline, &places, n, part.force, &force);
+    find_chunk(mpm, geometry, spline, false, &places, begin, n, &all);
   for (int k = 0, end; k < n; k = end) {
     for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
       end++;
@@ -286,8 +436,8 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
           MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mpm, cells, worker, &places, begin, k, end))
         continue;
     }
-    add_segment(dim, spline, &places, &rows, k, end, &sum, worker->tile);
-    if (cells->split) add_segment(dim, spline, &places, &rows, k, end, &force, worker->force);
+    add_chunk(dim, spline, &places, &all, &all.sum, k, end, worker->tile);
+    if (cells->split) add_chunk(dim, spline, &places, &all, &all.force, k, end, worker->force);
   }
 }
 

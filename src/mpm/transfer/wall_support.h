@@ -101,6 +101,7 @@ MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cell_block *cel
         out->places.ws[c][i][k - begin] = slope[c][i];
       }
   }
+  mpsi_pad_places(dim, spline, 7, end - begin, &out->places);
 }
 
 #endif
