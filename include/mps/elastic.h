@@ -80,7 +80,8 @@ typedef struct mps_elastic_def {
   mps_kernel *kernel;     /* weight of the pairs, its radius in (1, 4] spacings, in place of
                              radius_ratio; kept alive; NULL (default): re/r - 1 */
   double bending; /* [0, 1], of a cell's own stiffness against bending, without which n cells lack
-                     1/n^2; NaN (default): 1 in bodies of several materials, 0 of a single one */
+                     1/n^2; NaN (default): 1 in bodies of several materials, 0 of a single one,
+                     with a warning in the log where slender parts have at most 8 cells */
   mps_domain *domain; /* ranks that solve together: mps/elastic_solver.h; NULL (default): none */
 } mps_elastic_def;
 

@@ -3,7 +3,7 @@
  * access.c    guard, ids, fields as vectors   body.c      material, cuts, derived data
  * lattice.c   sites, neighbours, n_i           gradient.c  the displacement gradient
  * window.c    the part that a rank has         operator.c  K u, matrix free
- * joints.c    faces between two materials      bending.c   bending within a cell
+ * joints.c    faces between two materials      bending.c   bending within a cell; thin.c warns
  * supports.c  fixed directions, free unknowns  rigid.c     rigid motions without support
  * boundaries.c  prescribed displacements, reactions  facets.c    the surface
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
@@ -161,6 +161,7 @@ struct mps_elastic {
   bool constant;      /* published: divided by n0, else by n_i */
   mpsi_guard guard;   /* of the running public function */
   bool within;        /* a step is running */
+  bool warned_thin;   /* see thin.c */
   bool agreed;        /* of several ranks: they have agreed on the error of this function */
   int64_t *id;        /* of each particle, ascending */
   int64_t n;
@@ -342,6 +343,8 @@ typedef struct mpsi_bending_term {
   int64_t site;
   double value[3]; /* couples equal components */
 } mpsi_bending_term;
+/* thin.c: warns once, before the first solution. */
+mps_status mpsi_elastic_warn_of_thin_parts(mps_elastic *e, const char *function);
 /* Is bending stiffness in use, in a body with joints or without? Its array, of this size, is made
  * with them (joints.c). */
 bool mpsi_elastic_has_bending(const mps_elastic *e, bool joints);

@@ -90,6 +90,7 @@ mps_status mpsi_elastic_prepare(mps_elastic *e, const char *function) {
   double start = now();
   status = mpsi_elastic_choose_window(e, function);
   const bool assemble = !e->pattern_valid || !e->values_valid;
+  if (status == MPS_OK) status = mpsi_elastic_warn_of_thin_parts(e, function);
   if (status == MPS_OK && !e->pattern_valid) status = mpsi_elastic_check_supported(e, function);
   if (status == MPS_OK && e->outside) return prepare_outside(e, function);
   if (status == MPS_OK) status = mpsi_elastic_assemble(e, function);

@@ -1,0 +1,110 @@
+/* test_elastic_thin.c - slender parts of few cells that are solved without `bending` are reported
+ * in the log, once a solver; blocks, discs and bodies with a choice are not.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_journal.h"
+
+#include <mps/mps.h>
+
+#include <math.h>
+
+#define OK(call) mps_assert_ok(own, call)
+
+static void hold_lowest(mps_context *own, mps_elastic *e, int32_t axis) {
+  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
+  for (int c = 0; c < 3; c++) foot.lower[c] = -INFINITY, foot.upper[c] = INFINITY;
+  foot.upper[axis] = 0.1;
+  OK(mps_elastic_add_boundary(e, &foot, NULL));
+}
+
+/* Warnings of two solutions of boxes of the given cells (z 0: 2D), one beside the other in x and
+ * joined at the foot; the last is left in `j`. */
+static int warnings(journal *j, double bending, int boxes, const int cells[][3]) {
+  *j = (journal){0};
+  mps_context *own = journal_context(j, NULL);
+  mps_particles_def def = mps_particles_defaults();
+  mps_elastic_def method = mps_elastic_defaults();
+  mps_particles *set = NULL;
+  mps_elastic *e = NULL;
+  double lo[3] = {0.0, 0.0, 0.0};
+  def.spacing = 0.1, def.dim = cells[0][2] ? 3 : 2;
+  method.bending = bending;
+  OK(mps_particles_create(own, &def, &set));
+  for (int k = 0; k < boxes; k++) {
+    double hi[3];
+    for (int c = 0; c < 3; c++) hi[c] = lo[c] + 0.1 * cells[k][c];
+    OK(mps_particles_fill_box(set, lo, hi, NULL));
+    lo[0] = hi[0];
+  }
+  OK(mps_particles_set(set, "young", 0, 1e6));
+  OK(mps_particles_set(set, "poisson", 0, 0.3));
+  OK(mps_elastic_create(own, set, &method, &e));
+  hold_lowest(own, e, 1);
+  for (int k = 0; k < 2; k++) OK(mps_elastic_solve(e));
+  mps_elastic_destroy(&e);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+  return j->count;
+}
+
+static void slender_parts_are_reported_once(void **state) {
+  (void)state;
+  journal j;
+  assert_int_equal(warnings(&j, NAN, 1, (const int[][3]){{4, 40, 0}}), 1);
+  assert_non_null(strstr(j.last, "160 of 160 particles"));
+  assert_non_null(strstr(j.last, "most of 4: without `bending` they lack up to 6.25 %"));
+  assert_int_equal(warnings(&j, NAN, 1, (const int[][3]){{16, 16, 3}}), 1); /* a plate */
+  assert_non_null(strstr(j.last, "most of 3:"));
+  /* on a block: 3 x 20 cells stand out of 20 x 6 */
+  assert_int_equal(warnings(&j, NAN, 2, (const int[][3]){{20, 6, 0}, {3, 26, 0}}), 1);
+  assert_non_null(strstr(j.last, "of 198 particles"));
+}
+
+static void other_bodies_are_not(void **state) {
+  (void)state;
+  journal j;
+  assert_int_equal(warnings(&j, 0.0, 1, (const int[][3]){{4, 40, 0}}), 0);
+  assert_int_equal(warnings(&j, 1.0, 1, (const int[][3]){{4, 40, 0}}), 0);
+  assert_int_equal(warnings(&j, NAN, 1, (const int[][3]){{9, 90, 0}}), 0);
+  assert_int_equal(warnings(&j, NAN, 1, (const int[][3]){{6, 6, 0}}), 0);
+  assert_int_equal(warnings(&j, NAN, 1, (const int[][3]){{8, 31, 0}}), 0);
+  assert_int_equal(warnings(&j, NAN, 1, (const int[][3]){{8, 32, 0}}), 1);
+}
+
+/* The rim of a disc has short rows of cells without being slender. */
+static void a_disc_is_not_slender(void **state) {
+  (void)state;
+  journal j = {0};
+  mps_context *own = journal_context(&j, NULL);
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  mps_elastic *e = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 4.0};
+  int64_t out[1600], count = 0;
+  def.spacing = 0.1;
+  OK(mps_particles_create(own, &def, &set));
+  OK(mps_particles_fill_box(set, lo, hi, NULL));
+  OK(mps_particles_set(set, "young", 0, 1e6));
+  OK(mps_particles_set(set, "poisson", 0, 0.3));
+  for (int64_t k = 0; k < 1600; k++) {
+    const double x = 0.1 * (double)(k % 40) - 1.95, y = 0.1 * (double)(k / 40) - 1.95;
+    if (x * x + y * y > 4.0) {
+      const double at[2] = {x + 2.0, y + 2.0};
+      out[count++] = mps_particles_nearest(set, at);
+    }
+  }
+  OK(mps_particles_remove(set, count, out));
+  OK(mps_elastic_create(own, set, NULL, &e));
+  hold_lowest(own, e, 1);
+  OK(mps_elastic_solve(e));
+  assert_int_equal(j.count, 0);
+  mps_elastic_destroy(&e);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(slender_parts_are_reported_once),
+                                     cmocka_unit_test(other_bodies_are_not),
+                                     cmocka_unit_test(a_disc_is_not_slender)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
