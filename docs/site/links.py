@@ -74,7 +74,8 @@ def target_of(app, text, near, page):
         return ("page", f"api/{header[1]}", "")
     program = re.match(r"mps-[a-z-]+", text)
     if program and program[0] in app.mps_programs:
-        return ("page", "gallery", program[0])
+        own = f"programs/{program[0]}"
+        return ("page", own, "") if own in app.env.all_docs else ("page", "gallery", program[0])
     file = app.mps_sources.file(name)
     if file:
         return ("listing", file, 0)

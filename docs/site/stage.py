@@ -9,6 +9,8 @@ import shutil
 
 import equations
 import headers
+import options
+import python_reference
 
 ROOT_PAGES = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "README.md": "index.md", "LICENSE": "license.md",
               "docs/site/index.md": "index.md"}
@@ -121,14 +123,18 @@ def check_gallery(root):
         raise SystemExit(f"docs: programs without a place in docs/gallery.md: {', '.join(missing)}")
 
 
-def stage(root, out, pictures):
-    """All sources of the site, in `out`; files in `pictures` take the places of those in docs/images."""
+def stage(root, out, pictures, build=None):
+    """All sources of the site, in `out`; files in `pictures` take the places of those in docs/images, and programs of
+    `build` say what their options are."""
     root, out = pathlib.Path(root), pathlib.Path(out)
     shutil.rmtree(out, ignore_errors=True)
     check_gallery(root)
     stage_pages(root, out)
     stage_reference(root, out)
     write(out / "theory" / "equations.rst", equations.page(root))
+    python_reference.stage(root, lambda name, text: write(out / name, text))
+    if not options.stage(root, build, lambda name, text: write(out / name, text)):
+        print("docs: no pages of the programs: --build DIR names a build that has them")
     for picture in sorted(pathlib.Path(pictures).glob("*.*")) if pictures else []:
         shutil.copyfile(picture, out / "images" / picture.name)
     stage_cards(out)

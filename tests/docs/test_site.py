@@ -11,7 +11,9 @@ sys.path.insert(0, str(ROOT / "docs/site"))
 
 import equations  # noqa: E402
 import headers  # noqa: E402
+import options  # noqa: E402
 import programs  # noqa: E402
+import python_reference  # noqa: E402
 import stage  # noqa: E402
 
 
@@ -100,6 +102,65 @@ class Pages(unittest.TestCase):
             here = stage.place_of(path.relative_to(ROOT).as_posix())
             if here and here != "index.md" and not here.startswith("verification/"):
                 self.assertIn(here[:-3], listed)
+
+
+class Options(unittest.TestCase):
+    """Pages of the programs, from what --help says."""
+
+    HELP = """Usage: mps-x [options]
+A program: more
+of it. And this.
+
+Soil
+  --young [Pa]                    Young's modulus E (in [0.001, 1e16]; default 1 MPa)
+  --cone inscribed|planestrain
+                                  how the cone meets phi (of a plane), else
+                                  otherwise (default inscribed)
+
+Numbers are in the unit shown.
+
+Help
+  --help                          show this text
+"""
+
+    def test_sections_options_ranges_and_notes(self):
+        usage, what, sections, notes = options.parse(self.HELP)
+        self.assertEqual((usage, what, notes), ("mps-x [options]", "A program: more of it. And this.", "Numbers are in the unit shown."))
+        self.assertEqual([heading for heading, _ in sections], ["Soil", "Help"])
+        young, cone = sections[0][1]
+        self.assertEqual((young.name, young.value, young.help, young.range),
+                         ("--young", "[Pa]", "Young's modulus E", "in [0.001, 1e16]; default 1 MPa"))
+        self.assertEqual((cone.name, cone.value, cone.help, cone.range),
+                         ("--cone", "inscribed|planestrain", "how the cone meets phi (of a plane), else otherwise", "default inscribed"))
+
+    def test_options_without_a_heading(self):
+        _, _, sections, _ = options.parse("Usage: x FILE\nShows.\n\n  --json    as JSON\n")
+        self.assertEqual([(heading, [row.name for row in rows]) for heading, rows in sections], [("Options", ["--json"])])
+
+    def test_every_program_has_examples_of_its_manual_page(self):
+        for path in sorted((ROOT / "examples").glob("mps-*.c")):
+            found = options.examples(ROOT, path.stem)
+            self.assertTrue(found, path.stem)
+            self.assertTrue(all(command.startswith(path.stem) for _, command in found), found)
+
+    def test_links_of_the_gallery_lead_out_of_the_folder(self):
+        part = options.gallery(ROOT, "mps-pile")
+        self.assertIn("](../jobs/pile.md)", part)
+        self.assertIn("](../images/pile.png)", part)
+
+
+class PythonReference(unittest.TestCase):
+    def test_every_method_function_and_constant_of_the_stubs_is_on_a_page(self):
+        pages = {}
+        count = python_reference.stage(ROOT, lambda name, text: pages.setdefault(name, text))
+        text = "\n".join(pages.values())
+        self.assertGreater(count, 250)
+        self.assertEqual(count, len(re.findall(r"^ *\.\. py:(?:method|function)::", text, re.M))
+                         - len(re.findall(r"^ *\.\. py:method::", pages["python-api/base.rst"], re.M))
+                         - text.count("__enter__") - text.count("__exit__"))
+        for name in ("py:method:: step(", "py:function:: version(", "py:data:: BOUNDARY_HELD", "``courant``"):
+            self.assertIn(name, text)
+        self.assertNotIn("mps_mpm_def_init", text)
 
 
 class Equations(unittest.TestCase):

@@ -1,0 +1,148 @@
+"""Pages of the Python package, from its stubs (python/make_docs.py writes them from the headers): one page for each
+object of the library, one for the functions of the module, one for results, one for constants."""
+
+import ast
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+
+import headers
+
+PLAIN = ("Error", "StaleError", "Field", "Edit", "Object", "Result")
+
+
+def stubs(root):
+    """The stubs as a syntax tree."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-B", root / "python/make_docs.py", root / "include", root / "python/libmps", folder], check=True)
+        return ast.parse((pathlib.Path(folder) / "__init__.pyi").read_text())
+
+
+def signature(function):
+    """The arguments: those by place, then those by keyword with an optional value; no types, which the text has."""
+    a = function.args
+    listed = [arg.arg for arg in a.posonlyargs + a.args]
+    optional = len(a.defaults)
+    for k in range(len(listed) - optional, len(listed)):
+        listed[k] += "=..."
+    listed = [name for name in listed if name.removesuffix("=...") != "self"]
+    if a.kwonlyargs:
+        listed += ["*", *(f"{arg.arg}=..." for arg in a.kwonlyargs)]
+    return f"({', '.join(listed)})"
+
+
+def keywords(rows):
+    """The rows "name (type): what" below "Keywords" as a list of fields."""
+    lines = []
+    for row in re.split(r"\n(?=  \S)", rows):
+        found = re.match(r"\s*(\w+) \((.*?)\)(?:: (.*))?$", " ".join(row.split()))
+        if found:
+            lines += [f"* ``{found[1]}`` ({headers.escape(found[2])})" + (f": {headers.escape(found[3])}" if found[3] else "")]
+    return lines
+
+
+def body(text, indent):
+    """A docstring as reStructuredText."""
+    lines = []
+    for part in re.split(r"\n\s*\n", textwrap.dedent(text or "").strip()):
+        if part.startswith("Keywords ("):
+            head, _, rows = part.partition("\n")
+            lines += [headers.escape(head), "", *keywords(rows), ""]
+        elif re.match(r"C: ", part):
+            name = re.search(r"\b(mps_\w+)\(", part)
+            lines += [f"C: ``{name[1]}``" if name else headers.escape(part), ""]
+        elif part.startswith("A failed call raises Error"):
+            continue  # said once, at the head of the page
+        else:
+            lines += [row.removeprefix("") for row in headers.paragraphs(part, 0)]
+    return [" " * indent + line if line else "" for line in lines]
+
+
+def returned(function):
+    said = ast.unparse(function.returns) if function.returns else "None"
+    return "" if said == "None" else f" -> {said}"
+
+
+def function(node, kind, indent):
+    lines = [f".. py:{kind}:: {node.name}{signature(node)}{returned(node)}", "", *body(ast.get_docstring(node), 3)]
+    return [" " * indent + line if line else "" for line in lines]
+
+
+def class_lines(node, indent=0):
+    """A class with its attributes and methods."""
+    lines = [f".. py:class:: {node.name}", "", *body(ast.get_docstring(node), 3)]
+    for k, item in enumerate(node.body):
+        if isinstance(item, ast.AnnAssign) and not item.target.id.startswith("_"):
+            behind = node.body[k + 1] if k + 1 < len(node.body) else None
+            said = behind.value.value if isinstance(behind, ast.Expr) and isinstance(behind.value, ast.Constant) else ""
+            lines += [f"   .. py:attribute:: {item.target.id}", f"      :type: {ast.unparse(item.annotation)}", "      :no-contents-entry:", "", *body(said, 6)]
+        elif isinstance(item, ast.FunctionDef) and (not item.name.startswith("__") or item.name in ("__init__", "__getitem__", "__len__")):
+            lines += function(item, "method", 3)
+    return lines
+
+
+def titled(title, *lines):
+    return "\n".join([title, "=" * len(title), "", ".. py:currentmodule:: libmps", "", *lines]) + "\n"
+
+
+def constants(tree):
+    """(name, what) of the constants of the module."""
+    for k, node in enumerate(tree.body):
+        if isinstance(node, ast.AnnAssign) and node.target.id.isupper():
+            behind = tree.body[k + 1] if k + 1 < len(tree.body) else None
+            yield node.target.id, behind.value.value if isinstance(behind, ast.Expr) and isinstance(behind.value, ast.Constant) else ""
+
+
+INDEX = """Python reference
+================
+
+.. py:module:: libmps
+
+Every object, function and constant of the package ``libmps``, with the comments of the C headers: the same that
+``help(libmps.Mpm.step)`` shows. The guide is :doc:`/python`.
+
+Objects come from a ``Context``: ``context = libmps.Context()``, ``context.particles_create(...)``,
+``context.mpm_create(...)``. Arguments before ``*`` are given by their place, the others by name; one that is not given has the
+default of its text. A call that fails raises ``Error``, whose ``status`` is one of the ``ERROR_...`` that its text names.
+
+{table}
+
+.. toctree::
+   :hidden:
+
+   {pages}
+"""
+
+
+def stage(root, write):
+    """Writes the pages; returns the number of methods and functions on them."""
+    tree = stubs(root)
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
+    objects = [node for node in classes if node.name not in PLAIN and ast.unparse(node.bases[0]) == "Object"]
+    results = [node for node in classes if node.name not in PLAIN and node not in objects]
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+    count, rows = len(functions), []
+    for node in objects:
+        methods = [item for item in node.body if isinstance(item, ast.FunctionDef)]
+        count += len(methods)
+        write(f"python-api/{node.name.lower()}.rst", titled(node.name, *class_lines(node)))
+        rows.append(f"   * - :doc:`{node.name} <{node.name.lower()}>`\n     - {len(methods)} methods")
+    write("python-api/functions.rst", titled("Functions of the module", *(line for node in functions for line in function(node, "function", 0))))
+    write("python-api/results.rst", titled("Results", "Structs that C fills, with members as attributes.", "",
+                                           *(line for node in results for line in class_lines(node))))
+    base = [node for node in classes if node.name in PLAIN]
+    write("python-api/base.rst", titled("Errors, fields, edits", *(line for node in base for line in class_lines(node))))
+    lines = []
+    for name, said in constants(tree):
+        lines += [f".. py:data:: {name}", "   :no-contents-entry:", "", *body(said, 3)]
+    write("python-api/constants.rst", titled("Constants", *lines))
+    rest = [("functions", f"{len(functions)} functions without an object"), ("results", f"{len(results)} structs that calls return"),
+            ("base", "errors, fields of particles, edits, what all objects have"), ("constants", "choices and statuses")]
+    rows += [f"   * - :doc:`{name}`\n     - {what}" for name, what in rest]
+    table = ".. list-table::\n   :header-rows: 1\n   :widths: 40 60\n\n   * - page\n     - what\n" + "\n".join(rows)
+    pages = [node.name.lower() for node in objects] + [name for name, _ in rest]
+    write("python-api/index.rst", INDEX.format(table=table, pages="\n   ".join(pages)))
+    return count
