@@ -129,7 +129,14 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
 /** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
  *  as prescribed by mps_fluid_set_wall_motion; then it may bend slightly: a displacement along the
  *  normal at each of its nodes, linear between them, with local mirror images. The fluid's angle
- *  between two walls is 90 degrees or more; of a bed and a slope, add the bed first. */
+ *  between two walls is 90 degrees or more; of a bed and a slope, add the bed first.
+ *
+ *  Or a polyline at rest, HELD or ROLLER: segments of at least l0 with 15 to 345 degrees of fluid
+ * at each corner, as of bed, slope, berm and crest, of the tip of a wedge, or closed of an island.
+ * An open one continues straight beyond its first and last corner without limit. Where it passes a
+ *  plane wall (a piston) it does so at a right angle, with corners at least re away. It has one
+ *  number: reactions are sums over its segments, pressures those along all of them. Bodies keep 2
+ * re away from it. */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
   int32_t kind;       /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */
@@ -143,7 +150,11 @@ typedef struct mps_fluid_boundary_def {
   const double
       *nodes; /* of a bending wall: points along it (3 values each, m, in any order; projected onto
                  the plane), copied; NULL (default): it stays plane, and moves as one node */
-  int64_t node_count; /* default 0; at most 1 with a signal */
+  int64_t node_count;    /* default 0; at most 1 with a signal */
+  const double *corners; /* of a polyline: its corners in order, the fluid to the left of the way
+                            along them (3 values each, m, z 0), copied; NULL (default): a plane
+                            wall. `point`, `normal` and `factor` are not read then */
+  int64_t corner_count;  /* 2 to 10000, default 0. The first again as the last: it is closed */
 } mps_fluid_boundary_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
@@ -159,8 +170,8 @@ static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
 /** Adds a wall, between steps; `number` (may be NULL) receives the lowest free number.
  *  MPS_ERROR_ARGUMENT: a member of `def` out of range; a particle lies outside or closer than .3 l0
  *  to it; two walls that enclose less than 90 degrees, unless that corner lies more than re behind
- *  a third one. MPS_ERROR_STATE: a step is open, or a callback of the solver is running.
- *  MPS_ERROR_MEMORY. */
+ *  a third one; a polyline that crosses itself, or joins a plane wall otherwise than above.
+ * MPS_ERROR_STATE: a step is open, or a callback of the solver is running. MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
                                                         const mps_fluid_boundary_def *def,
                                                         int32_t *number);

@@ -1,6 +1,7 @@
 /* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
  *
  *   walls.c     positions and motions of walls (wall.c: one); the particles' images (ghosts)
+ *   polyline.c  boundaries of several segments; mirrors.c: the images in them
  *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves floating ones
  *   look.c      copies of the particles, their order and neighbours
  *   near.c      neighbour lists, and the weights w; sight.c: visibility past finite walls
@@ -66,14 +67,19 @@ typedef struct mpsi_fluid_exchange {
   double loads[2], scheme[2];
 } mpsi_fluid_exchange;
 
-/* A wall: a boundary of the caller, or the face of a body. */
+typedef struct mpsi_fluid_polyline mpsi_fluid_polyline; /* polyline.h */
+
+/* A wall: a boundary of the caller, the face of a body, or the segment of a polyline. */
 typedef struct mpsi_fluid_wall {
-  bool used;               /* as a wall */
-  bool open;               /* an open side instead */
-  int32_t of_body;         /* 0: a boundary; number of the body + 1 */
-  double from, to, length; /* of a face, m along it: its end, or its extension behind a boundary */
-  uint32_t stands_on[2];   /* boundaries that the ends of a face stand on, bits */
-  bool given, placed;      /* next.u, and next.s, are prescribed by the caller */
+  bool used;                 /* as a wall */
+  bool open;                 /* an open side instead */
+  int32_t of_body;           /* 0: a boundary; number of the body + 1 */
+  int32_t of_line;           /* of a segment of a polyline: number of the boundary + 1 */
+  mpsi_fluid_polyline *line; /* of a boundary that is a polyline, and no plane wall; owned */
+  double from, to, length;   /* of a face or segment, m along it: its end, or its extension behind a
+                                boundary */
+  uint32_t stands_on[2];     /* boundaries that the ends of a face stand on, bits */
+  bool given, placed;        /* next.u, and next.s, are prescribed by the caller */
   int32_t kind;
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
   mps_signal *signal;
@@ -108,14 +114,14 @@ typedef struct mpsi_fluid_body {
                                impulses of collisions, to be applied in the next step */
   bool floats;              /* see afloat.c */
   bool leaves; /* its handle was destroyed in the open step: it leaves the water when that ends */
-  double rate[3], mass[9];  /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
+  double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
   double rate_before[3], mass_before[9]; /* before the step being made */
 } mpsi_fluid_body;
 
 /* Whether boundary `number` exists. */
 #define MPSI_FLUID_IS_BOUNDARY(f, number)                                                          \
   ((number) >= 0 && (number) < MPS_FLUID_MAX_BOUNDARIES &&                                         \
-   ((f)->wall[number].used || (f)->wall[number].open))
+   ((f)->wall[number].used || (f)->wall[number].open || (f)->wall[number].line))
 
 #define MPSI_FLUID_WALLS 32 /* boundaries, then faces */
 #define MPSI_FLUID_BODIES 4
@@ -247,6 +253,8 @@ struct mps_fluid {
   double *x[2], *u[2], *q, *offset;   /* offset: of a ghost's q from its parent's, Pa */
   int32_t *parent;                    /* of a ghost, by index - count */
   uint32_t *flips;                    /* walls that it is mirrored at, bits */
+  int64_t segments;                   /* of all polylines; 0: there are none */
+  mpsi_room segment_room, path_room;  /* mpsi_fluid_segment *; mpsi_fluid_path of each ghost */
   uint32_t limited, faces, stood_on;  /* walls that end, those of bodies, boundaries that bodies
                                          stand on: bits, see sight.c */
   double wedge[MPSI_FLUID_WEDGES][2]; /* m, edges of acute corners between faces and boundaries */
@@ -447,7 +455,7 @@ bool mpsi_fluid_near_corner(const mps_fluid *fluid, int64_t i);
 /* Whether an acute corner of the water is within 3.1 l0 of particle i, and within 60 degrees of the
  * direction e, unless that is NULL. */
 bool mpsi_fluid_near_wedge(const mps_fluid *fluid, int64_t i, const double *e);
-/* Whether a face other than `wall` is between two points. */
+/* Whether a face other than `wall` (-1: none) is between two points. */
 bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
 /* near.c; room for a sorted cloud of so many: five values of 4 bytes each lie in lower_room. */
 int64_t mpsi_fluid_sorted_room(int64_t all);
@@ -482,6 +490,10 @@ void mpsi_fluid_warn_of_angles(mps_fluid *fluid);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that failed, or -1 */
+#define MPSI_FLUID_OFF_WALL 0.1               /* l0: no particle comes closer to a wall */
+/* keep_off.c: takes particle i, which has moved to x with the velocity u, back to the fluid's side
+ * of polylines; whether it had to. */
+bool mpsi_fluid_keep_off_lines(const mps_fluid *fluid, int64_t i, double *x, double *u);
 /* exchange.c: memory of a step's sums; their values, on all ranks; finally the momentum error. */
 mps_status mpsi_fluid_begin_exchange(mps_fluid *fluid, const char *function);
 void mpsi_fluid_end_exchange(mps_fluid *fluid);

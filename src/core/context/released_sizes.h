@@ -28,7 +28,7 @@
   X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.3", 96) \
   X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.3", 40) \
   X(mps_eurotop_def, mps_eurotop_def_init, "0.3", 104) \
-  X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.3", 88) \
+  X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.3", 104) \
   X(mps_fluid_contact_def, mps_fluid_contact_def_init, "0.3", 16) \
   X(mps_fluid_def, mps_fluid_def_init, "0.3", 112) \
   X(mps_fluid_load_def, mps_fluid_load_def_init, "0.3", 168) \

@@ -1,5 +1,6 @@
 /* boundaries.c - plane walls: definitions, checks, and how they are added, changed and removed.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 
 #include "core/base/boundary_kind.h"
@@ -12,6 +13,18 @@ static const mps_fluid_boundary_def boundary_defaults = {
 
 mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_fluid_boundary_def, def, size, &boundary_defaults);
+}
+
+/* Members of a definition that a polyline has not. */
+static mps_status check_line(mps_fluid *f, const char *function, const mps_fluid_boundary_def *d) {
+  if (d->kind != MPS_BOUNDARY_HELD && d->kind != MPS_BOUNDARY_ROLLER)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "kind of the boundary is %d (%s): a polyline is 0 (HELD) or 2 (ROLLER)",
+                     d->kind, mpsi_boundary_kind_name(d->kind));
+  if (d->signal || d->node_count != 0)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "the boundary has corners, and a signal or nodes: a polyline does not move");
+  return MPS_OK;
 }
 
 static mps_status check_boundary(mps_fluid *f, const char *function,
@@ -29,6 +42,7 @@ static mps_status check_boundary(mps_fluid *f, const char *function,
   if (d->kind == MPS_BOUNDARY_OPEN && (d->signal || d->node_count > 0))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the open boundary has a signal or nodes: an open side does not move");
+  if (d->corner_count != 0) return check_line(f, function, d);
   if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
     return mpsi_fail(
         f->context, function, MPS_ERROR_ARGUMENT,
@@ -86,6 +100,11 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
                        LEAST_WALL, LEAST_WALL * f->l0);
   }
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    if (b == number || !f->wall[b].line) continue;
+    const mps_status status = mpsi_fluid_check_meeting(f, function, w, number, f->wall[b].line);
+    if (status != MPS_OK) return status;
+  }
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];
     if (!f->wall[b].used || b == number) continue;
     /* opposite walls are parallel; otherwise the fluid's corner has pi - acos(cosine) */
@@ -111,6 +130,20 @@ static mps_status start_motion(mps_fluid *f, const char *function, const mps_sig
   return status;
 }
 
+/* A wall without motion, of which the segments are parts. */
+static mps_status make_line(mps_fluid *f, const char *function, const mps_fluid_boundary_def *def,
+                            int32_t number, mpsi_fluid_wall *out) {
+  mpsi_fluid_wall w = {.kind = def->kind, .factor = 1.0};
+  mps_status status = mpsi_fluid_make_motion(f, function, &w, 0, NULL);
+  if (status == MPS_OK)
+    status = mpsi_fluid_make_polyline(f, function, number, def->corner_count, def->corners, &w);
+  if (status == MPS_OK)
+    *out = w;
+  else
+    mpsi_fluid_drop_wall(f, &w);
+  return status;
+}
+
 /* Checks a definition and makes its wall, of `number`. */
 static mps_status make_wall(mps_fluid *f, const char *function,
                             const mps_fluid_boundary_def *user_def, int32_t number,
@@ -120,6 +153,7 @@ static mps_status make_wall(mps_fluid *f, const char *function,
   mps_status status = MPSI_DEF_READ(f->context, function, mps_fluid_boundary_def, user_def, &def);
   if (status == MPS_OK) status = check_boundary(f, function, &def);
   if (status != MPS_OK) return status;
+  if (def.corner_count != 0) return make_line(f, function, &def, number, out);
   const double length = hypot(def.normal[0], def.normal[1]);
   const bool open = def.kind == MPS_BOUNDARY_OPEN;
   mpsi_fluid_wall w = {.used = !open, .open = open, .kind = def.kind, .factor = def.factor};
@@ -153,6 +187,7 @@ static mps_status make_alike(mps_fluid *f, const char *function, mps_status stat
     mpsi_give(&given, "the signal's present displacement", w->origin);
     mpsi_give(&given, "node_count", (double)w->nodes);
     mpsi_give_bytes(&given, "a hash of nodes", w->node, (size_t)w->nodes * 8);
+    mpsi_fluid_give_corners(&given, w->line);
     mpsi_signal_give(&given, "a hash of signal", w->signal);
     status = mpsi_domain_agree_given(f->def.domain, function, status, &given);
   }
@@ -194,7 +229,7 @@ mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_
   status = make_alike(f, __func__, check_number(f, __func__, number), def, number, &wall);
   if (status != MPS_OK) return status;
   mpsi_fluid_wall *old = &f->wall[number];
-  if (wall.nodes == old->nodes)
+  if (wall.nodes == old->nodes && !wall.line && !old->line)
     for (int64_t k = 0; k < wall.nodes; k++) wall.now.u[k] = old->now.u[k];
   wall.load = old->load;
   for (int c = 0; c < 2; c++) wall.impulse[c] = old->impulse[c];

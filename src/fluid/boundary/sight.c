@@ -98,7 +98,7 @@ static bool hidden(const mps_fluid *f, uint32_t except, const double *a, const d
 }
 
 bool mpsi_fluid_hidden(const mps_fluid *f, int wall, const double *a, const double *b) {
-  return hidden(f, UINT32_C(1) << wall, a, b);
+  return hidden(f, wall < 0 ? 0 : UINT32_C(1) << wall, a, b);
 }
 
 /* Whether the mirror exists at the point of passage: not behind a boundary at an angle to it. */

@@ -1,6 +1,6 @@
 /* wall.c - one wall: the nodes at which its motion is given, values between them, and points
  * mirrored at it. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/fluid_private.h"
+#include "fluid/boundary/polyline.h"
 
 double mpsi_fluid_between(const mpsi_fluid_wall *w, const double *values, double along) {
   const int64_t last = w->nodes - 1;
@@ -49,7 +49,15 @@ mps_status mpsi_fluid_make_motion(mps_fluid *f, const char *function, mpsi_fluid
   return MPS_OK;
 }
 
+/* The segments are walls themselves, without polylines. */
+static void drop_polyline(mps_fluid *f, mpsi_fluid_polyline *line) {
+  if (!line) return;
+  for (int64_t k = 0; k < line->count; k++) mpsi_free(f->context, line->segment[k].wall.motion);
+  mpsi_free(f->context, line);
+}
+
 void mpsi_fluid_drop_wall(mps_fluid *f, mpsi_fluid_wall *w) {
+  drop_polyline(f, w->line);
   mps_signal_destroy(&w->signal);
   mpsi_free(f->context, w->motion);
   *w = (mpsi_fluid_wall){0};

@@ -7,7 +7,7 @@
  * step: free slip); its reduced pressure is the parent's less rho (a . N)(distance of the two), N
  * out of the fluid: the one place where the wall's new velocity enters.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/fluid_private.h"
+#include "fluid/boundary/polyline.h"
 #include "signal/signal_internal.h"
 
 #include <string.h>
@@ -71,7 +71,7 @@ void mpsi_fluid_end_walls(mps_fluid *f) {
 void mpsi_fluid_add_impulses(mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
-    if (!w->used) continue;
+    if (!w->used && !w->line) continue;
     const mpsi_fluid_load *load = &w->load;
     const mpsi_fluid_struck *struck = &w->struck;
     const double work = load->power * f->dt + struck->work;
@@ -87,6 +87,9 @@ mps_status mps_fluid_set_wall_motion(mps_fluid *f, int32_t number, const double 
   if (!f) return MPS_ERROR_ARGUMENT;
   const mps_status status = mpsi_fluid_free(f, __func__);
   if (status != MPS_OK) return status;
+  if (number >= 0 && number < MPS_FLUID_MAX_BOUNDARIES && f->wall[number].line)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "number: boundary %d is a polyline, which does not move", number);
   if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used || !velocity)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "boundary is %d and velocity %s: must be one of the fluid's, and given",
@@ -208,6 +211,8 @@ bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t particles, int64_t ghosts) {
 mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
   mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, find_walls);
   f->travel = 0.0;
+  if (!mpsi_fluid_list_segments(f))
+    return mpsi_fail_memory(f->context, function, (size_t)f->segments * sizeof(void *));
   for (bool room = false; !room;) {
     f->ghosts = 0;
     f->bent = f->sticky = 0;
@@ -220,6 +225,7 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
                        << b;
     for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
       if (f->wall[b].used) room = mirror_all(f, b);
+    if (room && f->segments > 0) room = mpsi_fluid_mirror_lines(f);
     const int64_t ghosts = f->ghost_capacity + f->ghost_capacity / 4 + 256;
     if (!room && !mpsi_fluid_grow_cloud(f, f->capacity, ghosts))
       return mpsi_fail_memory(f->context, function,
@@ -246,6 +252,8 @@ static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
       v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
     }
+    const mpsi_fluid_path *path = mpsi_fluid_path_of(f, g);
+    if (path) mpsi_fluid_reflect(path, v);
     for (int c = 0; c < 2; c++) f->u[c][j] = v[c] + kick[c];
   }
 }

@@ -142,7 +142,9 @@ static void release(mps_fluid *f) {
                          f->fit_room.item,
                          f->lower_col_room.item,
                          f->lower_room.item,
-                         f->near_wall_room.item};
+                         f->near_wall_room.item,
+                         f->segment_room.item,
+                         f->path_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) mpsi_fluid_drop_body(f, &f->body[b]);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);

@@ -1,7 +1,7 @@
 /* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. Data that
  * follow from the particles' positions, neighbours and the surface are computed again when needed.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/ranks/partition.h"
+#include "fluid/boundary/polyline.h"
 
 #include "core/state/state.h"
 #include "io/checkpoint.h"
@@ -13,6 +13,10 @@ static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
     mpsi_state_agree_number(s, c ? "point_y" : "point_x", w->at[c]);
     mpsi_state_agree_number(s, c ? "normal_y" : "normal_x", w->normal[c]);
   }
+  mpsi_state_agree_integer(s, "segments", w->line ? w->line->count : 0);
+  for (int64_t k = 0; w->line && k < w->line->count; k++)
+    for (int c = 0; c < 2; c++)
+      mpsi_state_agree_number(s, c ? "corner_y" : "corner_x", w->line->segment[k].end[1][c]);
   mpsi_state_f64(s, "origin", &w->origin, 1);
   mpsi_state_f64(s, "rate", &w->rate, 1);
   mpsi_state_agree_integer(s, "nodes", w->nodes);

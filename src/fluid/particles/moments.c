@@ -16,6 +16,7 @@
  * surface point is the mean of those of their neighbours at the surface, with c = |m|/h too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
+#include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 
 #define APART 0.12     /* n/n0 */
@@ -130,6 +131,8 @@ static void mirrored_moment(const mps_fluid *f, int64_t ghost, double *m) {
     const double *N = f->wall[b].normal, across = m[0] * N[0] + m[1] * N[1];
     m[0] -= 2.0 * across * N[0], m[1] -= 2.0 * across * N[1];
   }
+  const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
+  if (path) mpsi_fluid_reflect(path, m);
 }
 
 /* Particles near the surface, and the surface's mean direction there. */

@@ -6,6 +6,7 @@
  * near each other too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
+#include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 
 #include <string.h>
@@ -157,6 +158,10 @@ typedef struct pass {
   atomic_bool full, crowded;
 } pass;
 
+static bool near_corner(const mps_fluid *f, int64_t i) {
+  return mpsi_fluid_near_corner(f, i) || (f->segments > 0 && mpsi_fluid_near_turn(f, i));
+}
+
 /* The pairs of a chunk of particles, one after the other in the chunk's stretch. */
 static void find_chunk(void *data, int64_t chunk, int32_t worker) {
   (void)worker;
@@ -180,10 +185,11 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     }
     if (index == apart) index = memcpy(f->index + at, apart, (size_t)found * sizeof *index);
     if (f->limited) found = mpsi_fluid_keep_visible(f, i, found, index, r2);
+    if (f->segments > 0) found = mpsi_fluid_keep_seen(f, i, found, index, r2);
     const int32_t company = f->loops->weigh(f, i, found, index, r2, w);
     if (f->bent) average_weights(f, i, found, index, w);
     f->company[i] =
-        (uint8_t)(company | (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
+        (uint8_t)(company | (near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
                   (mpsi_fluid_near_wedge(f, i, NULL) ? MPSI_FLUID_NEAR_WEDGE : 0));
     f->start[i] = (int32_t)(at / MPSI_FLUID_WIDE);
     f->near[i] = (uint16_t)found;

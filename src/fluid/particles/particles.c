@@ -1,6 +1,6 @@
 /* particles.c - particles edited, added and removed between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/fluid_private.h"
+#include "fluid/boundary/polyline.h"
 
 #include <string.h>
 
@@ -62,7 +62,7 @@ static mps_status check_places(mps_fluid *f, const char *function, int64_t first
   const double *y = mpsi_particles_column(f->particles, "position", 1);
   for (int64_t i = first; i < end; i++) {
     const double at[2] = {x[i], y[i]};
-    double least = INFINITY, d;
+    double least = mpsi_fluid_before_lines(f, at), d;
     for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
       if (f->wall[b].used)
         least = fmin(least, mpsi_fluid_distance(&f->wall[b], f->wall[b].now.s, x[i], y[i]));

@@ -11,6 +11,7 @@
  * spacing along the wall, the surface point the end of one: it has half the weight, less where the
  * water's surface is along the wall, or the wall is level.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 
 #define REACH 2.1         /* l0 */
@@ -106,7 +107,7 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, n
   const double x = f->x[0][i], y = f->x[1][i];
   out->d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x, y);
   if (fabs(out->d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
-  if (w->of_body && out->d < 0.0) return false;
+  if ((w->of_body || w->of_line) && out->d < 0.0) return false;
   double a = mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y);
   if (f->push[0]) a -= f->push[0][i] * w->normal[0] + f->push[1][i] * w->normal[1];
   out->s = mpsi_fluid_along(w, x, y);
@@ -136,19 +137,22 @@ static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *fun
   return MPS_OK;
 }
 
-/* Whether a point of wall b lies on its wetted side of the boundaries and outside of bodies. */
-static bool among_walls(const mps_fluid *f, int32_t b, const double *x) {
+#define ON_LINE 1e-3 /* l0 */
+
+/* Whether a point of a wall lies on its wetted side of the boundaries and outside of bodies. */
+static bool among_walls(const mps_fluid *f, const mpsi_fluid_wall *own, const double *x) {
   for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
     const mpsi_fluid_wall *w = &f->wall[k];
-    if (k != b && w->used && mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x[0], x[1]) < 0.0)
+    if (w != own && w->used && mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x[0], x[1]) < 0.0)
       return false;
   }
-  return !f->faces || !mpsi_fluid_inside_body(f, f->wall[b].of_body, x);
+  if (f->segments > 0 && mpsi_fluid_before_lines(f, x) < -ON_LINE * f->l0) return false;
+  return !f->faces || !mpsi_fluid_inside_body(f, own->of_body, x);
 }
 
 /* Spacing of a wall's points: l0, or a face's length in whole parts. */
 static double pitch(const mps_fluid *f, const mpsi_fluid_wall *w) {
-  return w->of_body ? w->length / fmax(round(w->length / f->l0), 1.0) : f->l0;
+  return w->of_body || w->of_line ? w->length / fmax(round(w->length / f->l0), 1.0) : f->l0;
 }
 
 /* Points of the wall with particles near: numbers low to high - 1. */
@@ -162,25 +166,29 @@ static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t n
   const double step = pitch(f, w);
   *low = (int64_t)floor(least / step) - 4;
   *high = (int64_t)ceil(most / step) + 4;
-  if (!w->of_body) return;
+  if (!w->of_body && !w->of_line) return;
   const int64_t points = (int64_t)round(w->length / step);
-  *low = *low > 0 ? *low : 0;
-  *high = *high < points ? *high : points;
+  if (w->of_body || isfinite(w->from)) *low = *low > 0 ? *low : 0;
+  if (w->of_body || isfinite(w->to)) *high = *high < points ? *high : points;
 }
 
-static bool sees_point(const mps_fluid *f, int32_t b, double along, int64_t i) {
+/* Whether nothing that ends is between particle i and the point of a wall. */
+static bool sees_point(const mps_fluid *f, const mpsi_fluid_wall *w, double along, int64_t i) {
   double at[2];
   const double x[2] = {f->x[0][i], f->x[1][i]};
-  place(f, &f->wall[b], along, at);
-  return !mpsi_fluid_hidden(f, b, x, at);
+  if (!f->faces && f->segments == 0) return true;
+  place(f, w, along, at);
+  const bool face = w >= f->wall && w < f->wall + MPSI_FLUID_WALLS;
+  if (f->faces && mpsi_fluid_hidden(f, face ? (int)(w - f->wall) : -1, x, at)) return false;
+  const mpsi_fluid_segment *own = w->of_line ? (const mpsi_fluid_segment *)w : NULL;
+  return f->segments == 0 || !mpsi_fluid_behind_line(f, own, x, at);
 }
 
-/* Calls `point` for each wetted point of wall b with its position and pressure. */
+/* Calls `point` for each wetted point of a wall with its position and pressure. */
 typedef void (*point_fn)(void *user, const double *x, double p);
 
-static mps_status for_points(mps_fluid *f, int32_t b, const char *function, point_fn point,
-                             void *user) {
-  const mpsi_fluid_wall *w = &f->wall[b];
+static mps_status for_points(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
+                             point_fn point, void *user) {
   const double step = pitch(f, w);
   int64_t low, high, near;
   const mps_status status = gather(f, w, function, &near);
@@ -200,14 +208,14 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
     const int64_t first = (int64_t)floor(s / step - reach), last = (int64_t)(s / step + reach);
     for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
       const double at = ((double)k + 0.5) * step, weight = weight_of(f, list[n].d, s - at);
-      if (weight > 0.0 && (!f->faces || sees_point(f, b, at, list[n].i)))
+      if (weight > 0.0 && sees_point(f, w, at, list[n].i))
         fit_add(f, &sum[k - low], weight, at, &list[n]);
     }
   }
   for (int64_t k = low; k < high; k++) {
     double x[2];
     place(f, w, ((double)k + 0.5) * step, x);
-    if (sum[k - low].water <= LEAST_SUM || !among_walls(f, b, x)) continue;
+    if (sum[k - low].water <= LEAST_SUM || !among_walls(f, w, x)) continue;
     const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
     if (p > driest(&sum[k - low])) point(user, x, p);
   }
@@ -231,21 +239,39 @@ static void add_force(void *user, const double *x, double p) {
   load->wetted++;
 }
 
+/* The force of a polyline is that of its segments. */
+static mps_status load_line(mps_fluid *f, const char *function, mpsi_fluid_wall *boundary) {
+  mpsi_fluid_load *all = &boundary->load;
+  *all = (mpsi_fluid_load){0};
+  for (int64_t k = 0; k < boundary->line->count; k++) {
+    mpsi_fluid_wall *w = &boundary->line->segment[k].wall;
+    w->load = (mpsi_fluid_load){0};
+    resultant r = {w, pitch(f, w) * f->def.measure};
+    const mps_status status = for_points(f, w, function, add_force, &r);
+    if (status != MPS_OK) return status;
+    for (int c = 0; c < 2; c++) all->force[c] += w->load.force[c];
+    all->moment += w->load.moment, all->wetted += w->load.wetted;
+  }
+  return MPS_OK;
+}
+
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
   if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_send_local(f); /* the memory is allocated by then */
   for (int32_t b = 0; status == MPS_OK && b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
+    if (w->line) status = load_line(f, function, w);
     if (!w->used) continue;
     w->load = (mpsi_fluid_load){0};
     resultant r = {w, pitch(f, w) * f->def.measure};
-    status = for_points(f, b, function, add_force, &r);
+    status = for_points(f, w, function, add_force, &r);
   }
   return mpsi_fluid_agree(f, function, status);
 }
 
 static mps_status check_wall(const mps_fluid *f, const char *function, int32_t number) {
-  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
+  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES ||
+      !(f->wall[number].used || f->wall[number].line))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the fluid has no boundary of number %d", number);
   return MPS_OK;
@@ -292,6 +318,15 @@ static void list_point(void *user, const double *x, double p) {
   if (list->pressure) list->pressure[k] = p;
 }
 
+static mps_status list_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
+                              listing *list) {
+  if (!w->line) return for_points(f, w, function, list_point, list);
+  mps_status status = MPS_OK;
+  for (int64_t k = 0; k < w->line->count && status == MPS_OK; k++)
+    status = for_points(f, &w->line->segment[k].wall, function, list_point, list);
+  return status;
+}
+
 mps_status mps_fluid_get_wall(const mps_fluid *handle, int32_t number, int64_t capacity,
                               int64_t *count, double *x, double *pressure) {
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
@@ -304,22 +339,71 @@ mps_status mps_fluid_get_wall(const mps_fluid *handle, int32_t number, int64_t c
                      count ? "given" : "NULL");
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
   status = check_pressure(f, __func__);
-  if (status == MPS_OK) status = for_points(f, number, __func__, list_point, &list);
+  if (status == MPS_OK) status = list_points(f, __func__, &f->wall[number], &list);
   status = mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, __func__, status));
   if (status == MPS_OK) *count = list.count;
   return status;
 }
 
-/* Points are on the wall at its present position, or without displacement. */
+/* Whether a point is on a wall at its present position, or without displacement; *off: how far (m).
+ */
+static bool is_on(const mps_fluid *f, const mpsi_fluid_wall *w, const double *x, double *off) {
+  *off = mpsi_fluid_distance(w, w->now.s, x[0], x[1]);
+  const double s = mpsi_fluid_of_wall(w, w->now.s, x[0], x[1]);
+  return fabs(*off) <= 0.01 * f->l0 || fabs(*off + s) <= 0.01 * f->l0;
+}
+
+/* The wall, or the segment of a polyline, that a point is on; NULL: none. */
+static const mpsi_fluid_wall *wall_at(const mps_fluid *f, const mpsi_fluid_wall *w, const double *x,
+                                      double *off) {
+  if (!w->line) return is_on(f, w, x, off) ? w : NULL;
+  const mpsi_fluid_segment *nearest = NULL;
+  *off = mpsi_fluid_before_line(w->line, x, &nearest);
+  return fabs(*off) <= 0.01 * f->l0 ? &nearest->wall : NULL;
+}
+
 static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
                                int64_t count, const double *x) {
   for (int64_t k = 0; k < count; k++) {
-    const double off = mpsi_fluid_distance(w, w->now.s, x[3 * k], x[3 * k + 1]);
-    const double s = mpsi_fluid_of_wall(w, w->now.s, x[3 * k], x[3 * k + 1]);
-    if (!(fabs(off) <= 0.01 * f->l0) && !(fabs(off + s) <= 0.01 * f->l0))
+    double off;
+    if (!wall_at(f, w, x + 3 * k, &off))
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "x: point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
                        (long long)k, x[3 * k], x[3 * k + 1], off, 0.01 * f->l0);
+  }
+  return MPS_OK;
+}
+
+/* Pressure at a point of a wall near which `near` particles have been gathered. */
+static double pressure_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near,
+                          const double *x) {
+  const double at = mpsi_fluid_along(w, x[0], x[1]);
+  const neighbour *list = f->near_wall_room.item;
+  double to[2];
+  fit sum = no_fit;
+  for (int64_t i = 0; i < near; i++) {
+    const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
+    if (weight > 0.0 && (!w->of_line || sees_point(f, w, at, list[i].i)))
+      fit_add(f, &sum, weight, at, &list[i]);
+  }
+  place(f, w, at, to);
+  const double head = mpsi_fluid_head(f, to[0], to[1]);
+  const double p = sum.water > LEAST_SUM ? fit_value(f, &sum) - head : 0.0;
+  return p > driest(&sum) ? p : 0.0;
+}
+
+/* Points one after the other on the same segment share what is gathered. */
+static mps_status find_pressures(mps_fluid *f, const char *function, const mpsi_fluid_wall *wall,
+                                 int64_t count, const double *x, double *pressure) {
+  const mpsi_fluid_wall *last = NULL;
+  int64_t near = 0;
+  for (int64_t k = 0; k < count; k++) {
+    double off;
+    const mpsi_fluid_wall *w = wall_at(f, wall, x + 3 * k, &off);
+    const mps_status status = w == last ? MPS_OK : gather(f, w, function, &near);
+    if (status != MPS_OK) return status;
+    last = w;
+    pressure[k] = pressure_at(f, w, near, x + 3 * k);
   }
   return MPS_OK;
 }
@@ -332,29 +416,12 @@ mps_status mps_fluid_get_pressure(const mps_fluid *handle, int32_t number, int64
   if (status == MPS_OK && (count < 0 || (count > 0 && (!x || !pressure))))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld, x and pressure must be given", (long long)count);
-  int64_t near = 0;
   if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
   status = mpsi_fluid_agree(f, __func__, status);
   if (status != MPS_OK) return status;
   status = check_pressure(f, __func__);
-  if (status == MPS_OK) status = gather(f, &f->wall[number], __func__, &near);
-  status = mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, __func__, status));
-  if (status != MPS_OK) return status;
-  for (int64_t k = 0; k < count; k++) {
-    const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);
-    const neighbour *list = f->near_wall_room.item;
-    double to[2];
-    fit sum = no_fit;
-    for (int64_t i = 0; i < near; i++) {
-      const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
-      if (weight > 0.0) fit_add(f, &sum, weight, at, &list[i]);
-    }
-    place(f, &f->wall[number], at, to);
-    const double head = mpsi_fluid_head(f, to[0], to[1]);
-    const double p = sum.water > LEAST_SUM ? fit_value(f, &sum) - head : 0.0;
-    pressure[k] = p > driest(&sum) ? p : 0.0;
-  }
-  return MPS_OK;
+  if (status == MPS_OK) status = find_pressures(f, __func__, &f->wall[number], count, x, pressure);
+  return mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, __func__, status));
 }
 
 /* ---- level ----------------------------------------------------------------------------------- */

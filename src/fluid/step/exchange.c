@@ -14,6 +14,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/step/exchange.h"
 
+#include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 
 #include "core/base/exact.h"
@@ -39,7 +40,7 @@ mps_status mpsi_fluid_begin_exchange(mps_fluid *f, const char *function) {
   e->width = GAIN;
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     e->at[b] = (int32_t)e->width;
-    if (f->wall[b].used) e->width += OF_WALL;
+    if (f->wall[b].used || f->wall[b].line) e->width += OF_WALL;
   }
   const int64_t values = chunks_of(f) * e->width;
   if (!mpsi_room_ensure(f->context, &e->rows, values, sizeof(double)))
@@ -68,8 +69,36 @@ void mpsi_fluid_exchange_wall(const mps_fluid *f, int64_t chunk, int wall, int64
   sum[3] += mass * across * mpsi_fluid_of_wall(w, w->mean, x, y);
 }
 
+/* Of a pair of i and the image M j, j gets -M^T dv: both together (1 - M^T) dv. */
+static void exchange_in_line(const mps_fluid *f, const mpsi_fluid_path *path, int64_t chunk,
+                             int64_t i, const double *dv) {
+  const mpsi_fluid_segment *const *segment = f->segment_room.item;
+  double back[2] = {dv[0], dv[1]};
+  mpsi_fluid_reflect_back(path, back);
+  for (int c = 0; c < 2; c++) back[c] = 0.5 * (dv[c] - back[c]);
+  mpsi_fluid_exchange_wall(f, chunk, segment[path->segment[0]]->boundary, i, back);
+}
+
+static bool no_slip(const mps_fluid *f, const mpsi_fluid_path *path) {
+  const mpsi_fluid_segment *const *segment = f->segment_room.item;
+  return segment[path->segment[0]]->wall.kind == MPS_BOUNDARY_HELD;
+}
+
+void mpsi_fluid_exchange_along_line(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
+                                    const double *dv) {
+  const mpsi_fluid_segment *const *segment = f->segment_room.item;
+  const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
+  if (!path || !no_slip(f, path)) return;
+  double along[2] = {dv[0], dv[1]};
+  mpsi_fluid_reflect_back(path, along);
+  for (int c = 0; c < 2; c++) along[c] = 0.5 * (dv[c] + along[c]);
+  mpsi_fluid_exchange_wall(f, chunk, segment[path->segment[0]]->boundary, i, along);
+}
+
 void mpsi_fluid_exchange_image(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
                                const double *dv) {
+  const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
+  if (path) exchange_in_line(f, path, chunk, i, dv);
   for (int b = 0; f->flips[ghost] >> b && b < MPSI_FLUID_WALLS; b++) {
     if (!(f->flips[ghost] >> b & 1)) continue;
     const double *N = f->wall[b].normal, across = dv[0] * N[0] + dv[1] * N[1];
@@ -84,6 +113,10 @@ void mpsi_fluid_stick(const mps_fluid *f, int64_t ghost, double *u) {
     const double across = u[0] * N[0] + u[1] * N[1];
     for (int c = 0; c < 2; c++) u[c] = 2.0 * across * N[c] - u[c];
   }
+  const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
+  if (!path || !no_slip(f, path)) return;
+  mpsi_fluid_reflect_back(path, u);
+  for (int c = 0; c < 2 && path->count % 2 == 1; c++) u[c] = -u[c];
 }
 
 void mpsi_fluid_gain(const mps_fluid *f, int64_t chunk, const double *du) {
@@ -109,7 +142,7 @@ void mpsi_fluid_end_exchange(mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     const mpsi_exact *of = &sum[e->at[b]];
-    if (!w->used) continue;
+    if (!w->used && !w->line) continue;
     w->struck = (mpsi_fluid_struck){{mpsi_exact_value(&of[0]), mpsi_exact_value(&of[1])},
                                     mpsi_exact_value(&of[2]),
                                     mpsi_exact_value(&of[3])};
@@ -134,7 +167,7 @@ void mpsi_fluid_book_momentum(mps_fluid *f) {
     rest[c] = e->gain[c] - loads[c];
     for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
       const mpsi_fluid_wall *w = &f->wall[b];
-      if (w->used) rest[c] -= f->dt * w->load.force[c] + w->struck.impulse[c];
+      if (w->used || w->line) rest[c] -= f->dt * w->load.force[c] + w->struck.impulse[c];
     }
     for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
       const mpsi_fluid_body *body = &f->body[b];

@@ -12,6 +12,9 @@ void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, i
 /* Component of dv, from an image, along the normals of the walls at which it is mirrored. */
 void mpsi_fluid_exchange_image(const mps_fluid *fluid, int64_t chunk, int64_t ghost, int64_t i,
                                const double *dv);
+/* Of an image in a polyline of no slip: the rest of dv, along its segments. */
+void mpsi_fluid_exchange_along_line(const mps_fluid *fluid, int64_t chunk, int64_t ghost, int64_t i,
+                                    const double *dv);
 /* Sum of the changes of velocity, m/s, of particles of a chunk in the step. */
 void mpsi_fluid_gain(const mps_fluid *fluid, int64_t chunk, const double *du);
 /* The velocity u that an image has to move with at walls of no slip: against its parent's. */

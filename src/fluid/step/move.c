@@ -13,6 +13,7 @@
  * 2017); s0 = sqrt(g/l0), b = max(0, 1 - |G|^2/(.05 s0^2)).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
+#include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
 #include "fluid/step/smooth.h"
@@ -20,7 +21,6 @@
 #define SHIFT 2.5
 #define MOST_SHIFT 0.05 /* l0 */
 #define ZONE_SHIFT 0.3  /* of the shift, within 1.6 l0 of the surface */
-#define OFF_WALL 0.1    /* l0 */
 #define PAIR 0.5        /* l0: where two particles collide */
 #define OWN_IMAGE 0.7   /* l0: one and its image, .35 l0 from the wall, .. */
 #define IMPACT 0.3      /* (g/l0)^1/2: .. where they approach at this rate */
@@ -95,6 +95,8 @@ static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
     const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
     v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
   }
+  const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
+  if (path) mpsi_fluid_reflect(path, v);
 }
 
 /* Pairs that are too close and approach lose half their relative velocity each. A particle and its
@@ -189,7 +191,7 @@ static double carried(const mps_fluid *f, int64_t i) {
  * into the wall. */
 static bool keep_off(const mps_fluid *f, int wall, int64_t i, double *x, double *u) {
   const mpsi_fluid_wall *w = &f->wall[wall];
-  const double d = mpsi_fluid_distance(w, w->next.s, x[0], x[1]), off = OFF_WALL * f->l0;
+  const double d = mpsi_fluid_distance(w, w->next.s, x[0], x[1]), off = MPSI_FLUID_OFF_WALL * f->l0;
   if (d >= off) return false;
   const double moves = mpsi_fluid_of_wall(w, w->next.u, x[0], x[1]);
   const double into = u[0] * w->normal[0] + u[1] * w->normal[1] - moves;
@@ -204,12 +206,12 @@ static bool keep_off(const mps_fluid *f, int wall, int64_t i, double *x, double 
 }
 
 static int64_t keep_off_walls(const mps_fluid *f, int64_t i, double *x, double *u) {
-  int64_t pushed = 0;
+  int64_t pushed = f->segments > 0 ? mpsi_fluid_keep_off_lines(f, i, x, u) : 0;
   for (int b = 0; f->faces && b < MPSI_FLUID_BODIES; b++) {
     double d;
     if (!f->body[b].body) continue;
     const int face = mpsi_fluid_face_of(f, &f->body[b], true, x, &d);
-    if (d < OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, face, i, x, u);
+    if (d < MPSI_FLUID_OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, face, i, x, u);
   }
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
     if (f->wall[b].used) pushed += keep_off(f, b, i, x, u);

@@ -21,6 +21,7 @@
 #include "fluid/step/smooth.h"
 
 #include "fluid/base/loops.h"
+#include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
 
@@ -110,6 +111,17 @@ static void prepare(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   f->system.sums[2 * chunk] = any;
 }
 
+/* G of an image in polylines: M G M^T. */
+static void mirror_in_lines(const mps_fluid *f, int64_t ghost, double *G) {
+  const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
+  for (int c = 0; path && c < 2; c++) { /* columns */
+    double column[2] = {G[c], G[2 + c]};
+    mpsi_fluid_reflect(path, column);
+    G[c] = column[0], G[2 + c] = column[1];
+  }
+  for (int r = 0; path && r < 2; r++) mpsi_fluid_reflect(path, G + 2 * r);
+}
+
 /* G of an image: R G R^T, R the reflections at its walls. */
 static void mirror_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
@@ -129,6 +141,7 @@ static void mirror_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
         G[2 * r] -= 2.0 * across * N[0], G[2 * r + 1] -= 2.0 * across * N[1];
       }
     }
+    mirror_in_lines(f, g, G);
     f->flux[0][j] = f->flux[0][own];
     for (int k = 0; k < 4; k++) f->flux[1 + k][j] = (float)G[k];
   }
@@ -158,9 +171,9 @@ static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   const float *w = f->w + mpsi_fluid_pairs(f, i);
   v[0] = local->rest[0], v[1] = local->rest[1];
-  for (int32_t k = 0; f->sticky && k < f->near[i]; k++) {
+  for (int32_t k = 0; (f->sticky || f->segments > 0) && k < f->near[i]; k++) {
     const int64_t j = index[k], ghost = j - f->count;
-    if (ghost < 0 || !(f->flips[ghost] & f->sticky)) continue;
+    if (ghost < 0 || !(f->flips[ghost] & f->sticky || mpsi_fluid_path_of(f, ghost))) continue;
     double stuck[2] = {f->u[0][j], f->u[1][j]};
     mpsi_fluid_stick(f, ghost, stuck);
     for (int c = 0; c < 2; c++) v[c] += w[k] * (stuck[c] - f->u[c][j]) / local->n;
@@ -176,7 +189,8 @@ static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int
   const uint32_t stuck = f->flips[ghost] & f->sticky;
   double along[2] = {dv[0], dv[1]};
   int first = 0;
-  if (!stuck) return;
+  mpsi_fluid_exchange_along_line(f, chunk, ghost, i, dv);
+  if (!stuck || mpsi_fluid_path_of(f, ghost)) return;
   while (!(stuck >> first & 1)) first++;
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     const double *N = f->wall[b].normal;
@@ -201,7 +215,7 @@ static void exchange(const mps_fluid *f, int64_t chunk, int64_t i, double smooth
     const double part = w[k] / local->n;
     const double pair = f->paired ? 0.5 * w[k] * (f->flux[0][i] + f->flux[0][j]) : 0.0;
     double dv[2], stuck[2] = {f->u[0][j], f->u[1][j]};
-    if (viscous > 0.0 && f->sticky) mpsi_fluid_stick(f, ghost, stuck);
+    if (viscous > 0.0 && (f->sticky || f->segments > 0)) mpsi_fluid_stick(f, ghost, stuck);
     for (int c = 0; c < 2; c++) {
       const double linear = f->u[c][i] + G[2 * c] * dx + G[2 * c + 1] * dy;
       dv[c] = part * (smooth * (f->u[c][j] - linear) + viscous * (stuck[c] - linear));

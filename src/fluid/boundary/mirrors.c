@@ -1,0 +1,269 @@
+/* mirrors.c - images of particles in polylines. A line of sight that reaches a segment continues
+ * reflected, at a corner of less than 180 degrees of fluid as often as the angle asks: what a
+ * particle sees is the plane without gaps and without overlaps, however acute the corner. The image
+ * of b by the mirrors 1, 2, ..., n, in the order in which the sight of a reaches them, is
+ * R1 R2 ... Rn b. The way back has the same mirrors in the opposite order, so that b has the image
+ * of a at the same distance: the matrix is symmetric.
+ *
+ * Around a convex corner particles without a line of sight are neighbours at the length of the path
+ * around it (sight.c). Images in plane boundaries at right angles to a segment are mirrored in it
+ * like particles. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/polyline.h"
+
+#include <string.h>
+
+#define EDGE 1e-6     /* l0: a sight through a concave corner is reflected there */
+#define CORNER 1.5    /* l0 */
+#define TURN 0.5236   /* rad: of a convex corner that counts as one */
+#define STRAIGHT 1e-9 /* rad */
+#define PI 3.141592653589793
+#define SQUARE 1e-6 /* cosine of the angle of walls at right angles */
+
+bool mpsi_fluid_list_segments(mps_fluid *f) {
+  int64_t count = 0;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+    if (f->wall[b].line) count += f->wall[b].line->count;
+  f->segments = count;
+  if (count == 0) return true;
+  if (!mpsi_room_ensure(f->context, &f->segment_room, count, sizeof(mpsi_fluid_segment *)))
+    return false;
+  mpsi_fluid_segment **all = f->segment_room.item;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+    for (int64_t k = 0; f->wall[b].line && k < f->wall[b].line->count; k++) {
+      mpsi_fluid_segment *s = &f->wall[b].line->segment[k];
+      s->all = (int32_t)(f->segments - count--);
+      all[s->all] = s;
+    }
+  return true;
+}
+
+static mpsi_fluid_segment *segment_of(const mps_fluid *f, int64_t k) {
+  return ((mpsi_fluid_segment *const *)f->segment_room.item)[k];
+}
+
+/* ---- images ---------------------------------------------------------------------------------- */
+
+/* Appends the image of entry i of the cloud at a segment; false: no room. */
+static bool add_image(mps_fluid *f, int64_t i, const mpsi_fluid_segment *s) {
+  const int64_t before = i - f->count;
+  if (f->ghosts == f->ghost_capacity) return false;
+  const double *n = s->wall.normal, x[2] = {f->x[0][i], f->x[1][i]};
+  const double d = mpsi_fluid_before_segment(s, x);
+  const int64_t g = f->ghosts++;
+  mpsi_fluid_path *paths = f->path_room.item, *path = &paths[g];
+  for (int c = 0; c < 2; c++) f->x[c][f->count + g] = x[c] - 2.0 * d * n[c];
+  f->parent[g] = before < 0 ? (int32_t)i : f->parent[before];
+  f->flips[g] = before < 0 ? 0 : f->flips[before];
+  const mpsi_fluid_path none = {.M = {1.0, 0.0, 0.0, 1.0}},
+                        *from = before < 0 ? &none : &paths[before];
+  path->count = from->count + 1;
+  path->segment[0] = s->all;
+  memcpy(path->segment + 1, from->segment, (size_t)from->count * sizeof *path->segment);
+  for (int c = 0; c < 2; c++) { /* R of the segment times the product so far */
+    const double across = n[0] * from->M[c] + n[1] * from->M[2 + c];
+    for (int r = 0; r < 2; r++) path->M[2 * r + c] = from->M[2 * r + c] - 2.0 * across * n[r];
+  }
+  return true;
+}
+
+/* Whether entry i of the cloud is in front of a segment and within re of it. */
+static bool in_reach(const mps_fluid *f, int64_t i, const mpsi_fluid_segment *s) {
+  const double x[2] = {f->x[0][i], f->x[1][i]}, re = f->weight.re;
+  const double d = mpsi_fluid_before_segment(s, x);
+  if (!(d > 0.0 && d < re)) return false;
+  return mpsi_fluid_from_segment(s, x) < re * re;
+}
+
+/* Whether a sight can reach segment s first and segment p next: some of s is in front of p. */
+static bool leads_to(const mps_fluid *f, const mpsi_fluid_segment *s, const mpsi_fluid_segment *p) {
+  const double slope =
+      -(s->wall.normal[0] * p->wall.normal[1] - s->wall.normal[1] * p->wall.normal[0]);
+  for (int c = 0; c < 2; c++) {
+    if (mpsi_fluid_before_segment(p, s->end[c]) > EDGE * f->l0) return true;
+    if (s->infinite[c] && (c ? -slope : slope) < -1e-12) return true;
+  }
+  return false;
+}
+
+/* An image in boundaries is mirrored at segments at right angles to all of them. */
+static bool square_to_flips(const mps_fluid *f, int64_t ghost, const mpsi_fluid_segment *s) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    if (!(f->flips[ghost] >> b & 1)) continue;
+    const double *n = f->wall[b].normal;
+    if (fabs(n[0] * s->wall.normal[0] + n[1] * s->wall.normal[1]) > SQUARE) return false;
+  }
+  return true;
+}
+
+bool mpsi_fluid_mirror_lines(mps_fluid *f) {
+  const int64_t of_boundaries = f->ghosts;
+  if (!mpsi_room_fit(f->context, &f->path_room, f->ghost_capacity, sizeof(mpsi_fluid_path)))
+    return false;
+  mpsi_fluid_path *path = f->path_room.item;
+  for (int64_t g = 0; g < of_boundaries; g++)
+    path[g] = (mpsi_fluid_path){.M = {1.0, 0.0, 0.0, 1.0}};
+  for (int64_t k = 0; k < f->segments; k++) {
+    mpsi_fluid_segment *s = segment_of(f, k);
+    s->wall.first_image = f->ghosts;
+    for (int64_t i = 0; i < f->count; i++)
+      if (in_reach(f, i, s) && !add_image(f, i, s)) return false;
+    s->wall.images = f->ghosts - s->wall.first_image;
+  }
+  const int64_t first = f->ghosts;
+  for (int64_t k = 0; k < f->segments; k++)
+    for (int64_t g = 0; g < of_boundaries; g++)
+      if (in_reach(f, f->count + g, segment_of(f, k)) && square_to_flips(f, g, segment_of(f, k)) &&
+          !add_image(f, f->count + g, segment_of(f, k)))
+        return false;
+  for (int64_t g = of_boundaries; g < f->ghosts; g++)
+    for (int64_t k = 0; k < f->segments && path[g].count < MPSI_FLUID_REFLECTIONS; k++) {
+      const mpsi_fluid_segment *s = segment_of(f, k), *p = segment_of(f, path[g].segment[0]);
+      if (g >= first && f->flips[g]) break; /* corners are far from boundaries */
+      if (s != p && in_reach(f, f->count + g, s) && leads_to(f, s, p) &&
+          !add_image(f, f->count + g, s))
+        return false;
+    }
+  return true;
+}
+
+/* ---- sight ----------------------------------------------------------------------------------- */
+
+/* Whether the way from a to b passes through a segment from its front, and at which share of it.
+ * Through a convex corner counts as past it, through a concave one as through both segments. */
+static bool crosses(const mps_fluid *f, const mpsi_fluid_segment *s, const double *a,
+                    const double *b, double *share) {
+  const double da = mpsi_fluid_before_segment(s, a), db = mpsi_fluid_before_segment(s, b);
+  if (!(db < 0.0 && da > -EDGE * f->l0)) return false;
+  *share = da > 0.0 ? da / (da - db) : 0.0;
+  const double x = a[0] + *share * (b[0] - a[0]), y = a[1] + *share * (b[1] - a[1]);
+  const double along = mpsi_fluid_along(&s->wall, x, y), edge = EDGE * f->l0;
+  return along > s->wall.from + (s->angle[1] < PI + STRAIGHT ? -edge : edge) &&
+         along < s->wall.to - (s->angle[0] < PI + STRAIGHT ? -edge : edge);
+}
+
+/* The segments within re of a particle. */
+typedef struct vicinity {
+  int32_t count;
+  int32_t segment[64];
+} vicinity;
+
+static void look_about(const mps_fluid *f, const double *x, vicinity *near) {
+  const double re2 = f->weight.re * f->weight.re;
+  near->count = 0;
+  for (int32_t k = 0; k < (int32_t)f->segments; k++) {
+    const mpsi_fluid_segment *s = segment_of(f, k);
+    const double d = mpsi_fluid_before_segment(s, x);
+    if (d * d < re2 && mpsi_fluid_from_segment(s, x) < re2 && near->count < 64)
+      near->segment[near->count++] = k;
+  }
+}
+
+/* The first segment that the way from a to b passes; not the one that it comes from. */
+static int32_t first_mirror(const mps_fluid *f, const vicinity *near, int32_t from, const double *a,
+                            const double *b, double *share) {
+  int32_t first = -1;
+  for (int32_t n = 0; n < near->count; n++) {
+    double at = 0.0;
+    if (near->segment[n] == from) continue;
+    if (!crosses(f, segment_of(f, near->segment[n]), a, b, &at)) continue;
+    if (first < 0 || at < *share) first = near->segment[n], *share = at;
+  }
+  return first;
+}
+
+/* Whether the sight of a towards entry j of the cloud is reflected at the mirrors of its path, and
+ * no other.
+ */
+static bool follows(const mps_fluid *f, const vicinity *near, const double *a, int64_t j) {
+  const mpsi_fluid_path *path = j < f->count ? NULL : mpsi_fluid_path_of(f, j - f->count);
+  double at[2] = {a[0], a[1]}, to[2] = {f->x[0][j], f->x[1][j]}, share = 0.0;
+  int32_t from = -1;
+  for (int32_t n = 0; path && n < path->count; n++) {
+    const mpsi_fluid_segment *s = segment_of(f, path->segment[n]);
+    if (first_mirror(f, near, from, at, to, &share) != path->segment[n]) return false;
+    if (f->faces && mpsi_fluid_hidden(f, -1, at, to)) return false;
+    for (int c = 0; c < 2; c++) at[c] += share * (to[c] - at[c]);
+    const double d = mpsi_fluid_before_segment(s, to);
+    for (int c = 0; c < 2; c++) to[c] -= 2.0 * d * s->wall.normal[c];
+    from = path->segment[n];
+  }
+  return first_mirror(f, near, from, at, to, &share) < 0;
+}
+
+/* Length of the way from a to b around the nearest convex corner, m; INFINITY without one. */
+static double way_around(const mps_fluid *f, const vicinity *near, const double *a,
+                         const double *b) {
+  double least = INFINITY, share = 0.0;
+  for (int32_t n = 0; n < near->count; n++) {
+    const mpsi_fluid_segment *s = segment_of(f, near->segment[n]);
+    const double *tip = s->end[1];
+    if (s->infinite[1] || !(s->angle[1] > PI + STRAIGHT)) continue;
+    const double way = hypot(a[0] - tip[0], a[1] - tip[1]) + hypot(b[0] - tip[0], b[1] - tip[1]);
+    if (way < least && way < f->weight.re && first_mirror(f, near, -1, a, tip, &share) < 0 &&
+        first_mirror(f, near, -1, b, tip, &share) < 0)
+      least = way;
+  }
+  return least;
+}
+
+/* A single segment, whose corners are out of reach. */
+static bool plain(const mps_fluid *f, const vicinity *near, const double *x) {
+  if (near->count != 1) return false;
+  const mpsi_fluid_segment *s = segment_of(f, near->segment[0]);
+  const double along = mpsi_fluid_along(&s->wall, x[0], x[1]), re = f->weight.re;
+  return along > s->wall.from + re && along < s->wall.to - re;
+}
+
+int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32_t *index,
+                             double *r2) {
+  const double x[2] = {f->x[0][i], f->x[1][i]};
+  vicinity near;
+  int64_t kept = 0;
+  look_about(f, x, &near);
+  const bool simple = near.count == 0 || plain(f, &near, x);
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t j = index[k];
+    double square = r2[k];
+    if (simple) {
+      const mpsi_fluid_path *path = j < f->count ? NULL : mpsi_fluid_path_of(f, j - f->count);
+      if (path && (near.count == 0 || path->count != 1 || path->segment[0] != near.segment[0]))
+        continue;
+    } else if (!follows(f, &near, x, j)) {
+      const double other[2] = {f->x[0][j], f->x[1][j]};
+      const double way = j < f->count ? way_around(f, &near, x, other) : INFINITY;
+      if (!(way < f->weight.re)) continue;
+      square = way * way;
+    }
+    index[kept] = index[k], r2[kept] = square;
+    kept++;
+  }
+  return kept;
+}
+
+const mpsi_fluid_segment *mpsi_fluid_crossed(const mps_fluid *f, const mpsi_fluid_segment *except,
+                                             const double *a, const double *b, double *share) {
+  const mpsi_fluid_segment *first = NULL;
+  for (int64_t k = 0; k < f->segments; k++) {
+    const mpsi_fluid_segment *s = segment_of(f, k);
+    double at = 0.0;
+    if (s == except || !crosses(f, s, a, b, &at)) continue;
+    if (!first || at < *share) first = s, *share = at;
+  }
+  return first;
+}
+
+bool mpsi_fluid_behind_line(const mps_fluid *f, const mpsi_fluid_segment *except, const double *a,
+                            const double *b) {
+  double share = 0.0;
+  return mpsi_fluid_crossed(f, except, a, b, &share) != NULL;
+}
+
+bool mpsi_fluid_near_turn(const mps_fluid *f, int64_t i) {
+  const double reach = CORNER * f->l0;
+  for (int64_t k = 0; k < f->segments; k++) {
+    const mpsi_fluid_segment *s = segment_of(f, k);
+    const double dx = f->x[0][i] - s->end[1][0], dy = f->x[1][i] - s->end[1][1];
+    if (s->angle[1] > PI + TURN && dx * dx + dy * dy < reach * reach) return true;
+  }
+  return false;
+}
