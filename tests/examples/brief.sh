@@ -21,6 +21,9 @@ run mps-rolling-disc --h 0.02 --duration 0.02
 run mps-footing --h 0.25 --domain 3x1 --settlement 0.05mm
 run mps-consolidation --cells 3 --stiffness 10 --times 0.01
 run mps-consolidation --case mandel --cells 3 --stiffness 10 --times 0.001
+run mps-slope --h 2 --factor 1.5 --falls 0.5
+run mps-slope --runout --h 2 --phi 0 --cohesion 20kPa --residual-cohesion 5kPa --falls 0.5
+run mps-wall --h 0.2 --path 2mm --rate 0.2
 run mps-pile --h 0.02 --wall 0.04 --soil 0.4x0.8 --depth 0.01
 run mps-penetrometer --soil 2x2x2 --depth 0.002
 run mps-dam-break --base 0.05 --h 0.005 --duration 0.02

@@ -73,6 +73,10 @@ wrote disc motion.csv summary.json
 has "$work/disc/summary.json" '"x_error_05": null'
 interrupt footing 1 mps-footing
 wrote footing pressure.csv particles.csv summary.json
+interrupt slope 1 mps-slope --h 0.5
+wrote slope motion.csv particles.csv summary.json
+interrupt wall 1 mps-wall --pressure passive
+wrote wall pressure.csv particles.csv summary.json
 interrupt layer 1 mps-consolidation --cells 40 --times 0.0001,0.0002,0.0003,10
 wrote layer profile.csv times.csv summary.json
 interrupt pile 1 mps-pile --soil 0.4x2

@@ -22,4 +22,6 @@ again mps-rolling-disc 8ms --h 0.025 --duration 20ms
 again mps-column-collapse 12ms --width 0.1 --h 0.025 --falls 0.2 --compare
 again mps-penetrometer 3ms --soil 4x4x2 --h 0.025 --depth 1cm --rate 2 --ppc 1 --axisymmetric
 again mps-consolidation 1 --cells 5 --stiffness 10 --times 0.05,0.1,0.2
+again mps-slope 1.1 --h 2 --falls 3 --tolerance 0.5
+again mps-wall 0.05 --h 0.2 --base 0.4 --path 2mm --friction 0.3
 again mps-footing 8ms --h 0.25 --domain 3x1 --settlement 1mm --rate 100mm/s

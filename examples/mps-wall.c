@@ -1,0 +1,97 @@
+/* mps-wall - earth pressure on a retaining wall that moves: active where it leaves the ground,
+ * passive where it is pushed into it, smooth or rough. WLS-MPM, Mohr-Coulomb, plane strain.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "wall/wall.h"
+
+#include <math.h>
+
+/* What depends on other options, and what they exclude. NULL: good. */
+static const char *settle(settings *s) {
+  const double sine = sin(s->phi * 3.14159265358979323846 / 180.0);
+  const bool active = s->pressure == ACTIVE;
+  if (isnan(s->length)) s->length = (active ? 2.5 : 5.0) * s->height;
+  s->front = s->height;
+  if (isnan(s->k0)) s->k0 = 1.0 - sine; /* Jaky */
+  if (isnan(s->path)) s->path = (active ? 0.01 : 0.02) * s->height;
+  if (isnan(s->h)) s->h = s->height / 16.0;
+  if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
+  if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
+  if (s->base > 0.0 && s->base < 2.0 * s->h * (1.0 - 1e-9))
+    return "--base must be 0 or at least 2 cells of --h";
+  if (s->length < s->height) return "--length must be at least --height";
+  if (s->path > 0.2 * s->height) return "--path must be at most a fifth of --height";
+  if (s->density * s->gravity * (s->height + s->base) > 0.1 * s->young)
+    return "--young must be at least 10 times the stress at the toe, density g height";
+  const double ground = s->length * (s->height + s->base) + s->front * s->base;
+  return mpm_model_too_large(ground / (s->h * s->h) * (double)s->ppc);
+}
+
+int main(int argc, char **argv) {
+  static simulation sim = {.s = {.height = 1.0,
+                                 .length = NAN,
+                                 .phi = 30.0,
+                                 .k0 = NAN,
+                                 .young = 5e7,
+                                 .poisson = 0.3,
+                                 .density = 1800.0,
+                                 .gravity = 9.81,
+                                 .corner = 0.6,
+                                 .path = NAN,
+                                 .rate = 0.02,
+                                 .h = NAN,
+                                 .ppc = 4,
+                                 .spline = 1,
+                                 .course = MPM_COURSE_DEFAULTS,
+                                 .out = "out/wall"}};
+  settings *s = &sim.s;
+  option table[] = {
+      OPTION_HEADING("Wall"),
+      OPTION_CHOICE("pressure", "active|passive", &s->pressure,
+                    "it moves away from the ground or into it"),
+      OPTION_CHOICE("motion", "translate|toe|top", &s->motion,
+                    "as a whole, or turning about its toe or its top"),
+      OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->height, "of the ground behind it"),
+      COMMON_NUMBER("friction", &s->friction, "of its face"),
+      OPTION_NUMBER("path", "m", OPTION_LENGTH, &s->path,
+                    "of the end that moves most; default 0.01 of the height, passive 0.02"),
+      COMMON_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 10.0), &s->rate, "of that end"),
+      COMMON_NUMBER("corner", &s->corner, "of its toe"),
+      OPTION_HEADING("Ground (Mohr-Coulomb)"),
+      OPTION_NUMBER("base", "m", OPTION_FROM_TO(0.0, 1e6), &s->base,
+                    "depth of ground below the toe and in front of it; 0: a smooth bed"),
+      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length,
+                    "of the ground behind the wall; default 2.5 heights, passive 5"),
+      COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
+      COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
+      COMMON_NUMBER("cohesion", &s->cohesion, NULL),
+      OPTION_NUMBER("k0", "1", OPTION_FROM_TO(0.0, 10.0), &s->k0,
+                    "horizontal over vertical stress at rest; default 1 - sin(phi)"),
+      COMMON_NUMBER("young", &s->young, NULL),
+      COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49), &s->poisson, NULL),
+      COMMON_NUMBER("density", &s->density, NULL),
+      COMMON_NUMBER_IN("gravity", OPTION_FROM_TO(1e-3, 1e4), &s->gravity, NULL),
+      OPTION_HEADING("Grid"),
+      COMMON_NUMBER("h", &s->h, "default height/16"),
+      COMMON_INTEGER("ppc", &s->ppc, NULL),
+      COMMON_CHOICE("spline", &s->spline, NULL),
+      OPTION_HEADING("Run"),
+      MPM_COURSE_OPTIONS(&s->course, WALL_SAMPLES),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {
+      "mps-wall",
+      "Active and passive earth pressure on a wall that moves (WLS-MPM, Mohr-Coulomb), against\n"
+      "Rankine and Coulomb.",
+      table};
+  int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  const char *reason = settle(s);
+  if (reason) return options_refuse(&program, reason);
+  static const mpm_model_parts parts = {wall_build, wall_march, wall_finish};
+  const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
+  code = mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
+  mpm_snapshot_free(&sim.shot);
+  return code;
+}

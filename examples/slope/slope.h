@@ -1,0 +1,66 @@
+/* slope.h - the parts of mps-slope: ground and one trial (model.c), the search for the factor
+ * (search.c), results (results.c). SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_SLOPE_H
+#define EXAMPLES_SLOPE_H
+
+#include "common/mpm_course.h"
+#include "common/mpm_heap.h"
+#include "common/mpm_model.h"
+
+enum { SLOPE_SAMPLES = 40, SLOPE_TRIALS = 24 };
+
+typedef struct settings {
+  double height, slope, base, crest, toe;    /* m; slope: horizontal per vertical */
+  double phi, psi, cohesion;                 /* degrees, degrees, Pa */
+  double residual_phi, residual_cohesion;    /* NaN: as phi and cohesion */
+  double slip;                               /* m */
+  double young, poisson, density, gravity;   /* Pa, -, kg/m3, m/s2 */
+  double factor, tolerance, fails, falls, h; /* NaN: it is sought; -, of H, (H/g)^1/2, m */
+  int64_t ppc, threads;
+  int spline; /* degree of the weights less 2 */
+  bool runout;
+  mpm_course_options course;
+  const char *out;
+} settings;
+
+/* One strength, and whether the slope stands. */
+typedef struct trial {
+  double factor;
+  int failed; /* 0 or 1 */
+  int rows;
+  double t[SLOPE_SAMPLES + 1], moved[SLOPE_SAMPLES + 1]; /* s, m */
+} trial;
+
+typedef struct simulation {
+  settings s;
+  mpm_model m;
+  mps_context *context;
+  int now; /* the present trial; those before have ended */
+  trial trial[SLOPE_TRIALS];
+  double *start; /* m, 2 a particle by its id: where it was; rank 0 */
+  int64_t starts;
+  double front, lost, kinetic; /* m: beyond the toe, behind the crest; J/m: at the last sample */
+  double peak;                 /* J/m, of the kinetic energy */
+  mpm_snapshot shot;           /* plastic strain of the weakest strength that failed, or the last */
+  mpm_course course;
+} simulation;
+
+/* The strengths between which the slope fails: of all trials that have ended. 0 and infinity where
+ * none stood or failed. */
+void slope_bracket(const simulation *sim, int trials, double *stands, double *fails);
+/* Whether they are as close as requested, or the one trial has ended. */
+bool slope_found(const simulation *sim, int trials);
+
+/* model.c */
+double slope_duration(const settings *s);
+mps_status slope_build_trial(simulation *sim);
+mps_status slope_march_trial(simulation *sim);
+
+/* search.c */
+mps_status slope_build(mps_context *context, void *user);
+mps_status slope_march(void *user);
+
+/* results.c */
+bool slope_finish(app *a, void *user);
+
+#endif

@@ -1,0 +1,178 @@
+/* model.c - ground, wall and the run of mps-wall. The wall is x <= 0, the ground behind it x > 0;
+ * it moves away from the ground (active) or into it (passive), as a whole or about its toe or top.
+ * With a base the ground goes on below the toe and in front of the wall; without one the wall
+ * stands on a smooth bed. SPDX-License-Identifier: BSD-3-Clause */
+#include "wall.h"
+
+#include <mps/geostatic.h>
+
+#include <math.h>
+
+#define DEGREE (3.14159265358979323846 / 180.0)
+#define RAMP 0.05  /* of the path: up to the full speed */
+#define THICK 0.25 /* of the height */
+#define ABOVE 0.5  /* of the height: the wall goes on above the ground, which rises */
+
+/* ---- ground ---------------------------------------------------------------------------------- */
+
+static mps_status set_stress(const settings *s, mps_particles *set) {
+  const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = s->k0, .density = NAN};
+  const double step = 1e-6 * s->height;
+  const double line[] = {-step, s->base, step, s->base + s->height};
+  mps_geostatic_def def = mps_geostatic_defaults();
+  def.layers = &layer, def.layer_count = 1;
+  def.gravity = s->gravity;
+  if (s->base > 0.0)
+    def.surface_line = line, def.surface_points = 2;
+  else
+    def.surface = s->height;
+  return mps_particles_set_geostatic(set, &def);
+}
+
+static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
+  const double lo[] = {0.0, 0.0}, hi[] = {s->length, s->base + s->height};
+  const double before_lo[] = {-s->front, 0.0}, before_hi[] = {0.0, s->base};
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = s->h / sqrt((double)s->ppc);
+  mps_status status = mpm_model_particles(m, context, &set);
+  if (status == MPS_OK) status = mps_particles_fill_box(m->particles, lo, hi, NULL);
+  if (status == MPS_OK && s->base > 0.0)
+    status = mps_particles_fill_box(m->particles, before_lo, before_hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
+  return status == MPS_OK ? set_stress(s, m->particles) : status;
+}
+
+static mps_status make_law(mps_context *context, const settings *s, mps_material **out) {
+  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
+  law.young = s->young, law.poisson = s->poisson;
+  law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE, law.cohesion = s->cohesion;
+  return mps_material_create_mohr_coulomb(context, &law, out);
+}
+
+/* ---- wall ------------------------------------------------------------------------------------ */
+
+/* The path, a length at the end that moves most, over time. */
+static mps_status make_path(mps_context *context, simulation *sim, mps_signal **out) {
+  const settings *s = &sim->s;
+  sim->ramp = 2.0 * RAMP * s->path / s->rate;
+  sim->t_end = s->path / s->rate + 0.5 * sim->ramp;
+  const double t[] = {0.0, sim->ramp, sim->t_end + 1.0}, v[] = {0.0, s->rate, s->rate};
+  return mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, out);
+}
+
+/* Its reference point is its toe or, where it turns about that, the ground's level behind it. */
+static mps_status make_wall(mps_context *context, simulation *sim) {
+  const settings *s = &sim->s;
+  const bool top = s->motion == TURNS_ABOUT_TOP;
+  const double foot = top ? -s->height : s->base > 0.0 ? 0.0 : -ABOVE * s->height;
+  const double low = top && s->base == 0.0 ? foot - ABOVE * s->height : foot;
+  const double head = (top ? 0.0 : s->height) + ABOVE * s->height, thick = THICK * s->height;
+  const double corners[] = {0.0, low, 0.0, head, -thick, head, -thick, low};
+  mps_signal *path = NULL;
+  mps_body_def def = mps_body_defaults();
+  def.position[1] = s->base + (top ? s->height : 0.0);
+  mps_status status = make_path(context, sim, &path);
+  if (status == MPS_OK)
+    status = mps_body_create_polygon(context, &def, 4, corners, &sim->m.body[0]);
+  if (status == MPS_OK) status = mps_body_name_part(sim->m.body[0], "face", 0, 1, &sim->face);
+  const double away = s->pressure == ACTIVE ? 1.0 : -1.0;
+  if (status == MPS_OK && s->motion == TRANSLATES)
+    status = mps_body_drive(sim->m.body[0], 0, path, -away);
+  if (status == MPS_OK && s->motion != TRANSLATES)
+    status = mps_body_drive(sim->m.body[0], 5, path, (top ? -away : away) / s->height);
+  mps_signal_destroy(&path);
+  return status;
+}
+
+/* ---- the model ------------------------------------------------------------------------------- */
+
+static void pass(void *user, resume_bytes *b) {
+  simulation *sim = user;
+  resume_pass(b, &sim->rows, sizeof sim->rows);
+  if (resume_wrong(b, sim->rows < 0 || sim->rows > WALL_SAMPLES)) {
+    sim->rows = 0;
+    return;
+  }
+  const size_t bytes = (size_t)sim->rows * sizeof *sim->path;
+  resume_pass(b, &sim->last_time, sizeof sim->last_time);
+  resume_pass(b, sim->last, sizeof sim->last);
+  resume_pass(b, sim->path, bytes);
+  resume_pass(b, sim->across, bytes);
+  resume_pass(b, sim->along, bytes);
+  resume_pass(b, sim->moment, bytes);
+}
+
+mps_status wall_build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  sim->course = (mpm_course){.options = &s->course,
+                             .m = &sim->m,
+                             .directory = s->out,
+                             .what = "ground",
+                             .duration = s->path / s->rate,
+                             .key = "mps-wall 1",
+                             .table = options_read(),
+                             .pass = pass,
+                             .user = sim};
+  mps_status status = mpm_course_peek(&sim->course, context);
+  if (status == MPS_OK) status = make_ground(context, s, &sim->m);
+  if (status == MPS_OK) status = make_law(context, s, &sim->m.material);
+  if (status == MPS_OK) status = make_wall(context, sim);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = s->h;
+  def.spline = s->spline + 2;
+  def.gravity[1] = -s->gravity;
+  def.lower[0] = -s->front, def.lower[1] = 0.0;
+  def.upper[0] = s->length;
+  status = mpm_model_create(&sim->m, context, status, &def);
+  if (status == MPS_OK && s->base > 0.0)
+    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = s->friction;
+  contact.corner = s->corner * s->h;
+  if (status == MPS_OK) status = mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
+  return status == MPS_OK ? mpm_course_begin(&sim->course, context, true) : status;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+static double moved(const simulation *sim, const mps_body_state *now) {
+  const settings *s = &sim->s;
+  return s->motion == TRANSLATES ? fabs(now->position[0]) : fabs(now->rotation[2]) * s->height;
+}
+
+/* The mean force since the last sample. */
+static mps_status take_sample(simulation *sim) {
+  mps_reaction r;
+  mps_body_state now;
+  mps_status status = mps_body_get_reaction(sim->m.body[0], sim->face, &r);
+  if (status == MPS_OK) status = mps_body_get_state(sim->m.body[0], &now);
+  if (status != MPS_OK) return status;
+  const double t = mps_mpm_time(sim->m.mpm), span = t - sim->last_time;
+  const double sums[3] = {r.impulse[0], r.impulse[1], r.moment_impulse[2]};
+  sim->path[sim->rows] = moved(sim, &now);
+  sim->across[sim->rows] = -(sums[0] - sim->last[0]) / span;
+  sim->along[sim->rows] = (sums[1] - sim->last[1]) / span;
+  sim->moment[sim->rows++] = (sums[2] - sim->last[2]) / span;
+  for (int c = 0; c < 3; c++) sim->last[c] = sums[c];
+  sim->last_time = t;
+  sim->m.samples = sim->rows;
+  return MPS_OK;
+}
+
+mps_status wall_march(void *user) {
+  simulation *sim = user;
+  mps_status status = MPS_OK;
+  progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, sim->t_end);
+  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, WALL_SAMPLES);
+  while (sim->rows < WALL_SAMPLES && status == MPS_OK) {
+    const double t = sim->t_end * (sim->rows + 1) / WALL_SAMPLES;
+    status = mpm_model_advance(&sim->m, t, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK) status = take_sample(sim);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, WALL_SAMPLES);
+  }
+  const mps_status taken = sim->rows > 0 ? mpm_snapshot_take(&sim->m, mps_mpm_time(sim->m.mpm),
+                                                             "plastic_strain", &sim->shot)
+                                         : MPS_OK;
+  return mpm_course_end(&sim->course, status == MPS_OK ? taken : status);
+}

@@ -1,0 +1,178 @@
+/* results.c - coefficients of earth pressure, tables and pictures of mps-wall.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/area.h"
+#include "common/plot.h"
+#include "wall.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define DEGREE (3.14159265358979323846 / 180.0)
+
+/* Forces over rho g H^2/2. */
+typedef struct pressure {
+  double across, along, height; /* height: of the force across over H above the toe */
+  double theory;                /* Rankine, of a smooth wall; Coulomb, active and rough; NaN */
+} pressure;
+
+static double unit(const settings *s) {
+  return 0.5 * s->density * s->gravity * s->height * s->height;
+}
+
+/* Rankine: K rho g H^2/2 -+ 2 c sqrt(K) H. Coulomb's wedge on a vertical wall whose friction is at
+ * most that of the ground: within some percent of the exact one in the active case, not in the
+ * passive one. */
+static double find_theory(const settings *s) {
+  const double phi = s->phi * DEGREE, side = s->pressure == ACTIVE ? -1.0 : 1.0;
+  const double k = pow(tan(0.25 * 180.0 * DEGREE + side * 0.5 * phi), 2.0);
+  if (s->friction == 0.0) return k + side * 2.0 * s->cohesion * sqrt(k) * s->height / unit(s);
+  if (s->pressure == PASSIVE || s->cohesion > 0.0) return NAN;
+  const double delta = fmin(atan(s->friction), phi);
+  const double root = sqrt(sin(phi + delta) * sin(phi) / cos(delta));
+  return pow(cos(phi), 2.0) / pow(1.0 + root, 2.0); /* its component across the wall */
+}
+
+/* Mean over the last fifth of the path; NaN where it has not ended. */
+static pressure measure(const simulation *sim) {
+  const settings *s = &sim->s;
+  pressure p = {.across = NAN, .along = NAN, .height = NAN, .theory = find_theory(s)};
+  if (sim->rows < WALL_SAMPLES) return p;
+  const int n = WALL_SAMPLES / 5;
+  double moment = 0.0;
+  p.across = p.along = 0.0;
+  for (int k = sim->rows - n; k < sim->rows; k++) {
+    p.across += sim->across[k] / n / unit(s);
+    p.along += sim->along[k] / n / unit(s);
+    moment += sim->moment[k] / n;
+  }
+  p.height = moment / (p.across * unit(s) * s->height);
+  if (s->motion == TURNS_ABOUT_TOP) p.height += 1.0;
+  return p;
+}
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+static bool write_pressure(app *a, const simulation *sim) {
+  const settings *s = &sim->s;
+  output f;
+  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
+  csv_header(&f, "path_over_height,force_kN_m,K,K_along");
+  for (int k = 0; k < sim->rows; k++) {
+    const double row[] = {sim->path[k] / s->height, 1e-3 * sim->across[k], sim->across[k] / unit(s),
+                          sim->along[k] / unit(s)};
+    csv_row(&f, 4, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_summary(app *a, const simulation *sim, const pressure *p) {
+  const settings *s = &sim->s;
+  output f;
+  if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
+  json_number(&f, "h", s->h);
+  json_number(&f, "K", p->across);
+  json_number(&f, "K_along", p->along);
+  json_number(&f, "K_resultant", hypot(p->across, p->along));
+  json_number(&f, "force_height", p->height);
+  json_number(&f, "K_theory", p->theory);
+  json_end(&f);
+  return output_close(&f);
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+static const char *name_of(const settings *s) {
+  static const char *const names[] = {"translates", "turns about its toe", "turns about its top"};
+  return names[s->motion];
+}
+
+static bool draw_pressure(app *a, const simulation *sim, const pressure *p) {
+  const settings *s = &sim->s;
+  output f;
+  if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
+  output_text(&f,
+              "set title \"%s pressure on a wall that %s\\n{/*0.85 {/Symbol f} = %g°, "
+              "{/Symbol y} = %g°, friction of the wall %g, h = H/%.3g}\"\n"
+              "set xlabel 'path of the wall over its height'\nset ylabel 'K, force across the wall "
+              "over {/Symbol g}H^2/2'\nset yrange [0:*]\nset key right %s opaque\n"
+              "plot 'pressure.csv' every ::1 using 1:3 with lines linewidth 2 linecolor rgb "
+              "'#1f4e8c' title 'WLS-MPM'",
+              s->pressure == ACTIVE ? "Active" : "Passive", name_of(s), s->phi, s->psi, s->friction,
+              s->height / s->h, s->pressure == ACTIVE ? "top" : "bottom");
+  if (!isnan(p->theory))
+    output_text(&f, ", \\\n  %.9g dashtype '--' linecolor rgb '#c0392b' title '%s'", p->theory,
+                s->friction == 0.0 ? "Rankine" : "Coulomb");
+  output_text(&f, "\n");
+  return plot_close(&f, s->out, "pressure");
+}
+
+static double most_strain(const mpm_snapshot *shot) {
+  double most = 0.0;
+  for (int64_t k = 0; k < shot->count; k++) most = fmax(most, shot->row[3 * k + 2]);
+  return most;
+}
+
+static bool draw_ground(app *a, const simulation *sim) {
+  const settings *s = &sim->s;
+  const double left = s->base > 0.0 ? s->front : 0.4 * s->height;
+  const double wide = fmin(s->length, (s->pressure == ACTIVE ? 2.0 : 5.0) * s->height);
+  const double high = s->base + 1.3 * s->height;
+  const area_def def = {.spacing = s->h / sqrt((double)s->ppc),
+                        .slit = AREA_SLIT_SHEARED,
+                        .lower = {-fmin(left, s->height), 0.0},
+                        .upper = {wide, high},
+                        .walled = true,
+                        .side = AREA_SIDE};
+  area image;
+  if (!mpm_snapshots_image(a, s->out, "ground.bin", 1, &sim->shot, &def, &image)) return false;
+  output f;
+  const int height = (int)fmin(900.0, 1000.0 * high / (wide - def.lower[0]) + 150.0);
+  if (!plot_open(&f, a, s->out, "ground", 1100, height)) return false;
+  output_text(&f,
+              "set title 'Plastic strain (-)'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
+              "set size ratio -1\nunset grid\n"
+              "set palette defined (0 '#f3e3bd', 0.3 '#c98f4a', 1 '#5b2c12')\n"
+              "set xrange [%.9g:%.9g]\nset yrange [0:%.9g]\n",
+              def.lower[0], wide, high);
+  const double path = (s->pressure == ACTIVE ? -1.0 : 1.0) * sim->path[sim->rows - 1];
+  const double foot = s->motion == TURNS_ABOUT_TOE ? 0.0 : path;
+  const double head = s->motion == TURNS_ABOUT_TOP ? 0.0 : path;
+  output_text(&f,
+              "set object 1 polygon from %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to "
+              "%.9g,%.9g fillcolor rgb '#888888' fillstyle solid front\n",
+              foot, s->base, head, s->base + s->height, head - 0.1 * s->height, s->base + s->height,
+              foot - 0.1 * s->height, s->base, foot, s->base);
+  plot_colours(&f, 0.0, 0.5 * most_strain(&sim->shot), image.least, image.most);
+  output_text(&f, "plot ");
+  area_plot(&f, "ground.bin", &image, 1.0, 1.0);
+  output_text(&f, "\n");
+  return plot_close(&f, s->out, "ground");
+}
+
+/* ---- the end --------------------------------------------------------------------------------- */
+
+static void print(const settings *s, const pressure *p) {
+  if (isnan(p->across)) {
+    printf("no earth pressure: the wall has not moved as far as --path\n");
+    return;
+  }
+  printf("%s earth pressure K %.4f across the wall, %.4f in all, at %.3f H",
+         s->pressure == ACTIVE ? "active" : "passive", p->across, hypot(p->across, p->along),
+         p->height);
+  if (!isnan(p->theory))
+    printf(" (%s %.4f, %+.1f %%)", s->friction == 0.0 ? "Rankine" : "Coulomb", p->theory,
+           100.0 * (p->across / p->theory - 1.0));
+  printf("\n");
+}
+
+bool wall_finish(app *a, void *user) {
+  const simulation *sim = user;
+  const pressure p = measure(sim);
+  if (!write_pressure(a, sim) ||
+      !mpm_snapshots_write(a, sim->s.out, "particles.csv", "plastic_strain", 1, &sim->shot) ||
+      !write_summary(a, sim, &p) || !draw_pressure(a, sim, &p) || !draw_ground(a, sim))
+    return false;
+  app_tell_results(a, sim->s.out);
+  print(&sim->s, &p);
+  return true;
+}

@@ -1,0 +1,26 @@
+#!/bin/sh
+# slope.sh DIRECTORY: mps-slope finds the factor of safety of a slope of 2 : 1, phi 20, c/(gamma H) 0.05, that of
+# limit equilibrium (1.38) and of finite elements (1.4: Griffiths and Lane 1999, example 1); a slope of a strength
+# that softens runs out further than one whose strength stays.
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+
+value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$1/summary.json"; }
+
+"$1/mps-slope" --h 1 --tolerance 0.03 --threads 1 --out "$work/slope" >"$work/log" || exit 1
+in_range "$work/slope/summary.json" factor_of_safety 1.34 1.47
+[ "$(awk -F, '$7 == 1' "$work/slope/trials.csv" | wc -l)" -ge 1 ] || fail "no trial failed"
+picture "$work/slope/slope.png" 1100x0
+picture "$work/slope/motion.png" 1000x640
+# Twice the cohesion and tan(phi) have twice the factor: the strength of the trials is the same.
+"$1/mps-slope" --h 1 --phi 36.0524 --cohesion 19620 --factor 2.7 --threads 1 --out "$work/twice" >"$work/log"
+has "$work/log" "the slope stands"
+"$1/mps-slope" --h 1 --phi 36.0524 --cohesion 19620 --factor 3.0 --threads 1 --out "$work/twice" >"$work/log"
+has "$work/log" "the slope fails"
+for kind in 15kPa 4kPa; do
+  "$1/mps-slope" --runout --phi 0 --cohesion 15kPa --residual-cohesion "$kind" --h 1 --falls 12 --threads 1 \
+    --out "$work/$kind" >"$work/log" || exit 1
+done
+awk -v hard="$(value "$work/15kPa" runout)" -v soft="$(value "$work/4kPa" runout)" \
+  'BEGIN { exit !(soft > hard + 2 && hard >= 0) }' || fail "the run-out of a strength that softens"
+exit 0

@@ -1,0 +1,28 @@
+#!/bin/sh
+# wall.sh DIRECTORY: mps-wall against Rankine's coefficients on a smooth wall, at 30 degrees 1/3 and 3, with
+# cohesion, and against Coulomb's on a rough one; the force of a wall that turns about its top acts higher.
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+
+wall() { # NAME OPTION...
+  name=$1
+  shift
+  "${programs}/mps-wall" --h 0.125 --rate 0.04 "$@" --threads 1 --out "$work/$name" >"$work/log" || exit 1
+}
+programs=$1
+value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$work/$1/summary.json"; }
+
+wall active
+in_range "$work/active/summary.json" K 0.32 0.347
+in_range "$work/active/summary.json" K_theory 0.33333 0.33334
+in_range "$work/active/summary.json" force_height 0.32 0.35
+wall passive --pressure passive --length 3
+in_range "$work/passive/summary.json" K 2.91 3.09
+wall clay --pressure passive --length 3 --phi 0 --cohesion 5kPa
+in_range "$work/clay/summary.json" K 2.09 2.18 # 1 + 4 c/(gamma H) = 2.133
+wall top --motion top
+awk -v low="$(value active force_height)" -v high="$(value top force_height)" \
+  'BEGIN { exit !(high > low + 0.02) }' || fail "the height of the force"
+picture "$work/active/pressure.png" 1000x640
+picture "$work/active/ground.png" 1100x0
+exit 0
