@@ -15,8 +15,8 @@ typedef struct mpsi_columns {
   double *rough;       /* Pa, what the nodes do not see of a filtered mean stress (filter.c), of the
                           step being made; NULL where none is */
   double *s[6];        /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
-  double *t[6];        /* Pa, the stress that forces come from: s, less the pressure of pore water */
-  double *u, *g[3];    /* Pa, Pa/m: pressure of pore water and its gradient; NULL without water */
+  double *u, *g[3];    /* Pa, Pa/m: pressure of pore water, which forces come from besides s, and its
+                          gradient; NULL without water */
   double *n, *k;       /* porosity; permeability, m/s: NULL where water does not flow */
   double *V, *m;       /* m3, kg */
   double *J;           /* V/V0 where some law reads it, else NULL */

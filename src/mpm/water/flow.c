@@ -189,14 +189,13 @@ static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *ce
 
 static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   const struct mpsi_water *water = mpm->water;
-  const double dt = mpm->run.dt;
-  const double flux = water->flows ? flux_into(mpm, g, k, cell) : 0.0;
+  double space = cell->space;
+  cell->gain = flux_into(mpm, g, k, cell);
   /* a cell less than half full at an impervious surface: else its steps would be short */
-  const double space = fmax(
-      cell->space, 0.5 * cell->space / fmax(1e-3, cell->fill[0] * cell->fill[1] * cell->fill[2]));
-  const double strain = cell->change / (cell->volume - cell->change);
-  cell->gain = flux;
-  cell->now = cell->p + water->def.bulk / cell->n * (dt * flux / space - strain);
+  if (!cell->inside)
+    space = fmax(space, 0.5 * space / fmax(1e-3, cell->fill[0] * cell->fill[1] * cell->fill[2]));
+  cell->now = cell->p + water->def.bulk / cell->n * (mpm->run.dt * cell->gain / space) +
+              mpsi_pore_squeeze(mpm, cell);
 }
 
 static void find_pressures(mps_mpm *mpm, int64_t g, int32_t worker) {
@@ -275,45 +274,58 @@ static void find_slopes(mps_mpm *mpm, int64_t g, int32_t worker) {
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-/* Permeability after a change of volume by the factor `ratio`: v follows it, and e = v - 1. */
+/* Permeability after a change of volume by the factor `ratio`: v = 1/(1 - n), before, follows it,
+ * and e = v - 1. */
 static double permeability_after(const mps_pore_water_def *def, double k, double n, double ratio) {
-  const double v = 1.0 / (1.0 - n); /* before */
   if (def->exponent != 0.0) k *= pow(ratio, def->exponent);
-  if (def->ratio_slope < INFINITY) k *= exp(v * (ratio - 1.0) / def->ratio_slope);
+  if (def->ratio_slope < INFINITY) k *= exp((ratio - 1.0) / ((1.0 - n) * def->ratio_slope));
   return k;
 }
 
-static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+MPSI_INLINE void give_body(mps_mpm *mpm, int64_t b, int dim) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const struct mpsi_water *water = mpm->water;
   const mpsi_columns *p = &mpm->p;
   const double weight = weight_of_water(mpm);
-  (void)worker;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
+  for (int64_t k = cells->begin; k < cells->end;) {
+    const int at = water->place[k];
     double centre[3];
-    const mpsi_pore_cell *cell = mpsi_pore_cell_of(mpm, cells, k, centre);
-    const double ratio = p->V[k] / water->former[k];
-    double now = cell->now;
-    for (int c = 0; c < mpm->dim; c++) {
-      now += cell->g[c] * (p->x[c][k] - centre[c] - cell->shift[c]);
-      p->g[c][k] = cell->g[c];
+    const mpsi_pore_cell *cell = mpsi_pore_cell_at(mpm, cells, at, centre);
+    const double gain =
+        water->flows
+            ? water->def.density * mpm->run.dt * cell->gain * mpm->def.measure / cell->volume
+            : 0.0;
+    for (int c = 0; c < dim; c++) centre[c] += cell->shift[c];
+    for (; k < cells->end && water->place[k] == at; k++) {
+      double now = cell->now;
+      for (int c = 0; c < dim; c++) {
+        now += cell->g[c] * (p->x[c][k] - centre[c]);
+        p->g[c][k] = cell->g[c];
+      }
+      p->u[k] = now;
+      if (water->flows) {
+        p->k[k] = permeability_after(&water->def, p->k[k], p->n[k], p->V[k] / water->former[k]);
+        p->m[k] += gain * p->V[k];
+        for (int c = 0; c < dim && water->seepage[0]; c++)
+          water->seepage[c][k] =
+              -p->k[k] / weight * (cell->g[c] - water->def.density * mpm->def.gravity[c]);
+      }
+      p->n[k] = 1.0 - (1.0 - p->n[k]) * (water->former[k] / p->V[k]);
     }
-    p->u[k] = now;
-    if (water->flows) {
-      p->k[k] = permeability_after(&water->def, p->k[k], p->n[k], ratio);
-      p->m[k] += water->def.density * mpm->run.dt * cell->gain * mpm->def.measure *
-                 (p->V[k] / cell->volume);
-      for (int c = 0; c < mpm->dim && water->seepage[0]; c++)
-        water->seepage[c][k] =
-            -p->k[k] / weight * (cell->g[c] - water->def.density * mpm->def.gravity[c]);
-    }
-    p->n[k] = 1.0 - (1.0 - p->n[k]) / ratio;
   }
+}
+
+static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  if (mpm->dim == 2)
+    give_body(mpm, b, 2);
+  else
+    give_body(mpm, b, 3);
 }
 
 void mpsi_pore_flow(mps_mpm *mpm) {
   const mpsi_pass pressures = {.finish = find_pressures};
   const mpsi_pass particles = {.finish = find_slopes, .gather = give_to_particles};
-  mpsi_mpm_run_pass(mpm, &pressures);
+  if (mpm->water->flows) mpsi_mpm_run_pass(mpm, &pressures);
   mpsi_mpm_run_pass(mpm, &particles);
 }

@@ -43,7 +43,8 @@ void mpsi_pore_free(mps_mpm *mpm) {
   mpsi_free(mpm->context, mpm->water->cell_room.item);
   mpsi_free(mpm->context, mpm->water->beside_room.item);
   mpsi_free(mpm->context, mpm->water->outflow_room.item);
-  mpsi_free(mpm->context, mpm->water->column_room.item);
+  mpsi_free(mpm->context, mpm->water->former_room.item);
+  mpsi_free(mpm->context, mpm->water->place_room.item);
   mpsi_free(mpm->context, mpm->water);
   mpm->water = NULL;
 }
