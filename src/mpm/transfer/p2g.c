@@ -53,8 +53,8 @@ MPSI_INLINE void find_quad_parts(const mps_mpm *mpm, int geometry, int spline, b
 
 MPSI_INLINE void put_columns(int dim, mpsi_quad from[4][4], int k, columns to) {
   mpsi_put(to[0][MPSI_MASS] + k, from[0][MPSI_MASS]);
-  MPSI_UNROLL for (int d = 0; d <= dim; d++)
-      MPSI_UNROLL for (int c = MPSI_VECTOR; c <= dim; c++) mpsi_put(to[d][c] + k, from[d][c]);
+  MPSI_UNROLL for (int d = 0; d <= dim; d++) MPSI_UNROLL for (int c = MPSI_VECTOR; c <= dim; c++)
+      mpsi_put(to[d][c] + k, from[d][c]);
 }
 
 MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
@@ -142,8 +142,8 @@ MPSI_INLINE void put_nodes(mpsi_quad from[4][4], int k, node_parts *to) {
 MPSI_INLINE void find_node_parts(int n, columns part, node_parts *out) {
   for (int k = 0; k < n; k += 4) {
     mpsi_quad a[4][4];
-    MPSI_UNROLL for (int d = 0; d < 4; d++)
-        MPSI_UNROLL for (int c = 0; c < 4; c++) a[d][c] = mpsi_get(part[d][c] + k);
+    MPSI_UNROLL for (int d = 0; d < 4; d++) MPSI_UNROLL for (int c = 0; c < 4; c++) a[d][c] =
+        mpsi_get(part[d][c] + k);
     put_nodes(a, k, out);
   }
 }
@@ -246,7 +246,8 @@ MPSI_INLINE mpsi_vec find_distances(int i) {
 #define PLANES(spline) 1
 #endif
 
-/* Adds one particle's values, `value` at the second node of the first plane, to the sums of rows. */
+/* Adds one particle's values, `value` at the second node of the first plane, to the sums of rows.
+ */
 MPSI_INLINE void add_rows(int spline, int first, int planes, const row_weights *weights, int k,
                           mpsi_vec value, mpsi_vec by_y, mpsi_vec by_z, mpsi_vec (*sum)[4]) {
   const mpsi_vec twice = by_y + by_y;

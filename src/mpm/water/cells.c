@@ -8,8 +8,6 @@
  * surface. SPDX-License-Identifier: BSD-3-Clause */
 #include "water.h"
 
-#include <string.h>
-
 /* ---- sums ------------------------------------------------------------------------------------ */
 
 /* Empty: what its first particles give takes the place of the rest. */
@@ -60,8 +58,7 @@ MPSI_INLINE void add_to_cell(int dim, mpsi_pore_cell *cell, const cell_sums *sum
   cell->p = (empty ? 0.0 : cell->p) + sum->p;
   cell->n = (empty ? 0.0 : cell->n) + sum->n;
   cell->k = (empty ? 0.0 : cell->k) + sum->k;
-  for (int c = 0; c < 3; c++)
-    cell->g[c] = (empty ? 0.0 : cell->g[c]) + (c < dim ? sum->g[c] : 0.0);
+  for (int c = 0; c < 3; c++) cell->g[c] = (empty ? 0.0 : cell->g[c]) + (c < dim ? sum->g[c] : 0.0);
 }
 
 /* Particles of a stencil are neighbours: those in a row that are in the same cell are summed before
@@ -150,7 +147,7 @@ static bool is_inside(const mps_mpm *mpm, int64_t g, int k, const int *place) {
 
 /* What is beyond face `direction` of cell k of block g, whose box has its centre at x. */
 static void find_beyond(mps_mpm *mpm, int64_t g, int k, int direction, const double *x,
-                        mpsi_pore_cell *cell) {
+                        mpsi_pore_cell *cell, mpsi_pore_edge *edge) {
   const int axis = direction / 2, up = direction & 1;
   int place[3];
   mpsi_unravel(k, MPSI_SIDE, place);
@@ -158,64 +155,63 @@ static void find_beyond(mps_mpm *mpm, int64_t g, int k, int direction, const dou
   const bool side = up ? at + 1 >= mpm->grid.high[axis] : at <= mpm->grid.low[axis];
   const double half = up ? 0.5 * mpm->def.cell : -0.5 * mpm->def.cell;
   double to[3] = {x[0], x[1], x[2]};
-  cell->beyond[direction] = MPSI_PORE_CELL;
-  cell->face[direction] = -1;
+  edge->beyond[direction] = MPSI_PORE_CELL;
+  edge->face[direction] = -1;
   if (!side && !mpsi_pore_empty(mpsi_pore_beside(mpm, g, k, direction))) return;
   to[axis] += 2.0 * half;
   if (!side) cell->free |= (uint8_t)(1u << direction);
   const bool closed = side || in_body(mpm, to);
   to[axis] = x[axis] + half;
   const int face = find_face(mpm, to, direction);
-  cell->face[direction] = (int8_t)face;
-  cell->beyond[direction] = closed ? MPSI_PORE_CLOSED : MPSI_PORE_DRAINED;
+  edge->face[direction] = (int8_t)face;
+  edge->beyond[direction] = closed ? MPSI_PORE_CLOSED : MPSI_PORE_DRAINED;
   if (face >= 0)
-    cell->beyond[direction] =
+    edge->beyond[direction] =
         mpm->water->face[face].kind == MPS_PORE_FACE_DRAINED ? MPSI_PORE_DRAINED : MPSI_PORE_CLOSED;
 }
 
 /* The filled part of a cell whose box is at radius r. */
-static void find_filled(const mps_mpm *mpm, double r, mpsi_pore_cell *cell) {
+static void find_filled(const mps_mpm *mpm, double r, mpsi_pore_cell *cell, mpsi_pore_edge *edge) {
   const double h = mpm->def.cell;
   const double box = (mpm->dim == 3 ? h * h * h : h * h) * r;
   int axes = 0;
   for (int c = 0; c < mpm->dim; c++) axes += (cell->free >> (2 * c) & 3) != 0;
   const double f = axes == 0 ? 1.0 : fmin(1.0, cell->volume / (mpm->def.measure * box));
   const double part = axes <= 1 ? f : axes == 2 ? sqrt(f) : cbrt(f);
-  cell->space = box * f;
+  edge->space = box * f;
   for (int c = 0; c < 3; c++) {
     const int sides = c < mpm->dim ? cell->free >> (2 * c) & 3 : 0;
-    cell->fill[c] = sides != 0 ? part : 1.0;
-    cell->shift[c] = 0.5 * h * (1.0 - cell->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
-    cell->p += c < mpm->dim ? cell->g[c] * cell->shift[c] : 0.0;
+    edge->fill[c] = sides != 0 ? part : 1.0;
+    edge->shift[c] = 0.5 * h * (1.0 - edge->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
+    cell->p += c < mpm->dim ? cell->g[c] * edge->shift[c] : 0.0;
   }
   for (int d = 0; d < 2 * mpm->dim && mpm->water->flows; d++)
-    if (f < 0.5 && (cell->free >> d & 1) && cell->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
+    if (f < 0.5 && (cell->free >> d & 1) && edge->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
+}
+
+/* Of a cell that is not inside. */
+static void find_edge(mps_mpm *mpm, int64_t g, int k, const int *place, mpsi_pore_cell *cell) {
+  const bool ring = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
+  mpsi_pore_edge *edge = mpm->water->edge + (cell - mpm->water->cell);
+  double x[3];
+  mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
+  for (int d = 0; d < 2 * mpm->dim; d++) find_beyond(mpm, g, k, d, x, cell, edge);
+  find_filled(mpm, ring ? x[0] : 1.0, cell, edge);
 }
 
 static void find_faces(mps_mpm *mpm, int64_t g, int32_t worker) {
-  static const double middle[3] = {0.5, 0.5, 0.5};
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
-  const double h = mpm->def.cell, box = mpm->dim == 3 ? h * h * h : h * h;
   const bool ring = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (mpsi_pore_empty(&cell[k])) continue;
     int place[3];
-    double local[3], x[3];
     mpsi_unravel(k, MPSI_SIDE, place);
     cell[k].inside = !ring && is_inside(mpm, g, k, place);
     cell[k].free = 0;
     cell[k].thin = false;
-    if (cell[k].inside) {
-      cell[k].space = box;
-      for (int c = 0; c < 3; c++) cell[k].fill[c] = 1.0, cell[k].shift[c] = 0.0;
-      memset(cell[k].beyond, MPSI_PORE_CELL, sizeof cell[k].beyond);
-    } else {
-      for (int c = 0; c < 3; c++) local[c] = place[c] + middle[c];
-      mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
-      for (int d = 0; d < 2 * mpm->dim; d++) find_beyond(mpm, g, k, d, x, &cell[k]);
-      find_filled(mpm, ring ? x[0] : 1.0, &cell[k]);
-    }
+    if (!cell[k].inside) find_edge(mpm, g, k, place, &cell[k]);
     if (!mpm->water->flows) cell[k].now = cell[k].p + mpsi_pore_squeeze(mpm, &cell[k]);
   }
 }

@@ -11,12 +11,14 @@ static mps_status make_room(mps_mpm *mpm, const char *function) {
   mps_context *context = mpm->context;
   const int64_t blocks = mpm->grid.node_count, nodes = blocks * mpm->grid.block_nodes;
   if (!mpsi_room_ensure(context, &water->cell_room, nodes, sizeof *water->cell) ||
+      !mpsi_room_ensure(context, &water->edge_room, nodes, sizeof *water->edge) ||
       !mpsi_room_ensure(context, &water->beside_room, 6 * blocks, sizeof *water->beside) ||
       !mpsi_room_ensure(context, &water->outflow_room, blocks, sizeof *water->outflow) ||
       !mpsi_room_ensure(context, &water->former_room, mpm->p.count, sizeof *water->former) ||
       !mpsi_room_ensure(context, &water->place_room, mpm->p.count, sizeof *water->place))
     return mpsi_fail_memory(context, function, (size_t)nodes * sizeof *water->cell);
   water->cell = water->cell_room.item;
+  water->edge = water->edge_room.item;
   water->beside = water->beside_room.item;
   water->outflow = water->outflow_room.item;
   water->former = water->former_room.item;

@@ -19,20 +19,24 @@ _Static_assert(1 << MPSI_PORE_BITS == MPSI_SIDE, "digits of a cell's number in i
 /* Sums over the particles of a cell, and the means that follow; amounts are of the measure, the
  * rest of 1 m or 1 rad. */
 typedef struct mpsi_pore_cell {
-  double volume;            /* sum V, m3; 0: there is nothing here */
-  double change;            /* sum of dV of the step, m3 */
-  double p, g[3];           /* Pa, at the centre of the cell's box; Pa/m */
-  double n, k;              /* porosity; m/s */
+  double volume;    /* sum V, m3; 0: there is nothing here */
+  double change;    /* sum of dV of the step, m3 */
+  double p, g[3];   /* Pa, at the centre of the cell's box; Pa/m */
+  double n, k;      /* porosity; m/s */
+  double now, gain; /* Pa, at the end of the step; m3/s of water that flows in */
+  uint8_t free;     /* bit d: nothing lies beyond face d, but perhaps a body */
+  bool inside;      /* there are cells on all its faces; never in axisymmetry */
+  bool thin;        /* less than half full at a drained surface: stores nothing */
+} mpsi_pore_cell;
+
+/* What a cell that is not inside has besides. */
+typedef struct mpsi_pore_edge {
   double fill[3], shift[3]; /* part of the box that is filled along each axis; m, from the box's
                                centre to that of the filled part */
   double space;             /* m3, of the filled part */
-  double now, gain;         /* Pa, at the end of the step; m3/s of water that flows in */
   int8_t beyond[6];         /* MPSI_PORE_... of each face */
   int8_t face[6];           /* number of the definition, -1: none */
-  uint8_t free;             /* bit d: nothing lies beyond face d, but perhaps a body */
-  bool inside;              /* there are cells on all its faces; never in axisymmetry */
-  bool thin;                /* less than half full at a drained surface: stores nothing */
-} mpsi_pore_cell;
+} mpsi_pore_edge;
 
 enum { MPSI_PORE_FACES = MPS_PORE_MAX_FACES + 1 }; /* the last: the free surface without one */
 
@@ -45,12 +49,13 @@ struct mpsi_water {
   double drained[MPSI_PORE_FACES];    /* kg */
   double rate[MPSI_PORE_FACES];       /* kg/s, of the last step */
   mpsi_pore_cell *cell;               /* by nodes of the grid */
+  mpsi_pore_edge *edge;               /* the same: few are in use */
   int32_t *beside;                    /* by blocks of nodes: the 6 beside, or -1 */
   double (*outflow)[MPSI_PORE_FACES]; /* m3/s, by blocks of nodes */
   double *former;                     /* m3, volumes at the beginning of the step */
   uint16_t *place;                    /* the cell of each particle: mpsi_pore_cell_at */
   double *seepage[3];                 /* of the set, or NULL */
-  mpsi_room cell_room, beside_room, outflow_room, former_room, place_room;
+  mpsi_room cell_room, edge_room, beside_room, outflow_room, former_room, place_room;
 };
 
 /* The cell at `place` of a block of cells: the block of nodes under its tile, times the
@@ -77,6 +82,12 @@ static inline double mpsi_pore_radius(const mps_mpm *mpm, double X) {
   return mpm->def.origin[0] + X * mpm->def.cell;
 }
 
+/* Of a cell that is inside: one that is filled, with cells on all faces. */
+static inline const mpsi_pore_edge *mpsi_pore_edge_of(const mps_mpm *mpm,
+                                                      const mpsi_pore_cell *cell) {
+  static const mpsi_pore_edge whole = {.fill = {1.0, 1.0, 1.0}, .face = {-1, -1, -1, -1, -1, -1}};
+  return cell->inside ? &whole : mpm->water->edge + (cell - mpm->water->cell);
+}
 /* The one beside cell k of block g, or NULL. */
 static inline mpsi_pore_cell *mpsi_pore_beside(const mps_mpm *mpm, int64_t g, int k,
                                                int direction) {
