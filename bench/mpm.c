@@ -24,9 +24,9 @@
 typedef struct options {
   int dim, spline; /* 0: both */
   int rounds;
-  int only;            /* a kind, -1: all */
+  int only;                  /* a kind, -1: all */
   int32_t instruction_level; /* of the library; 0: the processor's */
-  int64_t particles;   /* 0: 1e4, 1e5 and 1e6 */
+  int64_t particles;         /* 0: 1e4, 1e5 and 1e6 */
 } options;
 
 /* ---- the anchor ------------------------------------------------------------------------------ */
@@ -101,8 +101,8 @@ typedef enum kind {
   SEEPAGE,
   KINDS
 } kind;
-static const char *const kind_name[KINDS] = {"elastic", "two", "mixed", "body", "drucker-prager",
-                                             "undrained", "seepage"};
+static const char *const kind_name[KINDS] = {"elastic",        "two",       "mixed",  "body",
+                                             "drucker-prager", "undrained", "seepage"};
 
 /* In the plane the body is that of MIXED. */
 static int is_there(const options *o, int dim, kind k) {
@@ -347,7 +347,8 @@ int main(int argc, char **argv) {
     fprintf(
         stderr,
         "usage: bench-mpm [--dim 2|3] [--spline 2|3] [--rounds N] [--particles N]\n"
-        "    [--only elastic|two|mixed|body|drucker-prager|undrained|seepage] [--instruction-level 0|1|3|4]\n"
+        "    [--only elastic|two|mixed|body|drucker-prager|undrained|seepage] [--instruction-level "
+        "0|1|3|4]\n"
         "N particles, 1e3 to 2e7; by default 1e4, 1e5 and 1e6.\n"
         "Other work on the machine disturbs two threads most: OMP_WAIT_POLICY=passive helps.\n");
     return 2;
@@ -358,10 +359,12 @@ int main(int argc, char **argv) {
   printf(
       "# minima of %d rounds, ns a particle-step of processor time, for `two` threads of the wall\n"
       "# clock; mixed: walls and a body in contact (3D: a floor); body: a cylinder on the block;\n"
-      "# d-p: Drucker-Prager; undr, seep: pore water undrained and flowing; memory in bytes: fields a\n"
+      "# d-p: Drucker-Prager; undr, seep: pore water undrained and flowing; memory in bytes: "
+      "fields a\n"
       "# particle, grid a particle, grid a node\n"
       "# ns, then ratios to the anchor, then memory\n"
-      "#dim spline particles  anchor elastic    two    mixed    body     d-p    undr    seep elasti    "
+      "#dim spline particles  anchor elastic    two    mixed    body     d-p    undr    seep "
+      "elasti    "
       "two  mixed   body    d-p   undr   seep fields   grid    node\n",
       o.rounds);
   const int64_t sizes[] = {10000, 100000, 1000000};

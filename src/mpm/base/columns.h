@@ -16,16 +16,16 @@ typedef struct mpsi_columns {
                           plastic strain before the law, then, Pa, what the nodes do not see of the
                           mean stress; NULL where none is */
   double *s[6];        /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
-  double *t[6];        /* Pa, the stress that forces come from: s, less the pressure of pore water */
-  double *u, *g[3];    /* Pa, Pa/m: pressure of pore water and its gradient; NULL without water */
-  double *n, *k;       /* porosity; permeability, m/s: NULL where water does not flow */
-  double *V, *m;       /* m3, kg */
-  double *J;           /* V/V0 where some law reads it, else NULL */
-  double *F[9];        /* as L; NULL where all laws do without */
-  double *f[3];        /* N, body accelerations and loads of the step; NULL where there are none */
-  int64_t *law;        /* number of each particle's law; NULL: one law */
-  int32_t *stencil;    /* lowest node of the particle's stencil, in its block's tile, of the step
-                          being made; NULL where volumetric.c and filter.c have no work */
+  double *u, *g[3]; /* Pa, Pa/m: pressure of pore water, which forces come from besides s, and its
+                       gradient; NULL without water */
+  double *n, *k;    /* porosity; permeability, m/s: NULL where water does not flow */
+  double *V, *m;    /* m3, kg */
+  double *J;        /* V/V0 where some law reads it, else NULL */
+  double *F[9];     /* as L; NULL where all laws do without */
+  double *f[3];     /* N, body accelerations and loads of the step; NULL where there are none */
+  int64_t *law;     /* number of each particle's law; NULL: one law */
+  int32_t *stencil; /* lowest node of the particle's stencil, in its block's tile, of the step
+                       being made; NULL where volumetric.c and filter.c have no work */
 } mpsi_columns;
 
 #endif

@@ -200,8 +200,8 @@ MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cel
   }
 }
 
-/* Zeros behind the `n` particles, for loops over MPSI_LANES of them: what happens to lie there can be
- * a denormal number, as a pointer is, and its product then takes a hundred times as long. */
+/* Zeros behind the `n` particles, for loops over MPSI_LANES of them: what happens to lie there can
+ * be a denormal number, as a pointer is, and its product then takes a hundred times as long. */
 MPSI_INLINE void mpsi_pad_places(int dim, int spline, int weights, int n, mpsi_places *out) {
   const mpsi_lanes zero = {0.0};
   for (int c = 0; c < dim; c++) {
@@ -230,9 +230,10 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
 /* What the nodes give to the particles of a chunk: columns. A velocity's derivative of component c
  * by axis d is number dim c + d, as in the columns L of the set. */
 typedef struct mpsi_gathered {
-  double v[3][MPSI_COLUMN] MPSI_LINE, own[3][MPSI_COLUMN]; /* m/s; FLIP: what a particle keeps of its own */
-  double slope[9][MPSI_COLUMN];                  /* 1/s, of the fit, which the transfer takes */
-  double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
+  double v[3][MPSI_COLUMN] MPSI_LINE,
+      own[3][MPSI_COLUMN];           /* m/s; FLIP: what a particle keeps of its own */
+  double slope[9][MPSI_COLUMN];      /* 1/s, of the fit, which the transfer takes */
+  double derivative[9][MPSI_COLUMN]; /* 1/s, which the laws see */
 } mpsi_gathered;
 
 /* ---- cut_scatter.c, cut_gather.c: particles whose support is cut ----------------------------- */

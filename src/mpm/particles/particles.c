@@ -27,8 +27,7 @@ void mpsi_mpm_bind(mps_mpm *mpm) {
     p->x[c] = mpsi_particles_column(set, "position", c);
     p->v[c] = mpsi_particles_column(set, "velocity", c);
   }
-  for (int c = 0; c < 2 * mpm->dim; c++)
-    p->t[c] = p->s[c] = mpsi_particles_column(set, "stress", c);
+  for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
   if (mpm->water) bind_water(set, p);
   for (int c = 0; c < 9; c++) /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);

@@ -17,14 +17,16 @@ MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const mpsi_cut *b, mpsi
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
+  const mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
   for (int a = 0; a < dim; a++) {
     mpsi_quad body = out->m * mpm->def.gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
     if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
-      body -= V * mpsi_get_some(from->t[2] + p, n) / mpsi_get_some(from->x[0] + p, n);
+      body -= V * (mpsi_get_some(from->s[2] + p, n) - u) / mpsi_get_some(from->x[0] + p, n);
     for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
     for (int d = 0; d < dim; d++) {
-      const mpsi_quad stress = V * mpsi_get_some(from->t[symmetric[a][d]] + p, n);
+      const mpsi_quad s = mpsi_get_some(from->s[symmetric[a][d]] + p, n);
+      const mpsi_quad stress = V * (a == d ? s - u : s);
       for (int c = 0; c <= dim; c++) out->force[a][c] -= stress * b->q[1 + d][c];
     }
   }
@@ -146,6 +148,7 @@ typedef struct one_source {
 static one_source source_of(const mps_mpm *mpm, int dim, int64_t p) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const mpsi_columns *c = &mpm->p;
+  const double u = c->u ? c->u[p] : 0.0;
   one_source out = {.v = {1.0}};
   for (int a = 0; a < dim; a++) {
     out.v[1 + a] = c->v[a][p];
@@ -153,11 +156,11 @@ static one_source source_of(const mps_mpm *mpm, int dim, int64_t p) {
     if (c->f[a]) out.body[1 + a] += c->f[a][p];
     for (int d = 0; d < dim; d++) {
       if (!mpm->standard) out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
-      out.stress[d][1 + a] = -c->V[p] * c->t[symmetric[a][d]][p];
+      out.stress[d][1 + a] = -c->V[p] * (c->s[symmetric[a][d]][p] - (a == d ? u : 0.0));
     }
   }
   if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
-    out.body[1] -= c->V[p] * c->t[2][p] / c->x[0][p];
+    out.body[1] -= c->V[p] * (c->s[2][p] - u) / c->x[0][p];
   return out;
 }
 

@@ -30,7 +30,7 @@ MPSI_INLINE void find_quad_parts(const mps_mpm *mpm, int geometry, int spline, b
   const double h = mpm->def.cell, stiff = -mpsi_inverse_moment(spline) * mpm->grid.inverse;
   const double dt = split ? 1.0 : mpm->run.dt;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
-  const mpsi_quad mh = m * h, Vs = V * stiff;
+  const mpsi_quad mh = m * h, Vs = V * stiff, u = p->u ? mpsi_get(p->u + at) : zero;
   out->sum[0][MPSI_MASS] = m + zero; /* of a mere copy gcc makes a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
@@ -38,12 +38,13 @@ MPSI_INLINE void find_quad_parts(const mps_mpm *mpm, int geometry, int spline, b
     mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
     if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
     if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
-      force -= V * mpsi_get(p->t[2] + at) / mpsi_get(p->x[0] + at);
+      force -= V * (mpsi_get(p->s[2] + at) - u) / mpsi_get(p->x[0] + at);
     out->sum[0][to] = split ? momentum : momentum + force;
     out->force[0][to] = force;
     MPSI_UNROLL for (int d = 0; d < dim; d++) {
       momentum = mh * mpsi_get(p->L[dim * c + d] + at);
-      force = Vs * mpsi_get(p->t[symmetric[c][d]] + at);
+      force = mpsi_get(p->s[symmetric[c][d]] + at);
+      force = Vs * (c == d ? force - u : force);
       out->sum[1 + d][to] = split ? momentum : momentum + force;
       out->force[1 + d][to] = force;
     }
@@ -52,8 +53,8 @@ MPSI_INLINE void find_quad_parts(const mps_mpm *mpm, int geometry, int spline, b
 
 MPSI_INLINE void put_columns(int dim, mpsi_quad from[4][4], int k, columns to) {
   mpsi_put(to[0][MPSI_MASS] + k, from[0][MPSI_MASS]);
-  MPSI_UNROLL for (int d = 0; d <= dim; d++)
-      MPSI_UNROLL for (int c = MPSI_VECTOR; c <= dim; c++) mpsi_put(to[d][c] + k, from[d][c]);
+  MPSI_UNROLL for (int d = 0; d <= dim; d++) MPSI_UNROLL for (int c = MPSI_VECTOR; c <= dim; c++)
+      mpsi_put(to[d][c] + k, from[d][c]);
 }
 
 MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
@@ -141,8 +142,8 @@ MPSI_INLINE void put_nodes(mpsi_quad from[4][4], int k, node_parts *to) {
 MPSI_INLINE void find_node_parts(int n, columns part, node_parts *out) {
   for (int k = 0; k < n; k += 4) {
     mpsi_quad a[4][4];
-    MPSI_UNROLL for (int d = 0; d < 4; d++)
-        MPSI_UNROLL for (int c = 0; c < 4; c++) a[d][c] = mpsi_get(part[d][c] + k);
+    MPSI_UNROLL for (int d = 0; d < 4; d++) MPSI_UNROLL for (int c = 0; c < 4; c++) a[d][c] =
+        mpsi_get(part[d][c] + k);
     put_nodes(a, k, out);
   }
 }
@@ -245,7 +246,8 @@ MPSI_INLINE mpsi_vec find_distances(int i) {
 #define PLANES(spline) 1
 #endif
 
-/* Adds one particle's values, `value` at the second node of the first plane, to the sums of rows. */
+/* Adds one particle's values, `value` at the second node of the first plane, to the sums of rows.
+ */
 MPSI_INLINE void add_rows(int spline, int first, int planes, const row_weights *weights, int k,
                           mpsi_vec value, mpsi_vec by_y, mpsi_vec by_z, mpsi_vec (*sum)[4]) {
   const mpsi_vec twice = by_y + by_y;
@@ -446,7 +448,7 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
 MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end && k < begin + MPSI_CHUNK; k += 8) {
     for (int c = 0; c < 2; c++) __builtin_prefetch(p->x[c] + k), __builtin_prefetch(p->v[c] + k);
-    for (int c = 0; c < 4; c++) __builtin_prefetch(p->L[c] + k), __builtin_prefetch(p->t[c] + k);
+    for (int c = 0; c < 4; c++) __builtin_prefetch(p->L[c] + k), __builtin_prefetch(p->s[c] + k);
     __builtin_prefetch(p->V + k);
     __builtin_prefetch(p->m + k);
   }

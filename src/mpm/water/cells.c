@@ -8,67 +8,97 @@
  * surface. SPDX-License-Identifier: BSD-3-Clause */
 #include "water.h"
 
-#include <string.h>
-
-static const int stride[3] = {1, MPSI_SIDE, MPSI_SIDE *MPSI_SIDE};
-
-/* Which cell of a tile holds the local coordinate, in cells; the nearest where none does: then the
- * particle has left the domain. */
-static int cell_in_tile(double local, int64_t most) {
-  const int cell = local > 0.0 ? (int)local : 0; /* without a call of floor */
-  const int last = most < MPSI_TILE_SIDE - 1 ? (int)most : MPSI_TILE_SIDE - 1;
-  return cell < last ? cell : last;
-}
-
-mpsi_pore_cell *mpsi_pore_cell_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                  int64_t particle, double *centre) {
-  int at[3] = {0, 0, 0};
-  for (int c = 0; c < mpm->dim; c++) {
-    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
-    at[c] = cell_in_tile(X - (double)first, mpm->grid.high[c] - 1 - first);
-    centre[c] = mpm->def.origin[c] + mpm->def.cell * ((double)(first + at[c]) + 0.5);
-  }
-  return mpm->water->cell + mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
-}
-
-mpsi_pore_cell *mpsi_pore_beside(const mps_mpm *mpm, int64_t g, int k, int direction) {
-  const int axis = direction / 2, place = k / stride[axis] % MPSI_SIDE;
-  const int to = direction & 1 ? place + 1 : place - 1;
-  const int local = k + (to - place) * stride[axis];
-  if (to >= 0 && to < MPSI_SIDE) return mpm->water->cell + mpsi_first_node(mpm, g) + local;
-  const int32_t block = mpm->water->beside[6 * g + direction];
-  if (block < 0) return NULL;
-  const int wrapped = local + (to < 0 ? MPSI_SIDE : -MPSI_SIDE) * stride[axis];
-  return mpm->water->cell + mpsi_first_node(mpm, block) + wrapped;
-}
-
 /* ---- sums ------------------------------------------------------------------------------------ */
 
+/* Empty: what its first particles give takes the place of the rest. */
 static void clear(mps_mpm *mpm, int64_t g, int32_t worker) {
+  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
   (void)worker;
-  memset(mpm->water->cell + mpsi_first_node(mpm, g), 0,
-         (size_t)mpm->grid.block_nodes * sizeof *mpm->water->cell);
+  for (int k = 0; k < mpm->grid.block_nodes; k++) cell[k].volume = 0.0;
+}
+
+/* The first node of a block of cells, and the last cells of its tile, or of the domain. */
+typedef struct tile {
+  double first[3];
+  int last[3];
+} tile;
+
+static tile tile_of(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  tile out = {{0.0}, {0}};
+  for (int c = 0; c < mpm->dim; c++) {
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, most = mpm->grid.high[c] - 1 - first;
+    out.first[c] = (double)first;
+    out.last[c] = most < MPSI_TILE_SIDE - 1 ? (int)most : MPSI_TILE_SIDE - 1;
+  }
+  return out;
+}
+
+/* See mpsi_pore_cell_at. A particle that has left the domain is in the nearest cell. */
+MPSI_INLINE int find_place(const mps_mpm *mpm, const tile *in, int dim, int64_t particle) {
+  int corner = 0, local = 0;
+  for (int c = 0; c < dim; c++) {
+    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]) - in->first[c];
+    int cell = X > 0.0 ? (int)X : 0; /* without a call of floor */
+    cell = cell < in->last[c] ? cell : in->last[c];
+    corner |= (cell >= MPSI_SIDE) << c;
+    local |= (cell & (MPSI_SIDE - 1)) << (MPSI_PORE_BITS * c);
+  }
+  return corner * MPSI_PORE_BLOCK + local;
+}
+
+/* What some particles of a cell give to it. */
+typedef struct cell_sums {
+  double volume, change, p, g[3], n, k;
+} cell_sums;
+
+MPSI_INLINE void add_to_cell(int dim, mpsi_pore_cell *cell, const cell_sums *sum) {
+  const bool empty = !(cell->volume > 0.0);
+  cell->volume = (empty ? 0.0 : cell->volume) + sum->volume;
+  cell->change = (empty ? 0.0 : cell->change) + sum->change;
+  cell->p = (empty ? 0.0 : cell->p) + sum->p;
+  cell->n = (empty ? 0.0 : cell->n) + sum->n;
+  cell->k = (empty ? 0.0 : cell->k) + sum->k;
+  for (int c = 0; c < 3; c++) cell->g[c] = (empty ? 0.0 : cell->g[c]) + (c < dim ? sum->g[c] : 0.0);
+}
+
+/* Particles of a stencil are neighbours: those in a row that are in the same cell are summed before
+ * they are added to it. */
+MPSI_INLINE void sum_body(mps_mpm *mpm, int64_t b, int dim) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_columns *p = &mpm->p;
+  const double *former = mpm->water->former;
+  uint16_t *place = mpm->water->place;
+  const tile in = tile_of(mpm, cells);
+  for (int64_t k = cells->begin; k < cells->end; k++)
+    place[k] = (uint16_t)find_place(mpm, &in, dim, k);
+  for (int64_t k = cells->begin; k < cells->end;) {
+    const int at = place[k];
+    double centre[3];
+    mpsi_pore_cell *cell = mpsi_pore_cell_at(mpm, cells, at, centre);
+    cell_sums sum = {.volume = 0.0};
+    for (; k < cells->end && place[k] == at; k++) {
+      const double V = p->V[k];
+      double there = p->u[k];
+      for (int c = 0; c < dim; c++) {
+        there += p->g[c][k] * (centre[c] - p->x[c][k]);
+        sum.g[c] += V * p->g[c][k];
+      }
+      sum.volume += V;
+      sum.change += V - former[k];
+      sum.p += V * there;
+      sum.n += V * p->n[k];
+      if (p->k) sum.k += V * p->k[k];
+    }
+    add_to_cell(dim, cell, &sum);
+  }
 }
 
 static void sum_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_columns *p = &mpm->p;
   (void)worker;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    double centre[3], there = p->u[k];
-    mpsi_pore_cell *cell = mpsi_pore_cell_of(mpm, cells, k, centre);
-    const double V = p->V[k];
-    for (int c = 0; c < mpm->dim; c++) {
-      there += p->g[c][k] * (centre[c] - p->x[c][k]);
-      cell->g[c] += V * p->g[c][k];
-    }
-    cell->volume += V;
-    cell->change += V - mpm->water->former[k];
-    cell->p += V * there;
-    cell->n += V * p->n[k];
-    if (p->k) cell->k += V * p->k[k];
-  }
+  if (mpm->dim == 2)
+    sum_body(mpm, b, 2);
+  else
+    sum_body(mpm, b, 3);
 }
 
 static void find_means(mps_mpm *mpm, int64_t g, int32_t worker) {
@@ -117,68 +147,72 @@ static bool is_inside(const mps_mpm *mpm, int64_t g, int k, const int *place) {
 
 /* What is beyond face `direction` of cell k of block g, whose box has its centre at x. */
 static void find_beyond(mps_mpm *mpm, int64_t g, int k, int direction, const double *x,
-                        mpsi_pore_cell *cell) {
+                        mpsi_pore_cell *cell, mpsi_pore_edge *edge) {
   const int axis = direction / 2, up = direction & 1;
-  const int64_t at =
-      (int64_t)mpm->grid.nodes[g].at[axis] * MPSI_SIDE + k / stride[axis] % MPSI_SIDE;
+  int place[3];
+  mpsi_unravel(k, MPSI_SIDE, place);
+  const int64_t at = (int64_t)mpm->grid.nodes[g].at[axis] * MPSI_SIDE + place[axis];
   const bool side = up ? at + 1 >= mpm->grid.high[axis] : at <= mpm->grid.low[axis];
   const double half = up ? 0.5 * mpm->def.cell : -0.5 * mpm->def.cell;
   double to[3] = {x[0], x[1], x[2]};
-  cell->beyond[direction] = MPSI_PORE_CELL;
-  cell->face[direction] = -1;
+  edge->beyond[direction] = MPSI_PORE_CELL;
+  edge->face[direction] = -1;
   if (!side && !mpsi_pore_empty(mpsi_pore_beside(mpm, g, k, direction))) return;
   to[axis] += 2.0 * half;
   if (!side) cell->free |= (uint8_t)(1u << direction);
   const bool closed = side || in_body(mpm, to);
   to[axis] = x[axis] + half;
   const int face = find_face(mpm, to, direction);
-  cell->face[direction] = (int8_t)face;
-  cell->beyond[direction] = closed ? MPSI_PORE_CLOSED : MPSI_PORE_DRAINED;
+  edge->face[direction] = (int8_t)face;
+  edge->beyond[direction] = closed ? MPSI_PORE_CLOSED : MPSI_PORE_DRAINED;
   if (face >= 0)
-    cell->beyond[direction] =
+    edge->beyond[direction] =
         mpm->water->face[face].kind == MPS_PORE_FACE_DRAINED ? MPSI_PORE_DRAINED : MPSI_PORE_CLOSED;
 }
 
 /* The filled part of a cell whose box is at radius r. */
-static void find_filled(const mps_mpm *mpm, double r, mpsi_pore_cell *cell) {
+static void find_filled(const mps_mpm *mpm, double r, mpsi_pore_cell *cell, mpsi_pore_edge *edge) {
   const double h = mpm->def.cell;
   const double box = (mpm->dim == 3 ? h * h * h : h * h) * r;
   int axes = 0;
   for (int c = 0; c < mpm->dim; c++) axes += (cell->free >> (2 * c) & 3) != 0;
   const double f = axes == 0 ? 1.0 : fmin(1.0, cell->volume / (mpm->def.measure * box));
   const double part = axes <= 1 ? f : axes == 2 ? sqrt(f) : cbrt(f);
-  cell->space = box * f;
+  edge->space = box * f;
   for (int c = 0; c < 3; c++) {
     const int sides = c < mpm->dim ? cell->free >> (2 * c) & 3 : 0;
-    cell->fill[c] = sides != 0 ? part : 1.0;
-    cell->shift[c] = 0.5 * h * (1.0 - cell->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
-    cell->p += c < mpm->dim ? cell->g[c] * cell->shift[c] : 0.0;
+    edge->fill[c] = sides != 0 ? part : 1.0;
+    edge->shift[c] = 0.5 * h * (1.0 - edge->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
+    cell->p += c < mpm->dim ? cell->g[c] * edge->shift[c] : 0.0;
   }
   for (int d = 0; d < 2 * mpm->dim && mpm->water->flows; d++)
-    if (f < 0.5 && (cell->free >> d & 1) && cell->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
+    if (f < 0.5 && (cell->free >> d & 1) && edge->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
+}
+
+/* Of a cell that is not inside. */
+static void find_edge(mps_mpm *mpm, int64_t g, int k, const int *place, mpsi_pore_cell *cell) {
+  const bool ring = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
+  mpsi_pore_edge *edge = mpm->water->edge + (cell - mpm->water->cell);
+  double x[3];
+  mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
+  for (int d = 0; d < 2 * mpm->dim; d++) find_beyond(mpm, g, k, d, x, cell, edge);
+  find_filled(mpm, ring ? x[0] : 1.0, cell, edge);
 }
 
 static void find_faces(mps_mpm *mpm, int64_t g, int32_t worker) {
-  static const double middle[3] = {0.5, 0.5, 0.5};
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
-  const double h = mpm->def.cell, box = mpm->dim == 3 ? h * h * h : h * h;
   const bool ring = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (mpsi_pore_empty(&cell[k])) continue;
     int place[3];
-    double local[3], x[3];
     mpsi_unravel(k, MPSI_SIDE, place);
     cell[k].inside = !ring && is_inside(mpm, g, k, place);
-    if (cell[k].inside) { /* its faces and its free ones are those of an emptied cell: none */
-      cell[k].space = box;
-      for (int c = 0; c < 3; c++) cell[k].fill[c] = 1.0;
-      continue;
-    }
-    for (int c = 0; c < 3; c++) local[c] = place[c] + middle[c];
-    mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
-    for (int d = 0; d < 2 * mpm->dim; d++) find_beyond(mpm, g, k, d, x, &cell[k]);
-    find_filled(mpm, ring ? x[0] : 1.0, &cell[k]);
+    cell[k].free = 0;
+    cell[k].thin = false;
+    if (!cell[k].inside) find_edge(mpm, g, k, place, &cell[k]);
+    if (!mpm->water->flows) cell[k].now = cell[k].p + mpsi_pore_squeeze(mpm, &cell[k]);
   }
 }
 

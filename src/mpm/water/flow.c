@@ -30,7 +30,9 @@ static double area_of(const mps_mpm *mpm, const mpsi_pore_cell *cell, const mpsi
   double area = mpsi_pore_radius(mpm, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
   for (int c = 0; c < mpm->dim; c++)
     if (c != direction / 2)
-      area *= mpm->def.cell * (beside ? fmin(cell->fill[c], beside->fill[c]) : cell->fill[c]);
+      area *= mpm->def.cell * (beside ? fmin(mpsi_pore_edge_of(mpm, cell)->fill[c],
+                                             mpsi_pore_edge_of(mpm, beside)->fill[c])
+                                      : mpsi_pore_edge_of(mpm, cell)->fill[c]);
   return area;
 }
 
@@ -63,7 +65,8 @@ static face_flow to_cell(const mps_mpm *mpm, const mpsi_pore_cell *cell,
                          double area) {
   const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
   const double still = mpm->water->def.density * mpm->def.gravity[axis];
-  const double distance = mpm->def.cell + sign * (beside->shift[axis] - cell->shift[axis]);
+  const double distance = mpm->def.cell + sign * (mpsi_pore_edge_of(mpm, beside)->shift[axis] -
+                                                  mpsi_pore_edge_of(mpm, cell)->shift[axis]);
   const double drive = (p_beside - p) / distance - sign * still; /* outwards */
   const double sum = cell->k + beside->k, own = sum > 0.0 ? 2.0 * beside->k / sum : 1.0;
   return (face_flow){.slope = sign * drive * own + still,
@@ -86,26 +89,30 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
   const double h = mpm->def.cell, p = pressure_of(cell, end);
   const face_flow none = {.known = false};
   *behind = NULL;
-  if (!mpm->water->flows && cell->beyond[direction] != MPSI_PORE_CELL) return none;
-  if (cell->beyond[direction] == MPSI_PORE_CLOSED)
+  if (!mpm->water->flows && mpsi_pore_edge_of(mpm, cell)->beyond[direction] != MPSI_PORE_CELL)
+    return none;
+  if (mpsi_pore_edge_of(mpm, cell)->beyond[direction] == MPSI_PORE_CLOSED)
     return (face_flow){.slope = mpm->water->def.density * mpm->def.gravity[axis],
-                       .distance = 0.5 * h * cell->fill[axis],
+                       .distance = 0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis],
                        .known = true};
-  if (cell->beyond[direction] == MPSI_PORE_DRAINED) {
+  if (mpsi_pore_edge_of(mpm, cell)->beyond[direction] == MPSI_PORE_DRAINED) {
     *behind = cell;
-    return to_drained(mpm, cell, cell->face[direction], direction, x, 0.5 * h * cell->fill[axis], p,
+    return to_drained(mpm, cell, mpsi_pore_edge_of(mpm, cell)->face[direction], direction, x,
+                      0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis], p,
                       area_of(mpm, cell, NULL, direction, X));
   }
   const mpsi_pore_cell *beside = mpsi_pore_beside(mpm, g, k, direction);
   const double area = area_of(mpm, cell, beside, direction, X);
   if (!beside->thin)
     return to_cell(mpm, cell, beside, direction, p, pressure_of(beside, end), area);
-  if (!(beside->free >> direction & 1) || beside->beyond[direction] != MPSI_PORE_DRAINED)
+  if (!(beside->free >> direction & 1) ||
+      mpsi_pore_edge_of(mpm, beside)->beyond[direction] != MPSI_PORE_DRAINED)
     return none;
   *behind = beside;
-  const double own = 0.5 * h + sign * -cell->shift[axis];
-  return to_drained(mpm, cell, beside->face[direction], direction, x, own + h * beside->fill[axis],
-                    p, area_of(mpm, cell, NULL, direction, X));
+  const double own = 0.5 * h + sign * -mpsi_pore_edge_of(mpm, cell)->shift[axis];
+  return to_drained(mpm, cell, mpsi_pore_edge_of(mpm, beside)->face[direction], direction, x,
+                    own + h * mpsi_pore_edge_of(mpm, beside)->fill[axis], p,
+                    area_of(mpm, cell, NULL, direction, X));
 }
 
 /* Centre of the filled part of cell k of a block of nodes; the coordinate of its box along x. */
@@ -115,7 +122,7 @@ static double centre_of(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_ce
   mpsi_unravel(k, MPSI_SIDE, place);
   const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
   mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
-  for (int c = 0; c < mpm->dim; c++) x[c] += cell->shift[c];
+  for (int c = 0; c < mpm->dim; c++) x[c] += mpsi_pore_edge_of(mpm, cell)->shift[c];
   return (double)mpm->grid.nodes[g].at[0] * MPSI_SIDE + place[0];
 }
 
@@ -169,9 +176,10 @@ static double *outflow_of(const mps_mpm *mpm, int64_t g, int face) {
 /* What a thin cell loses goes through one of its drained faces. */
 static void squeeze(mps_mpm *mpm, int64_t g, mpsi_pore_cell *cell) {
   int d = 0;
-  while (!((cell->free >> d & 1) && cell->beyond[d] == MPSI_PORE_DRAINED)) d++;
+  while (!((cell->free >> d & 1) && mpsi_pore_edge_of(mpm, cell)->beyond[d] == MPSI_PORE_DRAINED))
+    d++;
   cell->gain = cell->change / (mpm->run.dt * mpm->def.measure);
-  *outflow_of(mpm, g, cell->face[d]) -= cell->gain;
+  *outflow_of(mpm, g, mpsi_pore_edge_of(mpm, cell)->face[d]) -= cell->gain;
 }
 
 static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell) {
@@ -182,21 +190,24 @@ static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *ce
   for (int d = 0; d < 2 * mpm->dim; d++) {
     const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
     if (f.known) flux += f.flux;
-    if (f.known && behind) *outflow_of(mpm, g, behind->face[d]) -= f.flux;
+    if (f.known && behind) *outflow_of(mpm, g, mpsi_pore_edge_of(mpm, behind)->face[d]) -= f.flux;
   }
   return flux;
 }
 
 static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   const struct mpsi_water *water = mpm->water;
-  const double dt = mpm->run.dt;
-  const double flux = water->flows ? flux_into(mpm, g, k, cell) : 0.0;
+  const double h = mpm->def.cell;
+  double space = mpm->dim == 3 ? h * h * h : h * h;
+  cell->gain = flux_into(mpm, g, k, cell);
   /* a cell less than half full at an impervious surface: else its steps would be short */
-  const double space = fmax(
-      cell->space, 0.5 * cell->space / fmax(1e-3, cell->fill[0] * cell->fill[1] * cell->fill[2]));
-  const double strain = cell->change / (cell->volume - cell->change);
-  cell->gain = flux;
-  cell->now = cell->p + water->def.bulk / cell->n * (dt * flux / space - strain);
+  if (!cell->inside) {
+    const mpsi_pore_edge *edge = mpsi_pore_edge_of(mpm, cell);
+    const double filled = edge->fill[0] * edge->fill[1] * edge->fill[2];
+    space = fmax(edge->space, 0.5 * edge->space / fmax(1e-3, filled));
+  }
+  cell->now = cell->p + water->def.bulk / cell->n * (mpm->run.dt * cell->gain / space) +
+              mpsi_pore_squeeze(mpm, cell);
 }
 
 static void find_pressures(mps_mpm *mpm, int64_t g, int32_t worker) {
@@ -245,17 +256,19 @@ static void interpolate(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *ce
   centre_of(mpm, g, k, cell, x);
   for (int d = 0; d < 2 * mpm->dim; d++) {
     const int axis = d / 2, sign = d & 1 ? 1 : -1;
-    if (!(cell->free >> d & 1) || cell->beyond[d] != MPSI_PORE_DRAINED) continue;
+    if (!(cell->free >> d & 1) || mpsi_pore_edge_of(mpm, cell)->beyond[d] != MPSI_PORE_DRAINED)
+      continue;
     const mpsi_pore_cell *inside = mpsi_pore_beside(mpm, g, k, d ^ 1);
     double at[3] = {x[0], x[1], x[2]};
-    at[axis] += sign * 0.5 * h * cell->fill[axis];
-    const double surface = given_pressure(mpm, cell->face[d], at);
+    at[axis] += sign * 0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis];
+    const double surface = given_pressure(mpm, mpsi_pore_edge_of(mpm, cell)->face[d], at);
     cell->g[axis] = 0.0;
     if (mpsi_pore_empty(inside) || inside->thin) continue;
-    const double way = 0.5 * h - sign * inside->shift[axis] + h * cell->fill[axis];
+    const double way = 0.5 * h - sign * mpsi_pore_edge_of(mpm, inside)->shift[axis] +
+                       h * mpsi_pore_edge_of(mpm, cell)->fill[axis];
     const double slope = (surface - inside->now) / way; /* outwards */
     cell->g[axis] = sign * slope;
-    sum += surface - slope * 0.5 * h * cell->fill[axis];
+    sum += surface - slope * 0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis];
     lines++;
   }
   cell->now = lines > 0 ? sum / lines : 0.0;
@@ -275,45 +288,57 @@ static void find_slopes(mps_mpm *mpm, int64_t g, int32_t worker) {
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-/* Permeability after a change of volume by the factor `ratio`: v follows it, and e = v - 1. */
+/* Permeability after a change of volume by the factor `ratio`: v = 1/(1 - n), before, follows it,
+ * and e = v - 1. */
 static double permeability_after(const mps_pore_water_def *def, double k, double n, double ratio) {
-  const double v = 1.0 / (1.0 - n); /* before */
   if (def->exponent != 0.0) k *= pow(ratio, def->exponent);
-  if (def->ratio_slope < INFINITY) k *= exp(v * (ratio - 1.0) / def->ratio_slope);
+  if (def->ratio_slope < INFINITY) k *= exp((ratio - 1.0) / ((1.0 - n) * def->ratio_slope));
   return k;
 }
 
-static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+MPSI_INLINE void give_body(mps_mpm *mpm, int64_t b, int dim) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const struct mpsi_water *water = mpm->water;
   const mpsi_columns *p = &mpm->p;
   const double weight = weight_of_water(mpm);
-  (void)worker;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
+  for (int64_t k = cells->begin; k < cells->end;) {
+    const int at = water->place[k];
     double centre[3];
-    const mpsi_pore_cell *cell = mpsi_pore_cell_of(mpm, cells, k, centre);
-    const double ratio = p->V[k] / water->former[k];
-    double now = cell->now;
-    for (int c = 0; c < mpm->dim; c++) {
-      now += cell->g[c] * (p->x[c][k] - centre[c] - cell->shift[c]);
-      p->g[c][k] = cell->g[c];
+    const mpsi_pore_cell *cell = mpsi_pore_cell_at(mpm, cells, at, centre);
+    const double gain = water->flows ? water->def.density * mpm->run.dt * cell->gain *
+                                           mpm->def.measure / cell->volume
+                                     : 0.0;
+    for (int c = 0; c < dim; c++) centre[c] += mpsi_pore_edge_of(mpm, cell)->shift[c];
+    for (; k < cells->end && water->place[k] == at; k++) {
+      double now = cell->now;
+      for (int c = 0; c < dim; c++) {
+        now += cell->g[c] * (p->x[c][k] - centre[c]);
+        p->g[c][k] = cell->g[c];
+      }
+      p->u[k] = now;
+      if (water->flows) {
+        p->k[k] = permeability_after(&water->def, p->k[k], p->n[k], p->V[k] / water->former[k]);
+        p->m[k] += gain * p->V[k];
+        for (int c = 0; c < dim && water->seepage[0]; c++)
+          water->seepage[c][k] =
+              -p->k[k] / weight * (cell->g[c] - water->def.density * mpm->def.gravity[c]);
+      }
+      p->n[k] = 1.0 - (1.0 - p->n[k]) * (water->former[k] / p->V[k]);
     }
-    p->u[k] = now;
-    if (water->flows) {
-      p->k[k] = permeability_after(&water->def, p->k[k], p->n[k], ratio);
-      p->m[k] += water->def.density * mpm->run.dt * cell->gain * mpm->def.measure *
-                 (p->V[k] / cell->volume);
-      for (int c = 0; c < mpm->dim && water->seepage[0]; c++)
-        water->seepage[c][k] =
-            -p->k[k] / weight * (cell->g[c] - water->def.density * mpm->def.gravity[c]);
-    }
-    p->n[k] = 1.0 - (1.0 - p->n[k]) / ratio;
   }
+}
+
+static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  if (mpm->dim == 2)
+    give_body(mpm, b, 2);
+  else
+    give_body(mpm, b, 3);
 }
 
 void mpsi_pore_flow(mps_mpm *mpm) {
   const mpsi_pass pressures = {.finish = find_pressures};
   const mpsi_pass particles = {.finish = find_slopes, .gather = give_to_particles};
-  mpsi_mpm_run_pass(mpm, &pressures);
+  if (mpm->water->flows) mpsi_mpm_run_pass(mpm, &pressures);
   mpsi_mpm_run_pass(mpm, &particles);
 }

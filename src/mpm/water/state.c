@@ -41,9 +41,11 @@ double mpsi_pore_mass(const mps_mpm *mpm) {
 void mpsi_pore_free(mps_mpm *mpm) {
   if (!mpm->water) return;
   mpsi_free(mpm->context, mpm->water->cell_room.item);
+  mpsi_free(mpm->context, mpm->water->edge_room.item);
   mpsi_free(mpm->context, mpm->water->beside_room.item);
   mpsi_free(mpm->context, mpm->water->outflow_room.item);
-  mpsi_free(mpm->context, mpm->water->column_room.item);
+  mpsi_free(mpm->context, mpm->water->former_room.item);
+  mpsi_free(mpm->context, mpm->water->place_room.item);
   mpsi_free(mpm->context, mpm->water);
   mpm->water = NULL;
 }

@@ -6,26 +6,23 @@
 
 /* ---- before ---------------------------------------------------------------------------------- */
 
-enum { OWN_COLUMNS = 4 }; /* the normal components of the stress; volumes */
-
 static mps_status make_room(mps_mpm *mpm, const char *function) {
   struct mpsi_water *water = mpm->water;
   mps_context *context = mpm->context;
   const int64_t blocks = mpm->grid.node_count, nodes = blocks * mpm->grid.block_nodes;
-  const int64_t stride = mpm->p.count + MPSI_PARTICLES_PADDING;
   if (!mpsi_room_ensure(context, &water->cell_room, nodes, sizeof *water->cell) ||
+      !mpsi_room_ensure(context, &water->edge_room, nodes, sizeof *water->edge) ||
       !mpsi_room_ensure(context, &water->beside_room, 6 * blocks, sizeof *water->beside) ||
       !mpsi_room_ensure(context, &water->outflow_room, blocks, sizeof *water->outflow) ||
-      !mpsi_room_ensure(context, &water->column_room, OWN_COLUMNS * stride, sizeof(double)))
+      !mpsi_room_ensure(context, &water->former_room, mpm->p.count, sizeof *water->former) ||
+      !mpsi_room_ensure(context, &water->place_room, mpm->p.count, sizeof *water->place))
     return mpsi_fail_memory(context, function, (size_t)nodes * sizeof *water->cell);
   water->cell = water->cell_room.item;
+  water->edge = water->edge_room.item;
   water->beside = water->beside_room.item;
   water->outflow = water->outflow_room.item;
-  double *column = water->column_room.item;
-  for (int c = 0; c < 3; c++) mpm->p.t[c] = column + c * stride;
-  water->former = column + 3 * stride;
-  for (int64_t k = mpm->p.count; k < stride; k++) /* loops read some more */
-    for (int c = 0; c < 3; c++) mpm->p.t[c][k] = 0.0;
+  water->former = water->former_room.item;
+  water->place = water->place_room.item;
   return MPS_OK;
 }
 
@@ -54,14 +51,11 @@ static void link_blocks(mps_mpm *mpm) {
     }
 }
 
-static void add_pressure(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void keep_volumes(mps_mpm *mpm, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_columns *p = &mpm->p;
   (void)worker;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    for (int c = 0; c < 3; c++) p->t[c][k] = p->s[c][k] - p->u[k];
-    mpm->water->former[k] = p->V[k];
-  }
+  memcpy(mpm->water->former + cells->begin, mpm->p.V + cells->begin,
+         (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
 
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
@@ -73,7 +67,7 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
         c < mpm->dim ? mpsi_particles_column(mpm->particles, "seepage", c) : NULL;
   if (mpm->run.steps == 0) mpm->water->start = mpsi_pore_mass(mpm);
   link_blocks(mpm);
-  mpsi_mpm_for_cells(mpm, add_pressure);
+  mpsi_mpm_for_cells(mpm, keep_volumes);
   return MPS_OK;
 }
 

@@ -13,23 +13,30 @@
 /* What is beyond a face of a cell. */
 enum { MPSI_PORE_CELL, MPSI_PORE_CLOSED, MPSI_PORE_DRAINED };
 
+enum { MPSI_PORE_BITS = 3, MPSI_PORE_BLOCK = 1 << (3 * MPSI_PORE_BITS) };
+_Static_assert(1 << MPSI_PORE_BITS == MPSI_SIDE, "digits of a cell's number in its block");
+
 /* Sums over the particles of a cell, and the means that follow; amounts are of the measure, the
  * rest of 1 m or 1 rad. */
 typedef struct mpsi_pore_cell {
-  double volume;            /* sum V, m3; 0: there is nothing here */
-  double change;            /* sum of dV of the step, m3 */
-  double p, g[3];           /* Pa, at the centre of the cell's box; Pa/m */
-  double n, k;              /* porosity; m/s */
+  double volume;    /* sum V, m3; 0: there is nothing here */
+  double change;    /* sum of dV of the step, m3 */
+  double p, g[3];   /* Pa, at the centre of the cell's box; Pa/m */
+  double n, k;      /* porosity; m/s */
+  double now, gain; /* Pa, at the end of the step; m3/s of water that flows in */
+  uint8_t free;     /* bit d: nothing lies beyond face d, but perhaps a body */
+  bool inside;      /* there are cells on all its faces; never in axisymmetry */
+  bool thin;        /* less than half full at a drained surface: stores nothing */
+} mpsi_pore_cell;
+
+/* What a cell that is not inside has besides. */
+typedef struct mpsi_pore_edge {
   double fill[3], shift[3]; /* part of the box that is filled along each axis; m, from the box's
                                centre to that of the filled part */
   double space;             /* m3, of the filled part */
-  double now, gain;         /* Pa, at the end of the step; m3/s of water that flows in */
   int8_t beyond[6];         /* MPSI_PORE_... of each face */
   int8_t face[6];           /* number of the definition, -1: none */
-  uint8_t free;             /* bit d: nothing lies beyond face d, but perhaps a body */
-  bool inside;              /* there are cells on all its faces; never in axisymmetry */
-  bool thin;                /* less than half full at a drained surface: stores nothing */
-} mpsi_pore_cell;
+} mpsi_pore_edge;
 
 enum { MPSI_PORE_FACES = MPS_PORE_MAX_FACES + 1 }; /* the last: the free surface without one */
 
@@ -42,12 +49,28 @@ struct mpsi_water {
   double drained[MPSI_PORE_FACES];    /* kg */
   double rate[MPSI_PORE_FACES];       /* kg/s, of the last step */
   mpsi_pore_cell *cell;               /* by nodes of the grid */
+  mpsi_pore_edge *edge;               /* the same: few are in use */
   int32_t *beside;                    /* by blocks of nodes: the 6 beside, or -1 */
   double (*outflow)[MPSI_PORE_FACES]; /* m3/s, by blocks of nodes */
   double *former;                     /* m3, volumes at the beginning of the step */
+  uint16_t *place;                    /* the cell of each particle: mpsi_pore_cell_at */
   double *seepage[3];                 /* of the set, or NULL */
-  mpsi_room cell_room, beside_room, outflow_room, column_room;
+  mpsi_room cell_room, edge_room, beside_room, outflow_room, former_room, place_room;
 };
+
+/* The cell at `place` of a block of cells: the block of nodes under its tile, times the
+ * nodes of one, and the number in that. Its centre to centre[3] (m). */
+static inline mpsi_pore_cell *mpsi_pore_cell_at(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                int place, double *centre) {
+  const int corner = place / MPSI_PORE_BLOCK, local = place % MPSI_PORE_BLOCK;
+  int at[3];
+  mpsi_unravel(local, MPSI_SIDE, at);
+  for (int c = 0; c < mpm->dim; c++) {
+    const int64_t cell = ((int64_t)cells->at[c] + (corner >> c & 1)) * MPSI_SIDE + at[c];
+    centre[c] = mpm->def.origin[c] + mpm->def.cell * ((double)cell + 0.5);
+  }
+  return mpm->water->cell + mpsi_first_node(mpm, cells->to[corner]) + local;
+}
 
 static inline bool mpsi_pore_empty(const mpsi_pore_cell *cell) {
   return !cell || !(cell->volume > 0.0);
@@ -59,11 +82,29 @@ static inline double mpsi_pore_radius(const mps_mpm *mpm, double X) {
   return mpm->def.origin[0] + X * mpm->def.cell;
 }
 
-/* cells.c: the cell of a particle of a block; the one beside cell k of block g, or NULL. */
-mpsi_pore_cell *mpsi_pore_cell_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                  int64_t particle, double *centre);
-mpsi_pore_cell *mpsi_pore_beside(const mps_mpm *mpm, int64_t g, int k, int direction);
-/* cells.c: sums of the particles; then faces and the filled part of each cell. */
+/* Of a cell that is inside: one that is filled, with cells on all faces. */
+static inline const mpsi_pore_edge *mpsi_pore_edge_of(const mps_mpm *mpm,
+                                                      const mpsi_pore_cell *cell) {
+  static const mpsi_pore_edge whole = {.fill = {1.0, 1.0, 1.0}, .face = {-1, -1, -1, -1, -1, -1}};
+  return cell->inside ? &whole : mpm->water->edge + (cell - mpm->water->cell);
+}
+/* The one beside cell k of block g, or NULL. */
+static inline mpsi_pore_cell *mpsi_pore_beside(const mps_mpm *mpm, int64_t g, int k,
+                                               int direction) {
+  const int digit = MPSI_PORE_BITS * (direction / 2), stride = 1 << digit;
+  const int place = k >> digit & (MPSI_SIDE - 1), last = direction & 1 ? MPSI_SIDE - 1 : 0;
+  const int step = direction & 1 ? stride : -stride;
+  if (place != last) return mpm->water->cell + mpsi_first_node(mpm, g) + k + step;
+  const int32_t block = mpm->water->beside[6 * g + direction];
+  if (block < 0) return NULL;
+  return mpm->water->cell + mpsi_first_node(mpm, block) + k - (MPSI_SIDE - 1) * step;
+}
+/* What the pressure of a cell grows by in the step without flow, Pa. */
+static inline double mpsi_pore_squeeze(const mps_mpm *mpm, const mpsi_pore_cell *cell) {
+  return -mpm->water->def.bulk / cell->n * (cell->change / (cell->volume - cell->change));
+}
+/* cells.c: sums of the particles, then faces and the filled part of each cell, and without flow its
+ * pressure at the end of the step. */
 void mpsi_pore_find_cells(mps_mpm *mpm);
 /* flow.c: pressures at the end of the step; then their slopes, and what the particles take. */
 void mpsi_pore_flow(mps_mpm *mpm);
