@@ -5,7 +5,7 @@
 #ifndef EXAMPLES_PRECICE_PARTICIPANT_H
 #define EXAMPLES_PRECICE_PARTICIPANT_H
 
-#include "common/app.h"
+#include "loop.h"
 
 #include <mps/elastic.h>
 
@@ -21,10 +21,6 @@ typedef struct participant_def {
   bool (*each)(void *user, mps_elastic *solver);
   void *user;
 } participant_def;
-
-typedef struct participant_result {
-  int64_t windows, steps, repeats; /* time windows; steps with the repeated ones; windows undone */
-} participant_result;
 
 /* Couples the motion of `solver`, which has been started, by the `count` facets until preCICE ends
  * it. False, with an error line, on a failure. */

@@ -39,6 +39,13 @@ void precicec_initialize(void) {
 
 int precicec_requiresInitialData(void) { return !begun; }
 int precicec_getMeshDimensions(const char *mesh) { return strcmp(mesh, "Solid-Mesh") == 0 ? 2 : 0; }
+int precicec_getDataDimensions(const char *mesh, const char *data) {
+  static const char *const vectors[] = {"Force", "Stress", "Displacement", "Velocity"};
+  refuse(begun, "getDataDimensions: names are to be checked before initialize");
+  for (int k = 0; k < 4; k++)
+    if (strcmp(data, vectors[k]) == 0) return precicec_getMeshDimensions(mesh);
+  return strcmp(data, "Pressure") == 0; /* preCICE itself ends the program for unknown names */
+}
 int precicec_isCouplingOngoing(void) { return mock_was.windows < mock.windows; }
 
 double precicec_getMaxTimeStepSize(void) {

@@ -43,7 +43,7 @@ static path coupled(const flap_def *def, const char *force, const char *stress,
   assert_true(app_start(&a, "test", 1));
   assert_true(flap_make(&a, def, &body));
   path p = {.body = &body, .a = &a};
-  const participant_def coupling = {.config = "none.xml",
+  const participant_def coupling = {.config = PRECICE_CONFIG,
                                     .name = "Solid",
                                     .mesh = "Solid-Mesh",
                                     .force = force,

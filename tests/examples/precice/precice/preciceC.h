@@ -11,6 +11,7 @@ int precicec_requiresInitialData(void);
 int precicec_requiresWritingCheckpoint(void);
 int precicec_requiresReadingCheckpoint(void);
 int precicec_getMeshDimensions(const char *mesh);
+int precicec_getDataDimensions(const char *mesh, const char *data);
 int precicec_isCouplingOngoing(void);
 int precicec_isTimeWindowComplete(void);
 double precicec_getMaxTimeStepSize(void);
