@@ -1,11 +1,14 @@
-# Finds Embree 3 (3.8 or newer) and defines the target Embree::Embree.
+# Finds Embree 4 or 3 (3.8 or newer), the newest there is, and defines the target Embree::Embree. EMBREE_MAJOR is
+# what its headers' folder and its interface are named after.
 # The CMake package of Debian's asks for the development files of its own dependencies; these are not
-# needed. Embree 4 has another interface.
-find_path(EMBREE_INCLUDE_DIR embree3/rtcore.h)
-find_library(EMBREE_LIBRARY NAMES embree3)
-if(EMBREE_INCLUDE_DIR AND EXISTS ${EMBREE_INCLUDE_DIR}/embree3/rtcore_config.h)
-  file(STRINGS ${EMBREE_INCLUDE_DIR}/embree3/rtcore_config.h embree_version_line
-       REGEX "#define RTC_VERSION_STRING ")
+# needed.
+find_library(EMBREE_LIBRARY NAMES embree4 embree3)
+get_filename_component(EMBREE_MAJOR "${EMBREE_LIBRARY}" NAME)
+string(REGEX REPLACE "^(lib)?embree([34]).*" "\\2" EMBREE_MAJOR "${EMBREE_MAJOR}")
+find_path(EMBREE_INCLUDE_DIR embree${EMBREE_MAJOR}/rtcore.h)
+set(embree_config ${EMBREE_INCLUDE_DIR}/embree${EMBREE_MAJOR}/rtcore_config.h)
+if(EXISTS ${embree_config})
+  file(STRINGS ${embree_config} embree_version_line REGEX "#define RTC_VERSION_STRING ")
   string(REGEX REPLACE ".*\"([0-9.]+)\".*" "\\1" EMBREE_VERSION "${embree_version_line}")
 endif()
 include(FindPackageHandleStandardArgs)

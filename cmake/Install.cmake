@@ -1,7 +1,11 @@
-# What `cmake --install` puts where. Debian has another libmps (MPSolve: <mps/mps.h>), so the headers
-# live under include/libmps-<major>/mps/, the pkg-config module is `libmps`, the CMake package `mps`.
+# What `cmake --install` puts where. Debian has another libmps (MPSolve: <mps/mps.h>, libmps.so, libmps.a), so the
+# headers live under include/libmps-0.3/mps/, link name and archive under lib/libmps-0.3/; the CMake package is `mps`,
+# the pkg-config module `libmps-0.3`, and `libmps` that of the version installed last. Two minor versions may share
+# a prefix: programs, manual pages, documents and the Python package are then those of the version installed last.
 include(CMakePackageConfigHelpers)
-set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mps)
+set(series libmps-${MPS_SERIES})
+set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mps-${MPS_SERIES})
+set(link_dir ${CMAKE_INSTALL_LIBDIR}/${series})
 
 # As they lie here, so that the links between them hold.
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -12,18 +16,29 @@ install(FILES docs/site/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/site)
 if(NOT PETSc_FOUND)
   set(without_petsc PATTERN petsc.h EXCLUDE)
 endif()
-install(DIRECTORY include/mps DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libmps-${PROJECT_VERSION_MAJOR}
+install(DIRECTORY include/mps DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${series}
         FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" ${without_petsc})
 
 # Two export sets: who links libmps.so is not asked to have what only libmps.a needs.
-install(TARGETS mps EXPORT mps-shared)
-install(TARGETS mps_static EXPORT mps-static)
+install(TARGETS mps EXPORT mps-shared LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
+install(TARGETS mps_static EXPORT mps-static ARCHIVE DESTINATION ${link_dir})
+set(link_names libmps)
 if(PETSc_FOUND)
-  install(TARGETS mps_petsc EXPORT mps-petsc)
+  list(APPEND link_names libmps-petsc)
+  install(TARGETS mps_petsc EXPORT mps-petsc LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
   install(EXPORT mps-petsc NAMESPACE mps:: DESTINATION ${cmake_dir})
 endif()
 install(EXPORT mps-shared NAMESPACE mps:: DESTINATION ${cmake_dir})
 install(EXPORT mps-static NAMESPACE mps:: DESTINATION ${cmake_dir})
+foreach(name IN LISTS link_names)
+  set(soname ${name}${CMAKE_SHARED_LIBRARY_SUFFIX}.${MPS_SERIES})
+  # The link name, and the SONAME beside it: Meson takes the folder of the one for the run path of a program.
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/${series})
+  foreach(link ${name}${CMAKE_SHARED_LIBRARY_SUFFIX} ${soname})
+    file(CREATE_LINK ../${soname} ${PROJECT_BINARY_DIR}/${series}/${link} SYMBOLIC)
+    install(FILES ${PROJECT_BINARY_DIR}/${series}/${link} DESTINATION ${link_dir})
+  endforeach()
+endforeach()
 
 # link_flags(<variable> <libraries>): libraries found as files become -L and -l flags.
 function(link_flags variable)
@@ -100,9 +115,10 @@ endforeach()
 foreach(variable PREFIX LIBDIR INCLUDEDIR)
   string(REPLACE " " "\\ " MPS_PC_${variable} "${MPS_PC_${variable}}")
 endforeach()
-configure_file(pkgconfig/libmps.pc.in ${PROJECT_BINARY_DIR}/libmps.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/libmps.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-if(PETSc_FOUND)
-  configure_file(pkgconfig/libmps-petsc.pc.in ${PROJECT_BINARY_DIR}/libmps-petsc.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/libmps-petsc.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-endif()
+foreach(name IN LISTS link_names)
+  configure_file(pkgconfig/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  foreach(module ${name} ${name}-${MPS_SERIES})
+    install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+            RENAME ${module}.pc)
+  endforeach()
+endforeach()

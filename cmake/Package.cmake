@@ -26,7 +26,14 @@ mark_as_advanced(MPS_DPKG MPS_RPMBUILD)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION math)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_CONFLICTS libmps-dev) # libmps.so and libmps.a of its own
 set(CPACK_RPM_FILE_NAME RPM-DEFAULT)
+# Directories of the system: those that cpack does not know to be such.
+set(share ${CMAKE_INSTALL_DATADIR})
+foreach(directory ${CMAKE_INSTALL_LIBDIR} ${CMAKE_INSTALL_LIBDIR}/cmake ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+        ${CMAKE_INSTALL_LIBDIR}/python3 ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages ${share}/man ${share}/man/man1
+        ${share}/bash-completion ${share}/bash-completion/completions ${share}/zsh ${share}/zsh/site-functions)
+  list(APPEND CPACK_RPM_EXCLUDE_FROM_AUTO_FILELIST_ADDITION /usr/${directory})
+endforeach()
+set(CPACK_RPM_SPEC_MORE_DEFINE "%define _build_id_links none") # no package of debugging symbols
 set(CPACK_RPM_PACKAGE_LICENSE BSD-3-Clause)
 include(CPack)

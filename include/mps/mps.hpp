@@ -12,9 +12,11 @@
  *   mps::run(solver, mps_mpm_run, 1.0, 100, [](mps_mpm *s) { ... });
  *   mps_totals totals = mps::get<mps_totals>(solver, mps_mpm_get_totals);
  *   for (double vx : mps::view(sand, "velocity").column(0)) ...
+ *   for (auto x : mps::view(sand, "position").rows()) std::hypot(x[0], x[1]) ...
  *
- * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::callback. A
- * function that is given to C without it must not throw: C has no way to unwind a step.
+ * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::bind, mps::keep
+ * or mps::callback. A function that is given to C without it must not throw: C has no way to unwind
+ * a step.
  *
  * Arguments are those of the C function, with a struct in place of a pointer to it and a handle in
  * place of its object. The context must outlive the handles that were made from it, as it does when
@@ -24,17 +26,17 @@
 #define LIBMPS_MPS_HPP
 
 #include "mps.h"
+#include "ranges.hpp"
 
 #include <atomic>
-#include <cstddef>
 #include <exception>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace mps {
 
@@ -62,6 +64,11 @@ private:
   mps_error record_ = {MPS_OK, 0, -1, -1, {0}, {0}, {0}};
   std::string text_;
 };
+
+namespace detail {
+template <class T> inline void ended(const T *) noexcept {}
+inline void ended(const mps_context *context) noexcept; /* forgets what belongs to it */
+} // namespace detail
 
 /** Owns an object of the C library, and destroys it; moves, never copies. Converts to the pointer
  *  that C functions take. A contact ends with its handle. */
@@ -95,7 +102,11 @@ private:
 
 #define MPS_CPP_HANDLE(name)                                                                       \
   using name = handle<mps_##name>;                                                                 \
-  template <> inline void handle<mps_##name>::reset() noexcept { mps_##name##_destroy(&object_); }
+  template <> inline void handle<mps_##name>::reset() noexcept {                                   \
+    const mps_##name *object = object_;                                                            \
+    mps_##name##_destroy(&object_);                                                                \
+    if (object) detail::ended(object);                                                             \
+  }
 MPS_CPP_HANDLE(context)
 MPS_CPP_HANDLE(particles)
 MPS_CPP_HANDLE(neighbours)
@@ -129,27 +140,29 @@ public:
     }
   }
   static void rethrow(const mps_context *context) {
-    if (count() == 0) return;
-    std::exception_ptr exception;
-    {
-      const std::lock_guard<std::mutex> lock(mutex());
-      const auto found = list().find(context);
-      if (found == list().end()) return;
-      exception = found->second;
-      list().erase(found);
-      count()--;
-    }
-    std::rethrow_exception(exception);
+    if (const std::exception_ptr exception = take(context)) std::rethrow_exception(exception);
+  }
+  /** The exception of the context, or none; it is forgotten here. */
+  static std::exception_ptr take(const mps_context *context) noexcept {
+    if (count() == 0) return nullptr;
+    const std::lock_guard<std::mutex> lock(mutex());
+    const auto found = list().find(context);
+    if (found == list().end()) return nullptr;
+    const std::exception_ptr exception = found->second;
+    list().erase(found);
+    count()--;
+    return exception;
   }
 
 private:
   static std::mutex &mutex() {
-    static std::mutex one;
-    return one;
+    static auto *one = new std::mutex;
+    return *one;
   }
-  static std::map<const mps_context *, std::exception_ptr> &list() {
-    static std::map<const mps_context *, std::exception_ptr> one;
-    return one;
+  static std::map<const mps_context *, std::exception_ptr> &
+  list() { /* never destroyed: a static context may end last */
+    static auto *one = new std::map<const mps_context *, std::exception_ptr>;
+    return *one;
   }
   static std::atomic<int> &count() {
     static std::atomic<int> one{0};
@@ -169,7 +182,8 @@ inline void check(const mps_context *context, mps_status status) {
 /** A C++ function as a callback of the library: `C` is its type in the headers (mps_material_fn,
  *  mps_signal_fn, mps_context_log_fn ...), `f` takes what stands behind `user` there and returns
  * the same, or nothing for MPS_OK. What it throws ends the call of the library and comes out of it,
- * if that is made by the functions of this header. The callback must live as long as what calls it.
+ * if that is made by the functions of this header. The callback must live as long as what calls it,
+ * which a solver may for longer than the handle of its law: mps::bind and mps::keep see to that.
  *
  *   mps::callback<mps_material_fn> update(context, [&](const mps_material_block *block) { ... });
  *   def.update = update.function();
@@ -214,6 +228,63 @@ private:
   };
   std::unique_ptr<body> body_;
 };
+
+namespace detail {
+/* Callbacks that live as long as their context. */
+class kept {
+public:
+  static void add(const mps_context *context, std::shared_ptr<void> callback) {
+    const std::lock_guard<std::mutex> lock(mutex());
+    list()[context].push_back(std::move(callback));
+  }
+  static void drop(const mps_context *context) noexcept {
+    std::vector<std::shared_ptr<void>> gone; /* ends without the lock: a lambda may hold handles */
+    const std::lock_guard<std::mutex> lock(mutex());
+    const auto found = list().find(context);
+    if (found == list().end()) return;
+    gone.swap(found->second);
+    list().erase(found);
+  }
+
+private:
+  static std::mutex &mutex() {
+    static auto *one = new std::mutex;
+    return *one;
+  }
+  static std::map<const mps_context *, std::vector<std::shared_ptr<void>>> &
+  list() { /* never destroyed: a static context may end last */
+    static auto *one = new std::map<const mps_context *, std::vector<std::shared_ptr<void>>>;
+    return *one;
+  }
+};
+
+inline void ended(const mps_context *context) noexcept {
+  (void)thrown::take(context);
+  kept::drop(context);
+}
+} // namespace detail
+
+/** A callback that lives until the context's handle destroys the context, as everything that may
+ * call it does.
+ *
+ *   const auto &motion = mps::keep<mps_signal_fn>(context, [](double t, double *out) { ... });
+ *   auto signal = mps::create(context, mps_signal_create_user, motion.function(), motion.user());
+ */
+template <class C, class F> const callback<C> &keep(const context &owner, F f) {
+  const auto made = std::make_shared<callback<C>>(owner.get(), std::move(f));
+  detail::kept::add(owner.get(), made);
+  return *made;
+}
+
+/** Puts a C++ function into the members `function` and `user` of a definition, kept as by
+ * mps::keep.
+ *
+ *   mps::bind(context, def.update, def.user, [=](const mps_material_block *block) { ... }); */
+template <class C, class F> void bind(const context &owner, C &function, void *&user, F f) {
+  const callback<C> &made = keep<C>(owner, std::move(f));
+  function = made.function();
+  user = made.user();
+}
 
 namespace detail {
 /* What a C function takes in place of what a C++ program gives: the object of a handle, the address
@@ -302,59 +373,6 @@ void run(const handle<T> &solver,
   check(solver.error_context(), status);
 }
 
-/** Iterator over one component of a field, in the present order of the particles: random access. */
-template <class V> class strided {
-public:
-  using iterator_category = std::random_access_iterator_tag;
-  using value_type = std::remove_cv_t<V>;
-  using difference_type = std::ptrdiff_t;
-  using pointer = V *;
-  using reference = V &;
-  strided() noexcept = default;
-  strided(V *first, int64_t stride) noexcept : at_(first), stride_(stride) {}
-  reference operator*() const noexcept { return *at_; }
-  pointer operator->() const noexcept { return at_; }
-  reference operator[](difference_type n) const noexcept { return at_[n * stride_]; }
-  strided &operator+=(difference_type n) noexcept { return at_ += n * stride_, *this; }
-  strided &operator-=(difference_type n) noexcept { return at_ -= n * stride_, *this; }
-  strided &operator++() noexcept { return *this += 1; }
-  strided &operator--() noexcept { return *this -= 1; }
-  strided operator++(int) noexcept { return std::exchange(*this, *this + 1); }
-  strided operator--(int) noexcept { return std::exchange(*this, *this - 1); }
-  friend strided operator+(strided i, difference_type n) noexcept { return i += n; }
-  friend strided operator+(difference_type n, strided i) noexcept { return i += n; }
-  friend strided operator-(strided i, difference_type n) noexcept { return i -= n; }
-  friend difference_type operator-(strided a, strided b) noexcept {
-    return a.stride_ ? (a.at_ - b.at_) / a.stride_ : 0;
-  }
-  friend bool operator==(strided a, strided b) noexcept { return a.at_ == b.at_; }
-  friend bool operator!=(strided a, strided b) noexcept { return a.at_ != b.at_; }
-  friend bool operator<(strided a, strided b) noexcept { return b - a > 0; }
-  friend bool operator>(strided a, strided b) noexcept { return b < a; }
-  friend bool operator<=(strided a, strided b) noexcept { return !(b < a); }
-  friend bool operator>=(strided a, strided b) noexcept { return !(a < b); }
-
-private:
-  V *at_ = nullptr;
-  difference_type stride_ = 1;
-};
-
-/** One component of a field as a range: for (double &v : field.column(0)) ..., std::max_element.
- *  Valid as long as its field. */
-template <class V> class column_range {
-public:
-  column_range(V *first, int64_t stride, int64_t size) noexcept
-      : first_(first, stride), size_(size) {}
-  strided<V> begin() const noexcept { return first_; }
-  strided<V> end() const noexcept { return first_ + size_; }
-  int64_t size() const noexcept { return size_; }
-  V &operator[](int64_t i) const noexcept { return first_[i]; }
-
-private:
-  strided<V> first_;
-  int64_t size_;
-};
-
 /** A field for reading: v(i, c) is component c of the particle at present index i. `V` is double or
  *  int64_t, as the field's. */
 template <class V> class array {
@@ -375,6 +393,10 @@ public:
   /** Component `c` (0 to components() - 1) as a range. */
   column_range<const V> column(int64_t c = 0) const noexcept {
     return {at(0, c), view_.stride[0], size()};
+  }
+  /** The particles, each as a row of its components: for (auto x : position.rows()) x[1] ... */
+  row_range<const V> rows() const noexcept {
+    return {at(0, 0), view_.stride, size(), components()};
   }
   const mps_view &raw() const noexcept { return view_; } /* strides */
 
@@ -414,6 +436,10 @@ public:
   /** Component `c` as a range to write into; throws as operator(). */
   column_range<double> column(int64_t c = 0) const {
     return {size() > 0 ? &(*this)(0, c) : nullptr, view_.stride[0], size()};
+  }
+  /** The particles as rows to write into; throws as operator(). */
+  row_range<double> rows() const {
+    return {size() > 0 ? &(*this)(0, 0) : nullptr, view_.stride, size(), components()};
   }
   void commit() { check(context_, mps_particles_commit(set_, &edit_)); }
 

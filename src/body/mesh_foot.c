@@ -10,7 +10,11 @@
 #include "mesh.h"
 #include "rotation.h"
 
+#if MPSI_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include <string.h>
 
@@ -192,6 +196,18 @@ mpsi_foot mpsi_mesh_foot(const mpsi_mesh *mesh, const double *x) {
 
 /* ---- walls ----------------------------------------------------------------------------------- */
 
+static void first_hit(RTCScene scene, struct RTCRayHit *ray) {
+#if MPSI_EMBREE == 3
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, ray);
+#else
+  struct RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  rtcIntersect1(scene, ray, &arguments);
+#endif
+}
+
 double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) {
   const double *n = mesh->normal + 3 * t;
   double centre[3];
@@ -205,9 +221,7 @@ double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) {
     from[c] = (float)((centre[c] - mesh->middle[c]) / mesh->size);
     along[c] = (float)-n[c];
   }
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(mesh->scene, &context, &ray);
+  first_hit(mesh->scene, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID || ray.hit.primID == (unsigned)t) return INFINITY;
   const double *m = mesh->normal + 3 * (int64_t)ray.hit.primID, facing = mpsi_dot3(n, m);
   if (facing > MPSI_BODY_OPPOSITE) return INFINITY;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 
@@ -218,6 +219,71 @@ static void callbacks(const mps::context &context) {
   mps::call(solver, mps_mpm_step, 1);
 }
 
+// A law that the definition alone keeps: neither its lambda nor the handle of the material is there
+// when the solver runs. The context ends them.
+struct witness {
+  explicit witness(int *n) : ended(n) {}
+  witness(const witness &) = delete;
+  ~witness() { ++*ended; }
+  int *ended;
+};
+
+static mps::mpm with_bound_law(const mps::context &context, const mps::particles &sand, int *ended,
+                               double pressure) {
+  const auto shared = std::make_shared<witness>(ended);
+  mps_material_user_def law = mps_material_user_defaults();
+  mps::bind(context, law.update, law.user, [shared, pressure](const mps_material_block *block) {
+    for (int64_t i = 0; i < block->count; i++)
+      for (int c = 0; c < 3; c++) block->stress[c][i] = -pressure;
+  });
+  law.wave_modulus = 1e6;
+  const mps::material material = mps::create(context, mps_material_create_user, law);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.2;
+  def.dt = 1e-4;
+  return mps::create(context, mps_mpm_create, sand, material, def);
+}
+
+static void kept_callbacks() {
+  int ended = 0;
+  {
+    const mps::context context = mps::create_context();
+    const mps::particles sand = block(context);
+    const mps::mpm solver = with_bound_law(context, sand, &ended, 125.0);
+    mps::call(solver, mps_mpm_step, 2);
+    for (double s : mps::view(sand, "stress").column(0)) EXPECT(s == -125.0);
+    const auto &ramp = mps::keep<mps_signal_fn>(context, [](double t, double *out) {
+      out[0] = 3.0 * t * t; // displacement, velocity, acceleration
+      out[1] = 6.0 * t;
+      out[2] = 6.0;
+    });
+    const mps::signal signal =
+        mps::create(context, mps_signal_create_user, ramp.function(), ramp.user());
+    EXPECT(std::fabs(mps_signal_displacement(signal, 0.5) - 0.75) < 1e-15);
+    EXPECT(ended == 0);
+  }
+  EXPECT(ended == 1);
+}
+
+// What a hook threw in a call of C's own ends with its context: not one that gets the same address
+// later.
+static void forgotten() {
+  const mps_context *address = nullptr;
+  bool same = false;
+  for (int n = 0; n < 64 && !same; n++) {
+    const mps::context context = mps::create_context();
+    same = context.get() == address;
+    address = context.get();
+    (void)block(context); // throws what is left of the former
+    const auto &signal = mps::keep<mps_signal_fn>(
+        context, [](double, double *) { throw std::runtime_error("of a former context"); });
+    const mps::signal s =
+        mps::create(context, mps_signal_create_user, signal.function(), signal.user());
+    (void)mps_signal_displacement(s, 1.0);
+  }
+  if (!same) std::printf("no context had the address of another\n");
+}
+
 int main() {
   try {
     const mps::context context = mps::create_context();
@@ -229,6 +295,8 @@ int main() {
     mps_context_def two = mps_context_defaults();
     two.threads = 2;
     callbacks(mps::create_context(two));
+    kept_callbacks();
+    forgotten();
   } catch (const std::exception &e) {
     std::printf("unexpected: %s\n", e.what());
     return 1;
