@@ -88,7 +88,7 @@ STRUCTS = {
     "mps_elastic_facet_arrays": {"particle": "count", "centre": "3 * count", "normal": "3 * count",
                                  "extent": "3 * count", "area": "count",
                                  "displacement": "3 * count", "velocity": "3 * count"},
-    "mps_fluid_boundary_def": {"nodes": "3 * node_count"},
+    "mps_fluid_boundary_def": {"nodes": "3 * node_count", "corners": "3 * corner_count"},
     "mps_fluid_load_def": {"ids": "id_count"},
     "mps_geostatic_def": {"layers": "layer_count", "surface_line": "2 * surface_points"},
     "mps_consolidation_def": {"ids": "count"},
