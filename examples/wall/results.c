@@ -153,7 +153,11 @@ static bool draw_ground(app *a, const simulation *sim) {
 
 static void print(const settings *s, const pressure *p) {
   if (isnan(p->across)) {
-    printf("no earth pressure: the wall has not moved as far as --path\n");
+    printf("no earth pressure: the wall has not moved as far as --path, %g m\n", s->path);
+    return;
+  }
+  if (isnan(p->height)) {
+    printf("no earth pressure: after %g m the ground does not bear on the wall\n", s->path);
     return;
   }
   printf("%s earth pressure K %.4f across the wall, %.4f in all, at %.3f H",
