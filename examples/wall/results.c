@@ -156,9 +156,9 @@ static void print(const settings *s, const pressure *p) {
     printf("no earth pressure: the wall has not moved as far as --path\n");
     return;
   }
-  printf("%s earth pressure K %.4f across the wall, %.4f in all, at %.3f H",
-         s->pressure == ACTIVE ? "active" : "passive", p->across, hypot(p->across, p->along),
-         p->height);
+  printf("%s earth pressure K %.4f across the wall, %.4f in all",
+         s->pressure == ACTIVE ? "active" : "passive", p->across, hypot(p->across, p->along));
+  if (p->across > 0.0) printf(", at %.3f H", p->height);
   if (!isnan(p->theory))
     printf(" (%s %.4f, %+.1f %%)", s->friction == 0.0 ? "Rankine" : "Coulomb", p->theory,
            100.0 * (p->across / p->theory - 1.0));
