@@ -14,6 +14,10 @@ static const char *settle(settings *s, const option *table) {
   if (isnan(s->crest)) s->crest = 1.2 * s->height;
   if (isnan(s->toe)) s->toe = s->base > 0.0 ? 1.5 * s->height : 0.0;
   if (isnan(s->h)) s->h = s->height / 20.0;
+  if (s->base > 0.0) {
+    const double end = s->crest + s->slope * s->height + s->toe;
+    s->toe += s->h * ceil(end / s->h - 1e-9) - end;
+  }
   if (isnan(s->falls)) s->falls = s->runout ? 30.0 : 10.0;
   if (isnan(s->residual_phi)) s->residual_phi = s->phi;
   if (isnan(s->residual_cohesion)) s->residual_cohesion = s->cohesion;
@@ -32,10 +36,6 @@ static const char *settle(settings *s, const option *table) {
   if (s->crest < 0.5 * s->height) return "--crest must be at least half of --height";
   if (s->density * s->gravity * (s->height + s->base) > 0.1 * s->young)
     return "--young must be at least 10 times the stress below the crest, density g height";
-  if (s->base > 0.0) { /* its end lies on a node */
-    const double before = s->crest + s->slope * s->height;
-    s->toe = ceil((before + s->toe) / s->h - 1e-9) * s->h - before;
-  }
   const double ground = s->height * (s->crest + 0.5 * s->slope * s->height) +
                         s->base * (s->crest + s->slope * s->height + s->toe);
   return mpm_model_too_large(ground / (s->h * s->h) * (double)s->ppc);
@@ -76,8 +76,7 @@ int main(int argc, char **argv) {
                     "level ground behind the crest; default 1.2 heights"),
       OPTION_NUMBER(
           "toe", "m", OPTION_LENGTH, &s->toe,
-          "level ground in front of the toe, rounded up to whole cells; default 1.5 heights with "
-          "--base"),
+          "level ground in front of the toe, up to whole cells; default 1.5 heights with --base"),
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
       COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),

@@ -5,9 +5,6 @@
 
 #include <math.h>
 
-/* The sides of the ground lie on nodes. */
-static double up_to_cells(double length, double cell) { return ceil(length / cell - 1e-9) * cell; }
-
 /* What depends on other options, and what they exclude. NULL: good. */
 static const char *settle(settings *s) {
   const double sine = sin(s->phi * 3.14159265358979323846 / 180.0);
@@ -16,8 +13,8 @@ static const char *settle(settings *s) {
   if (isnan(s->k0)) s->k0 = 1.0 - sine; /* Jaky */
   if (isnan(s->path)) s->path = (active ? 0.01 : 0.02) * s->height;
   if (isnan(s->h)) s->h = s->height / 16.0;
-  s->length = up_to_cells(s->length, s->h);
-  s->front = up_to_cells(s->height, s->h);
+  s->length = s->h * ceil(s->length / s->h - 1e-9);
+  s->front = s->h * ceil(s->height / s->h - 1e-9);
   if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
@@ -64,9 +61,9 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
       OPTION_NUMBER("base", "m", OPTION_FROM_TO(0.0, 1e6), &s->base,
                     "depth of ground below the toe and in front of it; 0: a smooth bed"),
-      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length,
-                    "of the ground behind the wall, rounded up to whole cells; default 2.5 "
-                    "heights, passive 5"),
+      OPTION_NUMBER(
+          "length", "m", OPTION_LENGTH, &s->length,
+          "of the ground behind the wall, up to whole cells; default 2.5 heights, passive 5"),
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
       COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
       COMMON_NUMBER("cohesion", &s->cohesion, NULL),

@@ -13,6 +13,7 @@
 
 #define DEGREE (3.14159265358979323846 / 180.0)
 #define AT_REST 1e-3 /* of the largest kinetic energy */
+#define FAR 0.05     /* of the height: what has run out has moved more */
 
 double slope_duration(const settings *s) { return s->falls * sqrt(s->height / s->gravity); }
 
@@ -120,26 +121,26 @@ static mps_status measure_whole(const simulation *sim, mps_particles *set, motio
   if (status == MPS_OK) status = mps_particles_view(set, "id", &id);
   if (status != MPS_OK) return status;
   const int64_t count = x.shape[0];
-  double *moved = malloc(2 * (size_t)count * sizeof *moved), *place = moved + count;
+  const double half = 0.5 * mps_particles_spacing(set);
+  double *moved = malloc((size_t)count * sizeof *moved);
   int64_t *rows = mpm_rows_by_id(set);
-  *out = (motion){.lost = 0.0};
+  *out = (motion){.front = s->crest + s->slope * s->height};
   for (int64_t i = 0; moved && rows && i < count; i++) {
     const int64_t k = rows[i];
     const double *from = sim->start + 2 * *mps_view_i64(&id, k, 0);
     const double vx = *mps_view_f64(&v, k, 0), vy = *mps_view_f64(&v, k, 1);
-    place[i] = *mps_view_f64(&x, k, 0);
-    moved[i] = hypot(place[i] - from[0], *mps_view_f64(&x, k, 1) - from[1]);
+    const double place = *mps_view_f64(&x, k, 0);
+    moved[i] = hypot(place - from[0], *mps_view_f64(&x, k, 1) - from[1]);
     out->kinetic += 0.5 * *mps_view_f64(&mass, k, 0) * (vx * vx + vy * vy);
-    if (moved[i] > 0.05 * s->height) out->lost = fmax(out->lost, s->crest - from[0]);
+    if (!(moved[i] > FAR * s->height)) continue;
+    out->lost = fmax(out->lost, s->crest - from[0] + half);
+    out->front = fmax(out->front, place + half);
   }
   status = moved && rows ? MPS_OK : MPS_ERROR_MEMORY;
   const int64_t last = (int64_t)(0.99 * (double)(count - 1));
   if (status == MPS_OK) {
     qsort(moved, (size_t)count, sizeof *moved, ascending);
-    qsort(place, (size_t)count, sizeof *place, ascending);
     out->moved = moved[last];
-    out->front = place[count - 1] + 0.5 * mps_particles_spacing(set);
-    if (s->base == 0.0) out->front = place[(int64_t)(0.998 * (double)(count - 1))];
   }
   free(moved);
   free(rows);

@@ -170,6 +170,8 @@ static void print(const simulation *sim) {
 
 bool slope_finish(app *a, void *user) {
   simulation *sim = user;
+  if (sim->s.runout && sim->lost > sim->s.crest - sim->s.h)
+    app_warn(a, "the slope has moved up to the end of its ground: take a longer --crest");
   if (!write_trials(a, sim) || !write_motion(a, sim)) return false;
   if (!mpm_snapshots_write(a, sim->s.out, "particles.csv", "plastic_strain", 1, &sim->shot))
     return false;
