@@ -287,12 +287,91 @@ MPSI_INLINE void add_full(int spline, const mpsi_places *places, const mpsi_rows
     }
 }
 
+/* ---- full supports in the plane, two rows in a vector ---------------------------------------- */
+
+#if MPSI_WIDE == 2
+/* By component: about the stencil's second nodes, by x, by y. */
+typedef struct pair_parts {
+  double mass[MPSI_CHUNK] MPSI_LINE, of[2][3][MPSI_CHUNK];
+} pair_parts;
+
+MPSI_INLINE void put_pairs(const mpsi_places *places, mpsi_quad from[4][4], int k, pair_parts *to) {
+  mpsi_put(to->mass + k, from[0][MPSI_MASS]);
+  MPSI_UNROLL for (int c = 0; c < 2; c++) {
+    mpsi_quad value = from[0][MPSI_VECTOR + c];
+    MPSI_UNROLL for (int d = 0; d < 2; d++) {
+      const mpsi_quad slope = from[1 + d][MPSI_VECTOR + c];
+      value -= (mpsi_get(places->t[d] + k) - 1.0) * slope;
+      mpsi_put(to->of[c][1 + d] + k, slope);
+    }
+    mpsi_put(to->of[c][0] + k, value);
+  }
+}
+
+MPSI_INLINE void find_pair_parts(const mps_mpm *mpm, int geometry, int spline, bool split,
+                                 const mpsi_places *places, int64_t begin, int n, pair_parts *sum,
+                                 pair_parts *force) {
+  for (int k = 0; k < n; k += 4) {
+    quad_parts part;
+    find_quad_parts(mpm, geometry, spline, split, begin + k, &part);
+    put_pairs(places, part.sum, k, sum);
+    if (split) put_pairs(places, part.force, k, force);
+  }
+}
+
+MPSI_INLINE mpsi_vec make_pair(double a, double b) { return (mpsi_vec){a, a, a, a, b, b, b, b}; }
+
+/* Adds the sums of two rows, by value, to the nodes from `to` on; `both`: the second is there. */
+MPSI_INLINE void add_pair(int spline, bool both, const mpsi_vec *sum, mpsi_node *to) {
+  const mpsi_vec p = MPSI_SHUFFLE_WIDE(sum[0], sum[1], 0, 8, 2, 10, 4, 12, 6, 14);
+  const mpsi_vec q = MPSI_SHUFFLE_WIDE(sum[0], sum[1], 1, 9, 3, 11, 5, 13, 7, 15);
+  const mpsi_vec r = MPSI_SHUFFLE_WIDE(sum[2], sum[3], 0, 8, 2, 10, 4, 12, 6, 14);
+  const mpsi_vec s = MPSI_SHUFFLE_WIDE(sum[2], sum[3], 1, 9, 3, 11, 5, 13, 7, 15);
+  const mpsi_vec node[4] = {MPSI_SHUFFLE_WIDE(p, r, 0, 1, 8, 9, 4, 5, 12, 13),
+                            MPSI_SHUFFLE_WIDE(q, s, 0, 1, 8, 9, 4, 5, 12, 13),
+                            MPSI_SHUFFLE_WIDE(p, r, 2, 3, 10, 11, 6, 7, 14, 15),
+                            MPSI_SHUFFLE_WIDE(q, s, 2, 3, 10, 11, 6, 7, 14, 15)};
+  mpsi_node *next = to + mpsi_tile_index(0, 1, 0);
+  MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+    const mpsi_vec a = node[i];
+    mpsi_put(to[i], mpsi_get(to[i]) + (mpsi_quad){a[0], a[1], a[2], a[3]});
+    if (both) mpsi_put(next[i], mpsi_get(next[i]) + (mpsi_quad){a[4], a[5], a[6], a[7]});
+  }
+}
+
+MPSI_INLINE void add_pairs(int spline, const mpsi_places *places, const mpsi_rows *rows, int begin,
+                           int end, const pair_parts *part, mpsi_node *tile) {
+  const mpsi_vec along = {-1.0, 0.0, 1.0, 2.0, -1.0, 0.0, 1.0, 2.0};
+  const mpsi_vec across[2] = {make_pair(-1.0, 0.0), make_pair(1.0, 2.0)};
+  mpsi_vec sum[2][4] = {{{0.0}}};
+  for (int k = begin; k < end; k++) {
+    mpsi_vec w[2];
+    MPSI_UNROLL for (int v = 0; v < 2; v++) {
+      const double second = 2 * v < spline ? places->w[1][2 * v + 1][k] : 0.0;
+      w[v] = mpsi_spread(mpsi_get(rows->w[k])) * make_pair(places->w[1][2 * v][k], second);
+      sum[v][MPSI_MASS] += part->mass[k] * w[v];
+    }
+    MPSI_UNROLL for (int c = 0; c < 2; c++) {
+      const mpsi_vec value = part->of[c][0][k] + part->of[c][1][k] * along;
+      MPSI_UNROLL for (int v = 0; v < 2; v++) sum[v][MPSI_VECTOR + c] +=
+          w[v] * (value + part->of[c][2][k] * across[v]);
+    }
+  }
+  tile += places->first[begin];
+  add_pair(spline, true, sum[0], tile);
+  add_pair(spline, spline == 3, sum[1], tile + mpsi_tile_index(0, 2, 0));
+}
+#endif
+
 /* ---- at walls, and in the plane -------------------------------------------------------------- */
 
-/* The parts as they are added: of either kind. */
+/* The parts as they are added: of any kind. */
 typedef union added_parts {
   row_parts row;
   node_parts node;
+#if MPSI_WIDE == 2
+  pair_parts pair;
+#endif
 } added_parts;
 
 MPSI_INLINE void find_added(int dim, int spline, const mpsi_places *places, int n, columns part,
@@ -395,22 +474,30 @@ typedef struct chunk {
 MPSI_INLINE void find_chunk(const mps_mpm *mpm, int geometry, int spline, bool split,
                             mpsi_places *places, int64_t begin, int n, chunk *out) {
   const int dim = mpsi_dim_of(geometry);
-  find_rows(spline, dim == 2, places, n, &out->rows);
+  find_rows(spline, dim == 2 && MPSI_WIDE == 1, places, n, &out->rows);
   if (dim == 3) {
     find_row_weights(spline, places, n, &out->weights);
     find_full_parts(mpm, spline, split, places, begin, n, &out->sum.node, &out->force.node);
     return;
   }
+#if MPSI_WIDE == 2
+  find_pair_parts(mpm, geometry, spline, split, places, begin, n, &out->sum.pair, &out->force.pair);
+#else
   parts part;
   find_parts(mpm, geometry, spline, split, begin, n, &part);
   find_added(dim, spline, places, n, part.sum, &out->sum);
   if (split) find_added(dim, spline, places, n, part.force, &out->force);
+#endif
 }
 
 MPSI_INLINE void add_chunk(int dim, int spline, const mpsi_places *places, const chunk *from,
                            const added_parts *part, int begin, int end, mpsi_node *tile) {
   if (dim == 2)
+#if MPSI_WIDE == 2
+    add_pairs(spline, places, &from->rows, begin, end, &part->pair, tile);
+#else
     add_in_plane(spline, places, &from->rows, begin, end, &part->row, tile);
+#endif
   else
     add_full(spline, places, &from->rows, &from->weights, begin, end, &part->node, tile);
 }
@@ -420,7 +507,8 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
   const int dim = mpsi_dim_of(geometry);
   mpsi_places places;
   chunk all;
-  mpsi_find_places(mpm, cells, dim, spline, dim == 2 ? 3 : 7, dim == 2 ? 3 : 0, begin, n, &places);
+  mpsi_find_places(mpm, cells, dim, spline, dim == 2 ? 3 : 7, dim == 2 && MPSI_WIDE == 1 ? 3 : 0,
+                   begin, n, &places);
   if (cells->split)
     find_chunk(mpm, geometry, spline, true, &places, begin, n, &all);
   else
