@@ -151,7 +151,7 @@ static void a_coupled_wall_is_a_piston(void **state) {
   for (int k = 0; k < WINDOWS; k++)
     missing = fmax(missing, fabs(moved.sum[k] + moved.reaction[k]) / moved.reaction[k]);
   print_message("forces of the vertices: %.2g of the sum is missing\n", missing);
-  assert_true(missing < 2e-3); /* where the surface meets the wall */
+  assert_true(missing < 2e-3); /* where the surface is at the wall */
   const piston bent = run_tank(1, 1, 1, y);
   compare(&moved, x[1], &bent, y, &force, &position);
   print_message("by its nodes: forces differ by %.2g, positions by %.2g spacings\n", force,
