@@ -23,6 +23,7 @@ class Connection:
         info = CoSimIO.Info()
         info.SetString("my_name", name)
         info.SetString("connect_to", other)
+        info.SetString("communication_format", "pipe")  # sockets are slow with so small messages
         info.SetInt("echo_level", 0)
         self.name = CoSimIO.Connect(info).GetString("connection_name")
 
