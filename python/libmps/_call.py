@@ -383,10 +383,12 @@ class _Arguments:
         if self.left_out and self.count is not None:
             self.outputs.remove(self.values[self.count])
         words = _Words(self.owner, self.state.lengths)
+        written = {place: value for place, value in enumerate(self.values) if any(value is o for o in self.outputs)}
         for place, word, kind in self.left_out:
             array = numpy.zeros(_shapes.length(self.formulas[word], words), _DTYPES[kind.item.cname])
-            self.outputs.append(array)
+            written[place] = array
             self.values[place] = ffi.cast(kind, array.ctypes.data)
+        self.outputs = [written[place] for place in sorted(written)]  # in C's order
         return 0
 
     def results(self):

@@ -404,6 +404,13 @@ class Arrays(unittest.TestCase):
             falling(context, sand, gravity=[0, 0, 0, 0])
         self.assertEqual(sand.count(), 100)
 
+    def test_results_come_in_the_order_of_c(self):
+        coupling = mps.Context(threads=1).coupling_create(size=2, method=mps.COUPLING_METHOD_AITKEN)
+        self.assertEqual(coupling.begin(None).tolist(), [0.0, 0.0])
+        guess, done = coupling.next([0.5, 1.0])  # an array, then a number, as its docstring says
+        self.assertEqual(guess.shape, (2,))
+        self.assertEqual(done, 0)
+
     def test_an_array_keeps_its_set_alive(self):
         context = mps.Context()
         x = block(context)["position"]

@@ -10,6 +10,12 @@ typedef struct mock_def {
   int windows;     /* how many */
   int repetitions; /* of each; 1: explicit coupling */
   double rate;     /* of the datum on each vertex, per s */
+  /* Another code in place of that: data of `size` vertices (x: 2 values each) at time t, `right` in
+   * the repetition that is kept; and what it receives of the step that begins at t. NULL: none. */
+  void (*give)(void *user, const char *data, double t, int right, int size, const double *x,
+               double *values);
+  void (*take)(void *user, const char *data, double t, int right, int size, const double *values);
+  void *user;
 } mock_def;
 
 typedef struct mock_seen {
