@@ -139,6 +139,11 @@ public:
     } catch (...) { // no memory for it: the status of the call remains
     }
   }
+  static bool has(const mps_context *context) noexcept {
+    if (count() == 0) return false;
+    const std::lock_guard<std::mutex> lock(mutex());
+    return list().count(context) > 0;
+  }
   static void rethrow(const mps_context *context) {
     if (const std::exception_ptr exception = take(context)) std::rethrow_exception(exception);
   }
@@ -208,6 +213,8 @@ private:
   template <class F> struct typed final : body {
     typed(const mps_context *c, F &&g) : context(c), f(std::move(g)) {}
     R answer(A... arguments) noexcept override {
+      if constexpr (std::is_same_v<callback<R (*)(void *, A...)>, callback<mps_context_cancel_fn>>)
+        if (detail::thrown::has(context)) return 1;
       try {
         if constexpr (std::is_void_v<std::invoke_result_t<F &, A...>> && !std::is_void_v<R>) {
           f(arguments...);
@@ -306,12 +313,20 @@ template <class... P>
 using created = std::remove_pointer_t<std::remove_pointer_t<typename last<P...>::type>>;
 } // namespace detail
 
-/** A context, by `def` or the defaults. */
+/** A context, by `def` or the defaults. Where `def` has no cancel hook, one ends the call in which
+ * a hook of no answer (log, progress) threw; a mps::callback as cancel hook does that too. */
 inline context create_context(const mps_context_def &def = mps_context_defaults()) {
   mps_context *made = nullptr;
   char text[512] = "";
   const mps_status status = mps_context_create(&def, &made, text, sizeof text);
   if (status != MPS_OK) throw error(status, text);
+  if (!def.cancel)
+    mps_context_set_cancel(
+        made,
+        [](void *user) -> int32_t {
+          return detail::thrown::has(static_cast<const mps_context *>(user));
+        },
+        made);
   return context(made, made);
 }
 

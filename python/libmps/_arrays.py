@@ -160,6 +160,9 @@ class Edit:
         self.array = lend(owner, self._edit.view, True)
         self._name = name
 
+    def __repr__(self):
+        return f"<libmps Edit of {self._name!r}: {self.array._loan.reason() or 'open'}>"
+
     def __del__(self):
         array = getattr(self, "array", None)
         if array is None or array.stale or self._owner.context.pointer is None:

@@ -55,6 +55,11 @@ class StaleError(Exception):
 class Result(SimpleNamespace):
     """A struct that C has filled: its members are attributes."""
 
+    def _repr_html_(self):
+        from . import _show
+
+        return _show.result(self)
+
 
 def class_name(kind):
     """mps_mpm_totals: MpmTotals."""
@@ -152,10 +157,13 @@ class Call:
     def callback(self, kind, function):
         """A C function that calls `function` without the first argument, C's `user`."""
 
+        stops = kind.cname == "int32_t(*)(void *)"  # the cancel hook
         blocks = [k for k, arg in enumerate(kind.args[1:]) if arg.cname == "mps_material_block *"]
 
         def called(_user, *values):
             # The same error for all: the first exception is the one that is raised.
+            if stops and self.raised:  # by a hook whose answer C does not look at: log, progress
+                return 1
             if blocks:
                 block = _block.Block(values[blocks[0]])
                 answer = function(block)

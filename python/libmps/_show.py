@@ -11,19 +11,23 @@ def _ask(owner, function, *values):
     return getattr(library, f"mps_{owner.kind}_{function}")(owner.pointer, *values)
 
 
+def _many(number, word):
+    return f"{number} {word}{'' if number == 1 else 's'}"
+
+
 def _solver(owner):
     particles = library.mps_particles_count(_ask(owner, "particles"))
-    return [f"{particles} particles", f"t = {_ask(owner, 'time'):.6g} s", f"{_ask(owner, 'steps')} steps"]
+    return [_many(particles, "particle"), f"t = {_ask(owner, 'time'):.6g} s", _many(_ask(owner, "steps"), "step")]
 
 
 def _particles(owner):
     count, dim = _ask(owner, "count"), _ask(owner, "dim")
-    return [f"{count} particles in {dim}D", f"spacing {_ask(owner, 'spacing'):.6g} m",
+    return [f"{_many(count, 'particle')} in {dim}D", f"spacing {_ask(owner, 'spacing'):.6g} m",
             "fields " + ", ".join(name for name, _, _ in fields(owner))]
 
 
 def _context(owner):
-    return [f"libmps {ffi.string(library.mps_version()).decode()}", f"{_ask(owner, 'threads')} threads"]
+    return [f"libmps {ffi.string(library.mps_version()).decode()}", _many(_ask(owner, "threads"), "thread")]
 
 
 def _material(owner):
@@ -31,11 +35,24 @@ def _material(owner):
 
 
 def _body(owner):
-    return [f"{_ask(owner, 'dim')}D"]
+    return [f"{_ask(owner, 'dim')}D", _many(_ask(owner, "part_count"), "part")]
+
+
+def _kernel(owner):
+    return [f"radius {_ask(owner, 'radius'):.6g} m"]
+
+
+def _recorder(owner):
+    return [_many(_ask(owner, "frames"), "frame")]
+
+
+def _domain(owner):
+    return [f"rank {_ask(owner, 'rank')} of {_ask(owner, 'size')}"]
 
 
 FACTS = {"particles": _particles, "mpm": _solver, "dynamics": _solver, "fluid": _solver, "elastic": _solver,
-         "context": _context, "material": _material, "body": _body}
+         "context": _context, "material": _material, "body": _body, "kernel": _kernel,
+         "recorder": _recorder, "domain": _domain}
 
 
 def fields(owner):
@@ -76,3 +93,18 @@ def html(owner):
         rows.append((name, unit, limits, meaning))
     line = f"<p>{escape(', '.join(_particles(owner)[:2]))}</p>"
     return line + table(rows, ("field", "unit", "range", "meaning"))
+
+
+def _value(value):
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, numpy.ndarray):
+        return numpy.array2string(value, precision=6, threshold=12)
+    return str(value)
+
+
+def result(struct):
+    """A struct of results, a row for each of its members."""
+    rows = [(name, _value(value)) for name, value in vars(struct).items()
+            if name not in ("struct_size", "reserved") and not isinstance(value, ffi.CData)]
+    return f"<p>{escape(type(struct).__name__)}</p>" + table(rows, ("member", "value"))

@@ -492,6 +492,22 @@ class Callbacks(unittest.TestCase):
         self.assertLess(solver.steps(), 10**9)
         solver.step(1)
 
+    def test_what_a_hook_of_no_answer_raises_ends_the_run(self):
+        for cancel in (None, lambda: 0):
+            calls = []
+
+            def progress(_progress):
+                calls.append(1)
+                if len(calls) == 3:
+                    raise KeyboardInterrupt  # as Ctrl-C does while the hook runs
+
+            context = mps.Context(threads=1, cancel=cancel, progress=progress)
+            solver = falling(context, block(context))
+            with self.assertRaises(KeyboardInterrupt):
+                solver.run(1000.0, 10**9, None)
+            self.assertLess(solver.time(), 500.0)
+            solver.step(1)
+
     def test_a_closed_context_says_so(self):
         with mps.Context() as context:
             sand = block(context)

@@ -265,6 +265,33 @@ static void kept_callbacks() {
   EXPECT(ended == 1);
 }
 
+// What a hook of no answer throws ends the run within a step.
+static void progress() {
+  const mps::context context = mps::create_context();
+  int calls = 0;
+  const auto &hook = mps::keep<mps_context_progress_fn>(context, [&](const mps_context_progress *) {
+    if (++calls == 3) throw std::runtime_error("progress");
+  });
+  mps_context_set_progress(context, hook.function(), hook.user());
+  const mps::particles sand = block(context);
+  const mps::mpm solver = falling(context, sand);
+  for (int with = 0; with < 2; with++) {
+    if (with) {
+      const auto &cancel = mps::keep<mps_context_cancel_fn>(context, []() -> int32_t { return 0; });
+      mps_context_set_cancel(context, cancel.function(), cancel.user());
+    }
+    calls = 0;
+    const double t = mps_mpm_time(solver);
+    try {
+      mps::call(solver, mps_mpm_run, t + 1000.0, 1000000000, nullptr, nullptr);
+      EXPECT(!"the exception was lost");
+    } catch (const std::runtime_error &e) {
+      EXPECT(std::strcmp(e.what(), "progress") == 0);
+    }
+    EXPECT(mps_mpm_time(solver) < t + 500.0);
+  }
+}
+
 // What a hook threw in a call of C's own ends with its context: not one that gets the same address
 // later.
 static void forgotten() {
@@ -296,6 +323,7 @@ int main() {
     two.threads = 2;
     callbacks(mps::create_context(two));
     kept_callbacks();
+    progress();
     forgotten();
   } catch (const std::exception &e) {
     std::printf("unexpected: %s\n", e.what());
