@@ -14,7 +14,7 @@ As a program (on a machine without a screen: xvfb-run -a pvpython ...):
 
 SERIES is the .xdmf file beside the series (every ParaView from 5.9 on), or the .vtkhdf itself (5.12 and newer).
 Without --field it is that of the program that wrote the file (VIEWS), or the first of FIELDS that is there.
---png writes a picture, --frames a picture of each frame (FOLDER/0000.png, ...), --state a state that ParaView opens by File,
+--png writes a picture, --frames one of each frame (FOLDER/0000.png, ...) with the same colours and view, --state a state that ParaView opens by File,
 Load State. --warp magnifies the field `displacement`; 1 shows it as it is, 0 leaves it out.
 """
 
@@ -119,18 +119,40 @@ def limits_of(values):
     if high <= low:
         low, high = float(values.min()), float(values.max())
     if high <= low:
-        low, high = low - 0.5 * abs(low) - 1e-30, high + 0.5 * abs(high) + 1e-30
+        low, high = low - 0.5 * max(-low, 0.0), low + 0.5 * abs(low) + 1e-30
     if low > 0.0 and low < 0.2 * high:
         low = 0.0
     return low, high
 
 
-def open_series(path, field=None, component=None, time=None, warp=None):
-    """Opens the series and shows it in the active view. Returns (what is shown, display, view)."""
-    return show(reader_of(path), path, field, component, time, warp)
+def open_series(path, field=None, component=None, time=None, warp=None, film=False):
+    """Opens the series and shows it in the active view; of a `film` view and colours fit all frames. Returns (what is
+    shown, display, view)."""
+    return show(reader_of(path), path, field, component, time, warp, film)
 
 
-def show(reader, path, field=None, component=None, time=None, warp=None):
+def values_of(data, field, component):
+    """The numbers of a field that are coloured by."""
+    values = vtk_to_numpy(data.GetPointData().GetArray(field))
+    if values.ndim == 1:
+        return values
+    return numpy.linalg.norm(values, axis=1) if component == "Magnitude" else values[:, component]
+
+
+def span_of(reader, source, times, field, component):
+    """Ends of the colours and bounds over all frames."""
+    ends, bounds = [], []
+    for time in times:
+        reader.UpdatePipeline(time)
+        source.UpdatePipeline(time)
+        ends.append(limits_of(values_of(servermanager.Fetch(reader), field, component)))
+        bounds.append(source.GetDataInformation().GetBounds())
+    low, high = numpy.array(bounds).min(axis=0), numpy.array(bounds).max(axis=0)
+    bounds = [f(low[k], high[k]) for k, f in enumerate((lambda a, b: a, lambda a, b: b) * 3)]
+    return (min(e[0] for e in ends), max(e[1] for e in ends)), bounds
+
+
+def show(reader, path, field=None, component=None, time=None, warp=None, film=False):
     """Shows a reader's particles in the active view; `path` says which program wrote them."""
     reader.UpdatePipelineInformation()
     times = list(reader.TimestepValues or [])
@@ -158,18 +180,19 @@ def show(reader, path, field=None, component=None, time=None, warp=None):
     if len(times) > 1:
         stamp = simple.AnnotateTimeFilter(Input=reader, Format="t = {time:.4g} s")
         styled(simple.Show(stamp, view), "Upper Left Corner")
-    values = vtk_to_numpy(data.GetPointData().GetArray(field))
-    chosen = values if values.ndim == 1 else numpy.linalg.norm(values, axis=1) if component == "Magnitude" else values[:, component]
+    limits, bounds = limits_of(values_of(data, field, component)), source.GetDataInformation().GetBounds()
+    if film and len(times) > 1:
+        limits, bounds = span_of(reader, source, times, field, component)
     flat = numpy.ptp(points[:, 2]) == 0.0
     display = simple.Show(source, view)
     display.SetRepresentationType("Point Gaussian")
     display.GaussianRadius = (0.65 if flat else 0.6) * spacing_of(points)
     display.ShaderPreset = "Plain circle" if flat else "Sphere"
-    size = numpy.ptp(points, axis=0)
-    paint(display, view, field, component, arrays[field], limits_of(chosen), wide=flat and size[1] < 0.6 * size[0])
+    wide = flat and bounds[3] - bounds[2] < 0.6 * (bounds[1] - bounds[0])
+    paint(display, view, field, component, arrays[field], limits, wide)
     view.Background = [1, 1, 1]
     view.UseColorPaletteForBackground = 0
-    aim(view, flat)
+    aim(view, flat, bounds)
     return source, display, view
 
 
@@ -199,13 +222,14 @@ def paint(display, view, field, component, count, limits, wide):
     bar.Position = [0.3, 0.04] if wide else [0.82, 0.3]
 
 
-def aim(view, flat):
+def aim(view, flat, bounds):
     """Looks at the plane, or in space from the corner at the origin, where cuts of symmetry lie; z is up."""
     if flat:
         view.InteractionMode = "2D"
     else:
         view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [-1.0, -1.6, 0.9], [0, 0, 0], [0, 0, 1]
     simple.ResetCamera(view)
+    view.SMProxy.ResetCamera(*bounds)
     camera = view.GetActiveCamera()
     camera.Zoom(0.9)
     simple.Render(view)
@@ -225,7 +249,7 @@ def main():
     simple._DisableFirstRenderCameraReset()
     simple.GetActiveViewOrCreate("RenderView").ViewSize = list(SIZE)
     try:
-        source, _, view = open_series(given.series, given.field, given.component, given.time, given.warp)
+        source, _, view = open_series(given.series, given.field, given.component, given.time, given.warp, bool(given.frames))
     except (FileNotFoundError, ValueError) as error:
         sys.exit(f"paraview_libmps: {error}")
     times = list(simple.GetTimeKeeper().TimestepValues or []) or [view.ViewTime]

@@ -88,6 +88,11 @@ def titled(title, *lines):
     return "\n".join([title, "=" * len(title), "", ".. py:currentmodule:: libmps", "", *lines]) + "\n"
 
 
+def made_by(makers):
+    """The line that says which calls return an object."""
+    return [f"Returned by {', '.join(makers)}.", ""] if makers else []
+
+
 def constants(tree):
     """(name, what) of the constants of the module."""
     for k, node in enumerate(tree.body):
@@ -125,10 +130,16 @@ def stage(root, write):
     results = [node for node in classes if node.name not in PLAIN and node not in objects]
     functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
     count, rows = len(functions), []
+    makers = {}  # which methods return an object
+    for owner in objects:
+        for item in owner.body:
+            if isinstance(item, ast.FunctionDef) and item.returns:
+                for name in re.findall(r"\w+", ast.unparse(item.returns)):
+                    makers.setdefault(name, []).append(f"``{owner.name}.{item.name}``")
     for node in objects:
         methods = [item for item in node.body if isinstance(item, ast.FunctionDef)]
         count += len(methods)
-        write(f"python-api/{node.name.lower()}.rst", titled(node.name, *class_lines(node)))
+        write(f"python-api/{node.name.lower()}.rst", titled(node.name, *made_by(makers.get(node.name, [])), *class_lines(node)))
         rows.append(f"   * - :doc:`{node.name} <{node.name.lower()}>`\n     - {len(methods)} methods")
     write("python-api/functions.rst", titled("Functions of the module", *(line for node in functions for line in function(node, "function", 0))))
     write("python-api/results.rst", titled("Results", "Structs that C fills, with members as attributes.", "",

@@ -87,8 +87,13 @@ class Pages(unittest.TestCase):
             (root / "examples").mkdir()
             (root / "examples/mps-new.c").touch()
             (root / "docs/gallery.md").write_text("# Gallery\n\n## mps-old\n")
-            with self.assertRaisesRegex(SystemExit, "mps-new"):
+            with self.assertRaisesRegex(SystemExit, "without a place.*mps-new"):
                 stage.check_gallery(root)
+            (root / "docs/gallery.md").write_text("# Gallery\n\n## mps-new\n\n```console\n$ mps-new\n```\n")
+            with self.assertRaisesRegex(SystemExit, "without a command or a picture.*mps-new"):
+                stage.check_gallery(root)
+            (root / "docs/gallery.md").write_text("# Gallery\n\n## mps-new\n\n![new](images/new.png)\n\n```console\n$ mps-new\n```\n")
+            stage.check_gallery(root)
 
     def test_the_citation_names_this_version(self):
         header = (ROOT / "include/mps/base.h").read_text()
