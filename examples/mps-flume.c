@@ -33,10 +33,10 @@ static int check_wall(const options_program *program, const flume_settings *s) {
     return options_refuse(program, "--width must be at least --spacing");
   if (s->absorb == FLUME_ZONE && s->wall != FLUME_OPEN_END)
     return options_refuse(program, "--absorb zone is a zone at the far end: it needs --wall none");
-  int parts = 0;
-  for (int k = 1; k < s->points; k++) parts += s->profile[k][0] > s->profile[k - 1][0];
-  if (s->wall == FLUME_PROFILE && parts > FLUME_BODIES)
-    return options_refuse(program, "--profile must have at most four parts that are not upright");
+  for (int k = 1; k < s->points; k++)
+    if (hypot(s->profile[k][0] - s->profile[k - 1][0], s->profile[k][1] - s->profile[k - 1][1]) <
+        s->spacing)
+      return options_refuse(program, "--profile must have its points at least --spacing apart");
   if (s->wall == FLUME_PROFILE && s->profile[s->points - 1][1] < s->depth + 2.0 * s->spacing)
     return options_refuse(program, "--profile must end at least 2 times --spacing above --depth");
   if (s->waves == FLUME_FILE && !s->file)
@@ -245,13 +245,13 @@ int main(int argc, char **argv) {
                     "ends, and water that "
                     "passes them falls behind and leaves"),
       OPTION_NUMBER("crest", "m", OPTION_LENGTH, &s->crest, "above the water at rest"),
-      OPTION_NUMBER("slope", "1", OPTION_FROM_TO(0.1, 3.7), &s->cotangent,
+      OPTION_NUMBER("slope", "1", OPTION_FROM_TO(0.1, 100.0), &s->cotangent,
                     "cotangent of the dike's face"),
       OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width, "of the crest"),
       OPTION_TEXT(
           "profile", "m,...", &profile,
           "X,Y,X,Y,...: the face from the toe 0,0 over slopes, berms and crest to its rear edge, "
-          "distance from the toe and height above the bed; upright and at most four other parts"),
+          "distance from the toe and height above the bed"),
       OPTION_NUMBER("wall-density", "kg/m3", OPTION_DENSITY, &s->density,
                     "of the caisson, for its safeties"),
       COMMON_NUMBER_IN("friction", OPTION_FROM_TO(1e-3, 10.0), &s->friction, "below the caisson"),
@@ -287,7 +287,7 @@ int main(int argc, char **argv) {
     code = options_refuse(&program, "--gauge must be at most 16 lengths in m separated by commas");
   if (code < 0 && !read_profile(profile, s))
     code = options_refuse(&program,
-                          "--profile must be 3 to 12 points X,Y in m separated by commas, the "
+                          "--profile must be 3 to 64 points X,Y in m separated by commas, the "
                           "first 0,0, X not falling, Y not below 0, no point twice");
   if (code < 0) code = complete(&program, &m);
   if (code >= 0) return code;

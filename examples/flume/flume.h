@@ -15,7 +15,7 @@
 enum { FLUME_REGULAR = 0, FLUME_JONSWAP, FLUME_PM, FLUME_FOCUSED, FLUME_FILE };
 enum { FLUME_OPEN_END = 0, FLUME_VERTICAL, FLUME_CAISSON, FLUME_SLOPE, FLUME_PROFILE };
 enum { FLUME_ACTIVE = 0, FLUME_ZONE, FLUME_NONE };
-enum { FLUME_POINTS = 12, FLUME_BODIES = 4 }; /* of a profile */
+enum { FLUME_POINTS = 64 }; /* of a profile */
 enum { FLUME_GAUGES = 16, FLUME_BED = 0, FLUME_MAKER, FLUME_END };
 
 typedef struct flume_settings {
@@ -57,16 +57,13 @@ typedef struct flume {
   flume_settings s;
   const option *table;
   int gauges;
-  double wave_length, heel, outlet;   /* m; x of the rear foot of the body, of the open side */
-  double corner[FLUME_POINTS + 1][2]; /* m: face from the toe to the rear edge of the crest */
+  double wave_length, heel, outlet; /* m; x of the rear foot of the body, of the open side */
+  double corner[FLUME_POINTS][2];   /* m: face from the toe to the rear edge of the crest */
   int corners;
   mps_waves *waves;
   mps_absorber *maker, *end;
   mps_particles *water;
   mps_fluid *fluid;
-  mps_body *body[FLUME_BODIES];
-  mps_contact *contact[FLUME_BODIES];
-  int bodies;
   mps_recorder *series;
   flume_sample *sample;
   int64_t samples, capacity;

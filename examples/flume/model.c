@@ -1,10 +1,11 @@
 /* model.c - the flume: water, bed, maker, and at the other end a piston, a wall, a caisson or a
- * dike with an open side behind, over which the water that has passed the crest leaves.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * dike with an open side behind, one polyline with the bed, over which the water that has passed
+ * the crest leaves. SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define CLEAR 0.45 /* spacings between the water's particles and the face of a structure */
 
@@ -74,32 +75,23 @@ static mps_status fill(const flume *m, mps_particles *water) {
   return status;
 }
 
-/* One convex body, of the whole face where that is convex, else below each part of it. */
-static mps_status add_part(app *a, flume *m, int count, const double *xy) {
-  mps_body_def def = mps_body_defaults();
-  mps_fluid_contact_def contact = mps_fluid_contact_defaults();
-  const int n = m->bodies;
-  contact.kind = MPS_BOUNDARY_ROLLER; /* slip */
-  mps_status status = mps_body_create_polygon(a->context, &def, count, xy, &m->body[n]);
-  if (status != MPS_OK) return status;
-  m->bodies++;
-  return mps_fluid_add_contact(m->fluid, m->body[n], &contact, &m->contact[n]);
+/* Bed, face, crest, its rear and the bed behind, which continues below the open side. */
+static mps_status add_ground(const flume *m) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  double xy[FLUME_POINTS + 3][3] = {{0.0}};
+  int n = 1;
+  for (int k = 0; k < m->corners; k++, n++) memcpy(xy[n], m->corner[k], sizeof m->corner[k]);
+  xy[n++][0] = m->heel;
+  xy[n++][0] = m->outlet;
+  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
+  def.corners = xy[0], def.corner_count = n;
+  return mps_fluid_add_boundary(m->fluid, &def, NULL);
 }
 
-static mps_status add_structure(app *a, flume *m) {
-  const bool whole = m->s.wall != FLUME_PROFILE;
-  mps_status status = MPS_OK;
-  for (int k = 0; k + 1 < m->corners && status == MPS_OK; k++) {
-    const double *p = m->corner[k], *q = m->corner[k + 1];
-    if (whole) { /* toe, heel, rear and front edge of the crest */
-      const double *front = m->corner[1];
-      const double xy[8] = {p[0], 0.0, m->heel, 0.0, m->heel, front[1], front[0], front[1]};
-      return add_part(a, m, 4, xy);
-    }
-    const double xy[8] = {p[0], 0.0, q[0], 0.0, q[0], q[1], p[0], p[1]};
-    if (q[0] > p[0]) status = add_part(a, m, p[1] > 0.0 ? 4 : 3, xy);
-  }
-  return status;
+static mps_status add_bed(const flume *m) {
+  const double corner[2] = {0.0, 0.0};
+  if (flume_has_body(&m->s)) return add_ground(m);
+  return waves_add_wall(m->fluid, corner, 0.0, 1.0, NULL, NULL);
 }
 
 /* ---- the flume ------------------------------------------------------------------------------- */
@@ -137,10 +129,9 @@ static mps_status make_fluid(app *a, flume *m) {
   if (status == MPS_OK) status = mps_fluid_create(a->context, m->water, &def, &m->fluid);
   if (status == MPS_OK && !waves_choose_solver(a, s->solver, m->fluid, m->why, sizeof m->why))
     return MPS_ERROR_UNSUPPORTED;
-  if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 0.0, 1.0, NULL, NULL);
+  if (status == MPS_OK) status = add_bed(m);
   if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 1.0, 0.0, NULL, NULL);
   if (status == MPS_OK) status = add_end(m);
-  if (status == MPS_OK && flume_has_body(s)) status = add_structure(a, m);
   if (status == MPS_OK && s->absorb == FLUME_ZONE) status = add_zone(m);
   return status;
 }
@@ -159,9 +150,7 @@ mps_status flume_build(app *a, flume *m) {
 
 void flume_free(flume *m) {
   mps_recorder_destroy(&m->series);
-  for (int k = 0; k < FLUME_BODIES; k++) mps_contact_destroy(&m->contact[k]);
   mps_fluid_destroy(&m->fluid);
-  for (int k = 0; k < FLUME_BODIES; k++) mps_body_destroy(&m->body[k]);
   mps_particles_destroy(&m->water);
   mps_absorber_destroy(&m->maker);
   mps_absorber_destroy(&m->end);

@@ -62,27 +62,27 @@ static mps_status measure_passed(flume *m, flume_sample *sample) {
   return MPS_OK;
 }
 
-/* Towards the lee, and about the heel: a moment that tips it over is positive. */
-static mps_status measure_bodies(const flume *m, flume_sample *sample) {
-  for (int k = 0; k < m->bodies; k++) {
-    mps_reaction r;
-    mps_body_state body;
-    mps_status status = mps_contact_get_reaction(m->contact[k], -1, &r);
-    if (status == MPS_OK) status = mps_body_get_state(m->body[k], &body);
-    if (status != MPS_OK) return status;
-    const double arm[2] = {body.position[0] - m->heel, body.position[1]};
-    sample->force += r.force[0];
-    sample->moment -= r.moment[2] + arm[0] * r.force[1] - arm[1] * r.force[0];
+/* Towards the lee, and about the heel: a moment that tips it over is positive. The first and the
+ * last segment are the bed. */
+static mps_status measure_structure(const flume *m, flume_sample *sample) {
+  enum { MOST = FLUME_POINTS + 3 };
+  double force[3 * MOST], moment[MOST];
+  int64_t count;
+  const mps_status status =
+      mps_fluid_get_segments(m->fluid, FLUME_BED, MOST, &count, force, moment);
+  for (int64_t k = 1; status == MPS_OK && k + 1 < count; k++) { /* on the water */
+    sample->force -= force[3 * k];
+    sample->moment += moment[k] - m->heel * force[3 * k + 1];
   }
-  return MPS_OK;
+  return status;
 }
 
 static mps_status measure_force(flume *m, flume_sample *sample) {
   const double foot[3] = {m->s.length - 0.5 * m->s.spacing, 0.0, 0.0};
   mps_reaction r;
   mps_status status = mps_fluid_get_pressure(m->fluid, FLUME_BED, 1, foot, &sample->foot);
-  if (status != MPS_OK || m->bodies > 0)
-    return status == MPS_OK ? measure_bodies(m, sample) : status;
+  if (status != MPS_OK || flume_has_body(&m->s))
+    return status == MPS_OK ? measure_structure(m, sample) : status;
   status = mps_fluid_get_reaction(m->fluid, FLUME_END, &r);
   if (status == MPS_OK) /* opposite forces on wall and water */
     sample->force = -r.force[0], sample->moment = r.moment[2];

@@ -222,6 +222,13 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_wall(const mps_fluid *fluid, int3
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(const mps_fluid *fluid, int32_t number,
                                                         int64_t count, const double *x,
                                                         double *pressure);
+/** Forces on the fluid by the segments of a polyline (N, 3 values each), in the order of its
+ * corners, and their moments about the origin (N m, one value each), as in its reaction: writes at
+ * most `capacity` segments, either may be NULL; `count` receives their number. MPS_ERROR_ARGUMENT:
+ * no polyline `number`, `count` NULL, or `capacity` below 0. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_segments(const mps_fluid *fluid, int32_t number,
+                                                        int64_t capacity, int64_t *count,
+                                                        double *force, double *moment);
 /** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
  *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
  *  where there is no surface. It follows from the fields `position` and `surface_rise`; in an open
@@ -273,6 +280,14 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_contact(mps_fluid *fluid, mps_body *body,
                                                        const mps_fluid_contact_def *def,
                                                        mps_contact **out);
+/** Pressure (Pa) at `count` points of a body (3 values each, m), within 0.01 l0 of its present
+ *  surface, as mps_fluid_get_pressure. MPS_ERROR_ARGUMENT: the contact is none of this fluid's,
+ *  `count` below 0, or a point off the body; MPS_ERROR_STATE: the open step's pressure has not been
+ *  solved; MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_pressure(const mps_fluid *fluid,
+                                                             const mps_contact *contact,
+                                                             int64_t count, const double *x,
+                                                             double *pressure);
 /** `floats` 1: from now on the fluid moves the body in each of its steps, such that the water's
  *  pressure, the body's mass, gravity and load (mps_body_set_load), and the impulses of other
  *  solvers since its last step are in balance, however light the body is. Its draft is right to 1

@@ -40,6 +40,7 @@
 #include "elastic.h"
 #include "elastic_solver.h"
 #include "fluid.h"
+#include "fluid_rock.h"
 #include "fluid_solver.h"
 #include "geostatic.h"
 #include "grid.h"

@@ -55,6 +55,7 @@ FUNCTIONS = {
     "mps_elastic_modes": {"omega": "count", "shapes": "3 * count * particles"},
     "mps_fluid_set_wall_motion": {"displacement": "max(1, nodes(number))",
                                   "velocity": "max(1, nodes(number))"},
+    "mps_fluid_get_segments": {"force": "3 * capacity", "moment": "capacity"},
     "mps_fluid_get_wall": {"x": "3 * capacity", "pressure": "capacity"},
     "mps_fluid_get_pressure": {"x": "3 * count", "pressure": "count"},
     "mps_fluid_get_levels": {"station": "count", "level": "count"},

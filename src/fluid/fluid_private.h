@@ -5,6 +5,7 @@
  *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves floating ones
  *   look.c      copies of the particles, their order and neighbours
  *   near.c      neighbour lists, and the weights w; sight.c: visibility past finite walls
+ *   rock.c      permeable regions
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
  *   closed.c    fluid without a free surface
  *   pressure.c  rows of the pressure equation; pcg.c solves it with the coarse space of coarse.c,
@@ -235,6 +236,7 @@ typedef struct mpsi_fluid_given {
 typedef struct mpsi_fluid_loops mpsi_fluid_loops;         /* loops.h */
 typedef struct mpsi_fluid_partition mpsi_fluid_partition; /* partition.h */
 typedef struct mpsi_fluid_coarse mpsi_fluid_coarse;       /* coarse.h */
+typedef struct mpsi_fluid_rocks mpsi_fluid_rocks;         /* rock.h */
 
 struct mps_fluid {
   mps_context *context;
@@ -314,6 +316,7 @@ struct mps_fluid {
   double energy;                       /* J, kinetic and potential at creation */
   double work_boundaries, work_loads;  /* J, since creation */
   mpsi_fluid_exchange exchange;
+  mpsi_fluid_rocks *rocks; /* NULL: none */
 };
 
 /* Runs task(fluid, chunk) for this rank's chunks of `items` items on the executor. */

@@ -32,6 +32,7 @@
   X(mps_fluid_contact_def, mps_fluid_contact_def_init, "0.3", 16) \
   X(mps_fluid_def, mps_fluid_def_init, "0.3", 112) \
   X(mps_fluid_load_def, mps_fluid_load_def_init, "0.3", 168) \
+  X(mps_fluid_rock_def, mps_fluid_rock_def_init, "0.3", 72) \
   X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.3", 56) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.3", 80) \
   X(mps_goda_def, mps_goda_def_init, "0.3", 128) \

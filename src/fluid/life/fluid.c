@@ -1,5 +1,6 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, queries.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/particles/rock.h"
 #include "fluid/pressure/coarse.h"
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
@@ -148,6 +149,7 @@ static void release(mps_fluid *f) {
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) mpsi_fluid_drop_body(f, &f->body[b]);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
+  mpsi_fluid_drop_rocks(f);
   mpsi_state_forget(&f->identity);
   mps_domain_destroy(&f->def.domain);
   mps_kernel_destroy(&f->def.kernel);

@@ -2,6 +2,7 @@
  * follow from the particles' positions, neighbours and the surface are computed again when needed.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/boundary/polyline.h"
+#include "fluid/particles/rock.h"
 
 #include "core/state/state.h"
 #include "io/checkpoint.h"
@@ -14,9 +15,12 @@ static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
     mpsi_state_agree_number(s, c ? "normal_y" : "normal_x", w->normal[c]);
   }
   mpsi_state_agree_integer(s, "segments", w->line ? w->line->count : 0);
-  for (int64_t k = 0; w->line && k < w->line->count; k++)
+  for (int64_t k = 0; w->line && k < w->line->count; k++) {
+    mpsi_state_enter(s, "segment%d", (int)k);
     for (int c = 0; c < 2; c++)
-      mpsi_state_agree_number(s, c ? "corner_y" : "corner_x", w->line->segment[k].end[1][c]);
+      mpsi_state_agree_number(s, c ? "end_y" : "end_x", w->line->segment[k].end[1][c]);
+    mpsi_state_leave(s);
+  }
   mpsi_state_f64(s, "origin", &w->origin, 1);
   mpsi_state_f64(s, "rate", &w->rate, 1);
   mpsi_state_agree_integer(s, "nodes", w->nodes);
@@ -39,6 +43,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_agree_number(s, "radius_ratio", f->def.radius_ratio);
   mpsi_state_agree_number(s, "level", f->level);
   mpsi_state_agree_number(s, "gamma", f->classical.gamma);
+  mpsi_fluid_list_rocks(s, f);
   mpsi_state_f64(s, "time", &f->time, 1);
   mpsi_state_i64(s, "steps", &f->steps, 1);
   mpsi_state_f64(s, "last_dt", &f->last_dt, 1);

@@ -1,5 +1,6 @@
 /* look.c - the particles at the start of a step: copies of their fields, their order in memory,
  * neighbours, and the sums over these. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 
 #include <string.h>
@@ -39,7 +40,9 @@ mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function, mps_status
 
 mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
   mpsi_fluid_load_cloud(f);
-  return mpsi_fluid_look_around(f, function, mpsi_fluid_find_loads(f, function, f->load_time));
+  mps_status status = mpsi_fluid_find_loads(f, function, f->load_time);
+  if (status == MPS_OK) status = mpsi_fluid_find_pores(f, function, 0.0);
+  return mpsi_fluid_look_around(f, function, status);
 }
 
 /* After a step the fields of the surface are written; otherwise they are computed now. In an open

@@ -17,6 +17,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
+#include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 
 #define APART 0.12     /* n/n0 */
@@ -46,7 +47,8 @@ static void regularise(double *M) {
 
 /* True where no particle is in the cone about e. */
 static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
-  const double reach2 = CONE_REACH * CONE_REACH * f->l0 * f->l0;
+  const double spacing = f->rocks ? mpsi_fluid_pore_of(f, i)->spacing : f->l0;
+  const double reach2 = CONE_REACH * CONE_REACH * spacing * spacing;
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   for (int32_t k = 0; k < f->near[i]; k++) {
     const double dx = f->x[0][index[k]] - f->x[0][i], dy = f->x[1][index[k]] - f->x[1][i];
@@ -59,8 +61,10 @@ static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
 static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m, double length) {
   if (!(length > 0.0)) return false;
   const double e[2] = {-m[0] / length, -m[1] / length};
-  const bool few = n < FEW * f->weight.n0;
-  if (!few && !(length > ONE_SIDED * f->weight.n0 * f->l0)) return false;
+  const double n0 = mpsi_fluid_full(f, i);
+  const double spacing = f->rocks ? mpsi_fluid_pore_of(f, i)->spacing : f->l0;
+  const bool few = n < FEW * n0;
+  if (!few && !(length > ONE_SIDED * n0 * spacing)) return false;
   const bool wedge = f->company[i] & MPSI_FLUID_NEAR_WEDGE;
   return (few || sees_out(f, i, e)) && !(wedge && mpsi_fluid_near_wedge(f, i, e));
 }
@@ -68,8 +72,11 @@ static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m,
 /* Position of the surface, and M with it. */
 static void place_surface(const mps_fluid *f, int64_t i, const double *M, double length,
                           mpsi_fluid_local *local) {
-  const double l0 = f->l0, e[2] = {-local->m[0] / length, -local->m[1] / length};
-  const double h = l0 * (0.5 + (local->n - f->weight.half) / f->weight.slope);
+  const double e[2] = {-local->m[0] / length, -local->m[1] / length};
+  const mpsi_fluid_weight *full = f->rocks ? mpsi_fluid_pore_of(f, i)->weight : &f->weight;
+  const double l0 = f->rocks ? mpsi_fluid_pore_of(f, i)->spacing : f->l0;
+  const double h =
+      l0 * (0.5 + ((f->rocks ? mpsi_fluid_fill(f, i) : local->n) - full->half) / full->slope);
   local->h = fmin(fmax(h, 0.1 * l0), 2.0 * l0);
   local->qs = mpsi_fluid_head(f, f->x[0][i] + local->h * e[0], f->x[1][i] + local->h * e[1]);
   if (f->over) local->qs += f->over[i];
@@ -92,12 +99,14 @@ static void mark_zone(mps_fluid *f, int64_t i) {
 }
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  const double n0 = f->weight.n0;
   (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     mpsi_fluid_sums s;
     f->loops->add_up(f, i, &s);
+    const double n0 = mpsi_fluid_full(f, i), plain[2] = {s.m[0], s.m[1]};
+    if (f->rocks) mpsi_fluid_sum_pores(f, i, &s);
     mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = (float)(0.25 * s.r2)};
+    const double fill = f->rocks ? mpsi_fluid_fill(f, i) : s.n;
     f->state[i] = MPSI_FLUID_APART;
     double M[3] = {s.M[0], s.M[1], s.M[2]};
     if (f->near[i] >= 2 && s.n >= APART * n0) {
@@ -110,11 +119,11 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
         local.divergence += c == 0 ? by_x : by_y;
         local.shear[2 * c] = (float)by_x;
         if (c == 0) local.shear[1] = (float)by_y;
-        local.rest[c] = (float)((s.du[c] - by_x * s.m[0] - by_y * s.m[1]) / s.n);
+        local.rest[c] = (float)((s.du[c] - by_x * plain[0] - by_y * plain[1]) / s.n);
         local.shift[c] = (float)(s.shift[c] / n0);
       }
       const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
-      f->state[i] = at_surface(f, i, s.n, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
+      f->state[i] = at_surface(f, i, fill, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
     }
     f->local[i] = local;
@@ -213,7 +222,8 @@ void mpsi_fluid_count(mps_fluid *f) {
 
 double mpsi_fluid_rise(const mps_fluid *f, int64_t i) {
   const mpsi_fluid_local *local = &f->local[i];
-  if (f->state[i] != MPSI_FLUID_SURFACE || local->n < LEVEL * f->weight.n0) return 0.0;
+  if (f->state[i] != MPSI_FLUID_SURFACE || mpsi_fluid_fill(f, i) < LEVEL * mpsi_fluid_full(f, i))
+    return 0.0;
   const double length = sqrt(local->m[0] * local->m[0] + local->m[1] * local->m[1]);
   return -(local->m[0] * f->up[0] + local->m[1] * f->up[1]) / length * local->h;
 }

@@ -10,6 +10,7 @@
  * any spacing. Images of particles beyond a wall have their parent's q and an offset that the
  * wall's acceleration a gives, -rho (a . N) times their distance, so they add no unknowns; isolated
  * particles have no row and no column. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 
 #define DENSITY 0.003       /* k over the excess of n/n0 */
@@ -23,9 +24,21 @@ static double step_share(const mps_fluid *f) {
 }
 
 static double density_source(const mps_fluid *f, int64_t i, double share) {
-  const double excess = f->local[i].n / f->weight.n0 - 1.0;
+  const double excess = mpsi_fluid_fill(f, i) / mpsi_fluid_full(f, i) - 1.0;
   const double k = DENSITY * excess * fmin(fabs(excess) / SMALL_EXCESS, 1.0);
   return share * fmax(k, f->zone[i] ? 0.0 : LEAST_DENSITY);
+}
+
+/* Factors of the surface's term and of the source: 1 without rock. */
+typedef struct factors {
+  double surface, source, porosity;
+} factors;
+
+static factors factors_of(const mps_fluid *f, int64_t i) {
+  if (!f->rocks) return (factors){1.0, 1.0, 1.0};
+  const mpsi_fluid_pore *pore = mpsi_fluid_pore_of(f, i);
+  const double square = pore->porosity * pore->porosity;
+  return (factors){pore->ease / square, 1.0 / square, pore->porosity};
 }
 
 /* The diagonal, and a start vector by extrapolation of q over the last step. */
@@ -39,8 +52,10 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
     if (f->state[i] == MPSI_FLUID_APART) continue;
     const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     const float *w = f->w + mpsi_fluid_pairs(f, i);
-    double sum = mpsi_fluid_surface_weight(&f->local[i]) + (f->any_apart ? 0.0 : f->local[i].n);
-    for (int32_t k = 0; f->any_apart && k < f->near[i]; k++) {
+    const bool by_pairs = f->any_apart || f->rocks;
+    double sum = factors_of(f, i).surface * mpsi_fluid_surface_weight(&f->local[i]) +
+                 (by_pairs ? 0.0 : f->local[i].n);
+    for (int32_t k = 0; by_pairs && k < f->near[i]; k++) {
       const int64_t j = index[k], ghost = j - f->count;
       if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
     }
@@ -62,7 +77,8 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     const mpsi_fluid_local *local = &f->local[i];
     const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     const float *w = f->w + mpsi_fluid_pairs(f, i);
-    double right = mpsi_fluid_surface_weight(local) * local->qs;
+    const factors part = factors_of(f, i);
+    double right = part.surface * mpsi_fluid_surface_weight(local) * local->qs;
     const int32_t near = f->company[i] & MPSI_FLUID_NEAR_IMAGES ? f->near[i] : 0;
     for (int32_t k = 0; k < near; k++) {
       const int64_t ghost = index[k] - f->count;
@@ -70,7 +86,8 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
         right += w[k] * f->offset[ghost];
     }
     f->system.right[i] =
-        right - local->S * rho / dt * (local->divergence - density_source(f, i, share) / dt);
+        right - part.source * local->S * rho / dt *
+                    (local->divergence - part.porosity * density_source(f, i, share) / dt);
   }
 }
 
@@ -89,9 +106,14 @@ static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
 
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
   const bool classical = f->classical.gamma > 0.0;
+  mps_status status = mpsi_fluid_weigh_flow(f, function);
+  if (status != MPS_OK) return status;
+  mpsi_fluid_use_flow(f, true);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, classical ? mpsi_fluid_classical_rows : make_rows);
-  if (mpsi_fluid_solved_outside(f)) return mpsi_fluid_hand_matrix(f, function);
-  return mpsi_fluid_factor(f, function);
+  const bool outside = mpsi_fluid_solved_outside(f);
+  status = outside ? mpsi_fluid_hand_matrix(f, function) : mpsi_fluid_factor(f, function);
+  mpsi_fluid_use_flow(f, false);
+  return status;
 }
 
 static mps_status solve_inside(mps_fluid *f, const char *function) {
@@ -115,11 +137,13 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
     status = mpsi_fluid_check_space(f, function);
     if (status != MPS_OK) return status;
     mpsi_fluid_press_ghosts(f);
+    mpsi_fluid_use_flow(f, true);
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
     mpsi_fluid_balance(f);
   }
   status = mpsi_fluid_solved_outside(f) ? mpsi_fluid_solve_outside(f, function)
                                         : solve_inside(f, function);
+  mpsi_fluid_use_flow(f, false);
   if (status != MPS_OK) return status;
   if (!classical) mpsi_fluid_set_level(f);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,

@@ -353,6 +353,27 @@ static bool is_on(const mps_fluid *f, const mpsi_fluid_wall *w, const double *x,
   return fabs(*off) <= 0.01 * f->l0 || fabs(*off + s) <= 0.01 * f->l0;
 }
 
+/* Walls whose pressures are asked for: one, the segments of one, or the faces of a body. */
+typedef struct place_of {
+  const mpsi_fluid_wall *wall; /* NULL: the body */
+  const mpsi_fluid_body *body;
+} place_of;
+
+static const mpsi_fluid_wall *face_at(const mps_fluid *f, const mpsi_fluid_body *body,
+                                      const double *x, double *off) {
+  const double edge = 0.01 * f->l0;
+  const mpsi_fluid_wall *found = NULL;
+  *off = INFINITY;
+  for (int k = 0; k < body->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[body->first + k];
+    const double d = mpsi_fluid_distance(w, w->now.s, x[0], x[1]);
+    const double along = mpsi_fluid_along(w, x[0], x[1]);
+    if (along < -edge || along > w->length + edge || fabs(d) >= fabs(*off)) continue;
+    *off = d, found = w;
+  }
+  return fabs(*off) <= edge ? found : NULL;
+}
+
 /* The wall, or the segment of a polyline, that a point is on; NULL: none. */
 static const mpsi_fluid_wall *wall_at(const mps_fluid *f, const mpsi_fluid_wall *w, const double *x,
                                       double *off) {
@@ -362,11 +383,19 @@ static const mpsi_fluid_wall *wall_at(const mps_fluid *f, const mpsi_fluid_wall 
   return fabs(*off) <= 0.01 * f->l0 ? &nearest->wall : NULL;
 }
 
-static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
-                               int64_t count, const double *x) {
+static const mpsi_fluid_wall *find_place(const mps_fluid *f, const place_of *of, const double *x,
+                                         double *off) {
+  return of->wall ? wall_at(f, of->wall, x, off) : face_at(f, of->body, x, off);
+}
+
+static mps_status check_points(mps_fluid *f, const char *function, const place_of *of,
+                               int64_t count, const double *x, const double *pressure) {
+  if (count < 0 || (count > 0 && (!x || !pressure)))
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld, x and pressure must be given", (long long)count);
   for (int64_t k = 0; k < count; k++) {
     double off;
-    if (!wall_at(f, w, x + 3 * k, &off))
+    if (!find_place(f, of, x + 3 * k, &off))
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "x: point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
                        (long long)k, x[3 * k], x[3 * k + 1], off, 0.01 * f->l0);
@@ -383,7 +412,7 @@ static double pressure_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t 
   fit sum = no_fit;
   for (int64_t i = 0; i < near; i++) {
     const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
-    if (weight > 0.0 && (!w->of_line || sees_point(f, w, at, list[i].i)))
+    if (weight > 0.0 && (!(w->of_line || w->of_body) || sees_point(f, w, at, list[i].i)))
       fit_add(f, &sum, weight, at, &list[i]);
   }
   place(f, w, at, to);
@@ -393,13 +422,13 @@ static double pressure_at(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t 
 }
 
 /* Points one after the other on the same segment share what is gathered. */
-static mps_status find_pressures(mps_fluid *f, const char *function, const mpsi_fluid_wall *wall,
+static mps_status find_pressures(mps_fluid *f, const char *function, const place_of *of,
                                  int64_t count, const double *x, double *pressure) {
   const mpsi_fluid_wall *last = NULL;
   int64_t near = 0;
   for (int64_t k = 0; k < count; k++) {
     double off;
-    const mpsi_fluid_wall *w = wall_at(f, wall, x + 3 * k, &off);
+    const mpsi_fluid_wall *w = find_place(f, of, x + 3 * k, &off);
     const mps_status status = w == last ? MPS_OK : gather(f, w, function, &near);
     if (status != MPS_OK) return status;
     last = w;
@@ -408,20 +437,53 @@ static mps_status find_pressures(mps_fluid *f, const char *function, const mpsi_
   return MPS_OK;
 }
 
+static mps_status get_pressures(mps_fluid *f, const char *function, const place_of *of,
+                                int64_t count, const double *x, double *pressure) {
+  mps_status status = check_points(f, function, of, count, x, pressure);
+  status = mpsi_fluid_agree(f, function, status);
+  if (status != MPS_OK) return status;
+  status = check_pressure(f, function);
+  if (status == MPS_OK) status = find_pressures(f, function, of, count, x, pressure);
+  return mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, function, status));
+}
+
 mps_status mps_fluid_get_pressure(const mps_fluid *handle, int32_t number, int64_t count,
                                   const double *x, double *pressure) {
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = check_wall(f, __func__, number);
-  if (status == MPS_OK && (count < 0 || (count > 0 && (!x || !pressure))))
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "count is %lld, x and pressure must be given", (long long)count);
-  if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
-  status = mpsi_fluid_agree(f, __func__, status);
+  const mps_status status = check_wall(f, __func__, number);
   if (status != MPS_OK) return status;
-  status = check_pressure(f, __func__);
-  if (status == MPS_OK) status = find_pressures(f, __func__, &f->wall[number], count, x, pressure);
-  return mpsi_fluid_show_surface(f, mpsi_fluid_agree(f, __func__, status));
+  return get_pressures(f, __func__, &(place_of){.wall = &f->wall[number]}, count, x, pressure);
+}
+
+mps_status mps_fluid_get_body_pressure(const mps_fluid *handle, const mps_contact *contact,
+                                       int64_t count, const double *x, double *pressure) {
+  mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const int32_t number = mpsi_fluid_body_number(f, contact);
+  if (number < 0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "contact is %s: it must be one of the fluid's",
+                     contact ? "that of another solver, or has ended" : "NULL");
+  return get_pressures(f, __func__, &(place_of){.body = &f->body[number]}, count, x, pressure);
+}
+
+mps_status mps_fluid_get_segments(const mps_fluid *f, int32_t number, int64_t capacity,
+                                  int64_t *count, double *force, double *moment) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const bool line = MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line;
+  if (!line || capacity < 0 || !count)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "number is %d, capacity %lld and count %s: must be a polyline's, >= 0, given",
+                     number, (long long)capacity, count ? "given" : "NULL");
+  const mpsi_fluid_polyline *of = f->wall[number].line;
+  *count = of->count;
+  for (int64_t k = 0; k < of->count && k < capacity; k++) {
+    const mpsi_fluid_load *load = &of->segment[k].wall.load;
+    for (int c = 0; c < 3 && force; c++) force[3 * k + c] = c < 2 ? load->force[c] : 0.0;
+    if (moment) moment[k] = load->moment;
+  }
+  return MPS_OK;
 }
 
 /* ---- level ----------------------------------------------------------------------------------- */

@@ -14,6 +14,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
+#include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
 #include "fluid/step/smooth.h"
@@ -43,11 +44,13 @@ static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end, int64_t c
   for (int64_t i = begin; i < end; i++) {
     double gradient[2], du[2], u[2] = {f->u[0][i], f->u[1][i]};
     mpsi_fluid_smooth(f, chunk, i, du);
+    const mpsi_fluid_pore *pore = mpsi_fluid_pore_of(f, i);
+    const double ease = pore ? pore->ease : 1.0;
     if (f->state[i] == MPSI_FLUID_APART) {
-      for (int c = 0; c < 2; c++) u[c] -= dt * f->g * f->up[c];
+      for (int c = 0; c < 2; c++) u[c] -= ease * dt * f->g * f->up[c];
     } else {
       pressure_gradient(f, i, gradient);
-      for (int c = 0; c < 2; c++) u[c] -= dt / rho * gradient[c];
+      for (int c = 0; c < 2; c++) u[c] -= ease * dt / rho * gradient[c];
     }
     for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c] + du[c];
   }
@@ -237,8 +240,10 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     double G[4];
     mpsi_fluid_gradient(&f->local[i], G);
     const double part = carried(f, i);
+    const mpsi_fluid_pore *pore = mpsi_fluid_pore_of(f, i);
+    const double open = pore ? 1.0 / pore->porosity : 1.0;
     for (int c = 0; c < 2; c++) {
-      x[c] = f->x[c][i] + f->dt * (f->u_new[c][i] - (moved ? f->u[c][i] : 0.0)) + shift[c];
+      x[c] = f->x[c][i] + open * f->dt * (f->u_new[c][i] - (moved ? f->u[c][i] : 0.0)) + shift[c];
       u[c] = f->u_new[c][i] + part * (G[2 * c] * shift[0] + G[2 * c + 1] * shift[1]);
     }
     pushed += keep_off_walls(f, i, x, u);

@@ -1,5 +1,6 @@
 /* step.c - the order of a step, its size, and its errors.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 
 #include <string.h>
@@ -110,6 +111,7 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mpsi_fluid_begin_walls(f, dt);
   mpsi_fluid_load_cloud(f);
   status = add_loads(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_find_pores(f, function, dt);
   if (status == MPS_OK) status = mpsi_fluid_begin_exchange(f, function);
   const bool classical = f->classical.gamma > 0.0;
   if (!classical)
@@ -179,7 +181,7 @@ static double limit_at_rest(const mps_fluid *f) {
 double mps_fluid_limit(const mps_fluid *f) {
   if (!f) return 0.0;
   double limit = limit_at_rest(f);
-  if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 / f->speed);
+  if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 * mpsi_fluid_least_porosity(f) / f->speed);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
