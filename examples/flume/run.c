@@ -34,7 +34,11 @@ static mps_status move_maker(flume *m, double dt) {
   return status == MPS_OK ? mps_fluid_set_wall_motion(m->fluid, FLUME_MAKER, &s, &u) : status;
 }
 
-static mps_status step(flume *m) {
+static mps_status keep_memory(const mps_absorber *piston, double *memory) {
+  return piston ? mps_absorber_get_memory(piston, memory) : MPS_OK;
+}
+
+static mps_status make_step(flume *m) {
   const double dt = mps_fluid_dt(m->fluid);
   double s;
   mps_status status = move_maker(m, dt);
@@ -44,6 +48,19 @@ static mps_status step(flume *m) {
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
   return status == MPS_OK ? mps_fluid_end_step(m->fluid) : status;
+}
+
+/* Where a step is not made, as after Ctrl-C, the pistons are those before it: the checkpoint's. */
+static mps_status step(flume *m) {
+  double maker[MPS_ABSORBER_MEMORY], end[MPS_ABSORBER_MEMORY];
+  mps_status status = keep_memory(m->maker, maker);
+  if (status == MPS_OK) status = keep_memory(m->end, end);
+  if (status == MPS_OK) status = make_step(m);
+  if (status != MPS_OK && m->maker && mps_absorber_set_memory(m->maker, maker) != MPS_OK)
+    return MPS_ERROR_STATE;
+  if (status != MPS_OK && m->end && mps_absorber_set_memory(m->end, end) != MPS_OK)
+    return MPS_ERROR_STATE;
+  return status;
 }
 
 /* ---- samples --------------------------------------------------------------------------------- */

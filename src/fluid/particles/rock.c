@@ -189,7 +189,7 @@ static void fill_in(mps_fluid *f, mpsi_fluid_rock *rock, const mps_fluid_rock_de
 }
 
 /* Without regions there is nothing to look at in a step. */
-static void tidy(mps_fluid *f) {
+static void drop_if_none(mps_fluid *f) {
   for (int32_t k = 0; k < f->rocks->room; k++)
     if (f->rocks->rock[k].used) return;
   mpsi_fluid_drop_rocks(f);
@@ -213,7 +213,7 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
   const int32_t k = xy ? find_room(f) : -1;
   if (k < 0) {
     mpsi_free(f->context, xy);
-    if (f->rocks) tidy(f);
+    if (f->rocks) drop_if_none(f);
     return mpsi_fail_memory(f->context, __func__, 2 * (size_t)def.corner_count * sizeof *xy);
   }
   f->rocks->rock[k].xy = xy;
@@ -232,7 +232,7 @@ mps_status mps_fluid_remove_rock(mps_fluid *f, int32_t number) {
                      number);
   mpsi_free(f->context, f->rocks->rock[number].xy);
   f->rocks->rock[number] = (mpsi_fluid_rock){.used = false};
-  tidy(f);
+  drop_if_none(f);
   f->stale = true, f->unknown = 1;
   return MPS_OK;
 }

@@ -176,7 +176,6 @@ static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t n
 static bool sees_point(const mps_fluid *f, const mpsi_fluid_wall *w, double along, int64_t i) {
   double at[2];
   const double x[2] = {f->x[0][i], f->x[1][i]};
-  if (!f->faces && f->segments == 0) return true;
   place(f, w, along, at);
   const bool face = w >= f->wall && w < f->wall + MPSI_FLUID_WALLS;
   if (f->faces && mpsi_fluid_hidden(f, face ? (int)(w - f->wall) : -1, x, at)) return false;
@@ -190,6 +189,7 @@ typedef void (*point_fn)(void *user, const double *x, double p);
 static mps_status for_points(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
                              point_fn point, void *user) {
   const double step = pitch(f, w);
+  const bool ends = f->faces || f->segments > 0;
   int64_t low, high, near;
   const mps_status status = gather(f, w, function, &near);
   if (status != MPS_OK) return status;
@@ -208,7 +208,7 @@ static mps_status for_points(mps_fluid *f, const mpsi_fluid_wall *w, const char 
     const int64_t first = (int64_t)floor(s / step - reach), last = (int64_t)(s / step + reach);
     for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
       const double at = ((double)k + 0.5) * step, weight = weight_of(f, list[n].d, s - at);
-      if (weight > 0.0 && sees_point(f, w, at, list[n].i))
+      if (weight > 0.0 && (!ends || sees_point(f, w, at, list[n].i)))
         fit_add(f, &sum[k - low], weight, at, &list[n]);
     }
   }
