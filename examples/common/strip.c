@@ -76,7 +76,6 @@ mps_status strip_make(mps_context *context, const strip_def *def, strip *out) {
   elastic.bending = 0.0;    /* as the coupled walls of docs/verification were compared with theory */
   elastic.blas_threads = 1; /* the same bits for every number of threads */
   elastic.domain = def->domain;
-  elastic.bending = 0.0; /* by which the pages' forces and deflections were measured */
   mps_status status = fill(context, def, &out->set);
   int64_t *ids = malloc((size_t)mps_particles_count(out->set) * sizeof *ids + 8);
   if (!ids) status = MPS_ERROR_MEMORY;

@@ -13,6 +13,7 @@
 #include <mps/dynamics.h>
 #include <mps/elastic.h>
 #include <mps/fluid.h>
+#include <mps/fluid_rock.h>
 #include <mps/elastic_solver.h>
 #include <mps/fluid_solver.h>
 #include <mps/geostatic.h>
@@ -597,6 +598,23 @@ static mps_status use_fluid_load(const void *def) {
   return status;
 }
 
+static void need_fluid_rock(void *def) {
+  static const double corners[] = {0.1, 0.0, 0.0, 0.4, 0.0, 0.0, 0.25, 0.3, 0.0};
+  mps_fluid_rock_def *rock = def;
+  rock->corners = corners, rock->corner_count = 3;
+  rock->porosity = 0.5, rock->diameter = 0.02;
+}
+
+static mps_status use_fluid_rock(const void *def) {
+  mps_particles *set = square();
+  mps_fluid *fluid = NULL;
+  mps_assert_ok(context, mps_fluid_create(context, set, NULL, &fluid));
+  const mps_status status = mps_fluid_add_rock(fluid, def, NULL);
+  mps_fluid_destroy(&fluid);
+  mps_particles_destroy(&set);
+  return status;
+}
+
 static mps_status no_matrix(void *user, int64_t rows, const int64_t *start, const int32_t *column,
                             const double *value) {
   (void)user, (void)rows, (void)start, (void)column, (void)value;
@@ -675,6 +693,7 @@ static const user users[] = {
     {"mps_elastic_def", need_nothing, use_elastic},
     {"mps_fluid_def", need_nothing, use_fluid},
     {"mps_fluid_load_def", need_nothing, use_fluid_load},
+    {"mps_fluid_rock_def", need_fluid_rock, use_fluid_rock},
     {"mps_fluid_contact_def", need_nothing, use_fluid_contact},
     {"mps_fluid_solver_def", need_fluid_solver, use_fluid_solver},
     {"mps_geostatic_def", need_geostatic, use_geostatic},
