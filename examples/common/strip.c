@@ -73,7 +73,7 @@ mps_status strip_make(mps_context *context, const strip_def *def, strip *out) {
   *out = (strip){.def = *def};
   mps_elastic_def elastic = mps_elastic_defaults();
   elastic.state = MPS_ELASTIC_STATE_PLANE_STRAIN;
-  elastic.bending = 0.0;    /* as the coupled walls of docs/verification were compared with theory */
+  elastic.bending = 0.0; /* as the coupled walls of docs/verification were compared with theory */
   elastic.blas_threads = 1; /* the same bits for every number of threads */
   elastic.domain = def->domain;
   mps_status status = fill(context, def, &out->set);
