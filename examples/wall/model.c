@@ -1,6 +1,6 @@
 /* model.c - ground, wall and the run of mps-wall. The wall is x <= 0, the ground behind it x > 0;
  * it moves away from the ground (active) or into it (passive), as a whole or about its toe or top.
- * With a base the ground goes on below the toe and in front of the wall; without one the wall
+ * With a base the ground continues below the toe and in front of the wall; without one the wall
  * stands on a smooth bed. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall.h"
 
@@ -11,7 +11,7 @@
 #define DEGREE (3.14159265358979323846 / 180.0)
 #define RAMP 0.05  /* of the path: up to the full speed */
 #define THICK 0.25 /* of the height */
-#define ABOVE 0.5  /* of the height: the wall goes on above the ground, which rises */
+#define ABOVE 0.5  /* of the height: the wall rises above the ground, which heaves */
 
 /* ---- ground ---------------------------------------------------------------------------------- */
 
