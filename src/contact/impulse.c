@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own result is not a size any more */
-#define RECOVERED 0.05     /* of an overlap, in a step: more is rougher */
-#define FASTEST 0.02       /* of the waves, at which an overlap opens: it must not throw */
+#define LARGEST_STRAIN 0.2 /* bound of the elastic strain that changes the size of a particle */
+#define RECOVERED 0.05     /* fraction of an overlap removed in a step */
+#define FASTEST 0.02       /* of the wave speed: most at which an overlap opens */
 
 /* ---- geometry -------------------------------------------------------------------------------- */
 

@@ -405,13 +405,10 @@ mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  if (!particles) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "particles is NULL");
-  if (mpsi_particles_context(particles) != context)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "the particle set was made from another context");
   mps_recorder_def def;
   (void)mps_recorder_def_init(&def, sizeof def);
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_recorder_def, user_def, &def);
+  mps_status status = mpsi_particles_check_context(particles, context, __func__);
+  if (status == MPS_OK) status = MPSI_DEF_READ(context, __func__, mps_recorder_def, user_def, &def);
   if (status == MPS_OK) status = check_def(context, &def);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_LOOK);
   if (status != MPS_OK) return status;

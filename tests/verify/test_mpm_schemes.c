@@ -84,7 +84,7 @@ typedef struct warm {
   double linear, angular, energy; /* linear: relative error; the others: share that is left */
 } warm;
 
-/* A free disc, ten cells across, turns `turns` times and flies on. */
+/* A free disc, ten cells across, makes `turns` turns while it translates. */
 static warm rotating_disc(int scheme, int32_t spline, double turns) {
   const double w = 5.0, v0[] = {0.4, -0.3}, L[] = {0.0, -w, w, 0.0};
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, -0.001, 1e5);

@@ -99,6 +99,14 @@ void mpsi_particles_unpin(mps_particles *particles) {
 
 mps_context *mpsi_particles_context(const mps_particles *particles) { return particles->context; }
 
+mps_status mpsi_particles_check_context(const mps_particles *particles, mps_context *context,
+                                        const char *function) {
+  if (!particles) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "particles is NULL");
+  if (particles->context == context) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "the particle set was made from another context");
+}
+
 int64_t mps_particles_count(const mps_particles *particles) {
   return particles ? particles->count : 0;
 }

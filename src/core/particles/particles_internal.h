@@ -193,4 +193,8 @@ int64_t mpsi_particles_made(const mps_particles *particles);
 
 mps_context *mpsi_particles_context(const mps_particles *particles);
 
+/* MPS_ERROR_ARGUMENT when a caller's set is NULL or made from another context than `context`. */
+mps_status mpsi_particles_check_context(const mps_particles *particles, mps_context *context,
+                                        const char *function);
+
 #endif

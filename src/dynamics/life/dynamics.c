@@ -252,13 +252,10 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  if (!particles) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "particles is NULL");
-  if (mpsi_particles_context(particles) != context)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "the particle set was made from another context");
   mps_dynamics_def def = dynamics_defaults;
-  mps_status status = MPS_OK;
-  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_dynamics_def, user_def, &def);
+  mps_status status = mpsi_particles_check_context(particles, context, __func__);
+  if (status == MPS_OK && user_def)
+    status = MPSI_DEF_READ(context, __func__, mps_dynamics_def, user_def, &def);
   if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status != MPS_OK) return status;
   if (def.kernel) def.radius_ratio = dynamics_defaults.radius_ratio; /* not read */

@@ -76,9 +76,6 @@ static mps_status read_kernel(mps_context *context, mps_fluid_def *d, double l0)
 static mps_status check_particles(mps_context *context, mps_particles *particles) {
   static const char *const function = "mps_fluid_create";
   const int64_t n = mps_particles_count(particles);
-  if (mpsi_particles_context(particles) != context)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the particle set was made from another context");
   if (mps_particles_dim(particles) != 2)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the particle set has dim %d: the fluid is in the plane, dim 2",
@@ -201,12 +198,11 @@ static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, m
 mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
                             const mps_fluid_def *user_def, mps_fluid **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
-  if (!particles || !out)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
-                     particles ? "out" : "particles");
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_fluid_def def = defaults;
-  mps_status status = MPS_OK;
+  mps_status status = mpsi_particles_check_context(particles, context, __func__);
+  if (status != MPS_OK) return status;
   if (user_def) status = MPSI_DEF_READ(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
   const double l0 = mps_particles_spacing(particles);

@@ -182,15 +182,13 @@ static mps_status create(mps_context *context, const char *function, mps_particl
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  if (!particles || mps_particles_count(particles) == 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "particles is %s",
-                     particles ? "empty" : "NULL");
-  if (mpsi_particles_context(particles) != context)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "the particle set was made from another context");
+  mps_status status = mpsi_particles_check_context(particles, context, function);
+  if (status == MPS_OK && mps_particles_count(particles) == 0)
+    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "particles is empty");
+  if (status != MPS_OK) return status;
   mps_elastic_def def;
-  mps_status status = read_def(context, function, user_def, mps_particles_dim(particles),
-                               mps_particles_spacing(particles), published, &def);
+  status = read_def(context, function, user_def, mps_particles_dim(particles),
+                    mps_particles_spacing(particles), published, &def);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, function, MPSI_USE_FIX);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, function, NULL);
   mpsi_backup backup = {0};
