@@ -47,8 +47,8 @@ static inline void reference_second(const mpsi_stencil *at, const mpsi_shape_val
  * or, where its inertia is too small for that, `turn` (m2/s): spin.h. */
 static inline void reference_spin(const mps_mpm *mpm, const mpsi_stencil *at,
                                   const mpsi_shape_values *f, double L[3][3], double turn[3][3]) {
-  const int dim = mpm->dim;
-  const double full = mpm->def.spline == 3 ? 1.0 / 3.0 : 0.25;
+  const int dim = mpm->grid.dim;
+  const double full = mpm->grid.spline == 3 ? 1.0 / 3.0 : 0.25;
   double K[3][3], lack[3] = {0.0}, spin[3] = {0.0}, inertia[4][4] = {{0.0}};
   reference_second(at, f, K);
   for (int a = 0; a < dim; a++) {
@@ -74,7 +74,7 @@ static inline void reference_spin(const mps_mpm *mpm, const mpsi_stencil *at,
   for (int a = 0; a < dim; a++) {
     const int b = (a + 1) % 3, axis = (a + 2) % 3;
     if (b >= dim) continue;
-    const double by = turns ? spin[axis] : 0.5 * mpm->def.cell * lack[axis];
+    const double by = turns ? spin[axis] : 0.5 * mpm->grid.cell * lack[axis];
     to[b][a] += by;
     to[a][b] -= by;
   }
@@ -87,10 +87,10 @@ static inline void reference_scatter(const mps_mpm *mpm, const mpsi_stencil *at,
                                      mpsi_node *tile, mpsi_node *forces) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const mpsi_columns *c = &mpm->p;
-  const int dim = mpm->dim;
+  const int dim = mpm->grid.dim;
   double L[3][3] = {{0.0}}, turn[3][3] = {{0.0}};
   for (int a = 0; a < dim; a++)
-    for (int d = 0; d < dim; d++) L[a][d] = mpm->def.cell * c->L[dim * a + d][p];
+    for (int d = 0; d < dim; d++) L[a][d] = mpm->grid.cell * c->L[dim * a + d][p];
   if (spins) reference_spin(mpm, at, f, L, turn);
   REFERENCE_NODES(n, i, j, k) {
     if (f->w[n] == 0.0) continue;
@@ -100,7 +100,7 @@ static inline void reference_scatter(const mps_mpm *mpm, const mpsi_stencil *at,
     forces[t][0] += c->m[p] * (f->w[n] - f->phi[n]);
     for (int a = 0; a < dim; a++) {
       double v = c->v[a][p], force = c->m[p] * mpm->def.gravity[a] * f->phi[n], by = 0.0;
-      if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
+      if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
         force -= c->V[p] * c->s[2][p] / c->x[0][p] * f->phi[n];
       for (int d = 0; d < dim; d++) {
         v += L[a][d] * s[d];
@@ -117,18 +117,18 @@ static inline void reference_scatter(const mps_mpm *mpm, const mpsi_stencil *at,
 static inline void reference_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                     const mpsi_stencil *at, const mpsi_shape_values *f,
                                     const mpsi_node *tile, reference *out) {
-  const int spline = mpm->def.spline;
-  for (int d = 0; d < mpm->dim; d++) {
+  const int spline = mpm->grid.spline;
+  for (int d = 0; d < mpm->grid.dim; d++) {
     const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + at->at[d];
     double slope[4];
     if (low < mpm->grid.use_low[d] || low + spline > mpm->grid.use_high[d]) continue;
     mpsi_slopes(spline, -at->s[d][0], slope);
-    for (int a = 0; a < mpm->dim; a++) out->derivative[a][d] = 0.0;
+    for (int a = 0; a < mpm->grid.dim; a++) out->derivative[a][d] = 0.0;
     REFERENCE_NODES(n, i, j, k) {
       const int own = d == 0 ? i : d == 1 ? j : k;
       const int t = mpsi_tile_index(at->at[0] + i, at->at[1] + j, at->at[2] + k);
       if (f->w[n] == 0.0) continue;
-      for (int a = 0; a < mpm->dim; a++)
+      for (int a = 0; a < mpm->grid.dim; a++)
         out->derivative[a][d] +=
             mpm->grid.inverse * slope[own] / at->w[d][own] * f->phi[n] * tile[t][1 + a];
     }
@@ -145,9 +145,9 @@ static inline reference reference_gather(const mps_mpm *mpm, const mpsi_cell_blo
     const double s[3] = {at->s[0][i], at->s[1][j], at->s[2][k]};
     const int t = mpsi_tile_index(at->at[0] + i, at->at[1] + j, at->at[2] + k);
     if (f->w[n] == 0.0) continue;
-    for (int a = 0; a < mpm->dim; a++) {
+    for (int a = 0; a < mpm->grid.dim; a++) {
       out.v[a] += f->phi[n] * tile[t][1 + a];
-      for (int d = 0; d < mpm->dim; d++) {
+      for (int d = 0; d < mpm->grid.dim; d++) {
         out.slope[a][d] += f->gradient[d][n] * tile[t][1 + a];
         moment[a][d] += f->phi[n] * s[d] * tile[t][1 + a];
       }
@@ -155,9 +155,9 @@ static inline reference reference_gather(const mps_mpm *mpm, const mpsi_cell_blo
   }
   memcpy(out.derivative, out.slope, sizeof out.slope);
   if (!held) reference_strain(mpm, cells, at, f, tile, &out);
-  const double scale = (mpm->def.spline == 3 ? 3.0 : 4.0) * mpm->grid.inverse;
-  for (int a = 0; a < mpm->dim && spins; a++)
-    for (int b = a + 1; b < mpm->dim; b++) {
+  const double scale = (mpm->grid.spline == 3 ? 3.0 : 4.0) * mpm->grid.inverse;
+  for (int a = 0; a < mpm->grid.dim && spins; a++)
+    for (int b = a + 1; b < mpm->grid.dim; b++) {
       const double spin = scale * (moment[b][a] - moment[a][b]);
       const double more = 0.5 * (spin - (out.slope[b][a] - out.slope[a][b]));
       out.slope[b][a] += more;

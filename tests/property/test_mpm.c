@@ -102,7 +102,7 @@ static void check_shapes(mps_mpm *mpm, int64_t *fitted) {
       mpsi_stencil at;
       mpsi_shape_values f;
       mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
-      check_sums(mpm->dim, mpm->def.cell, &at, &f);
+      check_sums(mpm->grid.dim, mpm->grid.cell, &at, &f);
       double weight = 0.0;
       for (int n = 0; n < MPSI_STENCIL; n++) {
         weight += f.w[n];
@@ -112,10 +112,10 @@ static void check_shapes(mps_mpm *mpm, int64_t *fitted) {
       least_determinant = fmin(least_determinant, f.determinant);
     }
   }
-  print_message("%dD, spline %d: least phi %.4f, least det(M)/M00^n %.4f\n", mpm->dim,
-                mpm->def.spline, least_phi, least_determinant);
+  print_message("%dD, spline %d: least phi %.4f, least det(M)/M00^n %.4f\n", mpm->grid.dim,
+                mpm->grid.spline, least_phi, least_determinant);
   assert_true(least_phi >= -0.05);
-  if (mpm->dim == 2 && mpm->def.spline == 3) assert_true(least_determinant >= 0.0256);
+  if (mpm->grid.dim == 2 && mpm->grid.spline == 3) assert_true(least_determinant >= 0.0256);
   assert_true(least_determinant > 1e-3);
 }
 
@@ -188,8 +188,8 @@ typedef double node_sums[8];
 static void add_by_fit(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k, node_sums *sums) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const mpsi_columns *p = &mpm->p;
-  const int dim = mpm->dim;
-  const double m = p->m[k], h = mpm->def.cell;
+  const int dim = mpm->grid.dim;
+  const double m = p->m[k], h = mpm->grid.cell;
   mpsi_stencil at;
   mpsi_shape_values f;
   mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
@@ -206,7 +206,7 @@ static void add_by_fit(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k, no
         v += p->L[dim * c + d][k] * h * s[d];
         force -= p->V[k] * p->s[symmetric[c][d]][k] * f.gradient[d][n];
       }
-      if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
+      if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
         force -= f.phi[n] * p->V[k] * p->s[2][k] / p->x[0][k];
       to[1 + c] += m * f.phi[n] * v;
       to[5 + c] += force;
@@ -229,7 +229,7 @@ static void check_nodes(const mps_mpm *mpm, node_sums *sums) {
             : mpm->grid.side[mpsi_first_node(mpm, nodes->side) + n % mpm->grid.block_nodes];
     mps_assert_near(mpm->grid.node[n][0], sums[n][0], mass);
     mps_assert_near(side ? side[0] : 0.0, sums[n][4], mass);
-    for (int c = 1; c <= mpm->dim; c++) {
+    for (int c = 1; c <= mpm->grid.dim; c++) {
       const double with = nodes->split ? 0.0 : mpm->run.dt * sums[n][4 + c];
       mps_assert_near(mpm->grid.node[n][c], sums[n][c] + with, 10.0 * mass + mpm->run.dt * force);
       if (nodes->split) mps_assert_near(side[c], sums[n][4 + c], force);
@@ -248,19 +248,20 @@ static bool near_bodies(const mps_mpm *mpm, const double *x) {
  * and in space, with the spin by the nodes' moment about it. */
 static void gather_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k,
                           double *out) {
-  const int dim = mpm->dim;
+  const int dim = mpm->grid.dim;
   mpsi_stencil at;
   mpsi_shape_values f;
   mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
   memset(out, 0, 12 * sizeof *out);
   double moment[3][3] = {{0.0}};
-  const double h = mpm->def.cell, full = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  const double h = mpm->grid.cell, full = h * h / (mpm->grid.spline == 3 ? 3.0 : 4.0);
   const int32_t first[3] = {cells->at[0], cells->at[1], cells->at[2]};
   bool beside = false;
   for (int n = 0; n < MPSI_STENCIL; n++) {
     const int own[3] = {n % 4, n / 4 % 4, n / 16};
     double x[3] = {0.0};
-    if (own[0] > mpm->def.spline || own[1] > mpm->def.spline || own[2] > mpm->def.spline) continue;
+    if (own[0] > mpm->grid.spline || own[1] > mpm->grid.spline || own[2] > mpm->grid.spline)
+      continue;
     if (own[2] > 0 && dim == 2) continue;
     for (int c = 0; c < dim; c++) x[c] = h * (first[c] * MPSI_SIDE + at.at[c] + own[c]);
     beside = beside || near_bodies(mpm, x);
@@ -273,7 +274,7 @@ static void gather_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
       for (int d = 0; d < dim; d++) moment[d][c] += f.phi[n] * h * at.s[d][own[d]] * v[1 + c];
     }
   }
-  for (int c = 0; c < dim && beside && mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC; c++)
+  for (int c = 0; c < dim && beside && mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC; c++)
     for (int d = 0; d < c; d++) {
       double *one = out + 3 + dim * c + d, *other = out + 3 + dim * d + c;
       const double sum = *one + *other, spin = (moment[d][c] - moment[c][d]) / full;
@@ -290,7 +291,7 @@ static void transfers_agree_with_the_fit(void **state) {
     const int geometry = variant / 4, spline = variant % 2;
     mpm_scene s = crowded(geometry, 2 + spline, true);
     mps_mpm *mpm = s.mpm;
-    const int dim = mpm->dim;
+    const int dim = mpm->grid.dim;
     for (int b = 0; b < mpm->contact.bodies; b++)
       mpm->contact.handle[b]->def.friction = variant % 4 < 2 ? 0.0 : 0.3;
     for (int64_t k = 0; k < COUNT; k++) {

@@ -10,12 +10,12 @@
 static void held_force(mpm_scene *s, int32_t box, double *sum, int *acts) {
   double force[3];
   mpm_scene_force(s, box, sum);
-  for (int32_t k = 0; k < 2 * s->mpm->dim; k++) {
+  for (int32_t k = 0; k < 2 * s->mpm->grid.dim; k++) {
     mpm_scene_force(s, k, force);
     acts[k] += force[0] != 0.0 || force[1] != 0.0 || force[2] != 0.0;
     for (int c = 0; c < 3; c++) sum[c] += force[c];
   }
-  for (int c = 0; c < s->mpm->dim; c++)
+  for (int c = 0; c < s->mpm->grid.dim; c++)
     for (int64_t k = 0; k < s->mpm->p.count; k++) sum[c] += s->mpm->p.f[c][k];
 }
 
@@ -49,7 +49,7 @@ static void momentum_is_balanced(void **state) {
       const double dt = mps_mpm_time(s.mpm) - t;
       double force[3];
       held_force(&s, box, force, acts);
-      for (int c = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 1 : 0; c < s.mpm->dim; c++) {
+      for (int c = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 1 : 0; c < s.mpm->grid.dim; c++) {
         const double all = force[c] + after.mass * s.mpm->def.gravity[c];
         worst = fmax(worst, fabs(after.linear[c] - before.linear[c] - s.mpm->run.dt * all));
         total = fmax(total, fabs(after.linear[c]) + fabs(dt * all));
@@ -58,7 +58,7 @@ static void momentum_is_balanced(void **state) {
     }
     print_message("geometry %d: momentum balanced within %.2g of it\n", geometry, worst / total);
     assert_true(worst < 1e-12 * total);
-    for (int32_t k = 0; k < 2 * s.mpm->dim; k++) assert_true(acts[k] > 5);
+    for (int32_t k = 0; k < 2 * s.mpm->grid.dim; k++) assert_true(acts[k] > 5);
     mpm_scene_end(&s);
   }
 }

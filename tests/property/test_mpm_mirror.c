@@ -98,7 +98,7 @@ static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, const b
   mps_reaction r = {0};
   mpm_scene whole = part_of_box(geometry, spline, 0, ball);
   mpm_scene part = part_of_box(geometry, spline, cut, ball);
-  const int dim = part.mpm->dim;
+  const int dim = part.mpm->grid.dim;
   mps_assert_ok(context, mps_mpm_step(whole.mpm, steps));
   mps_assert_ok(context, mps_mpm_step(part.mpm, steps));
   double force = 0.0, off = 0.0;
@@ -239,7 +239,7 @@ static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body,
 static void given(mpm_scene *s, double *impulse, double *moment) {
   memset(impulse, 0, 3 * sizeof *impulse);
   memset(moment, 0, 3 * sizeof *moment);
-  for (int32_t k = 0; k < 2 * s->mpm->dim; k++) {
+  for (int32_t k = 0; k < 2 * s->mpm->grid.dim; k++) {
     mps_reaction r;
     mps_assert_ok(context, mps_mpm_get_reaction(s->mpm, k, &r));
     for (int c = 0; c < 3; c++) impulse[c] += r.impulse[c], moment[c] += r.moment_impulse[c];
@@ -253,7 +253,7 @@ static void given(mpm_scene *s, double *impulse, double *moment) {
 
 static void check_balance(int32_t geometry, int32_t spline, bool moves, int body) {
   mpm_scene s = turmoil(geometry, spline, moves, body, 0);
-  const int dim = s.mpm->dim, first = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 1 : 0;
+  const int dim = s.mpm->grid.dim, first = geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? 1 : 0;
   double worst = 0.0, size = 0.0;
   double before[3], after[3], moment[3];
   given(&s, before, moment);

@@ -164,7 +164,7 @@ static void compare_feet(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t beg
     mpm->kernels->fit(mpm, cells, worker, p, &at, &f);
     for (int n = 0; n < MPSI_STENCIL; n++) {
       double psi = f.phi[n];
-      for (int a = 0; a < mpm->dim; a++) psi += f.gradient[a][n] * d[a];
+      for (int a = 0; a < mpm->grid.dim; a++) psi += f.gradient[a][n] * d[a];
       const bool active = foot.active >> n & 1; /* or at the edge of a full support */
       assert_true(active || f.w[n] == 0.0);
       if (active) out->feet = fmax(out->feet, fabs(foot.psi[n] - psi));
@@ -174,13 +174,14 @@ static void compare_feet(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t beg
 }
 
 static uint32_t held_by(const mps_mpm *mpm, const mpsi_places *places, int k) {
-  return mpsi_support_state(&mpm->grid.workers[0], mpm->dim, mpm->def.spline, places->first[k]) &
+  return mpsi_support_state(&mpm->grid.workers[0], mpm->grid.dim, mpm->grid.spline,
+                            places->first[k]) &
          (MPSI_IMPULSE | MPSI_PENALTY);
 }
 
 /* Whether a particle keeps its moment. */
 static bool spins(const mps_mpm *mpm, uint32_t held) {
-  return held && mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  return held && mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC;
 }
 
 static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
@@ -227,10 +228,10 @@ static void compare_gather(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
     mpm->kernels->fit(mpm, cells, worker, chunk + k, &at, &f);
     const reference one = reference_gather(mpm, cells, &at, &f, held != 0, spins(mpm, held),
                                            (const mpsi_node *)worker->tile);
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       out->gather = fmax(out->gather, fabs(batch.v[c][k] - one.v[c]));
-      for (int d = 0; d < mpm->dim; d++) {
-        const int to = mpm->dim * c + d;
+      for (int d = 0; d < mpm->grid.dim; d++) {
+        const int to = mpm->grid.dim * c + d;
         const double slope = fabs(batch.slope[to][k] - one.slope[c][d]);
         const double rise = fabs(batch.derivative[to][k] - one.derivative[c][d]);
         out->gather = fmax(out->gather, CELL * fmax(slope, rise));
@@ -244,11 +245,11 @@ static void compare_block(mps_mpm *mpm, const mpsi_cell_block *cells, compared *
   for (int64_t chunk = cells->begin; chunk < cells->end; chunk += MPSI_CHUNK) {
     const int n = cells->end - chunk < MPSI_CHUNK ? (int)(cells->end - chunk) : MPSI_CHUNK;
     mpsi_places places;
-    mpsi_find_places(mpm, cells, mpm->dim, mpm->def.spline, 7, 7, chunk, n, &places);
+    mpsi_find_places(mpm, cells, mpm->grid.dim, mpm->grid.spline, 7, 7, chunk, n, &places);
     for (int k = 0, end; k < n; k = end) {
       for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
-      if (mpsi_support_state(&mpm->grid.workers[0], mpm->dim, mpm->def.spline, places.first[k]) ==
-          0)
+      if (mpsi_support_state(&mpm->grid.workers[0], mpm->grid.dim, mpm->grid.spline,
+                             places.first[k]) == 0)
         continue;
       compare_scatter(mpm, cells, &places, chunk, k, end, out);
       compare_gather(mpm, cells, &places, chunk, k, end, out);

@@ -13,7 +13,7 @@ mps_status mpsi_mpm_check_whole(mps_mpm *mpm, const char *function) {
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "an earlier step has left no state to go on from: roll back, restore a "
                      "checkpoint or make a new solver");
-  return mpsi_particles_ready(mpm->particles, function);
+  return mpsi_particles_ready(mpm->p.set, function);
 }
 
 mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
@@ -26,7 +26,7 @@ double mps_mpm_limit(const mps_mpm *mpm) {
   double speed = mpm->run.speed;
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     speed = fmax(speed, mpsi_contact_speed(mpm->contact.handle[b]));
-  return speed > 0.0 ? mpm->def.cell / speed : INFINITY; /* there are no particles */
+  return speed > 0.0 ? mpm->grid.cell / speed : INFINITY; /* there are no particles */
 }
 
 double mps_mpm_dt(const mps_mpm *mpm) {

@@ -12,7 +12,7 @@ bool mpsi_mpm_counts_node_block(const mps_mpm *mpm, int64_t g) {
 bool mpsi_mpm_node_block_complete(const mps_mpm *mpm, int64_t g) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   bool own = false;
-  for (int q = 0; q < 1 << mpm->dim; q++)
+  for (int q = 0; q < 1 << mpm->grid.dim; q++)
     own = own || (nodes->from[q] >= 0 && !mpm->grid.cells[nodes->from[q]].ghost);
   return own;
 }
@@ -49,10 +49,12 @@ static void give_state(const mps_mpm *mpm, mpsi_given *list) {
 static void give_signals(const mps_mpm *mpm, mpsi_given *list) {
   for (int32_t k = 0; k < mpm->boundaries.holds; k++)
     if (mpm->boundaries.hold[k].kind != MPSI_BOUNDARY_NONE)
-      mpsi_give_vector(list, "the velocity of a boundary", mpm->dim, mpm->boundaries.hold[k].v);
+      mpsi_give_vector(list, "the velocity of a boundary", mpm->grid.dim,
+                       mpm->boundaries.hold[k].v);
   for (int32_t k = 0; k < mpm->loads.count; k++)
     if (mpm->loads.traction[k].count > 0)
-      mpsi_give_vector(list, "the present factor on a load", mpm->dim, mpm->loads.traction[k].now);
+      mpsi_give_vector(list, "the present factor on a load", mpm->grid.dim,
+                       mpm->loads.traction[k].now);
   for (int32_t b = 0; b < mpm->contact.bodies && !mpm->settling.on; b++)
     if (mpm->contact.handle[b]->source.moves) mpsi_body_give_ahead(list, mpm->contact.body[b]);
 }
@@ -83,8 +85,8 @@ mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status sta
   int64_t found[2] = {0, mpm->p.count}; /* of the list; particles */
   status = mpsi_mpm_agree(mpm, function, status);
   if (status != MPS_OK) return status;
-  if (!mpm->partition) return mpsi_particles_check_ids(mpm->particles, function, count, ids);
-  for (int64_t k = 0; k < count; k++) found[0] += mps_particles_index(mpm->particles, ids[k]) >= 0;
+  if (!mpm->partition) return mpsi_particles_check_ids(mpm->p.set, function, count, ids);
+  for (int64_t k = 0; k < count; k++) found[0] += mps_particles_index(mpm->p.set, ids[k]) >= 0;
   status = mpsi_domain_sum(mpm->partition->domain, function, 2, found);
   if (status != MPS_OK || (found[0] == count && count <= found[1])) return status;
   if (count > found[1])
@@ -101,10 +103,10 @@ mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status sta
 mps_status mpsi_mpm_agree_on_insertion(void *self, const char *function, mps_status status,
                                        int64_t first) {
   mps_mpm *mpm = self;
-  const int64_t count = mps_particles_count(mpm->particles) - first;
+  const int64_t count = mps_particles_count(mpm->p.set) - first;
   uint64_t hash = mpsi_hash(MPSI_HASH, &count, sizeof count);
-  for (int c = 0; c < mpm->dim; c++) /* columns may have moved */
-    hash = mpsi_hash(hash, mpsi_particles_column(mpm->particles, "position", c) + first,
+  for (int c = 0; c < mpm->grid.dim; c++) /* columns may have moved */
+    hash = mpsi_hash(hash, mpsi_particles_column(mpm->p.set, "position", c) + first,
                      (size_t)count * sizeof(double));
   return mpsi_domain_agree_same(mpm->partition->domain, function, status,
                                 "a hash of the particles to add", mpsi_hash_short(hash));

@@ -4,7 +4,9 @@
 #ifndef MPSI_MPM_COLUMNS_H
 #define MPSI_MPM_COLUMNS_H
 
-#include <stdint.h>
+#include "mpm/particles/laws.h"
+
+#include <mps/particles.h>
 
 typedef struct mpsi_columns {
   int64_t count;
@@ -24,8 +26,10 @@ typedef struct mpsi_columns {
   double *F[9];     /* as L; NULL where all laws do without */
   double *f[3];     /* N, body accelerations and loads of the step; NULL where there are none */
   int64_t *law;     /* number of each particle's law; NULL: one law */
-  int32_t *stencil; /* lowest node of the particle's stencil, in its block's tile, of the step
-                       being made; NULL where volumetric.c and filter.c have no work */
+  mpsi_laws laws;
+  mps_particles *set; /* the caller's, whose fields these are */
+  int32_t *stencil;   /* lowest node of the particle's stencil, in its block's tile, of the step
+                         being made; NULL where volumetric.c and filter.c have no work */
 } mpsi_columns;
 
 #endif

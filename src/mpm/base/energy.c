@@ -24,7 +24,7 @@ static double kinetic_of(const mps_mpm *mpm, int64_t begin, int64_t end) {
   const mpsi_columns *p = &mpm->p;
   double sum = 0.0;
   for (int64_t k = begin; k < end; k++)
-    for (int c = 0; c < mpm->dim; c++) sum += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
+    for (int c = 0; c < mpm->grid.dim; c++) sum += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
   return sum;
 }
 
@@ -46,7 +46,7 @@ static int stress_column(int a, int b) {
 
 void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
   const mpsi_columns *p = &mpm->p;
-  const int dim = mpm->dim;
+  const int dim = mpm->grid.dim;
   double loads = 0.0, stresses = 0.0;
   for (int64_t k = begin; k < end; k++) {
     double power = 0.0;
@@ -55,7 +55,7 @@ void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t b
       for (int b = 0; b < dim; b++)
         power += p->s[stress_column(a, b)][k] * p->L[gradient_column(dim, a, b)][k];
     }
-    if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
+    if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
     stresses += p->V[k] * power;
   }
   of_cells(mpm, cells)->loads += mpm->run.dt * loads;
@@ -66,16 +66,16 @@ void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int6
                                 const double *v) {
   const mpsi_columns *p = &mpm->p;
   double power = 0.0;
-  for (int a = 0; a < mpm->dim; a++)
+  for (int a = 0; a < mpm->grid.dim; a++)
     power += (p->m[particle] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][particle] : 0.0)) * v[a];
-  if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+  if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
     power -= p->V[particle] * p->s[2][particle] * v[0] / p->x[0][particle];
   of_cells(mpm, cells)->returned += mpm->run.dt * power;
 }
 
 void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
-  for (int c = 0; c < 2 * mpm->dim; c++) memcpy(out->stress[c], mpm->p.s[c] + begin, bytes);
+  for (int c = 0; c < 2 * mpm->grid.dim; c++) memcpy(out->stress[c], mpm->p.s[c] + begin, bytes);
   memcpy(out->volume, mpm->p.V + begin, bytes);
 }
 
@@ -112,7 +112,8 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
   mpsi_cell_energy *sum = of_cells(mpm, cells);
   for (int64_t k = 0; k < block->count; k++) {
     double s0[6] = {0.0}, s1[6] = {0.0}, trace;
-    for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k], s1[c] = p->s[c][begin + k];
+    for (int c = 0; c < 2 * mpm->grid.dim; c++)
+      s0[c] = before->stress[c][k], s1[c] = p->s[c][begin + k];
     const double V0 = before->volume[k], V1 = p->V[begin + k];
     sum->seen += stress_work(block, k, s0, s0, V0, V0, &trace);
     const double work = stress_work(block, k, s0, s1, V0, V1, &trace);
@@ -136,7 +137,8 @@ void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
     double s0[6] = {0.0}, s1[6] = {0.0}, wave, shear;
     if (!mpsi_law_of(mpm, k)->filtered) continue;
     mpsi_mpm_elastic(mpm, k, &wave, &shear);
-    for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k - begin], s1[c] = p->s[c][k];
+    for (int c = 0; c < 2 * mpm->grid.dim; c++)
+      s0[c] = before->stress[c][k - begin], s1[c] = p->s[c][k];
     const double bulk = wave - 4.0 / 3.0 * shear, V = 0.5 * (before->volume[k - begin] + p->V[k]);
     const double lost = V * (elastic_energy(s0, bulk, shear) - elastic_energy(s1, bulk, shear));
     sum->smoothed += lost;
@@ -197,9 +199,9 @@ static void add_springs(mps_mpm *mpm, double sign) {
     for (int64_t k = 0; k < mpm->p.count; k++) {
       mpsi_contact_particle c;
       double x[3] = {0.0};
-      for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
+      for (int a = 0; a < mpm->grid.dim; a++) x[a] = mpm->p.x[a][k];
       if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
-          !mpsi_find_contact(mpm, contact, mpm->dim, k, &c))
+          !mpsi_find_contact(mpm, contact, mpm->grid.dim, k, &c))
         continue;
       const double energy =
           sign * 0.5 * sqrt(mpsi_dot3(c.force, c.force)) * (c.depth + contact->def.offset);

@@ -35,15 +35,16 @@ typedef struct mpsi_kernels {
   /* search.c, of particles [begin, end): the largest speed (m/s); and the first that is not far, or
    * `end`. Of a block of cells from `begin` on: the first that may be in its cells low to high - 1
    * of each axis, or its end. */
-  double (*fastest)(const mps_mpm *mpm, int64_t begin, int64_t end);
-  int64_t (*next_near)(const mps_mpm *mpm, const mpsi_far *far, int64_t begin, int64_t end);
-  int64_t (*next_in)(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *low,
-                     const int *high, int64_t begin);
+  double (*fastest)(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end);
+  int64_t (*next_near)(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_far *far,
+                       int64_t begin, int64_t end);
+  int64_t (*next_in)(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_cell_block *cells,
+                     const int *low, const int *high, int64_t begin);
   /* sweep.c: the first impulses of a block's constraints; an update of each; velocity of the
    * particle's side at the foot of one (m/s). */
-  void (*warm)(mps_mpm *mpm, const mpsi_constraint_block *block);
-  void (*sweep)(mps_mpm *mpm, mpsi_constraint_block *block, bool back);
-  void (*foot_velocity)(const mps_mpm *mpm, int64_t constraint, double *v);
+  void (*warm)(mpsi_impulses *all, double dt, const mpsi_constraint_block *block);
+  void (*sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block, bool back);
+  void (*foot_velocity)(const mpsi_impulses *all, int64_t constraint, double *v);
 } mpsi_kernels;
 
 /* kernels.c: the kernels of an x86-64 level; 0: the best that processor and build have. */

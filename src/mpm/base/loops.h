@@ -154,7 +154,7 @@ MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
 /* Cells from the block's first node to four particles at x, along axis c. */
 MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cell_block *cells, int c,
                                       mpsi_quad x) {
-  return (x - mpm->def.origin[c]) * mpm->grid.inverse - (double)cells->at[c] * MPSI_SIDE;
+  return (x - mpm->grid.origin[c]) * mpm->grid.inverse - (double)cells->at[c] * MPSI_SIDE;
 }
 
 /* Weights of four particles along one axis. */
@@ -256,14 +256,18 @@ void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cell
 void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                   const mpsi_worker *worker, int64_t particle, const double *d,
                                   mpsi_foot_weights *out);
-double MPSI_LEVELLED(mpsi_mpm_fastest)(const mps_mpm *mpm, int64_t begin, int64_t end);
-int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mps_mpm *mpm, const mpsi_far *far, int64_t begin,
-                                          int64_t end);
-int64_t MPSI_LEVELLED(mpsi_mpm_next_in)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                        const int *low, const int *high, int64_t begin);
-void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_constraint_block *block);
-void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_constraint_block *block, bool back);
-void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t constraint, double *v);
+double MPSI_LEVELLED(mpsi_mpm_fastest)(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin,
+                                       int64_t end);
+int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mpsi_grid *grid, const mpsi_columns *p,
+                                          const mpsi_far *far, int64_t begin, int64_t end);
+int64_t MPSI_LEVELLED(mpsi_mpm_next_in)(const mpsi_grid *grid, const mpsi_columns *p,
+                                        const mpsi_cell_block *cells, const int *low,
+                                        const int *high, int64_t begin);
+void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
+                                  const mpsi_constraint_block *block);
+void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block,
+                                   bool back);
+void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mpsi_impulses *all, int64_t constraint, double *v);
 void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
 void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
 

@@ -10,7 +10,6 @@
 #include "columns.h"
 #include "mpm/step/damping.h"
 #include "energy.h"
-#include "mpm/particles/laws.h"
 #include "mpm/particles/loads.h"
 #include "mpm/boundary/mirror.h"
 #include "mpm/contact/pairs.h"
@@ -38,15 +37,8 @@ struct mps_grid {
 struct mps_mpm {
   struct mps_grid reader;
   mps_context *context;
-  mps_particles *particles;
   mpsi_holder holder; /* of the particles */
   mps_mpm_def def;
-  int32_t dim;
-  /* For comparison (mps/experimental.h): */
-  bool by_weight;     /* velocities go to the nodes by the weights */
-  bool strain_by_fit; /* the laws see the slopes of the fit */
-  bool standard;      /* the original material point method, with `flip`; else that is 0 */
-  double flip;
   const struct mpsi_kernels *kernels;
   mps_kernel *weights; /* for queries of the caller */
   mpsi_columns p;
@@ -56,7 +48,6 @@ struct mps_mpm {
   mpsi_boundaries boundaries;
   mpsi_mirrors mirrors;
   mpsi_loads loads;
-  mpsi_laws laws;
   mpsi_run run;
   mpsi_undo undo;
   mpsi_energy energy;
@@ -72,7 +63,7 @@ static inline bool mpsi_forces_apart(const mps_mpm *mpm) {
 }
 
 static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t particle) {
-  return &mpm->laws.law[mpm->p.law ? mpm->p.law[particle] : 0];
+  return &mpm->p.laws.law[mpm->p.law ? mpm->p.law[particle] : 0];
 }
 
 /* Factor of the moduli of a particle's law. */
@@ -90,11 +81,6 @@ static inline void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double
   *shear = factor * mpsi_material_shear(material);
 }
 
-/* Coordinate of x in cells from the origin along axis c. */
-static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
-  return mpsi_grid_at(&mpm->grid, c, x);
-}
-
 /* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
 static inline int64_t mpsi_own_cell(const mps_mpm *mpm, int c, double X) {
   const int64_t cell = (int64_t)floor(X);
@@ -110,7 +96,9 @@ static inline bool mpsi_mpm_passes(const mps_mpm *mpm, int c, double X) {
 
 /* Nodes of a stencil beyond its lowest, as the loops take them: rows along x are read and written
  * four nodes at a time whatever the spline. */
-static inline int32_t mpsi_reach(const mps_mpm *mpm, int c) { return c == 0 ? 3 : mpm->def.spline; }
+static inline int32_t mpsi_reach(const mps_mpm *mpm, int c) {
+  return c == 0 ? 3 : mpm->grid.spline;
+}
 
 /* Memory of one worker. */
 static inline size_t mpsi_worker_bytes(const mps_mpm *mpm) {
@@ -125,8 +113,8 @@ static inline int64_t mpsi_first_node(const mps_mpm *mpm, int64_t g) {
 static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, const double *local,
                                       double *x) {
   for (int c = 0; c < 3; c++)
-    x[c] = c < mpm->dim
-               ? mpm->def.origin[c] + mpm->def.cell * ((double)at[c] * MPSI_SIDE + local[c])
+    x[c] = c < mpm->grid.dim
+               ? mpm->grid.origin[c] + mpm->grid.cell * ((double)at[c] * MPSI_SIDE + local[c])
                : 0.0;
 }
 

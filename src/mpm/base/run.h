@@ -3,6 +3,7 @@
 #ifndef MPSI_MPM_RUN_H
 #define MPSI_MPM_RUN_H
 
+#include "parts.h"
 #include "core/context/guard.h"
 
 #include <mps/mpm.h>

@@ -78,7 +78,7 @@ MPSI_INLINE void mpsi_make_stencil(const mps_mpm *mpm, const mpsi_cell_block *ce
                                    int spline, int64_t particle, mpsi_stencil *out) {
   *out = (mpsi_stencil){.w[2][0] = 1.0};
   for (int c = 0; c < dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
+    const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][particle]);
     const double base = mpsi_base(spline, X);
     mpsi_weights(spline, X - base, out->w[c]);
     for (int i = 0; i < 4; i++) out->s[c][i] = (double)i - (X - base);

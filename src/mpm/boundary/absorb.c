@@ -19,7 +19,7 @@ void mpsi_mpm_apply_dashpot(const mps_mpm *mpm, const mpsi_boundary *hold, mpsi_
                             const double *node, const double *before, double *velocity) {
   const double per_mass = mpm->run.dt / node[MPSI_MASS];
   const bool settles = hold->finds && hold->settle > 0.0;
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const double v = node[MPSI_VECTOR + c],
                  damping = c == hold->axis ? dashpot->across : dashpot->along;
     if (settles) {
@@ -47,9 +47,9 @@ bool mpsi_mpm_absorbs(const mps_mpm *mpm) {
 /* Shape functions along one axis, fitted over the nodes of the domain. */
 static void fit_along(const mps_mpm *mpm, int c, double X, int64_t *base, double *phi) {
   double w[4], s[4], m0 = 0.0, m1 = 0.0, m2 = 0.0;
-  const double lowest = mpsi_base(mpm->def.spline, X);
+  const double lowest = mpsi_base(mpm->grid.spline, X);
   *base = (int64_t)lowest;
-  mpsi_weights(mpm->def.spline, X - lowest, w);
+  mpsi_weights(mpm->grid.spline, X - lowest, w);
   for (int i = 0; i < 4; i++) {
     const int64_t n = *base + i;
     s[i] = (double)i - (X - lowest);
@@ -91,11 +91,11 @@ static void add_particle(const mps_mpm *mpm, const mpsi_cell_block *cells, int32
   const double across = per_area * sqrt(wave / density), along = per_area * sqrt(shear / density);
   int64_t base[3] = {0};
   double phi[3][4] = {{1.0}, {1.0}, {1.0}};
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     if (c == axis)
       base[c] = mpm->boundaries.hold[number].first[c];
     else
-      fit_along(mpm, c, mpsi_grid_coordinate(mpm, c, p->x[c][k]), &base[c], phi[c]);
+      fit_along(mpm, c, mpsi_grid_at(&mpm->grid, c, p->x[c][k]), &base[c], phi[c]);
   for (int n = 0; n < MPSI_STENCIL; n++) {
     const int i[3] = {n % 4, n / 4 % 4, n / 16};
     const double fraction = phi[0][i[0]] * phi[1][i[1]] * phi[2][i[2]];
@@ -116,7 +116,7 @@ bool mpsi_mpm_sum_dashpots(const mps_mpm *mpm, const mpsi_cell_block *cells, int
   if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
   memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
   for (int64_t k = cells->begin; k < cells->end; k++)
-    if (mpsi_own_cell(mpm, c, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])) == layer)
+    if (mpsi_own_cell(mpm, c, mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k])) == layer)
       add_particle(mpm, cells, number, k, tile);
   return true;
 }
@@ -124,7 +124,7 @@ bool mpsi_mpm_sum_dashpots(const mps_mpm *mpm, const mpsi_cell_block *cells, int
 static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
                      const double *tile) {
   const mpsi_boundary *hold = &mpm->boundaries.hold[number];
-  const int axis = hold->axis, planes = mpm->dim == 3 ? MPSI_TILE_SIDE : 1;
+  const int axis = hold->axis, planes = mpm->grid.dim == 3 ? MPSI_TILE_SIDE : 1;
   for (int k = 0; k < planes * MPSI_TILE_SIDE; k++) {
     const int u = k % MPSI_TILE_SIDE, v = k / MPSI_TILE_SIDE;
     int at[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 2 ? v : 0, axis == 2 ? 0 : v};

@@ -26,12 +26,12 @@ mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size) {
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static bool on_axis(const mps_mpm *mpm, int32_t number) {
-  return mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
+  return mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
          mpm->def.lower[0] == 0.0;
 }
 
 static bool has_side(const mps_mpm *mpm, int32_t number) {
-  if (number / 2 >= mpm->dim) return false;
+  if (number / 2 >= mpm->grid.dim) return false;
   const int64_t at = number % 2 ? mpm->grid.high[number / 2] : mpm->grid.low[number / 2];
   return at > -MPSI_NO_WALL && at < MPSI_NO_WALL;
 }
@@ -41,7 +41,7 @@ static mps_status check_motion(mps_mpm *mpm, const char *function, int32_t numbe
   const mpsi_guard outer =
       mpsi_guard_close(&mpm->run.guard, mpm->context, "a signal of the solver");
   mps_status status = MPS_OK;
-  for (int c = 0; c < mpm->dim && status == MPS_OK; c++) {
+  for (int c = 0; c < mpm->grid.dim && status == MPS_OK; c++) {
     const mpsi_signal_use use = {mpm->context, function, "boundary", number, c};
     mpsi_signal_motion m;
     const double factor = def->factor[c];
@@ -66,7 +66,7 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function, int32_t numb
   if (!isfinite(def->settle) || def->settle < 0.0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "settle is %g s, must be finite and >= 0", def->settle);
-  for (int c = 0; c < mpm->dim && def->kind == MPS_BOUNDARY_HELD; c++)
+  for (int c = 0; c < mpm->grid.dim && def->kind == MPS_BOUNDARY_HELD; c++)
     if (def->signal[c])
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given and a held boundary takes none: make its kind DRIVEN",
@@ -90,7 +90,7 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
                      (long long)def->id_count, def->dofs);
-  if (mpm->standard && def->kind == MPS_BOUNDARY_ABSORBING)
+  if (mpm->grid.standard && def->kind == MPS_BOUNDARY_ABSORBING)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is 4 (ABSORBING), which the standard method does not allow: its splines "
                      "reach over the side");
@@ -99,7 +99,7 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
                      "kind is %d with signal[0] %s on the axis r = 0: allowed are 0 (HELD), 1 "
                      "(DRIVEN) and 2 (ROLLER), and the radial velocity is 0",
                      def->kind, def->signal[0] ? "given" : "NULL");
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     if (def->signal[c] && (def->kind == MPS_BOUNDARY_FREE || open ||
                            (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -110,7 +110,7 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
 
 /* First or last node of a box that begins or ends at x. */
 static int64_t box_node(const mps_mpm *mpm, int c, double x, bool last) {
-  const double X = mpsi_grid_coordinate(mpm, c, x);
+  const double X = mpsi_grid_at(&mpm->grid, c, x);
   if (!(X > -(double)MPSI_NO_WALL)) return -MPSI_NO_WALL;
   if (!(X < (double)MPSI_NO_WALL)) return MPSI_NO_WALL;
   return (int64_t)(last ? floor(X + ON_NODE) : ceil(X - ON_NODE));
@@ -118,7 +118,7 @@ static int64_t box_node(const mps_mpm *mpm, int c, double x, bool last) {
 
 static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def,
                            mpsi_boundary *out) {
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     out->first[c] = box_node(mpm, c, def->lower[c], false);
     out->last[c] = box_node(mpm, c, def->upper[c], true);
     if (!(def->lower[c] <= def->upper[c]) || out->first[c] > out->last[c])
@@ -126,7 +126,7 @@ static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_bou
           mpm->context, function, MPS_ERROR_ARGUMENT,
           "lower and upper: the box is [%g, %g] m in %c, must hold a node: origin %g m "
           "plus a multiple of the cell %g m",
-          def->lower[c], def->upper[c], "xyz"[c], mpm -> def.origin[c], mpm->def.cell);
+          def->lower[c], def->upper[c], "xyz"[c], mpm -> grid.origin[c], mpm->grid.cell);
   }
   return MPS_OK;
 }
@@ -142,7 +142,8 @@ static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_bo
 
 static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t number,
                                    const mps_mpm_boundary_def *def, mpsi_boundary *out) {
-  const uint32_t all = mpm->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
+  const uint32_t all =
+      mpm->grid.dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
   if (def->kind != MPS_BOUNDARY_HELD && def->kind != MPS_BOUNDARY_DRIVEN)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d (%s), boxes of nodes and particles are 0 (HELD) or 1 (DRIVEN)",
@@ -150,7 +151,7 @@ static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t n
   if (def->dofs & ~all)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
-                     mpm->dim == 3 ? ", MPS_DOF_Z" : "");
+                     mpm->grid.dim == 3 ? ", MPS_DOF_Z" : "");
   mps_status status = check_numbers(mpm, function, number, def);
   if (status == MPS_OK) status = check_ids(mpm, function, def);
   if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
@@ -164,8 +165,8 @@ static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
   const int axis = number / 2;
   hold->axis = axis;
   /* the standard scheme has nodes beyond the side too */
-  const int64_t beyond = mpm->standard ? MPSI_SIDE : 0;
-  for (int c = 0; c < mpm->dim; c++)
+  const int64_t beyond = mpm->grid.standard ? MPSI_SIDE : 0;
+  for (int c = 0; c < mpm->grid.dim; c++)
     hold->first[c] = mpm->grid.low[c] - beyond, hold->last[c] = mpm->grid.high[c] + beyond;
   if (number % 2)
     hold->first[axis] = mpm->grid.high[axis];
@@ -307,10 +308,11 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     MPSI_GIVE(&given, def, dofs);
     MPSI_GIVE(&given, def, friction);
     MPSI_GIVE(&given, def, settle);
-    MPSI_GIVE_VECTOR(&given, def, lower, mpm->dim);
-    MPSI_GIVE_VECTOR(&given, def, upper, mpm->dim);
-    MPSI_GIVE_VECTOR(&given, def, factor, mpm->dim);
-    for (int c = 0; c < mpm->dim; c++) mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
+    MPSI_GIVE_VECTOR(&given, def, lower, mpm->grid.dim);
+    MPSI_GIVE_VECTOR(&given, def, upper, mpm->grid.dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, mpm->grid.dim);
+    for (int c = 0; c < mpm->grid.dim; c++)
+      mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
     mpsi_give_bytes(&given, "a hash of ids", def->id_count > 0 ? def->ids : NULL,
                     (size_t)def->id_count * sizeof *def->ids);
   }

@@ -3,6 +3,7 @@
 #ifndef MPSI_MPM_BOUNDARIES_H
 #define MPSI_MPM_BOUNDARIES_H
 
+#include "mpm/base/parts.h"
 #include "core/base/exact.h"
 #include "core/state/state.h"
 #include "mpm/life/restart.h"

@@ -10,7 +10,7 @@
 /* ---- coefficients ---------------------------------------------------------------------------- */
 
 static int64_t plane_doubles(const mps_mpm *mpm) {
-  return 2 * (mpm->dim == 3 ? MPSI_DASH_PLANE : MPSI_TILE_SIDE);
+  return 2 * (mpm->grid.dim == 3 ? MPSI_DASH_PLANE : MPSI_TILE_SIDE);
 }
 
 static void sum_border(mps_mpm *mpm, double *out) {
@@ -76,7 +76,7 @@ static int64_t list_partings(const mps_mpm *mpm, const mpsi_held *old, int64_t o
   for (int64_t t = 0; t < old_count; t++) {
     if (old[t].dashpot < 0 || !old[t].counted) continue;
     const int64_t first = count;
-    for (int q = 0; q < 1 << mpm->dim; q++) {
+    for (int q = 0; q < 1 << mpm->grid.dim; q++) {
       const int32_t at[3] = {old[t].at[0] - (q & 1), old[t].at[1] - (q >> 1 & 1),
                              old[t].at[2] - (q >> 2)};
       const int32_t owner = mpsi_mpm_block_owner(mpm, at);
@@ -130,7 +130,7 @@ static mps_status write_rests(const mps_mpm *mpm, const char *function, const mp
                               int32_t *messages) {
   mps_context *context = mpm->context;
   const int64_t record = record_bytes(mpm);
-  r->parting = mpsi_alloc(context, old_count << mpm->dim, sizeof *r->parting);
+  r->parting = mpsi_alloc(context, old_count << mpm->grid.dim, sizeof *r->parting);
   r->message = mpsi_alloc(context, mps_domain_size(mpm->partition->domain), sizeof *r->message);
   const int64_t count =
       r->parting && r->message ? list_partings(mpm, old, old_count, r->parting) : 0;
@@ -255,7 +255,7 @@ static int64_t list_under(const mps_mpm *mpm, const mpsi_value *blocks, under *o
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
     const bool own = mpsi_mpm_block_owner(mpm, at) == rank;
-    for (int q = 0; q < 1 << mpm->dim; q++)
+    for (int q = 0; q < 1 << mpm->grid.dim; q++)
       out[count++] = (under){{at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)}, own};
   }
   qsort(out, (size_t)count, sizeof *out, by_block);
@@ -275,15 +275,16 @@ mps_status mpsi_mpm_take_dashpots(mps_mpm *mpm, const char *function, const mpsi
   mpsi_dashpot *dashpot = dashpots->data;
   int64_t from = 0, to = 0;
   if (!mpsi_mpm_absorbs(mpm)) return MPS_OK;
-  under *nodes = mpsi_alloc(mpm->context, blocks->rows << mpm->dim, sizeof *nodes);
+  under *nodes = mpsi_alloc(mpm->context, blocks->rows << mpm->grid.dim, sizeof *nodes);
   if (!nodes)
-    return mpsi_fail_memory(mpm->context, function, (size_t)(blocks->rows << mpm->dim) * 16);
+    return mpsi_fail_memory(mpm->context, function, (size_t)(blocks->rows << mpm->grid.dim) * 16);
   const int64_t count = list_under(mpm, blocks, nodes);
   for (int64_t g = 0; g < count; g++)
     for (int32_t side = 0; side < MPSI_SIDES; side++) {
       const mpsi_boundary *hold = &mpm->boundaries.hold[side];
       mpsi_range r;
-      if (hold->kind != MPS_BOUNDARY_ABSORBING || !mpsi_find_range(mpm->dim, nodes[g].at, hold, &r))
+      if (hold->kind != MPS_BOUNDARY_ABSORBING ||
+          !mpsi_find_range(mpm->grid.dim, nodes[g].at, hold, &r))
         continue;
       if (nodes[g].own && from + plane <= dashpots->rows) {
         memmove(dashpot + to, dashpot + from, bytes);

@@ -10,13 +10,13 @@ enum { LAYERS = 2 }; /* of ghosts: the second only by what arithmetic rounds */
 
 static bool is_mirror(const mps_mpm *mpm, int32_t k) {
   const int32_t kind = mpm->boundaries.hold[k].kind;
-  return mpm->def.walls == MPS_MPM_WALLS_MIRROR && !mpm->standard &&
+  return mpm->def.walls == MPS_MPM_WALLS_MIRROR && !mpm->grid.standard &&
          (kind == MPS_BOUNDARY_ROLLER || kind == MPS_BOUNDARY_HELD);
 }
 
 static void find_sides(mps_mpm *mpm) {
   mpm->mirrors.sides = 0;
-  for (int32_t k = 0; k < 2 * mpm->dim; k++)
+  for (int32_t k = 0; k < 2 * mpm->grid.dim; k++)
     if (is_mirror(mpm, k)) mpm->mirrors.sides |= 1u << k;
   for (int c = 0; c < 3; c++) {
     const bool lower = mpm->mirrors.sides >> (2 * c) & 1;
@@ -30,7 +30,7 @@ static void find_of_block(const mps_mpm *mpm, mpsi_cell_block *cells) {
   const mpsi_grid *grid = &mpm->grid;
   cells->edge = false;
   cells->mirrors = 0;
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = first + MPSI_TILE_SIDE - 1;
     if (first < grid->use_low[c] || last > grid->use_high[c]) cells->edge = true;
     if (first + cells->low[c] < grid->low[c])

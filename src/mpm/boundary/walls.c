@@ -22,7 +22,7 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashpots) {
       mpsi_range r;
       const int32_t kind = mpm->boundaries.hold[k].kind;
       if (kind == MPSI_BOUNDARY_NONE || kind == MPS_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
-          !mpsi_find_range(mpm->dim, nodes->at, &mpm->boundaries.hold[k], &r))
+          !mpsi_find_range(mpm->grid.dim, nodes->at, &mpm->boundaries.hold[k], &r))
         continue;
       const bool absorbs = kind == MPS_BOUNDARY_ABSORBING;
       if (*count < mpm->boundaries.held_room.capacity) {
@@ -180,7 +180,7 @@ static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) 
   mpsi_dashpot *dashpot =
       &b->mpm->boundaries.dashpot[held->dashpot + mpsi_plane_index(hold->axis, k)];
   mpsi_mpm_apply_dashpot(b->mpm, hold, dashpot, b->node[k], before, v);
-  for (int c = 0; c < b->mpm->dim; c++)
+  for (int c = 0; c < b->mpm->grid.dim; c++)
     if (!(b->held[k] >> c & 1)) set(b, hold, held, k, c, v[c]);
 }
 
@@ -198,7 +198,7 @@ static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held,
   const double most = hold->friction * b->normal_impulse[held->hold][k], m = b->node[k][MPSI_MASS];
   double slip[3] = {0.0}, square = 0.0;
   if (!(most > 0.0) || !(m > 0.0)) return;
-  for (int c = 0; c < b->mpm->dim; c++) {
+  for (int c = 0; c < b->mpm->grid.dim; c++) {
     if (b->held[k] >> c & 1) continue;
     slip[c] = b->node[k][MPSI_VECTOR + c] - hold->v[c];
     square += slip[c] * slip[c];
@@ -206,13 +206,13 @@ static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held,
   const double speed = sqrt(square);
   if (!(speed > 0.0)) return;
   const double left = most < m * speed ? 1.0 - most / (m * speed) : 0.0;
-  for (int c = 0; c < b->mpm->dim; c++)
+  for (int c = 0; c < b->mpm->grid.dim; c++)
     if (slip[c] != 0.0) set(b, hold, held, k, c, hold->v[c] + left * slip[c]);
 }
 
 /* All components of a fixed side, prescribed ones of a box. */
 static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
-  for (int c = 0; c < b->mpm->dim; c++)
+  for (int c = 0; c < b->mpm->grid.dim; c++)
     if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);
   b->held[k] |= (uint8_t)hold->dofs;
 }
@@ -221,7 +221,7 @@ static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int 
 
 static void for_range(block *b, const mpsi_boundary *hold, mpsi_held *held, hold_fn work) {
   mpsi_range r;
-  if (!mpsi_find_range(b->mpm->dim, held->at, hold, &r)) return;
+  if (!mpsi_find_range(b->mpm->grid.dim, held->at, hold, &r)) return;
   const int64_t counted = b->again ? held->count : 0;
   held->count = 0;
   for (int z = r.low[2]; z <= r.high[2]; z++)
@@ -269,7 +269,7 @@ void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g) {
         for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
     }
   for (int k = 0; k < mpm->grid.block_nodes && nodes->split; k++)
-    for (int c = 0; c < mpm->dim; c++)
+    for (int c = 0; c < mpm->grid.dim; c++)
       if (fixed[k] >> c & 1) b.side[k][MPSI_VECTOR + c] = b.node[k][MPSI_VECTOR + c];
 }
 
@@ -346,9 +346,9 @@ static mpsi_cell_block *block_of(const mps_mpm *mpm, int64_t k) {
 /* Notes, as G2P does, where the particle has left its block's tile or the domain. */
 static void check_place(mps_mpm *mpm, int64_t k) {
   mpsi_cell_block *cells = block_of(mpm, k);
-  const double first = mpm->def.spline == 3 ? 1.0 : 0.5;
-  for (int c = 0; c < mpm->dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
+  const double first = mpm->grid.spline == 3 ? 1.0 : 0.5;
+  for (int c = 0; c < mpm->grid.dim; c++) {
+    const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k]);
     const double local = X - (double)cells->at[c] * MPSI_SIDE - first;
     if (!(local >= cells->low[c] && local < cells->high[c] - mpsi_reach(mpm, c)))
       cells->left = true;
@@ -364,8 +364,8 @@ static void check_place(mps_mpm *mpm, int64_t k) {
 static void drive_particle(mps_mpm *mpm, mpsi_boundary *hold, int64_t k) {
   const mpsi_columns *p = &mpm->p;
   double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0, kinetic = 0.0;
-  for (int c = 0; c < mpm->dim; c++) x[c] = p->x[c][k];
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) x[c] = p->x[c][k];
+  for (int c = 0; c < mpm->grid.dim; c++) {
     if (!(hold->dofs >> c & 1)) continue;
     const double change = hold->v[c] - p->v[c][k];
     impulse[c] = p->m[k] * change;
@@ -390,7 +390,7 @@ void mpsi_mpm_drive_particles(mps_mpm *mpm) {
   for (int32_t b = MPSI_SIDES; b < mpm->boundaries.holds; b++) {
     mpsi_boundary *hold = &mpm->boundaries.hold[b];
     for (int64_t i = 0; hold->ids && i < hold->id_count; i++) {
-      const int64_t k = mps_particles_index(mpm->particles, hold->ids[i]);
+      const int64_t k = mps_particles_index(mpm->p.set, hold->ids[i]);
       if (k >= 0) drive_particle(mpm, hold, k);
     }
   }

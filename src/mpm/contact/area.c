@@ -37,8 +37,8 @@ typedef struct around {
  * is at its edge. `block`: of the cells. */
 static around find_around(const mps_mpm *mpm, const int32_t *block, const double *x, int side) {
   around out = {.side = side, .w = {{1.0}, {1.0}, {1.0}}};
-  for (int c = 0; c < mpm->dim; c++) {
-    const double local = mpsi_grid_coordinate(mpm, c, x[c]) - (double)block[c] * MPSI_SIDE;
+  for (int c = 0; c < mpm->grid.dim; c++) {
+    const double local = mpsi_grid_at(&mpm->grid, c, x[c]) - (double)block[c] * MPSI_SIDE;
     const int low = (int)fmin(MPSI_TILE_SIDE - side, fmax(0.0, floor(local) + 1.0 - side / 2));
     const double part = fmin(1.0, fmax(0.0, local - low + 1.0 - side / 2));
     out.low[c] = low;
@@ -51,7 +51,7 @@ static around find_around(const mps_mpm *mpm, const int32_t *block, const double
 }
 
 static int nodes_around(const mps_mpm *mpm, int side) {
-  return mpm->dim == 3 ? side * side * side : side * side;
+  return mpm->grid.dim == 3 ? side * side * side : side * side;
 }
 
 /* Place under the tile and weight of node n of them. */
@@ -77,8 +77,8 @@ typedef struct layer {
 } layer;
 
 static layer find_layer(const mps_mpm *mpm) {
-  const double row = mps_particles_spacing(mpm->particles);
-  return (layer){row, fmin(2.0 * row, mpm->def.cell)};
+  const double row = mps_particles_spacing(mpm->p.set);
+  return (layer){row, fmin(2.0 * row, mpm->grid.cell)};
 }
 
 /* 1/m: w at the distance D (m) below the reach. */
@@ -92,8 +92,8 @@ static double weight_at(layer l, double distance) {
 static double area_of(const mps_mpm *mpm, layer l, int64_t k, const mpsi_foot *foot) {
   if (!(foot->distance < l.reach)) return 0.0;
   const double area = mpm->p.V[k] * foot->narrowing * weight_at(l, foot->distance);
-  return mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k]
-                                                            : area;
+  return mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k]
+                                                             : area;
 }
 
 /* Distances change no faster than places: see constraints.c. */
@@ -107,7 +107,7 @@ bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *
   memset(tile, 0, (size_t)mpm->grid.tile_nodes * sizeof *tile);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     double x[3] = {0.0}, square = 0.0;
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       x[c] = mpm->p.x[c][k];
       square += (x[c] - known[c]) * (x[c] - known[c]);
     }

@@ -70,7 +70,7 @@ static double half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t 
                         const double *n) {
   double wave, shear, stress[6] = {0.0};
   mpsi_mpm_elastic(mpm, particle, &wave, &shear);
-  for (int c = 0; c < 2 * mpm->dim; c++) stress[c] = mpm->p.s[c][particle];
+  for (int c = 0; c < 2 * mpm->grid.dim; c++) stress[c] = mpm->p.s[c][particle];
   return mpsi_impulse_half_size(contact->def.offset, wave, shear, stress, n);
 }
 
@@ -82,13 +82,13 @@ mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, in
 }
 
 static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
-  for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
+  for (int c = 0; c < 3; c++) x[c] = c < mpm->grid.dim ? mpm->p.x[c][k] : 0.0;
 }
 
 /* Distance (m) beyond which no particle of the block is in contact. */
 static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mps_contact *contact) {
-  const double fastest = mpm->kernels->fastest(mpm, cells->begin, cells->end);
+  const double fastest = mpm->kernels->fastest(&mpm->grid, &mpm->p, cells->begin, cells->end);
   return (1.4 * contact->def.offset + mpm->run.dt * (mpsi_contact_speed(contact) + fastest)) *
          (1.0 + 1e-9);
 }
@@ -112,7 +112,8 @@ static bool may_be_in_contact(const mps_mpm *mpm, const mps_contact *contact, in
   double surface[3], closing = 0.0;
   (void)x;
   mpsi_body_velocity(&contact->body->pose, foot->at, surface);
-  for (int c = 0; c < mpm->dim; c++) closing += (surface[c] - mpm->p.v[c][k]) * foot->normal[c];
+  for (int c = 0; c < mpm->grid.dim; c++)
+    closing += (surface[c] - mpm->p.v[c][k]) * foot->normal[c];
   return mpsi_impulse_near(foot->distance - half, half, closing, mpm->run.dt);
 }
 
@@ -120,19 +121,19 @@ static bool may_be_in_contact(const mps_mpm *mpm, const mps_contact *contact, in
  * none has left (mpsi_cell_block.left). */
 static bool is_block_far(const mps_mpm *mpm, const mpsi_cell_block *cells,
                          const mps_contact *contact, double reach) {
-  const double first = mpm->def.spline == 3 ? 1.0 : 0.5;
+  const double first = mpm->grid.spline == 3 ? 1.0 : 0.5;
   double middle[3] = {0.0}, half[3] = {0.0}, x[3], square = 0.0, before = 0.0;
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const double low = first + cells->low[c], high = first + (cells->high[c] - mpsi_reach(mpm, c));
     middle[c] = 0.5 * (low + high);
-    half[c] = 0.5 * mpm->def.cell * (high - low) * (1.0 + 1e-9);
+    half[c] = 0.5 * mpm->grid.cell * (high - low) * (1.0 + 1e-9);
     square += half[c] * half[c];
   }
   mpsi_node_position(mpm, cells->at, middle, x);
   const mpsi_foot foot = mpsi_body_foot(contact->body, x);
   if (foot.distance > reach + sqrt(square)) return true;
   if (!contact->convex || !(foot.distance > 0.0)) return false;
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     before += (x[c] - foot.at[c]) * foot.normal[c] - half[c] * fabs(foot.normal[c]);
   return before > reach * (1.0 + 1e-9);
 }
@@ -147,7 +148,7 @@ static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cel
   pair->candidates = 0;
   if (is_block_far(mpm, cells, contact, reach)) return;
   for (int64_t k = cells->begin;
-       (k = mpm->kernels->next_near(mpm, &far, k, cells->end)) < cells->end; k++) {
+       (k = mpm->kernels->next_near(&mpm->grid, &mpm->p, &far, k, cells->end)) < cells->end; k++) {
     double x[3];
     place_of(mpm, k, x);
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
@@ -210,8 +211,8 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   all->constraint_count = all->block_count = 0;
   if (mpm->contact.bodies == 0) return MPS_OK;
   const int64_t candidates = share_candidates(mpm);
-  const int32_t side = mpm->def.spline + 1;
-  all->stride = mpm->dim == 3 ? side * side * side : side * side;
+  const int32_t side = mpm->grid.spline + 1;
+  all->stride = mpm->grid.dim == 3 ? side * side * side : side * side;
   bool good =
       mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
       mpsi_room_ensure(context, &all->block_room, mpm->grid.cell_count, sizeof *all->block) &&
@@ -266,10 +267,10 @@ static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *
   const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, out->x);
   const mpsi_foot foot = bearing.foot;
   mpsi_impulse *c = &out->impulse;
-  for (int a = 0; a < mpm->dim; a++) c->normal[a] = foot.normal[a];
+  for (int a = 0; a < mpm->grid.dim; a++) c->normal[a] = foot.normal[a];
   out->part = mpsi_contact_part(contact, foot.face);
   const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
-  for (int a = 0; a < mpm->dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
+  for (int a = 0; a < mpm->grid.dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
   c->aim = mpsi_impulse_aim(foot.distance - bearing.half, mpm->run.dt,
                             fmax(mpm->run.dt, mps_mpm_dt(mpm)), mpm->run.speed);
   c->friction = contact->def.friction;
@@ -424,7 +425,7 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
   mpsi_impulses *all = &mpm->contact.impulses;
   const mpsi_constraint_block *block = &all->block[unit];
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
-  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
   int64_t n = block->first;
   for (int32_t q = 0; q < cells->pairs; q++) {
     const int64_t t = cells->first_pair + q;

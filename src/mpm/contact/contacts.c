@@ -17,9 +17,9 @@ static mps_status check_body(mps_mpm *mpm, const char *function, const mps_body 
   if (body->context != mpm->context)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "the body was made from another context");
-  if (body->dim != mpm->dim)
+  if (body->dim != mpm->grid.dim)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
-                     body->dim, mpm->dim);
+                     body->dim, mpm->grid.dim);
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     if (mpm->contact.body[b] == body)
       return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
@@ -29,7 +29,7 @@ static mps_status check_body(mps_mpm *mpm, const char *function, const mps_body 
 
 /* Half spaces are there to be laid one over the other, as floor and wall. */
 static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_body *body) {
-  const double depth = OVERLAP * mpm->def.cell;
+  const double depth = OVERLAP * mpm->grid.cell;
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     const bool halves = body->shape == MPSI_HALF && mpm->contact.body[b]->shape == MPSI_HALF;
     if (halves || !mpsi_body_overlap(mpm->contact.body[b], body, depth)) continue;
@@ -71,11 +71,11 @@ mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_c
   double deepest = 0.0;
   for (int64_t k = from; k < mpm->p.count; k++) {
     double x[3] = {0.0};
-    for (int c = 0; c < mpm->dim; c++) x[c] = mpm->p.x[c][k];
+    for (int c = 0; c < mpm->grid.dim; c++) x[c] = mpm->p.x[c][k];
     if (!mpsi_body_reaches(contact->body, x, 0.0)) continue;
     const double depth = -mpsi_body_foot(contact->body, x).distance;
     if (!(depth > 0.0)) continue;
-    if (first < 0) first = mpsi_particles_integers(mpm->particles, "id")[k];
+    if (first < 0) first = mpsi_particles_integers(mpm->p.set, "id")[k];
     deepest = fmax(deepest, depth);
     count++;
   }
@@ -91,13 +91,13 @@ mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_c
 
 /* See area.c. */
 static void warn_of_areas(mps_mpm *mpm, const mps_contact *contact) {
-  const double spacing = mps_particles_spacing(mpm->particles);
-  if (!mpsi_has_strength(contact) || 2.0 * spacing <= mpm->def.cell * (1.0 + 1e-9)) return;
+  const double spacing = mps_particles_spacing(mpm->p.set);
+  if (!mpsi_has_strength(contact) || 2.0 * spacing <= mpm->grid.cell * (1.0 + 1e-9)) return;
   mpsi_log(
       mpm->context, MPS_CONTEXT_LOG_WARNING,
       "body %d bears shear by strength or adhesion, and the particles' spacing of %.4g m is more "
       "than half a cell, %.4g m: on curved surfaces that is a fifth too little",
-      mpm->contact.bodies, spacing, 0.5 * mpm->def.cell);
+      mpm->contact.bodies, spacing, 0.5 * mpm->grid.cell);
 }
 
 /* All ranks make the same contact with the same body. */
@@ -130,7 +130,8 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
 /* ---- the handle's questions ------------------------------------------------------------------ */
 
 static mps_status check_owner(void *owner, const char *function) {
-  return mpsi_mpm_between_steps(owner, function);
+  mps_mpm *mpm = owner;
+  return mpsi_mpm_between_steps(mpm, function);
 }
 
 /* Without bodies the lists of pairs are not made any more: they must be empty. */
@@ -176,7 +177,7 @@ static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_
   *half = contact->def.offset;
   if (!mpsi_by_impulses(contact)) {
     if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
-        !mpsi_find_contact(mpm, contact, mpm->dim, k, c))
+        !mpsi_find_contact(mpm, contact, mpm->grid.dim, k, c))
       return false;
     *foot = mpsi_body_foot(contact->body, x);
     return true;
@@ -194,7 +195,7 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
                                  int64_t *count, int64_t *ids, double *gap, double *normal,
                                  double *force, double *foot) {
   mps_mpm *mpm = owner;
-  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
   int64_t n = 0;
   int32_t body = 0;
   if (!mpsi_mpm_index_impulses(mpm))
@@ -204,16 +205,16 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
   for (int64_t k = 0; k < mpm->p.count; k++) {
     mpsi_contact_particle c;
     double x[3] = {0.0}, half;
-    for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
+    for (int a = 0; a < mpm->grid.dim; a++) x[a] = mpm->p.x[a][k];
     mpsi_foot at;
     if (!is_in_contact(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
     if (n < capacity) {
       if (ids) ids[n] = id[k];
       if (gap) gap[n] = at.distance - half;
       for (int a = 0; a < 3; a++) {
-        if (normal) normal[3 * n + a] = a < mpm->dim ? at.normal[a] : 0.0;
-        if (force) force[3 * n + a] = a < mpm->dim ? c.force[a] : 0.0;
-        if (foot) foot[3 * n + a] = a < mpm->dim ? at.at[a] : 0.0;
+        if (normal) normal[3 * n + a] = a < mpm->grid.dim ? at.normal[a] : 0.0;
+        if (force) force[3 * n + a] = a < mpm->grid.dim ? c.force[a] : 0.0;
+        if (foot) foot[3 * n + a] = a < mpm->grid.dim ? at.at[a] : 0.0;
       }
     }
     n++;
@@ -254,7 +255,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   mps_contact *contact = NULL;
   if (out) *out = NULL;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = mpsi_particles_ready(mpm->particles, __func__);
+  if (status == MPS_OK) status = mpsi_particles_ready(mpm->p.set, __func__);
   if (status == MPS_OK) status = check_body(mpm, __func__, body);
   if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
   if (status == MPS_OK)
@@ -268,12 +269,11 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
     return status;
   }
   mps_contact_def *d = &contact->def;
-  if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(mpm->particles);
+  if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(mpm->p.set);
   if (isnan(d->depth))
-    d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH ? INFINITY
-               : d->inside == MPS_CONTACT_INSIDE_REMOVE
-                   ? 0.5 * mps_particles_spacing(mpm->particles)
-                   : mpm->def.cell;
+    d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH     ? INFINITY
+               : d->inside == MPS_CONTACT_INSIDE_REMOVE ? 0.5 * mps_particles_spacing(mpm->p.set)
+                                                        : mpm->grid.cell;
   status = check_thickness(mpm, __func__, contact);
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
     status = mpsi_mpm_clear_body(mpm, __func__, contact);
@@ -307,7 +307,7 @@ mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function) {
     if (!pair->in_contact || !(pair->deepest > most) ||
         mpm->contact.handle[pair->body]->def.inside == MPS_CONTACT_INSIDE_REMOVE)
       continue;
-    const int64_t id = mpsi_particles_integers(mpm->particles, "id")[pair->deep];
+    const int64_t id = mpsi_particles_integers(mpm->p.set, "id")[pair->deep];
     const mps_status status = mpsi_fail(
         mpm->context, function, MPS_ERROR_DIVERGED,
         "step %lld, t = %.6g s: particle %lld is %.4g m below the surface of body %d, at most %.4g "

@@ -29,9 +29,9 @@ static void one_block(void *data, int64_t unit, int32_t worker) {
   mpsi_constraint_block *block = &s->mpm->contact.impulses.block[s->first + unit];
   (void)worker;
   if (s->warm)
-    s->mpm->kernels->warm(s->mpm, block);
+    s->mpm->kernels->warm(&s->mpm->contact.impulses, s->mpm->run.dt, block);
   else
-    s->mpm->kernels->sweep(s->mpm, block, s->back);
+    s->mpm->kernels->sweep(&s->mpm->contact.impulses, s->mpm->grid.dim, block, s->back);
 }
 
 static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
@@ -164,10 +164,10 @@ void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
     const mpsi_impulse *c = &constraint->impulse;
     double v[3], surface[3];
     if (!(c->normal_impulse > 0.0) || constraint->pair < 0) continue;
-    mpm->kernels->foot_velocity(mpm, n, v);
+    mpm->kernels->foot_velocity(&mpm->contact.impulses, n, v);
     mpsi_body_velocity(&mpm->contact.body[constraint->body]->pose, c->at, surface);
     double work = 0.0, loss = 0.0;
-    for (int a = 0; a < mpm->dim; a++) {
+    for (int a = 0; a < mpm->grid.dim; a++) {
       const double by = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
       work += by * surface[a];
       loss += by * (surface[a] - v[a]);

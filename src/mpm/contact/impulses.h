@@ -6,6 +6,7 @@
 
 #include "contact/corner.h"
 #include "contact/impulse.h"
+#include "mpm/base/parts.h"
 #include "core/base/room.h"
 
 #include <mps/mpm.h>
@@ -80,7 +81,7 @@ typedef struct mpsi_impulses {
       next_room, lookup_room, area_room, around_room, body_room;
 } mpsi_impulses;
 
-/* constraints.c: before anything moves, candidates for contact in a step of mpm->run.dt, and room;
+/* constraints.c: before anything moves, candidates for contact in the step to be made, and room;
  * then, the masses of the nodes known, the constraints with their weights, and how deep particles
  * are. */
 mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function);

@@ -29,13 +29,13 @@ static int same_behind(const mps_mpm *mpm, double far) {
  */
 static int count_before(const mps_mpm *mpm, const mpsi_foot *foot, const int *place,
                         const double *x) {
-  const double least = 1e-9 * mpm->def.cell;
+  const double least = 1e-9 * mpm->grid.cell;
   double before = 0.0;
   int count = 1;
-  for (int c = 0; c < mpm->dim; c++) before += (x[c] - foot->at[c]) * foot->normal[c];
+  for (int c = 0; c < mpm->grid.dim; c++) before += (x[c] - foot->at[c]) * foot->normal[c];
   if (!(foot->distance > 0.0) || !(before > least)) return 0;
-  for (int c = 0; c < mpm->dim && place[c] == 0; c++, count *= MPSI_SIDE) {
-    before += fmin(0.0, (MPSI_SIDE - 1) * mpm->def.cell * foot->normal[c]);
+  for (int c = 0; c < mpm->grid.dim && place[c] == 0; c++, count *= MPSI_SIDE) {
+    before += fmin(0.0, (MPSI_SIDE - 1) * mpm->grid.cell * foot->normal[c]);
     if (!(before > least)) break;
   }
   return count;
@@ -94,7 +94,7 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
 static bool cells_near(const mps_mpm *mpm, const mpsi_cell_block *cells, int *low, int *high) {
   bool any = false;
   for (int c = 0; c < 3; c++) low[c] = MPSI_TILE_SIDE, high[c] = 0;
-  for (int q = 0; q < 1 << mpm->dim; q++) {
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     any = any || nodes->inside;
     for (int c = 0; c < 3 && nodes->inside; c++) {
@@ -116,15 +116,15 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
   if (cells->pairs == 0 || !cells_near(mpm, cells, low, high)) return;
   bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
   memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
-  for (int64_t k = cells->begin; (k = mpm->kernels->next_in(mpm, cells, low, high, k)) < cells->end;
-       k++) {
+  for (int64_t k = cells->begin;
+       (k = mpm->kernels->next_in(&mpm->grid, &mpm->p, cells, low, high, k)) < cells->end; k++) {
     int at[3] = {0};
     bool near = true;
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       /* counted from the block: not negative, so that truncation is floor */
       const double first = (double)cells->at[c] * MPSI_SIDE;
       const double last = (double)(mpm->grid.high[c] - 1) - first;
-      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - first;
+      const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k]) - first;
       at[c] = (int)(X < last ? X : last);
       near = near && at[c] >= low[c] && at[c] < high[c];
     }
@@ -132,7 +132,7 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
     bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
     if (*here) continue;
     *here = true;
-    for (int q = 0; q < 1 << mpm->dim; q++) {
+    for (int q = 0; q < 1 << mpm->grid.dim; q++) {
       const int corner[3] = {at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)};
       work(mpm, cells, corner, data);
     }
@@ -148,7 +148,8 @@ static void find_normals(const mps_mpm *mpm, const mpsi_node_block *nodes, int l
     if (!mpm->contact.held[at]) continue;
     const mps_body *body = mpm->contact.body[mpm->contact.node_pair[t].body];
     const mpsi_foot foot = mpsi_body_foot(body, x);
-    for (int c = 0; c < 3; c++) mpm->contact.normal[at][c] = c < mpm->dim ? foot.normal[c] : 0.0;
+    for (int c = 0; c < 3; c++)
+      mpm->contact.normal[at][c] = c < mpm->grid.dim ? foot.normal[c] : 0.0;
   }
 }
 
@@ -226,11 +227,11 @@ static void domain_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int c
 
 static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t *state) {
   int low[3] = {0}, high[3] = {1, 1, 1};
-  for (int c = 0; c < mpm->dim; c++) domain_under(mpm, cells, c, &low[c], &high[c]);
+  for (int c = 0; c < mpm->grid.dim; c++) domain_under(mpm, cells, c, &low[c], &high[c]);
   memset(state, MPSI_OUTSIDE, (size_t)mpm->grid.tile_nodes);
   for (int k = low[2]; k < high[2]; k++)
     for (int j = low[1]; j < high[1] && low[0] < high[0]; j++)
-      memset(state + mpsi_tile_index(low[0], j, k), mpm->standard ? MPSI_PLAIN : 0,
+      memset(state + mpsi_tile_index(low[0], j, k), mpm->grid.standard ? MPSI_PLAIN : 0,
              (size_t)(high[0] - low[0]));
 }
 
@@ -238,7 +239,7 @@ static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8
 static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
                       mpsi_worker *worker) {
   int from[3] = {0}, to[3] = {1, 1, 1}, shift[3] = {0};
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const int size = q >> c & 1 ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
     shift[c] = q >> c & 1 ? MPSI_SIDE : 0;
     from[c] = nodes->thin ? 0 : nodes->low[c];
@@ -260,7 +261,7 @@ static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
 
 void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
   mark_outside(mpm, cells, worker->state);
-  for (int q = 0; q < 1 << mpm->dim; q++) {
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     if (nodes->inside || nodes->thin) mark_near(mpm, nodes, q, worker);
   }

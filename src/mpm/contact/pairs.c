@@ -7,7 +7,7 @@
 /* Half the diagonal of a tile or block of `side` nodes an axis, in cells, and a little for
  * round-off: a body that has a node of it inside is no further than that from its centre. */
 static double half_diagonal(const mps_mpm *mpm, int side) {
-  return 0.5 * (side - 1) * sqrt((double)mpm->dim) * (1.0 + 1e-9);
+  return 0.5 * (side - 1) * sqrt((double)mpm->grid.dim) * (1.0 + 1e-9);
 }
 
 static void find_middle(const mps_mpm *mpm, const int32_t *at, int side, double *x) {
@@ -18,7 +18,7 @@ static void find_middle(const mps_mpm *mpm, const int32_t *at, int side, double 
 bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side) {
   double x[3];
   find_middle(mpm, at, side, x);
-  return mpsi_body_reaches(mpm->contact.body[body], x, half_diagonal(mpm, side) * mpm->def.cell);
+  return mpsi_body_reaches(mpm->contact.body[body], x, half_diagonal(mpm, side) * mpm->grid.cell);
 }
 
 /* Bits of bodies, 64 a word. */
@@ -45,7 +45,7 @@ static void begin_loop(mps_mpm *mpm) {
 /* By the place of the block alone: so all ranks that have it know the same nodes to be inside, and
  * the same supports to be cut. */
 static void find_bodies_of_nodes(mps_mpm *mpm) {
-  const double reach = half_diagonal(mpm, MPSI_SIDE) * mpm->def.cell;
+  const double reach = half_diagonal(mpm, MPSI_SIDE) * mpm->grid.cell;
   begin_loop(mpm);
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     uint64_t *near = near_row(mpm, g);
@@ -64,7 +64,7 @@ typedef struct pair_counts {
 
 static void add_cell_pair(mps_mpm *mpm, int64_t b, int32_t body, pair_counts *count) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  for (int q = 0; q < 1 << mpm->dim; q++) set_bit(near_row(mpm, cells->to[q]), body);
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) set_bit(near_row(mpm, cells->to[q]), body);
   if (count->cells < mpm->contact.cell_pair_room.capacity) {
     mpsi_cell_pair *pair = (mpsi_cell_pair *)mpm->contact.cell_pair_room.item + count->cells;
     pair->cells = (int32_t)b;
@@ -78,7 +78,7 @@ static void add_cell_pair(mps_mpm *mpm, int64_t b, int32_t body, pair_counts *co
 /* Lists the pairs of blocks of cells and bodies; false where there is no room for them all, `count`
  * says how many there are. */
 static bool list_cell_pairs(mps_mpm *mpm, pair_counts *count) {
-  const double reach = half_diagonal(mpm, MPSI_TILE_SIDE) * mpm->def.cell;
+  const double reach = half_diagonal(mpm, MPSI_TILE_SIDE) * mpm->grid.cell;
   count->cells = count->loads = 0;
   find_bodies_of_nodes(mpm);
   begin_loop(mpm);

@@ -15,12 +15,12 @@ MPSI_INLINE bool mpsi_find_contact(const mps_mpm *mpm, const mps_contact *contac
   for (int c = 0; c < dim; c++) out->x[c] = p->x[c][particle], v[c] = p->v[c][particle];
   for (int c = 0; c < dim * dim; c++) L[c] = p->L[c][particle];
   const mpsi_contact_law law = {
-      .spacing = mps_particles_spacing(mpm->particles),
+      .spacing = mps_particles_spacing(mpm->p.set),
       .modulus = mpsi_mpm_stiffness(mpm, particle) * mpsi_law_of(mpm, particle)->modulus,
-      .cell = mpm->def.cell,
+      .cell = mpm->grid.cell,
       .courant = mpm->def.courant,
-      .weight = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->def.measure * out->x[0]
-                                                                   : mpm->def.measure};
+      .weight = mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->grid.measure * out->x[0]
+                                                                    : mpm->grid.measure};
   return mpsi_contact_find(contact, dim, &law, v, L, out);
 }
 

@@ -8,6 +8,7 @@
 #ifndef MPSI_MPM_PARTNERS_H
 #define MPSI_MPM_PARTNERS_H
 
+#include "mpm/base/parts.h"
 #include "core/base/room.h"
 
 #include <mps/domain.h>

@@ -75,6 +75,6 @@ void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
   mpsi_mpm_clear_penalty(mpm, cells, worker);
-  mpm->kernels->p2g[mpm->def.geometry][mpm->def.spline - 2](mpm, b, number);
+  mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2](mpm, b, number);
   mpsi_mpm_add_penalty(mpm, cells, worker);
 }

@@ -18,7 +18,7 @@ void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g) {
       const double m = node[k][MPSI_MASS];
       if (!(m > 0.0) || at[k].mass == 0.0) continue;
       if (at[k].mass > 0.0) mpm->contact.node_pair[t].mass += m;
-      for (int c = 0; c < mpm->dim; c++)
+      for (int c = 0; c < mpm->grid.dim; c++)
         node[k][MPSI_VECTOR + c] += mpm->run.dt * at[k].force[c] / m;
     }
   }
@@ -38,7 +38,7 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
       double x[3], f[3];
       mpsi_node_place(mpm, nodes->at, k, x);
       const bool frictional = mpsi_contact_friction(
-          mpm->contact.handle[b], mpm->dim, &at[k], mpm->contact.state[b].mass, x,
+          mpm->contact.handle[b], mpm->grid.dim, &at[k], mpm->contact.state[b].mass, x,
           node[k] + MPSI_VECTOR, side[k] + MPSI_VECTOR, m, mpm->run.dt, f);
       for (int c = 0; c < 3; c++) {
         at[k].slip[c] = frictional ? f[c] / at[k].mass : 0.0;

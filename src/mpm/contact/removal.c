@@ -18,7 +18,7 @@ bool mpsi_mpm_some_take_away(const mpsi_contacts *all) {
 }
 
 static double *place_of(const mps_mpm *mpm, int64_t k, double *x) {
-  for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
+  for (int c = 0; c < 3; c++) x[c] = c < mpm->grid.dim ? mpm->p.x[c][k] : 0.0;
   return x;
 }
 
@@ -121,7 +121,7 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
     status = mpsi_domain_agree_max(mpm->partition->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
   status = count_by_body(mpm, function);
-  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
+  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->p.set, mpm->rooms.gone.item);
   *cleared = status == MPS_OK;
   return status;
 }
@@ -138,7 +138,7 @@ mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *
     count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, TAKEN);
     status = count_out(mpm, function, contact, gone, TAKEN);
   }
-  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, gone);
+  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->p.set, gone);
   mpsi_free(mpm->context, gone);
   return status;
 }

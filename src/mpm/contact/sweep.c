@@ -60,14 +60,15 @@ MPSI_INLINE void velocity_at(const mpsi_impulses *all, int64_t n, double *v) {
   for (int a = 0; a < 3; a++) v[a] = sum[MPSI_VECTOR + a];
 }
 
-void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t constraint, double *v) {
-  velocity_at(&mpm->contact.impulses, constraint, v);
+void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mpsi_impulses *all, int64_t constraint,
+                                           double *v) {
+  velocity_at(all, constraint, v);
 }
 
 /* `tangent_impulse` holds the last step's impulse. */
-void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_constraint_block *block) {
-  mpsi_impulses *all = &mpm->contact.impulses;
-  const double fraction = all->warm_dt > 0.0 ? mpm->run.dt / all->warm_dt : 0.0;
+void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
+                                  const mpsi_constraint_block *block) {
+  const double fraction = all->warm_dt > 0.0 ? dt / all->warm_dt : 0.0;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_impulse *c = &all->constraint[n].impulse;
     const double last[3] = {c->tangent_impulse[0], c->tangent_impulse[1], c->tangent_impulse[2]};
@@ -78,8 +79,8 @@ void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_constraint_block *blo
 }
 
 /* Counts what it changes, by which the sweeps end. */
-void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_constraint_block *block, bool back) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block,
+                                   bool back) {
   double changed = 0.0, impulses = 0.0;
   for (int64_t i = 0; i < block->count; i++) {
     const int64_t n = back ? block->first + block->count - 1 - i : block->first + i;
@@ -88,7 +89,7 @@ void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_constraint_block *block, b
     double u[3], surface[3], by[3];
     velocity_at(all, n, u);
     mpsi_impulse_surface(body, c->at, surface);
-    for (int a = 0; a < 3; a++) u[a] = a < mpm->dim ? u[a] - surface[a] : 0.0;
+    for (int a = 0; a < 3; a++) u[a] = a < dim ? u[a] - surface[a] : 0.0;
     if (mpsi_impulse_update(c, body, u, by)) {
       kick(all, n, by);
       changed += mpsi_dot3(by, by);

@@ -12,7 +12,7 @@ enum { MOST_STEPS = 200 };
 
 bool mpsi_mpm_begin_across(mps_mpm *mpm) {
   mpsi_contacts *contact = &mpm->contact;
-  const bool can = contact->penalty_bodies == 0 && !mpm->standard;
+  const bool can = contact->penalty_bodies == 0 && !mpm->grid.standard;
   contact->thin = false;
   for (int32_t b = 0; b < contact->bodies; b++) {
     contact->state[b].parts = can && contact->handle[b]->thin;
@@ -34,9 +34,9 @@ bool mpsi_mpm_begin_across(mps_mpm *mpm) {
 
 /* Where x looks from, and how far that is from the surface. */
 static mpsi_sight stand(const mps_mpm *mpm, const mpsi_foot *foot, const double *x) {
-  const double clear = CLEAR * mpm->def.cell;
+  const double clear = CLEAR * mpm->grid.cell;
   mpsi_sight out = {.distance = fmax(foot->distance, clear)};
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     out.at[c] = foot->distance < clear ? foot->at[c] + clear * foot->normal[c] : x[c];
   memcpy(out.normal, foot->normal, sizeof out.normal);
   return out;
@@ -55,7 +55,7 @@ void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g) {
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
   nodes->thin = false;
   if (!near_thin(mpm, nodes)) return;
-  const double half = 0.5 * sqrt((double)mpm->dim) * mpm->def.cell * (1.0 + 1e-9);
+  const double half = 0.5 * sqrt((double)mpm->grid.dim) * mpm->grid.cell * (1.0 + 1e-9);
   uint8_t *beside = mpm->contact.beside + mpsi_first_node(mpm, nodes->near);
   memset(beside, 0, (size_t)mpm->grid.block_nodes);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
@@ -120,7 +120,7 @@ bool mpsi_mpm_list_across(mps_mpm *mpm) {
   grid->across_count = 0;
   for (int64_t g = 0; g < grid->node_count; g++) grid->nodes[g].across = -1;
   for (int64_t b = 0; b < grid->cell_count && mpm->contact.thin; b++)
-    for (int q = 0; q < 1 << mpm->dim && grid->cells[b].thin; q++) {
+    for (int q = 0; q < 1 << mpm->grid.dim && grid->cells[b].thin; q++) {
       mpsi_node_block *nodes = &grid->nodes[grid->cells[b].to[q]];
       if (nodes->across < 0) nodes->across = (int32_t)count++;
     }
@@ -137,12 +137,12 @@ bool mpsi_mpm_list_across(mps_mpm *mpm) {
 /* The wall of the mirror at the upper or lower end of axis c, m. */
 static double mirror_at(const mps_mpm *mpm, int c, bool upper) {
   const int64_t node = upper ? mpm->grid.high[c] : mpm->grid.low[c];
-  return mpm->def.origin[c] + mpm->def.cell * (double)node;
+  return mpm->grid.origin[c] + mpm->grid.cell * (double)node;
 }
 
 /* A place beyond a mirror to its image. */
 static void fold(const mps_mpm *mpm, const mpsi_cell_block *cells, double *x) {
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     for (int upper = 0; upper < 2; upper++) {
       if (!(cells->mirrors >> (2 * c + upper) & 1)) continue;
       const double wall = mirror_at(mpm, c, upper);
@@ -154,7 +154,7 @@ static void fold(const mps_mpm *mpm, const mpsi_cell_block *cells, double *x) {
 static double next_mirror(const mps_mpm *mpm, const mpsi_cell_block *cells, const double *a,
                           const double *way, double t) {
   double next = INFINITY;
-  for (int k = 0; k < 2 * mpm->dim; k++) {
+  for (int k = 0; k < 2 * mpm->grid.dim; k++) {
     if (!(cells->mirrors >> k & 1) || way[k / 2] == 0.0) continue;
     const double at = (mirror_at(mpm, k / 2, k % 2) - a[k / 2]) / way[k / 2];
     if (at > t && at < next) next = at;
@@ -167,17 +167,17 @@ static double next_mirror(const mps_mpm *mpm, const mpsi_cell_block *cells, cons
 static bool is_free(const mps_mpm *mpm, const mpsi_cell_block *cells, const mps_body *body,
                     const mpsi_sight *from, const double *to) {
   double way[3] = {0.0}, x[3] = {0.0}, distance = from->distance;
-  for (int c = 0; c < mpm->dim; c++) way[c] = to[c] - from->at[c];
+  for (int c = 0; c < mpm->grid.dim; c++) way[c] = to[c] - from->at[c];
   const double length = sqrt(mpsi_dot3(way, way));
   double t = 0.0;
   for (int step = 0; step < MOST_STEPS; step++) {
     const double next = next_mirror(mpm, cells, from->at, way, t) + 1e-9;
     t = fmin(t + distance / length, next);
     if (!(t < 1.0)) return true;
-    for (int c = 0; c < mpm->dim; c++) x[c] = from->at[c] + t * way[c];
+    for (int c = 0; c < mpm->grid.dim; c++) x[c] = from->at[c] + t * way[c];
     fold(mpm, cells, x);
     distance = mpsi_body_foot(body, x).distance;
-    if (distance < CLOSED * mpm->def.cell) return false;
+    if (distance < CLOSED * mpm->grid.cell) return false;
   }
   return true;
 }
@@ -189,15 +189,15 @@ static mpsi_sight sight_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int
   int place[3];
   *ghost = false;
   for (int c = 0; c < 3; c++) {
-    place[c] = c < mpm->dim ? mpsi_mpm_mirror_partner(mpm, cells, c, at[c]) : 0;
-    *ghost = *ghost || (c < mpm->dim && place[c] != at[c]);
+    place[c] = c < mpm->grid.dim ? mpsi_mpm_mirror_partner(mpm, cells, c, at[c]) : 0;
+    *ghost = *ghost || (c < mpm->grid.dim && place[c] != at[c]);
   }
   const int32_t g = mpsi_block_under(cells, place[0], place[1], place[2]);
   int32_t t = mpm->grid.nodes[g].first_pair;
   while (mpm->contact.node_pair[t].body != body) t++;
   mpsi_sight out = mpm->contact.sight[(int64_t)t * mpm->grid.block_nodes +
                                       mpsi_local_under(place[0], place[1], place[2])];
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     if (place[c] != at[c]) out.at[c] = 2.0 * mirror_at(mpm, c, place[c] < at[c]) - out.at[c];
   return out;
 }
@@ -210,7 +210,7 @@ static bool is_before(const mps_mpm *mpm, const mpsi_cell_block *cells, const in
   const double local[3] = {at[0], at[1], at[2]};
   double x[3], across = 0.0;
   mpsi_node_position(mpm, cells->at, local, x);
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     if (cells->mirrors && mpsi_mpm_mirror_partner(mpm, cells, c, at[c]) != at[c]) return false;
     across += (x[c] - foot->at[c]) * foot->normal[c];
   }
@@ -224,9 +224,9 @@ static bool is_deep(const mps_mpm *mpm, const mpsi_cell_block *cells, const int 
   const double local[3] = {at[0], at[1], at[2]};
   double x[3], depth = 0.0, cell = 0.0;
   mpsi_node_position(mpm, cells->at, local, x);
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     depth -= (x[c] - foot->at[c]) * foot->normal[c];
-    cell = fmax(cell, fabs(foot->normal[c]) * mpm->def.cell);
+    cell = fmax(cell, fabs(foot->normal[c]) * mpm->grid.cell);
   }
   return depth > (1.0 - 1e-9) * cell;
 }
@@ -237,9 +237,9 @@ static void add_parted_by(const mps_mpm *mpm, const mpsi_cell_block *cells, int3
   const bool convex = mpm->contact.handle[b]->convex;
   const mpsi_foot foot = mpsi_body_foot(body, x);
   const mpsi_sight own = stand(mpm, &foot, x);
-  const int n = mpm->def.spline;
-  if (own.distance > 2.0 * sqrt((double)mpm->dim) * mpm->def.cell) return;
-  for (int k = 0; k <= (mpm->dim == 3 ? n : 0); k++)
+  const int n = mpm->grid.spline;
+  if (own.distance > 2.0 * sqrt((double)mpm->grid.dim) * mpm->grid.cell) return;
+  for (int k = 0; k <= (mpm->grid.dim == 3 ? n : 0); k++)
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const int at[3] = {base[0] + i, base[1] + j, base[2] + k};

@@ -16,6 +16,8 @@
 #ifndef MPSI_MPM_THIN_BODIES_H
 #define MPSI_MPM_THIN_BODIES_H
 
+#include "mpm/base/parts.h"
+
 #include <mps/mpm.h>
 
 struct mpsi_cell_block;

@@ -145,8 +145,15 @@ static inline double mpsi_own_mass(double mass, double excess) {
 }
 
 typedef struct mpsi_grid {
-  int32_t dim, spline;             /* of the definition, as the next two */
-  double origin[3], cell;          /* m */
+  int32_t dim, spline; /* of the definition, as the next four */
+  mps_mpm_geometry geometry;
+  double measure;         /* m or rad */
+  double origin[3], cell; /* m */
+  /* For comparison (mps/experimental.h): */
+  bool by_weight;                  /* velocities go to the nodes by the weights */
+  bool strain_by_fit;              /* the laws see the slopes of the fit */
+  bool standard;                   /* the original material point method: no support is fitted */
+  double flip;                     /* of that, else 0 */
   bool apart;                      /* a reader wants the forces apart from the momenta everywhere */
   int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
   double inverse;                  /* 1/m, 1/h */

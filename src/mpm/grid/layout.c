@@ -11,7 +11,7 @@
 
 /* Widens the part of the tile in use by a stencil, and by a cell to either side. */
 static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cell_block *cells) {
-  for (int c = 0; c < mpm->dim; c++, within /= MPSI_SIDE) {
+  for (int c = 0; c < mpm->grid.dim; c++, within /= MPSI_SIDE) {
     const int32_t low = (int32_t)(within % MPSI_SIDE);
     const int32_t high = low + 3 + mpsi_reach(mpm, c);
     if (low < cells->low[c]) cells->low[c] = low;
@@ -124,16 +124,16 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   mpsi_radix *key = mpm->grid.sorted;
   const uint64_t own = (UINT64_C(1) << mpm->grid.own_bits) - 1;
   for (int c = 0; c < 3; c++) {
-    const double x = c < mpm->dim ? mpm->p.x[c][key[cells->begin].index] : 0.0;
-    const double X = mpsi_grid_coordinate(mpm, c, x);
+    const double x = c < mpm->grid.dim ? mpm->p.x[c][key[cells->begin].index] : 0.0;
+    const double X = mpsi_grid_at(&mpm->grid, c, x);
     cells->at[c] =
-        c < mpm->dim ? (int32_t)mpsi_block_of((int64_t)mpsi_base(mpm->def.spline, X)) : 0;
-    cells->low[c] = c < mpm->dim ? MPSI_TILE_SIDE : 0, cells->high[c] = 1;
+        c < mpm->grid.dim ? (int32_t)mpsi_block_of((int64_t)mpsi_base(mpm->grid.spline, X)) : 0;
+    cells->low[c] = c < mpm->grid.dim ? MPSI_TILE_SIDE : 0, cells->high[c] = 1;
   }
   for (int64_t k = cells->begin, end; k < cells->end; k = end) {
     for (end = k + 1; end < cells->end && key[end].key == key[k].key;) end++;
     widen_use(mpm, key[k].key & own, cells);
-    order_by_id(key, mpm->laws.ids, k, end);
+    order_by_id(key, mpm->p.laws.ids, k, end);
   }
 }
 
@@ -141,7 +141,7 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
  * the blocks of nodes, and the tiles that cover each. The count alone where `nodes` is NULL. */
 static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
   mpsi_cell_block *cells = mpm->grid.cells;
-  const int corners = 1 << mpm->dim;
+  const int corners = 1 << mpm->grid.dim;
   int64_t head[MPSI_CORNERS] = {0}, count = 0;
   for (;;) {
     int32_t at[MPSI_CORNERS][3], least[3];
@@ -259,7 +259,7 @@ static mps_status put_in_order(mps_mpm *mpm, const char *function) {
   mpm->run.stale = false;
   if (list_order(mpm, order)) return MPS_OK;
   void *const scratch[MPSI_PERMUTE_COLUMNS] = {other + count, own, own + count};
-  return mpsi_particles_permute_in(mpm->particles, function, order, scratch, MPSI_PERMUTE_COLUMNS);
+  return mpsi_particles_permute_in(mpm->p.set, function, order, scratch, MPSI_PERMUTE_COLUMNS);
 }
 
 mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function) {

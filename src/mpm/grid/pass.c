@@ -35,7 +35,7 @@ static bool is_first(const mpsi_cell_block *cells, int q) { return cells->first 
 
 static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  for (int q = 0; q < 1 << mpm->dim; q++)
+  for (int q = 0; q < 1 << mpm->grid.dim; q++)
     if (is_first(cells, q)) pass->clear(mpm, cells->to[q], worker);
   pass->scatter(mpm, b, worker);
 }
@@ -69,7 +69,7 @@ static int32_t giver_before(const mps_mpm *mpm, int32_t g, int q) {
 static void give_in_turn(wave *w, int32_t b) {
   const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
   if (!mark(&w->given[b], 1)) return;
-  for (int q = 0; q < 1 << w->mpm->dim; q++) {
+  for (int q = 0; q < 1 << w->mpm->grid.dim; q++) {
     const int32_t before = giver_before(w->mpm, cells->to[q], q);
     if (before >= 0) give_in_turn(w, before);
   }
@@ -79,7 +79,7 @@ static void give_in_turn(wave *w, int32_t b) {
 static void update_in_turn(wave *w, int32_t g) {
   const mpsi_node_block *nodes = &w->mpm->grid.nodes[g];
   if (!mark(&w->done[g], UPDATED)) return;
-  for (int q = 0; q < 1 << w->mpm->dim && w->pass->scatter; q++)
+  for (int q = 0; q < 1 << w->mpm->grid.dim && w->pass->scatter; q++)
     if (nodes->from[q] >= 0) give_in_turn(w, nodes->from[q]);
   if (w->pass->update) w->pass->update(w->mpm, g, 0);
 }
@@ -92,7 +92,7 @@ static void finish_in_turn(wave *w, int32_t g) {
 /* Whether some node under the block waits for ghosts (partition.h). */
 static bool is_late(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   bool late = false;
-  for (int q = 0; q < 1 << mpm->dim; q++) late = late || mpm->grid.nodes[cells->to[q]].late;
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) late = late || mpm->grid.nodes[cells->to[q]].late;
   return late;
 }
 
@@ -102,7 +102,7 @@ static void gather_in_turn(wave *w, bool late) {
   for (int64_t b = 0; b < grid->cell_count; b++) {
     const mpsi_cell_block *cells = &grid->cells[b];
     if (!has_cells(w->mpm, w->pass, b) || is_late(w->mpm, cells) != late) continue;
-    for (int q = 0; q < 1 << w->mpm->dim; q++) finish_in_turn(w, cells->to[q]);
+    for (int q = 0; q < 1 << w->mpm->grid.dim; q++) finish_in_turn(w, cells->to[q]);
     if (w->pass->gather) w->pass->gather(w->mpm, b, 0);
   }
 }
@@ -158,7 +158,7 @@ static bool count_down(_Atomic int32_t *count) {
 static void finish_nodes(flow *f, int32_t g, int32_t worker) {
   const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
   if (f->pass->finish && has_nodes(f->mpm, f->pass, g)) f->pass->finish(f->mpm, g, worker);
-  for (int q = 0; q < 1 << f->mpm->dim; q++) {
+  for (int q = 0; q < 1 << f->mpm->grid.dim; q++) {
     const int32_t b = nodes->from[q];
     if (b >= 0 && count_down(&f->gather_waits[b]) && f->pass->gather &&
         has_cells(f->mpm, f->pass, b))
@@ -181,7 +181,7 @@ static void update_nodes(flow *f, int32_t g, int32_t worker) {
 static void scatter_cells(flow *f, int32_t b, int32_t worker) {
   const mpsi_cell_block *cells = &f->mpm->grid.cells[b];
   clear_and_scatter(f->mpm, f->pass, b, worker);
-  for (int q = 0; q < 1 << f->mpm->dim; q++) {
+  for (int q = 0; q < 1 << f->mpm->grid.dim; q++) {
     const int32_t next = cells->next[q];
     if (next < 0)
       update_nodes(f, cells->to[q], worker);
@@ -279,7 +279,7 @@ static void fill(flow *f) {
     atomic_store_explicit(&f->scatter_waits[b], grid->cells[b].waits + message,
                           memory_order_relaxed);
     gathers += f->pass->gather && has_cells(f->mpm, f->pass, b);
-    atomic_store_explicit(&f->gather_waits[b], 1 << f->mpm->dim, memory_order_relaxed);
+    atomic_store_explicit(&f->gather_waits[b], 1 << f->mpm->grid.dim, memory_order_relaxed);
   }
   for (int32_t g = 0; f->pass->between && g < f->nodes; g++) held += grid->nodes[g].waits;
   atomic_init(&f->held, held);
@@ -336,7 +336,7 @@ void mpsi_mpm_link_blocks(mps_mpm *mpm) {
     const int parity = parity_of(nodes);
     int32_t last = -1;
     int last_q = 0;
-    for (int colour = 0; colour < 1 << mpm->dim; colour++) {
+    for (int colour = 0; colour < 1 << mpm->grid.dim; colour++) {
       const int q = colour ^ parity;
       const int32_t b = nodes->from[q];
       if (b < 0) continue;

@@ -12,6 +12,7 @@
 #ifndef MPSI_MPM_PASS_H
 #define MPSI_MPM_PASS_H
 
+#include "mpm/base/parts.h"
 #include "core/base/room.h"
 
 #include <mps/mpm.h>

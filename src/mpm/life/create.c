@@ -198,7 +198,7 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
 
 /* Each rank has been given a part of the set, not all of it. */
-static bool in_parts(const mps_mpm *mpm) { return mpsi_particles_deal(mpm->particles) != NULL; }
+static bool in_parts(const mps_mpm *mpm) { return mpsi_particles_deal(mpm->p.set) != NULL; }
 
 /* What has been found of the particles here becomes what all ranks have found of all. */
 static mps_status join_extremes(mps_mpm *mpm, mps_status status) {
@@ -217,7 +217,7 @@ static mps_status add_fields(mps_mpm *mpm) {
   static const char *const names[] = {"velocity", "velocity_gradient", "stress", "volume", "mass"};
   mps_status status = MPS_OK;
   for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
-    status = mpsi_as(mpm->context, create, mps_particles_add_field(mpm->particles, names[k], 0));
+    status = mpsi_as(mpm->context, create, mps_particles_add_field(mpm->p.set, names[k], 0));
   return status;
 }
 
@@ -231,20 +231,20 @@ static double *written(const mps_mpm *mpm, int32_t number) {
   if (number == 0) return p->V;
   if (number == 1) return p->m;
   if (number == 2) return p->J;
-  return number < OWN_COLUMNS ? p->F[number - 3] : mpm->laws.law[0].history[number - OWN_COLUMNS];
+  return number < OWN_COLUMNS ? p->F[number - 3] : mpm->p.laws.law[0].history[number - OWN_COLUMNS];
 }
 
 static int32_t written_count(const mps_mpm *mpm) {
-  return OWN_COLUMNS + mps_material_history_count(mpm->laws.law[0].material);
+  return OWN_COLUMNS + mps_material_history_count(mpm->p.laws.law[0].material);
 }
 
 /* Whether the caller's fields, the first `fields`, are among them. */
 static bool writes_given(const mps_mpm *mpm, int32_t fields) {
   for (int32_t f = 0; f < fields; f++) {
     mps_particles_field_info info = {.name = ""};
-    if (mps_particles_get_field_info(mpm->particles, f, &info) != MPS_OK) return true;
+    if (mps_particles_get_field_info(mpm->p.set, f, &info) != MPS_OK) return true;
     for (int32_t c = 0; c < written_count(mpm) && info.dtype.code != 0; c++)
-      if (written(mpm, c) == mpsi_particles_column(mpm->particles, info.name, 0)) return true;
+      if (written(mpm, c) == mpsi_particles_column(mpm->p.set, info.name, 0)) return true;
   }
   return false;
 }
@@ -293,14 +293,14 @@ static mps_status find_speed(mps_mpm *mpm) {
     mpsi_mpm_find_moduli(mpm, begin, end, moduli);
     for (int64_t k = begin; k < end; k++) {
       double square = 0.0;
-      for (int c = 0; c < mpm->dim && mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED; c++)
+      for (int c = 0; c < mpm->grid.dim && mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED; c++)
         square += p->v[c][k] * p->v[c][k];
       const double speed = sqrt(moduli[k - begin] * p->V[k] / p->m[k]) + sqrt(square);
       if (!(speed > 0.0 && speed <= 1e300))
         return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                          "particle %lld has a wave velocity plus velocity of %g m/s: must be > 0 "
                          "and finite; check modulus, density and velocity",
-                         (long long)mpsi_particles_integers(mpm->particles, "id")[k], speed);
+                         (long long)mpsi_particles_integers(mpm->p.set, "id")[k], speed);
       mpm->run.speed = fmax(mpm->run.speed, speed);
     }
   }
@@ -337,7 +337,7 @@ static mps_status begin(mps_mpm *mpm) {
  * caller takes back what an error leaves. */
 static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
                         mpsi_storage **former) {
-  const int32_t fields = mps_particles_field_count(mpm->particles);
+  const int32_t fields = mps_particles_field_count(mpm->p.set);
   const bool shared = is_shared(&mpm->def);
   double *copy = NULL;
   if (status == MPS_OK) status = add_fields(mpm);
@@ -354,7 +354,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     mpsi_free(mpm->context, copy);
   }
   if (shared) status = mpsi_mpm_partition_create(mpm, create, status, former);
-  if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->particles, fields);
+  if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->p.set, fields);
   mpm->boundaries.outdated = true; /* listed with the first step */
   return status;
 }
@@ -364,7 +364,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
  * where that is a field of the caller. Every rank comes to each function that is collective. */
 static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status status,
                               mpsi_backup *backup) {
-  const int32_t fields = mps_particles_field_count(mpm->particles);
+  const int32_t fields = mps_particles_field_count(mpm->p.set);
   status = mpsi_mpm_share_deal(mpm, create, status);
   if (status != MPS_OK) return status;
   status = add_fields(mpm);
@@ -377,7 +377,7 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
     status = mpsi_fail_of(mpm->context, status, "particles");
   }
   if (status == MPS_OK && writes_given(mpm, fields))
-    status = mpsi_particles_back_up(mpm->particles, create, backup);
+    status = mpsi_particles_back_up(mpm->p.set, create, backup);
   backup->field_count = fields;
   if (status == MPS_OK) {
     mpsi_mpm_begin_particles(mpm);
@@ -388,7 +388,7 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
   if (status == MPS_OK) status = make_memory(mpm);
   if (status == MPS_OK) status = mpsi_mpm_sort_cells(mpm, create);
   status = mpsi_mpm_share_take_part(mpm, create, status);
-  if (status != MPS_OK && !backup->memory) mpsi_particles_drop_fields(mpm->particles, fields);
+  if (status != MPS_OK && !backup->memory) mpsi_particles_drop_fields(mpm->p.set, fields);
   mpm->boundaries.outdated = true;
   return status;
 }
@@ -428,7 +428,7 @@ static void hold(mps_mpm *mpm, const char *function, bool shared) {
     mpm->holder.agree = mpsi_mpm_agree_on_insertion;
     mpm->holder.find = mpsi_mpm_find_removed;
   }
-  (void)mpsi_particles_hold(mpm->particles, function, &mpm->holder);
+  (void)mpsi_particles_hold(mpm->p.set, function, &mpm->holder);
 }
 
 /* What follows from the definition alone. */
@@ -436,17 +436,18 @@ static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
                      const int64_t *high) {
   mpm->def = *def;
   mpm->def.domain = mpsi_domain_retain(def->domain);
-  mpm->dim = dim_of(def);
-  mpm->grid.block_nodes = MPSI_SIDE * MPSI_SIDE * (mpm->dim == 3 ? MPSI_SIDE : 1);
-  mpm->grid.tile_nodes = MPSI_TILE_SIDE * MPSI_TILE_SIDE * (mpm->dim == 3 ? MPSI_TILE_SIDE : 1);
+  mpm->grid.dim = dim_of(def);
+  mpm->grid.block_nodes = MPSI_SIDE * MPSI_SIDE * (mpm->grid.dim == 3 ? MPSI_SIDE : 1);
+  mpm->grid.tile_nodes =
+      MPSI_TILE_SIDE * MPSI_TILE_SIDE * (mpm->grid.dim == 3 ? MPSI_TILE_SIDE : 1);
   mpm->energy.counts = def->budget != 0;
   mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
-  mpm->p.count = mps_particles_count(mpm->particles);
-  mpm->laws.at_once = true; /* until some law waits for means */
+  mpm->p.count = mps_particles_count(mpm->p.set);
+  mpm->p.laws.at_once = true; /* until some law waits for means */
   mpm->grid.inverse = 1.0 / def->cell;
-  mpm->grid.dim = mpm->dim, mpm->grid.spline = mpm->def.spline;
-  mpm->grid.cell = mpm->def.cell;
-  memcpy(mpm->grid.origin, mpm->def.origin, sizeof mpm->grid.origin);
+  mpm->grid.spline = def->spline, mpm->grid.cell = def->cell;
+  mpm->grid.geometry = (mps_mpm_geometry)def->geometry, mpm->grid.measure = def->measure;
+  memcpy(mpm->grid.origin, def->origin, sizeof mpm->grid.origin);
   memcpy(mpm->grid.low, low, sizeof mpm->grid.low);
   memcpy(mpm->grid.high, high, sizeof mpm->grid.high);
 }
@@ -481,7 +482,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   }
   mpm->reader.mpm = mpm;
   mpm->context = mpsi_context_retain(context);
-  mpm->particles = particles;
+  mpm->p.set = particles;
   hold(mpm, __func__, is_shared(&def)); /* checked above */
   describe(mpm, &def, low, high);
   if (!mpsi_mpm_begin_sides(mpm))
@@ -576,16 +577,16 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mpsi_mpm_free_partners(&mpm->contact.partners, context);
   mpsi_mpm_drop_loads(mpm);
   mpsi_mpm_drop_boundaries(mpm);
-  for (int32_t k = 0; k < mpm->laws.count; k++) {
-    mps_material_destroy(&mpm->laws.law[k].material);
-    mpsi_free(context, mpm->laws.law[k].history);
+  for (int32_t k = 0; k < mpm->p.laws.count; k++) {
+    mps_material_destroy(&mpm->p.laws.law[k].material);
+    mpsi_free(context, mpm->p.laws.law[k].history);
   }
-  mpsi_free(context, mpm->laws.room.item);
+  mpsi_free(context, mpm->p.laws.room.item);
   mps_kernel_destroy(&mpm->weights);
   mpsi_mpm_partition_free(mpm);
   mps_domain_destroy(&mpm->def.domain);
   mpsi_state_forget(&mpm->identity);
-  mpsi_particles_release(mpm->particles, &mpm->holder);
+  mpsi_particles_release(mpm->p.set, &mpm->holder);
   mpsi_free(context, mpm);
   mpsi_context_release(context);
 }
@@ -595,7 +596,7 @@ mps_status mps_mpm_get_def_sized(const mps_mpm *mpm, mps_mpm_def *out, size_t si
   return mpsi_def_write(mpm->context, "mps_mpm_get_def", out, size, &mpm->def, sizeof mpm->def);
 }
 
-mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->particles : NULL; }
+mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->p.set : NULL; }
 
 mps_kernel *mps_mpm_kernel(const mps_mpm *mpm) { return mpm ? mpm->weights : NULL; }
 
@@ -622,7 +623,7 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
-  mpm->by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
+  mpm->grid.by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
   return MPS_OK;
 }
 
@@ -633,7 +634,7 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
   if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "strain is %d, allowed are 0 (derivative) and 1 (fit)", strain);
-  mpm->strain_by_fit = strain == MPS_EXPERIMENTAL_STRAIN_FIT;
+  mpm->grid.strain_by_fit = strain == MPS_EXPERIMENTAL_STRAIN_FIT;
   return MPS_OK;
 }
 
@@ -644,10 +645,10 @@ mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   if (!(flip >= 0.0 && flip <= 1.0))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %s, must be in [0, 1]",
                      mpsi_outside(flip, 0.0, 1.0).text);
-  mpm->standard = true;
-  mpm->flip = flip;
+  mpm->grid.standard = true;
+  mpm->grid.flip = flip;
   const mps_status widened =
       mpsi_domain_agree(mpm->def.domain, __func__, mpsi_mpm_widen_sides(mpm, __func__));
-  if (widened != MPS_OK) mpm->standard = false, mpm->flip = 0.0;
+  if (widened != MPS_OK) mpm->grid.standard = false, mpm->grid.flip = 0.0;
   return widened;
 }

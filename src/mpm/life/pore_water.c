@@ -82,8 +82,8 @@ static mps_status check_solver(mps_mpm *mpm) {
 
 /* Adds the field, and gives all particles the value unless it is NaN. */
 static mps_status fill(mps_mpm *mpm, const char *field, double value) {
-  mps_status status = mpsi_as(mpm->context, add, mps_particles_add_field(mpm->particles, field, 0));
-  double *column = status == MPS_OK ? mpsi_particles_column(mpm->particles, field, 0) : NULL;
+  mps_status status = mpsi_as(mpm->context, add, mps_particles_add_field(mpm->p.set, field, 0));
+  double *column = status == MPS_OK ? mpsi_particles_column(mpm->p.set, field, 0) : NULL;
   for (int64_t k = 0; column && !isnan(value) && k < mpm->p.count; k++) column[k] = value;
   return status;
 }
@@ -98,7 +98,7 @@ static mps_status find_bulk(mps_mpm *mpm) {
     if (!(wave > 0.0 && wave <= LARGE))
       return mpsi_fail(mpm->context, add, MPS_ERROR_ARGUMENT,
                        "bulk is NaN and the law of particle %lld has no modulus at rest: give K_w",
-                       (long long)mpsi_particles_integers(mpm->particles, "id")[k]);
+                       (long long)mpsi_particles_integers(mpm->p.set, "id")[k]);
     most = fmax(most, STIFF * wave * mpm->p.n[k]);
   }
   *bulk = most;
@@ -107,7 +107,7 @@ static mps_status find_bulk(mps_mpm *mpm) {
 
 /* The new limit, and a fixed step against it. */
 static mps_status renew_limit(mps_mpm *mpm) {
-  mpm->laws.one_modulus = false;
+  mpm->p.laws.one_modulus = false;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   mps_status status = mpsi_mpm_collect_block_results(mpm, add);
   if (status != MPS_OK || isnan(mpm->def.dt) || mpm->def.dt <= mps_mpm_limit(mpm)) return status;
@@ -120,7 +120,7 @@ static mps_status renew_limit(mps_mpm *mpm) {
 
 static mps_status begin(mps_mpm *mpm) {
   const mps_pore_water_def *def = &mpm->water->def;
-  const bool layers = mpsi_particles_column(mpm->particles, "permeability", 0) != NULL;
+  const bool layers = mpsi_particles_column(mpm->p.set, "permeability", 0) != NULL;
   mpm->water->flows = !isnan(def->permeability) || layers;
   mps_status status = fill(mpm, "porosity", def->porosity);
   if (status == MPS_OK) status = fill(mpm, "pore_pressure", NAN);
@@ -154,13 +154,13 @@ typedef struct kept {
 
 static double *written(const mps_mpm *mpm, int number) {
   static const char *const names[] = {"porosity", "permeability"};
-  return mpsi_particles_column(mpm->particles, names[number], 0);
+  return mpsi_particles_column(mpm->p.set, names[number], 0);
 }
 
 static mps_status keep(mps_mpm *mpm, kept *out) {
   *out = (kept){.speed = mpm->run.speed,
-                .one_modulus = mpm->laws.one_modulus,
-                .fields = mps_particles_field_count(mpm->particles)};
+                .one_modulus = mpm->p.laws.one_modulus,
+                .fields = mps_particles_field_count(mpm->p.set)};
   out->values = mpsi_alloc(mpm->context, 2 * mpm->p.count, sizeof *out->values);
   if (!out->values)
     return mpsi_fail_memory(mpm->context, add, 2 * (size_t)mpm->p.count * sizeof *out->values);
@@ -174,9 +174,9 @@ static mps_status keep(mps_mpm *mpm, kept *out) {
 static void restore(mps_mpm *mpm, const kept *before) {
   mpsi_free(mpm->context, mpm->water);
   mpm->water = NULL;
-  mpsi_particles_drop_fields(mpm->particles, before->fields);
+  mpsi_particles_drop_fields(mpm->p.set, before->fields);
   mpm->run.speed = before->speed;
-  mpm->laws.one_modulus = before->one_modulus;
+  mpm->p.laws.one_modulus = before->one_modulus;
   for (int f = 0; f < 2; f++)
     if (written(mpm, f))
       memcpy(written(mpm, f), before->values + f * mpm->p.count,
@@ -260,7 +260,7 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
   if (status != MPS_OK) return status;
   if (!point) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "point is NULL");
   double square = 0.0;
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     if (!isfinite(point[c]))
       return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "point[%d] is %g m, must be finite", c, point[c]);
@@ -272,10 +272,10 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = 0; k < p->count; k++) {
     double u = 0.0;
-    for (int c = 0; c < mpm->dim; c++)
+    for (int c = 0; c < mpm->grid.dim; c++)
       u += mpm->water->def.density * mpm->def.gravity[c] * (p->x[c][k] - point[c]);
     p->u[k] = fmax(0.0, u);
-    for (int c = 0; c < mpm->dim; c++)
+    for (int c = 0; c < mpm->grid.dim; c++)
       p->g[c][k] = u > 0.0 ? mpm->water->def.density * mpm->def.gravity[c] : 0.0;
   }
   return MPS_OK;
@@ -292,16 +292,17 @@ static mps_status read_face(mps_mpm *mpm, const char *function, const mps_pore_f
   if (def->kind != MPS_PORE_FACE_IMPERVIOUS && def->kind != MPS_PORE_FACE_DRAINED)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d, allowed are 0 (impervious) and 1 (drained)", def->kind);
-  if (def->sides >> (2 * mpm->dim) != 0)
+  if (def->sides >> (2 * mpm->grid.dim) != 0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "sides is 0x%x, allowed are the bits 0 to %d", def->sides, 2 * mpm->dim - 1);
+                     "sides is 0x%x, allowed are the bits 0 to %d", def->sides,
+                     2 * mpm->grid.dim - 1);
   if (def->at_rest != 0 && def->at_rest != 1)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "at_rest is %d, allowed are 0 and 1", def->at_rest);
   if (!(fabs(def->pressure) <= LARGE))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "pressure is %g Pa, must be within +-1e15", def->pressure);
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     if (!(def->lower[c] < def->upper[c]))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "lower[%d] is %g m and upper[%d] %g m, the first must be below the second",

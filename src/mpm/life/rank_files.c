@@ -95,13 +95,13 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
   mps_status status = MPS_OK;
   if (mpm->contact.bodies > 0)
     status =
-        mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->particles, domain, function, status);
+        mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, domain, function, status);
   mpsi_mpm_order_warm_start(&mpm->contact.impulses);
   if (status == MPS_OK)
     status = mpsi_domain_agree(domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(mpm, function, &state.state);
   if (status == MPS_OK)
-    status = mpsi_domain_write_rows(domain, function, mpm->particles, mpsi_checkpoint_save_rows,
+    status = mpsi_domain_write_rows(domain, function, mpm->p.set, mpsi_checkpoint_save_rows,
                                     (void *)&request);
   mpsi_values_free(mpm->context, &state.state);
   return status;

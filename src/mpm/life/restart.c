@@ -212,20 +212,20 @@ static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_kept,
 static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
   int64_t loads = 0;
   for (int32_t k = 0; k < mpm->loads.count; k++) loads += mpm->loads.traction[k].count > 0;
-  mpsi_state_agree_integer(s, "geometry", mpm->def.geometry);
-  mpsi_state_agree_integer(s, "scheme", mpm->standard);
+  mpsi_state_agree_integer(s, "geometry", mpm->grid.geometry);
+  mpsi_state_agree_integer(s, "scheme", mpm->grid.standard);
   mpsi_state_agree_integer(s, "walls", mpm->def.walls);
-  mpsi_state_agree_integer(s, "spline", mpm->def.spline);
-  mpsi_state_agree_number(s, "cell", mpm->def.cell);
-  for (int c = 0; c < mpm->dim; c++) {
+  mpsi_state_agree_integer(s, "spline", mpm->grid.spline);
+  mpsi_state_agree_number(s, "cell", mpm->grid.cell);
+  for (int c = 0; c < mpm->grid.dim; c++) {
     mpsi_state_enter(s, "axis%d", c);
-    mpsi_state_agree_number(s, "origin", mpm->def.origin[c]);
+    mpsi_state_agree_number(s, "origin", mpm->grid.origin[c]);
     mpsi_state_agree_integer(s, "lowest_node", mpm->grid.low[c]);
     mpsi_state_agree_integer(s, "highest_node", mpm->grid.high[c]);
     mpsi_state_leave(s);
   }
   mpsi_state_agree_integer(s, "loads", loads);
-  mpsi_state_agree_number(s, "measure", mpm->def.measure);
+  mpsi_state_agree_number(s, "measure", mpm->grid.measure);
   mpsi_state_agree_integer(s, "bodies", mpm->contact.bodies);
 }
 
@@ -271,10 +271,10 @@ static void list_state(mpsi_state *s, void *solver) {
     }
     mpsi_state_leave(s);
   }
-  mpsi_state_agree_integer(s, "materials", mpm->laws.count);
-  for (int32_t k = 0; k < mpm->laws.count; k++) {
+  mpsi_state_agree_integer(s, "materials", mpm->p.laws.count);
+  for (int32_t k = 0; k < mpm->p.laws.count; k++) {
     mpsi_state_enter(s, "material%d", k);
-    mpsi_state_agree_text(s, "name", mps_material_name(mpm->laws.law[k].material));
+    mpsi_state_agree_text(s, "name", mps_material_name(mpm->p.laws.law[k].material));
     mpsi_state_leave(s);
   }
   mpsi_state_f64(s, "time", &mpm->run.time, 1);
@@ -313,8 +313,8 @@ static bool within_tile(const mps_mpm *mpm, const int64_t *b) {
   for (int c = 0; c < 3; c++) {
     const int64_t low = b[MPSI_BLOCK_LOW + c], high = b[MPSI_BLOCK_HIGH + c];
     const int64_t reach = mpsi_reach(mpm, c);
-    if (c >= mpm->dim ? low != 0 || high != 1
-                      : low < 0 || high > MPSI_SIDE + 2 + reach || high - low <= reach)
+    if (c >= mpm->grid.dim ? low != 0 || high != 1
+                           : low < 0 || high > MPSI_SIDE + 2 + reach || high - low <= reach)
       return false;
   }
   return true;
@@ -326,7 +326,8 @@ static bool orderly(const mps_mpm *mpm, int64_t rows, const mpsi_block *block, i
   for (int64_t k = 0; k < rows; k++) {
     const int64_t *b = block[k], *next = block[k + 1 < rows ? k + 1 : k];
     for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
-      if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL || (c >= mpm->dim && b[1 + c] != 0))
+      if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL ||
+          (c >= mpm->grid.dim && b[1 + c] != 0))
         return false;
     if (!within_tile(mpm, b)) return false;
     if (next == b) break;
@@ -342,10 +343,10 @@ static bool orderly(const mps_mpm *mpm, int64_t rows, const mpsi_block *block, i
  * fused products, may round away. */
 static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const double *x,
                     int64_t stride) {
-  const double first = mpm->def.spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
+  const double first = mpm->grid.spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
   int place = 1;
-  for (int c = 0; c < mpm->dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, x[c * stride]);
+  for (int c = 0; c < mpm->grid.dim; c++) {
+    const double X = mpsi_grid_at(&mpm->grid, c, x[c * stride]);
     const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
     if (!(fabs(X) < MPSI_MAX_CELLS && X >= low - ROUNDED && X <= high + ROUNDED)) return -1;
     if (stale) continue;
@@ -367,12 +368,12 @@ static bool holds_particles(const mps_mpm *mpm, mps_snapshot *from) {
   int64_t *stale = mpsi_values_find(&from->state, "stale")->data;
   const mpsi_block *block = blocks->data;
   const int64_t count = from->particles;
-  if (!x || x->type != MPSI_STATE_F64 || x->columns != mpm->dim) return false;
+  if (!x || x->type != MPSI_STATE_F64 || x->columns != mpm->grid.dim) return false;
   if (mpm->p.law && !(law && law->type == MPSI_STATE_I64)) return false;
   if (!orderly(mpm, blocks->rows, block, count)) return false;
   for (int64_t k = 0, b = 0; k < count; k++) {
     const int64_t number = mpm->p.law ? ((const int64_t *)law->data)[k] : 0;
-    if (number < 0 || number >= mpm->laws.count) return false;
+    if (number < 0 || number >= mpm->p.laws.count) return false;
     if (b + 1 < blocks->rows && k == block[b + 1][0]) b++;
     const int place = place_of(mpm, block[b], *stale != 0, (const double *)x->data + k, count);
     if (place < 0) return false;
@@ -415,20 +416,24 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
 
 /* ---- public ---------------------------------------------------------------------------------- */
 
-static void bind(void *solver) { mpsi_mpm_bind(solver); }
+static void bind(void *solver) {
+  mps_mpm *mpm = solver;
+  mpsi_mpm_bind(mpm);
+}
 
 /* Snapshots are of a state that has taken up what the caller wrote. */
 static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
-  return mpsi_mpm_agree(solver, function, status);
+  mps_mpm *mpm = solver;
+  return mpsi_mpm_agree(mpm, function, status);
 }
 
 static mpsi_state_of state_of(mps_mpm *mpm) {
   return (mpsi_state_of){.solver = mpm,
                          .name = "WLS-MPM",
                          .context = mpm->context,
-                         .particles = mpm->particles,
+                         .particles = mpm->p.set,
                          .identity = &mpm->identity,
                          .list = list_state,
                          .fits = fits,

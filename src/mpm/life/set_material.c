@@ -8,13 +8,13 @@ static int64_t listed(const mps_mpm *mpm, int64_t count, const int64_t *ids) {
   return ids ? count : mpm->p.count;
 }
 static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
-  return ids ? mps_particles_index(mpm->particles, ids[i]) : i;
+  return ids ? mps_particles_index(mpm->p.set, ids[i]) : i;
 }
 
 /* In the list of laws; as many as there are for a new one. */
 static int32_t number_of(const mps_mpm *mpm, const mps_material *material) {
   int32_t number = 0;
-  while (number < mpm->laws.count && mpm->laws.law[number].material != material) number++;
+  while (number < mpm->p.laws.count && mpm->p.laws.law[number].material != material) number++;
   return number;
 }
 
@@ -23,7 +23,7 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
                              const mps_material *material, int64_t count, const int64_t *ids) {
   int64_t known = 0, all;
   if (status == MPS_OK && (!ids || count < 0 || !mpm->partition))
-    status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
+    status = mpsi_particles_check_ids_or_all(mpm->p.set, function, count, ids);
   if (!mpm->partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
@@ -32,7 +32,7 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
   mpsi_give(&given, "the number of the material", number_of(mpm, material));
   status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
-  for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
+  for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->p.set, ids[k]) >= 0;
   return mpsi_mpm_find_removed(mpm, function, status, count, ids, known, &all);
 }
 
@@ -43,14 +43,14 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
   status = check_list(mpm, function, status, material, count, ids);
   if (status != MPS_OK) return status;
   const double *J = mpsi_material_reads_volume(material)
-                        ? mpsi_particles_column(mpm->particles, "volume_ratio", 0)
+                        ? mpsi_particles_column(mpm->p.set, "volume_ratio", 0)
                         : NULL;
   for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
     const int64_t k = place(mpm, ids, i);
     if (k >= 0 && J && !(J[k] >= 0.0 && J[k] < INFINITY))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "ids: particle %lld has a volume_ratio of %g, must be > 0, or 0 for 1",
-                       (long long)mpm->laws.ids[k], J[k]);
+                       (long long)mpm->p.laws.ids[k], J[k]);
   }
   if (!mpsi_material_has_start(material)) return MPS_OK;
   mpsi_first_state first;
@@ -66,9 +66,9 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
 /* The column of the laws' numbers, which a set of one law does without. */
 static mps_status number_particles(mps_mpm *mpm) {
   if (mpm->p.law) return MPS_OK;
-  const mps_status status = mps_particles_add_field(mpm->particles, "material", 0);
+  const mps_status status = mps_particles_add_field(mpm->p.set, "material", 0);
   if (status != MPS_OK) return status;
-  mpm->p.law = mpsi_particles_integers(mpm->particles, "material");
+  mpm->p.law = mpsi_particles_integers(mpm->p.set, "material");
   for (int64_t k = 0; k < mpm->p.count; k++) mpm->p.law[k] = 0;
   return MPS_OK;
 }
@@ -77,13 +77,13 @@ static mps_status number_particles(mps_mpm *mpm) {
 static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *material,
                            int32_t *number) {
   *number = number_of(mpm, material);
-  if (*number < mpm->laws.count) return MPS_OK;
+  if (*number < mpm->p.laws.count) return MPS_OK;
   const bool numbered = mpm->p.law != NULL;
-  const int32_t fields = mps_particles_field_count(mpm->particles);
+  const int32_t fields = mps_particles_field_count(mpm->p.set);
   mps_status status = mpsi_as(mpm->context, function, number_particles(mpm));
   if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, function, material);
   if (status == MPS_OK || numbered) return status;
-  mpsi_particles_drop_fields(mpm->particles, fields);
+  mpsi_particles_drop_fields(mpm->p.set, fields);
   mpm->p.law = NULL;
   return status;
 }
@@ -103,7 +103,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
     const int64_t k = place(mpm, ids, i);
     if (k < 0) continue;                    /* another rank's */
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
-    mpsi_mpm_begin_law(mpm, &mpm->laws.law[number], k);
+    mpsi_mpm_begin_law(mpm, &mpm->p.laws.law[number], k);
   }
   mpm->boundaries.outdated = true; /* the dashpots of absorbing walls follow the laws */
   if (mpm->run.edited || mpm->run.lost) return MPS_OK; /* waits for what else is new */

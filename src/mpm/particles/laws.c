@@ -15,24 +15,24 @@ static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t be
                          int64_t *flags, mps_material_block *block) {
   static const int planar[5] = {0, 1, 3, 4, 8};
   const mpsi_columns *p = &mpm->p;
-  block->dim = mpm->dim;
+  block->dim = mpm->grid.dim;
   block->count = end - begin;
   block->dt = mpm->run.dt;
   block->time = mpm->run.time + mpm->run.dt;
-  block->ids = mpm->laws.ids + begin;
+  block->ids = mpm->p.laws.ids + begin;
   block->volume_ratio = (law->reads_volume ? p->J : p->V) + begin;
   memset(flags, 0, (size_t)(end - begin) * sizeof *flags);
   block->flags = flags;
-  const int tensors = mpm->dim == 3 ? 9 : 5;
+  const int tensors = mpm->grid.dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
-    const int to = mpm->dim == 3 ? c : planar[c];
-    if (mpm->def.geometry != MPS_MPM_GEOMETRY_PLANE_STRAIN || c < 4)
+    const int to = mpm->grid.dim == 3 ? c : planar[c];
+    if (mpm->grid.geometry != MPS_MPM_GEOMETRY_PLANE_STRAIN || c < 4)
       block->gradient[to] = p->L[c] + begin;
     block->deformation[to] = law->needs_deformation ? p->F[c] + begin : NULL;
   }
-  for (int c = 0; c < 2 * mpm->dim; c++) block->stress[c] = p->s[c] + begin;
-  for (int c = 0; c < mpm->dim; c++) block->position[c] = p->x[c] + begin;
-  if (mpm->laws.temperature) block->temperature = mpm->laws.temperature + begin;
+  for (int c = 0; c < 2 * mpm->grid.dim; c++) block->stress[c] = p->s[c] + begin;
+  for (int c = 0; c < mpm->grid.dim; c++) block->position[c] = p->x[c] + begin;
+  if (mpm->p.laws.temperature) block->temperature = mpm->p.laws.temperature + begin;
 }
 
 /* The end of the particles from `begin` that obey its law, at most `end`. */
@@ -46,7 +46,7 @@ static int64_t end_of_run(const int64_t *law, int64_t begin, int64_t end) {
 /* Refusals are rare: threads wait for one another. */
 static void note_refusal(mps_mpm *mpm, const mpsi_cell_block *cells, const mps_material *material,
                          mps_status status, int64_t particle, const char *message) {
-  mpsi_refusal *r = &mpm->laws.refusal;
+  mpsi_refusal *r = &mpm->p.laws.refusal;
   while (atomic_flag_test_and_set_explicit(&r->busy, memory_order_acquire)) continue;
   if (!r->cells || cells < r->cells) {
     r->cells = cells;
@@ -79,8 +79,9 @@ static void apply_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law
 /* Gives the law the derivatives D of its particles from the `first` on in place of L. */
 static void take_strains(const mps_mpm *mpm, double *const *D, int64_t first,
                          mps_material_block *block) {
-  for (int a = 0; a < mpm->dim; a++)
-    for (int b = 0; b < mpm->dim; b++) block->gradient[3 * a + b] = D[mpm->dim * a + b] + first;
+  for (int a = 0; a < mpm->grid.dim; a++)
+    for (int b = 0; b < mpm->grid.dim; b++)
+      block->gradient[3 * a + b] = D[mpm->grid.dim * a + b] + first;
 }
 
 /* The particles from `begin` on; `first` is its place in the columns D and the means. */
@@ -132,7 +133,7 @@ void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t 
 /* A viscous law requires dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
 static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
                              int64_t end, double *moduli) {
-  const double v = 4.0 * mpm->dim * mpsi_material_viscosity(law->material) * mpm->grid.inverse;
+  const double v = 4.0 * mpm->grid.dim * mpsi_material_viscosity(law->material) * mpm->grid.inverse;
   for (int64_t k = begin; v > 0.0 && k < end; k++)
     moduli[k - begin] = fmax(moduli[k - begin], v * v * mpm->p.V[k] / mpm->p.m[k]);
 }
@@ -142,7 +143,7 @@ static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_
  * cells at a surface, half full, need that. */
 static void stiffen_by_water(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
   const mps_pore_water_def *water = &mpm->water->def;
-  const double v = 2.0 * mpm->dim * mpm->def.courant / 0.3 * mpm->grid.inverse *
+  const double v = 2.0 * mpm->grid.dim * mpm->def.courant / 0.3 * mpm->grid.inverse *
                    (water->bulk / (water->density * MPS_PORE_GRAVITY));
   for (int64_t k = begin; k < end; k++) {
     moduli[k - begin] += water->bulk / mpm->p.n[k];

@@ -2,7 +2,8 @@
 #ifndef MPSI_MPM_LAWS_H
 #define MPSI_MPM_LAWS_H
 
-#include "mpm/grid/blocks.h"
+#include "mpm/base/parts.h"
+#include "core/base/room.h"
 #include "material/material_internal.h"
 
 #include <mps/mpm.h>

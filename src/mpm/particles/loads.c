@@ -19,7 +19,7 @@ static mps_status make_forces(mps_mpm *mpm, const char *function) {
 static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const double *a = mpm->loads.body_acceleration[c], *f = mpm->loads.external_force[c];
     for (int64_t k = cells->begin; k < cells->end; k++)
       mpm->p.f[c][k] = (a ? mpm->p.m[k] * a[k] : 0.0) + (f ? f[k] : 0.0);
@@ -27,31 +27,31 @@ static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 static double area_by_spacing(const mps_mpm *mpm, int64_t particle) {
-  const double spacing = mps_particles_spacing(mpm->particles);
-  if (mpm->dim == 3) return spacing * spacing;
+  const double spacing = mps_particles_spacing(mpm->p.set);
+  if (mpm->grid.dim == 3) return spacing * spacing;
   const double radius =
-      mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->p.x[0][particle] : 1.0;
-  return spacing * mpm->def.measure * radius;
+      mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->p.x[0][particle] : 1.0;
+  return spacing * mpm->grid.measure * radius;
 }
 
 static void add_traction(mps_mpm *mpm, const mpsi_traction *load) {
   double traction[3] = {0.0};
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     traction[c] = load->factor[c] * load->now[c] * load->traction[c];
   }
   for (int64_t k = 0; k < load->count; k++) {
-    const int64_t particle = mps_particles_index(mpm->particles, load->id[k]);
+    const int64_t particle = mps_particles_index(mpm->p.set, load->id[k]);
     if (particle < 0) continue; /* removed */
     const double area = load->area ? load->area[k] : area_by_spacing(mpm, particle);
-    for (int c = 0; c < mpm->dim; c++) mpm->p.f[c][particle] += area * traction[c];
+    for (int c = 0; c < mpm->grid.dim; c++) mpm->p.f[c][particle] += area * traction[c];
   }
 }
 
 mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
   mpsi_loads *loads = &mpm->loads;
-  for (int c = 0; c < mpm->dim; c++) { /* may be added, and moved, between steps */
-    loads->body_acceleration[c] = mpsi_particles_column(mpm->particles, "body_acceleration", c);
-    loads->external_force[c] = mpsi_particles_column(mpm->particles, "external_force", c);
+  for (int c = 0; c < mpm->grid.dim; c++) { /* may be added, and moved, between steps */
+    loads->body_acceleration[c] = mpsi_particles_column(mpm->p.set, "body_acceleration", c);
+    loads->external_force[c] = mpsi_particles_column(mpm->p.set, "external_force", c);
   }
   if (loads->body_acceleration[0] || loads->external_force[0]) {
     const mps_status status = make_forces(mpm, function);
@@ -97,7 +97,7 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mp
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "area[%lld] is %g m2, must be finite", (long long)k, def->area[k]);
     else
-      for (int c = 0; c < mpm->dim; c++) {
+      for (int c = 0; c < mpm->grid.dim; c++) {
         const double force = def->area[k] * def->traction[c] * def->factor[c];
         if (!(fabs(force) <= STRONGEST))
           return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -119,7 +119,7 @@ static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_loa
                            mps_mpm_load_def *def) {
   if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   const mps_status status = MPSI_DEF_READ(mpm->context, function, mps_mpm_load_def, user, def);
-  for (int c = 0; c < mpm->dim && status == MPS_OK; c++)
+  for (int c = 0; c < mpm->grid.dim && status == MPS_OK; c++)
     if (!isfinite(def->traction[c]) || !isfinite(def->factor[c]))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "traction[%d] is %g Pa and factor[%d] %g, must be finite", c,
@@ -164,9 +164,10 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   if (status == MPS_OK) {
     const size_t bytes = def->id_count > 0 ? (size_t)def->id_count * 8 : 0;
     MPSI_GIVE(&given, def, id_count);
-    MPSI_GIVE_VECTOR(&given, def, traction, mpm->dim);
-    MPSI_GIVE_VECTOR(&given, def, factor, mpm->dim);
-    for (int c = 0; c < mpm->dim; c++) mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
+    MPSI_GIVE_VECTOR(&given, def, traction, mpm->grid.dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, mpm->grid.dim);
+    for (int c = 0; c < mpm->grid.dim; c++)
+      mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
     mpsi_give_bytes(&given, "a hash of ids", def->ids, bytes);
     mpsi_give_bytes(&given, "a hash of area", def->area, bytes);
   }

@@ -3,6 +3,8 @@
 #ifndef MPSI_MPM_LOADS_H
 #define MPSI_MPM_LOADS_H
 
+#include "mpm/base/parts.h"
+
 #include <mps/mpm.h>
 
 /* A load: force area * traction on each particle. */

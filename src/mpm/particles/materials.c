@@ -19,15 +19,15 @@ static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
 }
 
 void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law) {
-  mps_particles *set = mpm->particles;
+  mps_particles *set = mpm->p.set;
   if (law->reads_volume) mpm->p.J = mpsi_particles_column(set, "volume_ratio", 0);
   for (int c = 0; c < 9 && law->needs_deformation; c++)
     mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
   for (int32_t h = 0; h < law->columns; h++)
     law->history[h] = mpsi_particles_column(set, mps_material_history_field(law->material, h), 0);
   law->stiffness = mpsi_material_stiffness(law->material, law->history);
-  mpm->laws.ids = mpsi_particles_integers(set, "id");
-  mpm->laws.temperature = mpsi_particles_column(set, "temperature", 0);
+  mpm->p.laws.ids = mpsi_particles_integers(set, "id");
+  mpm->p.laws.temperature = mpsi_particles_column(set, "temperature", 0);
 }
 
 /* A mean change of volume beside each particle's own pressure does work from nothing where dilation
@@ -51,11 +51,12 @@ static void choose_volume(const mps_mpm *mpm, mpsi_law_use *law) {
 }
 
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
-  if (!mpsi_room_keep(mpm->context, &mpm->laws.room, mpm->laws.count + 1, sizeof *mpm->laws.law))
+  if (!mpsi_room_keep(mpm->context, &mpm->p.laws.room, mpm->p.laws.count + 1,
+                      sizeof *mpm->p.laws.law))
     return mpsi_fail_memory(mpm->context, function,
-                            (size_t)(mpm->laws.count + 1) * sizeof *mpm->laws.law);
-  mpm->laws.law = mpm->laws.room.item;
-  mps_particles *set = mpm->particles;
+                            (size_t)(mpm->p.laws.count + 1) * sizeof *mpm->p.laws.law);
+  mpm->p.laws.law = mpm->p.laws.room.item;
+  mps_particles *set = mpm->p.set;
   mpsi_law_use law = {.material = material,
                       .modulus = mps_material_wave_modulus(material),
                       .reads_volume = mpsi_material_reads_volume(material),
@@ -65,9 +66,9 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
                       .columns = mps_material_history_count(material)};
   choose_volume(mpm, &law);
   if (law.filtered) mpsi_material_sand_columns(material, &law.strain, &law.gap);
-  const bool at_once = law.own_volume && mpm->laws.at_once;
-  const bool some_filtered = law.filtered || mpm->laws.some_filtered;
-  if (mpm->laws.count > 0 && !mpsi_mpm_volume_room(mpm, mpm->p.count, !at_once, some_filtered))
+  const bool at_once = law.own_volume && mpm->p.laws.at_once;
+  const bool some_filtered = law.filtered || mpm->p.laws.some_filtered;
+  if (mpm->p.laws.count > 0 && !mpsi_mpm_volume_room(mpm, mpm->p.count, !at_once, some_filtered))
     return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * 10 * sizeof(double));
   law.history = mpsi_alloc(mpm->context, law.columns, sizeof *law.history);
   if (!law.history)
@@ -81,13 +82,13 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   }
   mpsi_mpm_bind_law(mpm, &law);
   mpsi_material_retain(material);
-  if (mpm->laws.count == 0) atomic_flag_clear(&mpm->laws.refusal.busy);
-  mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
-                          mpsi_material_viscosity(material) == 0.0;
-  mpm->laws.at_once = at_once;
-  mpm->laws.some_own = mpm->laws.some_own || law.own_volume;
-  mpm->laws.some_filtered = some_filtered;
-  mpm->laws.law[mpm->laws.count++] = law;
+  if (mpm->p.laws.count == 0) atomic_flag_clear(&mpm->p.laws.refusal.busy);
+  mpm->p.laws.one_modulus = mpm->p.laws.count == 0 && !mpsi_material_stiffens(material) &&
+                            mpsi_material_viscosity(material) == 0.0;
+  mpm->p.laws.at_once = at_once;
+  mpm->p.laws.some_own = mpm->p.laws.some_own || law.own_volume;
+  mpm->p.laws.some_filtered = some_filtered;
+  mpm->p.laws.law[mpm->p.laws.count++] = law;
   return MPS_OK;
 }
 
@@ -97,7 +98,7 @@ void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
   bool deformed = !law->needs_deformation;
   for (int c = 0; c < 9 && !deformed && p->F[c]; c++) deformed = p->F[c][k] != 0.0;
   for (int c = 0; c < 9 && !deformed && p->F[c]; c++) {
-    const bool diagonal = mpm->dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
+    const bool diagonal = mpm->grid.dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
     p->F[c][k] = diagonal ? 1.0 : 0.0;
   }
   mpsi_material_begin(law->material, law->history, k, k + 1);
@@ -108,8 +109,7 @@ void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
 void mpsi_mpm_find_state(const mps_mpm *mpm, const mps_material *material, mpsi_first_state *out) {
   out->material = material;
   for (int32_t h = 0; h < mps_material_history_count(material); h++)
-    out->history[h] =
-        mpsi_particles_column(mpm->particles, mps_material_history_field(material, h), 0);
+    out->history[h] = mpsi_particles_column(mpm->p.set, mps_material_history_field(material, h), 0);
 }
 
 mps_status mpsi_mpm_check_state(const mps_mpm *mpm, const char *function,
@@ -118,21 +118,22 @@ mps_status mpsi_mpm_check_state(const mps_mpm *mpm, const char *function,
   double stress[6] = {0.0}, history[MOST] = {0.0};
   char reason[200];
   if (!mpsi_material_has_start(first->material)) return MPS_OK;
-  for (int32_t c = 0; c < 2 * mpm->dim; c++) stress[c] = mpm->p.s[c][k];
+  for (int32_t c = 0; c < 2 * mpm->grid.dim; c++) stress[c] = mpm->p.s[c][k];
   for (int32_t h = 0; h < mps_material_history_count(first->material) && h < MOST; h++)
     if (first->history[h]) history[h] = first->history[h][k];
-  if (mpsi_material_check_state(first->material, mpm->dim, stress, history, reason, sizeof reason))
+  if (mpsi_material_check_state(first->material, mpm->grid.dim, stress, history, reason,
+                                sizeof reason))
     return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material: particle %lld %s",
-                   (long long)mpm->laws.ids[k], reason);
+                   (long long)mpm->p.laws.ids[k], reason);
 }
 
 mps_status mpsi_mpm_check_states(const mps_mpm *mpm, const char *function, int64_t begin,
                                  int64_t end) {
   mpsi_first_state first;
   mps_status status = MPS_OK;
-  if (!mpsi_material_has_start(mpm->laws.law[0].material)) return MPS_OK;
-  mpsi_mpm_find_state(mpm, mpm->laws.law[0].material, &first);
+  if (!mpsi_material_has_start(mpm->p.laws.law[0].material)) return MPS_OK;
+  mpsi_mpm_find_state(mpm, mpm->p.laws.law[0].material, &first);
   for (int64_t k = begin; k < end && status == MPS_OK; k++)
     status = mpsi_mpm_check_state(mpm, function, &first, k);
   return status;

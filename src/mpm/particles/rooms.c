@@ -17,18 +17,18 @@ static bool make_columns(mps_mpm *mpm, mpsi_room *room, int64_t particles, int32
 }
 
 bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
-  return make_columns(mpm, &mpm->rooms.force, particles, mpm->dim, mpm->p.f);
+  return make_columns(mpm, &mpm->rooms.force, particles, mpm->grid.dim, mpm->p.f);
 }
 
 bool mpsi_mpm_volume_room(mps_mpm *mpm, int64_t particles, bool means, bool filter) {
   mpsi_rooms *r = &mpm->rooms;
   means = means || r->strain.item, filter = filter || r->rough.item; /* G2P writes what is there */
   const bool stencil = means || filter;
-  const bool good =
-      (!stencil ||
-       mpsi_room_ensure(mpm->context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
-      (!means || make_columns(mpm, &r->strain, particles, mpm->dim * mpm->dim, mpm->p.D)) &&
-      (!filter || make_columns(mpm, &r->rough, particles, 1, &mpm->p.rough));
+  const bool good = (!stencil || mpsi_room_ensure(mpm->context, &r->stencil, particles,
+                                                  sizeof *mpm->p.stencil)) &&
+                    (!means || make_columns(mpm, &r->strain, particles,
+                                            mpm->grid.dim * mpm->grid.dim, mpm->p.D)) &&
+                    (!filter || make_columns(mpm, &r->rough, particles, 1, &mpm->p.rough));
   mpm->p.stencil = r->stencil.item;
   return good;
 }
@@ -38,7 +38,7 @@ bool mpsi_mpm_make_room(void *solver, int64_t particles) {
   mpsi_rooms *r = &mpm->rooms;
   const bool good =
       mpsi_room_ensure(mpm->context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
-      mpsi_mpm_volume_room(mpm, particles, !mpm->laws.at_once, mpm->laws.some_filtered) &&
+      mpsi_mpm_volume_room(mpm, particles, !mpm->p.laws.at_once, mpm->p.laws.some_filtered) &&
       (!r->force.item || mpsi_mpm_force_room(mpm, particles));
   mpm->grid.radix = r->radix.item;
   return good;

@@ -68,8 +68,8 @@ static mps_status place_by_list(mps_mpm *mpm, const char *function) {
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) status = mpsi_domain_exchange(domain, function, ranks, message, &box);
   if (status == MPS_OK && (!(all = join_lists(mpm, &box, &blocks)) ||
-                           !mpsi_mpm_choose_orientation(mpm->context, mpm->dim, ranks, blocks, all,
-                                                        &mpm->partition->orientation)))
+                           !mpsi_mpm_choose_orientation(mpm->context, mpm->grid.dim, ranks, blocks,
+                                                        all, &mpm->partition->orientation)))
     status = mpsi_fail_memory(mpm->context, function, (size_t)blocks * sizeof *all);
   mpsi_domain_free_mail(&box);
   mpsi_free(mpm->context, own);
@@ -92,7 +92,7 @@ static mps_status place_by_bounds(mps_mpm *mpm, const char *function) {
   mpsi_placed corner[2] = {{.particles = 1}, {.particles = 1}};
   for (int c = 0; c < 3; c++)
     corner[0].at[c] = (int32_t)-bound[c], corner[1].at[c] = (int32_t)bound[3 + c];
-  if (!mpsi_mpm_choose_orientation(mpm->context, mpm->dim, 1, 2, corner,
+  if (!mpsi_mpm_choose_orientation(mpm->context, mpm->grid.dim, 1, 2, corner,
                                    &mpm->partition->orientation))
     status = mpsi_fail_memory(mpm->context, function, sizeof corner);
   return mpsi_domain_agree(mpm->partition->domain, function, status);
@@ -100,7 +100,7 @@ static mps_status place_by_bounds(mps_mpm *mpm, const char *function) {
 
 static mps_status find_blocks(mps_mpm *mpm, const char *function) {
   mpsi_mpm_bind(mpm);
-  mpm->laws.ids = mpsi_particles_integers(mpm->particles, "id"); /* there is no law yet */
+  mpm->p.laws.ids = mpsi_particles_integers(mpm->p.set, "id"); /* there is no law yet */
   mpm->grid.worker_count = mps_context_threads(mpm->context);
   const mps_status status = mpsi_mpm_check_start(mpm, function);
   if (status != MPS_OK) return status;
@@ -112,7 +112,7 @@ static mps_status find_blocks(mps_mpm *mpm, const char *function) {
 
 /* The solver's fields get the room that the caller's have: no more than needed. */
 static mps_status fit(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_particles_fit(mpm->particles, function);
+  const mps_status status = mpsi_particles_fit(mpm->p.set, function);
   mpsi_mpm_bind(mpm);
   if (status != MPS_OK || mpsi_mpm_shrink_room(mpm, mpm->p.count)) return status;
   return mpsi_fail_memory(mpm->context, function,

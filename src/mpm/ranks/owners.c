@@ -19,7 +19,7 @@
 /* ---- the curve ------------------------------------------------------------------------------- */
 
 static int64_t key_of(const mps_mpm *mpm, const int32_t *at) {
-  return mpsi_mpm_curve_key(mpm->dim, &mpm->partition->orientation, at);
+  return mpsi_mpm_curve_key(mpm->grid.dim, &mpm->partition->orientation, at);
 }
 
 int32_t mpsi_mpm_block_owner(const mps_mpm *mpm, const int32_t *at) {
@@ -45,8 +45,8 @@ static bool place_curve(mps_mpm *mpm, int32_t ranks) {
     list[b].particles = cells->end - cells->begin;
     memcpy(list[b].at, cells->at, sizeof list[b].at);
   }
-  const bool good = list && mpsi_mpm_choose_orientation(mpm->context, mpm->dim, ranks, blocks, list,
-                                                        &mpm->partition->orientation);
+  const bool good = list && mpsi_mpm_choose_orientation(mpm->context, mpm->grid.dim, ranks, blocks,
+                                                        list, &mpm->partition->orientation);
   mpsi_free(mpm->context, list);
   return good;
 }
@@ -94,7 +94,7 @@ typedef struct departure {
 } departure;
 
 static mps_status list_columns(departure *d) {
-  mps_particles *set = d->mpm->particles;
+  mps_particles *set = d->mpm->p.set;
   mps_particles_field_info info;
   mps_status status = MPS_OK;
   d->columns = 0;
@@ -147,20 +147,20 @@ static mps_status take_in(departure *d, const char *function, const mpsi_mailbox
                        (long long)count, MPSI_MPM_MOST_PARTICLES);
   if (status == MPS_OK && !mpsi_mpm_make_room(mpm, count))
     status = mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
-  if (status == MPS_OK) status = mpsi_particles_hold_room(mpm->particles, function, count);
+  if (status == MPS_OK) status = mpsi_particles_hold_room(mpm->p.set, function, count);
   mpsi_mpm_bind(mpm); /* columns may have moved */
   status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
-  mpsi_particles_make_way(mpm->particles, d->gone);
+  mpsi_particles_make_way(mpm->p.set, d->gone);
   (void)list_columns(d);
-  mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(mpm->particles));
-  mpsi_particles_admit(mpm->particles, arriving);
+  mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(mpm->p.set));
+  mpsi_particles_admit(mpm->p.set, arriving);
   mpsi_mpm_bind(mpm);
   return MPS_OK;
 }
 
 static const int64_t *ids_of(const mps_mpm *mpm) {
-  return mpsi_particles_integers(mpm->particles, "id");
+  return mpsi_particles_integers(mpm->p.set, "id");
 }
 
 static mps_status send(departure *d, const char *function, mps_status status, bool *moved) {
@@ -220,9 +220,9 @@ mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_st
 
 static bool is_own(const mps_mpm *mpm, int64_t k) {
   int32_t block[3] = {0};
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     block[c] = (int32_t)mpsi_block_of(
-        (int64_t)mpsi_base(mpm->def.spline, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])));
+        (int64_t)mpsi_base(mpm->grid.spline, mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k])));
   return mpsi_mpm_block_owner(mpm, block) == mps_domain_rank(mpm->partition->domain);
 }
 
@@ -235,7 +235,7 @@ mps_status mpsi_mpm_keep_own_inserted(mps_mpm *mpm, const char *function, mps_st
   if (status == MPS_OK) {
     memset(gone, 0, (size_t)first);
     for (int64_t k = first; k < mpm->p.count; k++) gone[k] = !is_own(mpm, k);
-    mpsi_particles_make_way(mpm->particles, gone);
+    mpsi_particles_make_way(mpm->p.set, gone);
     mpsi_mpm_bind(mpm);
   }
   mpsi_free(mpm->context, gone);

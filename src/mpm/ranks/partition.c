@@ -48,7 +48,7 @@ static bool is_own(const search *s, const int32_t *at) {
 }
 
 static bool beside_own(const search *s, const int32_t *at) {
-  const int depth = s->mpm->dim == 3;
+  const int depth = s->mpm->grid.dim == 3;
   for (int k = -depth; k <= depth; k++)
     for (int j = -1; j <= 1; j++)
       for (int i = -1; i <= 1; i++) {
@@ -221,7 +221,7 @@ static void mark_blocks(mps_mpm *mpm) {
   for (int64_t b = 0; b < grid->cell_count; b++) grid->cells[b].late = grid->cells[b].ghost;
   for (int64_t k = 0; k < grid->cell_count; k++) {
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[k]];
-    for (int q = 0; cells->late && q < 1 << mpm->dim; q++) {
+    for (int q = 0; cells->late && q < 1 << mpm->grid.dim; q++) {
       grid->nodes[cells->to[q]].late = true;
       if (cells->next[q] >= 0) grid->cells[cells->next[q]].late = true;
     }
@@ -328,8 +328,7 @@ static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **fo
   int64_t *rows = mpsi_alloc(mpm->context, mpm->p.count, sizeof *rows);
   if (!rows) return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof *rows);
   const int64_t count = take_blocks(mpm, rows);
-  const mps_status status =
-      mpsi_particles_keep(mpm->particles, function, count, rows, count, former);
+  const mps_status status = mpsi_particles_keep(mpm->p.set, function, count, rows, count, former);
   mpsi_free(mpm->context, rows);
   if (status != MPS_OK) return status;
   mpsi_mpm_bind(mpm);
@@ -355,14 +354,14 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   MPSI_GIVE(&given, d, dt);
   MPSI_GIVE(&given, d, courant);
   mpsi_give(&given, "having a kernel", d->kernel != NULL);
-  MPSI_GIVE_VECTOR(&given, d, origin, mpm->dim);
-  MPSI_GIVE_VECTOR(&given, d, gravity, mpm->dim);
-  MPSI_GIVE_VECTOR(&given, d, lower, mpm->dim);
-  MPSI_GIVE_VECTOR(&given, d, upper, mpm->dim);
-  if (status == MPS_OK) mpsi_material_give(&given, mpm->laws.law[0].material);
+  MPSI_GIVE_VECTOR(&given, d, origin, mpm->grid.dim);
+  MPSI_GIVE_VECTOR(&given, d, gravity, mpm->grid.dim);
+  MPSI_GIVE_VECTOR(&given, d, lower, mpm->grid.dim);
+  MPSI_GIVE_VECTOR(&given, d, upper, mpm->grid.dim);
+  if (status == MPS_OK) mpsi_material_give(&given, mpm->p.laws.law[0].material);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
-  if (status != MPS_OK || mpsi_particles_deal(mpm->particles)) return status;
-  return mpsi_domain_agree_particles(d->domain, function, status, mpm->particles);
+  if (status != MPS_OK || mpsi_particles_deal(mpm->p.set)) return status;
+  return mpsi_domain_agree_particles(d->domain, function, status, mpm->p.set);
 }
 
 mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
@@ -370,7 +369,7 @@ mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status s
   if (status == MPS_OK) mpm->partition = mpsi_alloc(mpm->context, 1, sizeof *mpm->partition);
   if (status == MPS_OK && !mpm->partition)
     status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->partition);
-  status = mpsi_domain_agree_parts(domain, function, status, mpm->particles);
+  status = mpsi_domain_agree_parts(domain, function, status, mpm->p.set);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, mpm->partition);
     mpm->partition = NULL;

@@ -14,6 +14,7 @@
 #ifndef MPSI_MPM_PARTITION_H
 #define MPSI_MPM_PARTITION_H
 
+#include "mpm/base/parts.h"
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
 #include "core/base/room.h"

@@ -7,7 +7,7 @@
 /* Rows that no block has are behind the others, by their ids: particles that the caller has added.
  */
 static int64_t list_added(const mps_mpm *mpm, int64_t first, mpsi_row_run *out) {
-  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
   for (int64_t k = first; out && k < mpm->p.count; k++)
     out[k - first] = (mpsi_row_run){
         .at = {(int32_t)(id[k] & INT32_MAX), (int32_t)(id[k] >> 31), INT32_MAX}, .rows = 1};

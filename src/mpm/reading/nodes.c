@@ -13,8 +13,8 @@ mps_grid *mps_mpm_grid(mps_mpm *mpm) { return mpm ? &mpm->reader : NULL; }
 mps_status mps_grid_get_info_sized(const mps_grid *grid, mps_grid_info *out, size_t size) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   const mps_mpm *mpm = grid->mpm;
-  mps_grid_info info = {.cell = mpm->def.cell, .dim = mpm->dim, .spline = mpm->def.spline};
-  for (int c = 0; c < mpm->dim; c++) info.origin[c] = mpm->def.origin[c];
+  mps_grid_info info = {.cell = mpm->grid.cell, .dim = mpm->grid.dim, .spline = mpm->grid.spline};
+  for (int c = 0; c < mpm->grid.dim; c++) info.origin[c] = mpm->grid.origin[c];
   return mpsi_out_write(mpm->context, "mps_grid_get_info", out, size, &info, sizeof info);
 }
 
@@ -73,17 +73,17 @@ static bool read_node(const mps_mpm *mpm, int64_t g, int k, node *out) {
   const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + k];
   const double weight = sum[MPSI_MASS] + side[MPSI_EXCESS];
   if (!(weight > 0.0)) return false;
-  const double carried = mpm->by_weight ? weight : mpsi_carried_mass(sum[MPSI_MASS], weight);
+  const double carried = mpm->grid.by_weight ? weight : mpsi_carried_mass(sum[MPSI_MASS], weight);
   mpsi_node_place(mpm, nodes->at, k, out->x);
   out->mass = sum[MPSI_MASS];
   for (int c = 0; c < 3; c++) {
-    out->v[c] = c < mpm->dim ? sum[MPSI_VECTOR + c] / carried : 0.0;
-    out->f[c] = c < mpm->dim ? side[MPSI_VECTOR + c] : 0.0;
+    out->v[c] = c < mpm->grid.dim ? sum[MPSI_VECTOR + c] / carried : 0.0;
+    out->f[c] = c < mpm->grid.dim ? side[MPSI_VECTOR + c] : 0.0;
   }
   const int32_t pairs = mpm->contact.penalty_bodies > 0 ? nodes->pairs : 0;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
     const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
-    for (int c = 0; c < mpm->dim && at->mass != 0.0; c++) out->f[c] += at->force[c];
+    for (int c = 0; c < mpm->grid.dim && at->mass != 0.0; c++) out->f[c] += at->force[c];
   }
   return true;
 }
@@ -124,10 +124,11 @@ mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity, int64_t *c
 /* ---- as a set -------------------------------------------------------------------------------- */
 
 static mps_status check_set(const mps_mpm *mpm, const char *function, mps_particles *set) {
-  if (!set || mpsi_particles_context(set) != mpm->context || mps_particles_dim(set) != mpm->dim)
+  if (!set || mpsi_particles_context(set) != mpm->context ||
+      mps_particles_dim(set) != mpm->grid.dim)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "set is %s, must be one of this context with %d dimensions",
-                     set ? "of another context or dimension" : "NULL", mpm->dim);
+                     set ? "of another context or dimension" : "NULL", mpm->grid.dim);
   return mpsi_particles_check_hold(set, function, MPSI_USE_MOVE);
 }
 
@@ -139,10 +140,10 @@ static mps_status resize(const mps_mpm *mpm, const char *function, mps_particles
     const int64_t *id = mpsi_particles_integers(set, "id");
     return mpsi_as(mpm->context, function, mps_particles_remove(set, have - count, id + count));
   }
-  double *places = mpsi_alloc(mpm->context, (count - have) * mpm->dim, sizeof *places);
+  double *places = mpsi_alloc(mpm->context, (count - have) * mpm->grid.dim, sizeof *places);
   if (!places) return mpsi_fail_memory(mpm->context, function, (size_t)(count - have) * 24);
   for (int64_t k = have; k < count; k++)
-    for (int c = 0; c < mpm->dim; c++) places[(k - have) * mpm->dim + c] = x[3 * k + c];
+    for (int c = 0; c < mpm->grid.dim; c++) places[(k - have) * mpm->grid.dim + c] = x[3 * k + c];
   const mps_status status =
       mpsi_as(mpm->context, function, mps_particles_append(set, count - have, places));
   mpsi_free(mpm->context, places);
@@ -170,7 +171,7 @@ static mps_status fill(mps_grid *grid, const char *function, mps_particles *set,
   if (status == MPS_OK)
     status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "velocity", 0));
   if (status == MPS_OK)
-    status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "force", mpm->dim));
+    status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "force", mpm->grid.dim));
   if (status == MPS_OK) status = resize(mpm, function, set, count, x);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(set, fields);

@@ -51,10 +51,10 @@ typedef struct near {
 
 static void fill_row(const near *list, int64_t k, row *out) {
   const mpsi_columns *p = &list->mpm->p;
-  *out = (row){.at.id = mpsi_particles_integers(list->mpm->particles, "id")[k]};
-  for (int c = 0; c < list->mpm->dim; c++) {
+  *out = (row){.at.id = mpsi_particles_integers(list->mpm->p.set, "id")[k]};
+  for (int c = 0; c < list->mpm->grid.dim; c++) {
     out->value[c] = p->x[c][k];
-    out->at.cell[c] = (int64_t)floor(mpsi_grid_coordinate(list->mpm, c, p->x[c][k]));
+    out->at.cell[c] = (int64_t)floor(mpsi_grid_at(&list->mpm->grid, c, p->x[c][k]));
   }
   out->value[ROW_V] = p->V[k];
   for (int32_t c = 0; c < list->columns; c++) out->value[ROW_FIELD + c] = list->column[c][k];
@@ -65,8 +65,8 @@ static bool list_own(near *list, int64_t count, const double *points) {
   const mps_mpm *mpm = list->mpm;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (int64_t i = 0; i < count; i++)
-    for (int c = 0; c < mpm->dim; c++) {
-      const double X = mpsi_grid_coordinate(mpm, c, points[3 * i + c]);
+    for (int c = 0; c < mpm->grid.dim; c++) {
+      const double X = mpsi_grid_at(&mpm->grid, c, points[3 * i + c]);
       low[c] = fmin(low[c], X - REACH), high[c] = fmax(high[c], X + REACH);
     }
   for (int pass = 0; pass < 2; pass++) {
@@ -75,8 +75,8 @@ static bool list_own(near *list, int64_t count, const double *points) {
     list->count = 0;
     for (int64_t k = 0; k < mpm->p.count; k++) {
       bool inside = true;
-      for (int c = 0; c < mpm->dim && inside; c++) {
-        const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
+      for (int c = 0; c < mpm->grid.dim && inside; c++) {
+        const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k]);
         inside = X >= low[c] && X <= high[c];
       }
       if (inside && pass == 1) fill_row(list, k, &list->row[list->count]);
@@ -182,8 +182,8 @@ static void for_particles(fit *f, particle_fn add, void *data) {
   const near *list = f->list;
   const mps_mpm *mpm = list->mpm;
   int64_t own[3] = {0}, cell[3];
-  for (int c = 0; c < mpm->dim; c++) own[c] = (int64_t)floor(f->X[c]);
-  const int64_t deep = mpm->dim == 3 ? REACH : 0;
+  for (int c = 0; c < mpm->grid.dim; c++) own[c] = (int64_t)floor(f->X[c]);
+  const int64_t deep = mpm->grid.dim == 3 ? REACH : 0;
   for (cell[2] = own[2] - deep; cell[2] <= own[2] + deep; cell[2]++)
     for (cell[1] = own[1] - REACH; cell[1] <= own[1] + REACH; cell[1]++) {
       cell[0] = own[0] - REACH;
@@ -191,9 +191,9 @@ static void for_particles(fit *f, particle_fn add, void *data) {
         const item *at = &list->item[n];
         if (at->cell[2] != cell[2] || at->cell[1] != cell[1] || at->cell[0] > own[0] + REACH) break;
         double w = 1.0, s[3] = {0.0};
-        for (int c = 0; c < mpm->dim; c++) {
-          s[c] = mpsi_grid_coordinate(mpm, c, list->row[at->index].value[c]) - f->X[c];
-          w *= spline_at(mpm->def.spline, s[c]);
+        for (int c = 0; c < mpm->grid.dim; c++) {
+          s[c] = mpsi_grid_at(&mpm->grid, c, list->row[at->index].value[c]) - f->X[c];
+          w *= spline_at(mpm->grid.spline, s[c]);
         }
         if (w > 0.0) add(f, at->index, w, s, data);
       }
@@ -203,8 +203,8 @@ static void for_particles(fit *f, particle_fn add, void *data) {
 static void add_weight(fit *f, int64_t k, double w, const double *s, void *data) {
   const mps_mpm *mpm = f->list->mpm;
   const double across =
-      mpm->def.measure *
-      (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? f->list->row[k].value[0] : 1.0);
+      mpm->grid.measure *
+      (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? f->list->row[k].value[0] : 1.0);
   (void)data;
   f->weight += w;
   f->filled += w * f->list->row[k].value[ROW_V] / across;
@@ -236,17 +236,17 @@ static void invert(int n, double (*m)[3], double (*out)[3]) {
 static int32_t begin_fit(fit *f) {
   const mps_mpm *mpm = f->list->mpm;
   double spread[3][3] = {{0.0}};
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     if (!(f->X[c] >= (double)mpm->grid.low[c] && f->X[c] <= (double)mpm->grid.high[c]))
       return MPS_GRID_POINT_OUTSIDE;
   for_particles(f, add_weight, NULL);
-  for (int c = 0; c < mpm->dim; c++) f->filled *= mpm->grid.inverse;
+  for (int c = 0; c < mpm->grid.dim; c++) f->filled *= mpm->grid.inverse;
   if (!(f->filled >= LEAST_FILLED)) return MPS_GRID_POINT_EMPTY;
   for (int c = 0; c < 3; c++) f->mean[c] /= f->weight;
   for_particles(f, add_spread, spread);
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) spread[a][b] /= f->weight;
-  invert(mpm->dim, spread, f->inverse);
+  invert(mpm->grid.dim, spread, f->inverse);
   return MPS_GRID_POINT_INSIDE;
 }
 
@@ -282,13 +282,13 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
                      "field is %s, count %lld, points %s and values %s: must be given, count >= 0",
                      field ? "given" : "NULL", (long long)count, points ? "given" : "NULL",
                      values ? "given" : "NULL");
-  mps_status status = mpsi_particles_ready(mpm->particles, function);
+  mps_status status = mpsi_particles_ready(mpm->p.set, function);
   if (status == MPS_OK && (mpm->run.broken || mpm->run.lost))
     status = mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                        "the last step ended with a particle that is %s: there is no state to read",
                        mpm->run.broken ? "not finite" : "outside the domain");
   if (status != MPS_OK) return status;
-  for (*components = 0; mpsi_particles_column(mpm->particles, field, *components); ++*components)
+  for (*components = 0; mpsi_particles_column(mpm->p.set, field, *components); ++*components)
     continue;
   if (*components == 0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_FIELD,
@@ -298,7 +298,7 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
                      "component of field '%s' is %d, allowed are 0 to %d, and -1 for all", field,
                      component, *components - 1);
   for (int64_t i = 0; i < count; i++)
-    for (int c = 0; c < mpm->dim; c++)
+    for (int c = 0; c < mpm->grid.dim; c++)
       if (!(fabs(points[3 * i + c]) <= 1e15))
         return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                          "points: point %lld has %c = %g m, must be within 1e15 m", (long long)i,
@@ -318,7 +318,7 @@ static mps_status agree_on_points(mps_mpm *mpm, const char *function, mps_status
     mpsi_give(&given, "component", component);
     mpsi_give(&given, "count", (double)count);
     for (int64_t i = 0; i < count; i++) /* in the plane the third coordinate is not read */
-      mpsi_give_vector(&given, "points", mpm->dim, points + 3 * i);
+      mpsi_give_vector(&given, "points", mpm->grid.dim, points + 3 * i);
   }
   return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
 }
@@ -335,7 +335,7 @@ mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t co
   const int32_t first = component < 0 ? 0 : component, width = component < 0 ? components : 1;
   list.columns = width;
   for (int32_t c = 0; c < width; c++)
-    list.column[c] = mpsi_particles_column(mpm->particles, field, first + c);
+    list.column[c] = mpsi_particles_column(mpm->p.set, field, first + c);
   status = list_near(&list, __func__, count, points);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, list.row);
@@ -344,7 +344,7 @@ mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t co
   }
   for (int64_t i = 0; i < count; i++) {
     fit f = {.list = &list};
-    for (int c = 0; c < mpm->dim; c++) f.X[c] = mpsi_grid_coordinate(mpm, c, points[3 * i + c]);
+    for (int c = 0; c < mpm->grid.dim; c++) f.X[c] = mpsi_grid_at(&mpm->grid, c, points[3 * i + c]);
     const int32_t state = begin_fit(&f);
     for (int32_t c = 0; c < width; c++)
       values[width * i + c] = state == MPS_GRID_POINT_INSIDE ? value_of(&f, c) : NAN;

@@ -39,7 +39,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->grid.worker_count, mpsi_worker_bytes(mpm)},
               {mpm->energy.cells_room.capacity, sizeof *mpm->energy.cells},
               {mpm->energy.nodes_room.capacity, sizeof *mpm->energy.nodes},
-              {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->dim * sizeof(double)},
+              {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->grid.dim * sizeof(double)},
               {mpm->rooms.strain.capacity + mpm->rooms.rough.capacity, sizeof(double)},
               {mpm->p.stencil ? mpm->p.count : 0, sizeof *mpm->p.stencil},
               {mpm->p.count, 2 * sizeof *mpm->grid.radix}};
@@ -52,9 +52,9 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
 /* Volume, momenta and kinetic energy of particles [begin, end). */
 static void sum_particles(const mps_mpm *mpm, int64_t begin, int64_t end, mps_totals *t) {
   const mpsi_columns *p = &mpm->p;
-  const int dim = mpm->dim;
-  const double h = mpm->def.cell, full = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
-  const double moment = mpm->standard ? 0.0 : full; /* particles without L carry no spin */
+  const int dim = mpm->grid.dim;
+  const double h = mpm->grid.cell, full = h * h / (mpm->grid.spline == 3 ? 3.0 : 4.0);
+  const double moment = mpm->grid.standard ? 0.0 : full; /* particles without L carry no spin */
   for (int64_t k = begin; k < end; k++) {
     const double m = p->m[k];
     double x[3] = {0}, v[3] = {0}, L[3][3] = {{0}};

@@ -9,8 +9,8 @@
 /* The particle that ends the step, of which the message says what is wrong with it. */
 static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k, const char *what) {
   const mpsi_columns *p = &mpm->p;
-  const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
-  const bool space = mpm->dim == 3;
+  const long long id = (long long)mpsi_particles_integers(mpm->p.set, "id")[k];
+  const bool space = mpm->grid.dim == 3;
   const double z = space ? p->x[2][k] : 0.0, vz = space ? p->v[2][k] : 0.0;
   const mps_status status = mpsi_fail(
       mpm->context, function, MPS_ERROR_DIVERGED,

@@ -35,9 +35,9 @@ static box box_under(const mpsi_cell_block *cells, int q, const int32_t *low, co
 
 /* Where the stencils that have a node in a body may have nodes; empty where none has. */
 static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
-  const int reach = mpm->def.spline;
+  const int reach = mpm->grid.spline;
   box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
-  for (int q = 0; q < 1 << mpm->dim; q++) {
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     if (!nodes->inside) continue;
     const box in = box_under(cells, q, nodes->low, nodes->high);
@@ -52,7 +52,7 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 /* Whether the stencils may have nodes beside a thin body. */
 static bool near_thin(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   bool any = false;
-  for (int q = 0; q < 1 << mpm->dim; q++) any = any || mpm->grid.nodes[cells->to[q]].thin;
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) any = any || mpm->grid.nodes[cells->to[q]].thin;
   return any && mpm->contact.thin;
 }
 
@@ -62,19 +62,20 @@ static bool all_apart(const mps_mpm *mpm) { return mpsi_forces_apart(mpm) || mpm
 /* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
 static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
-  const bool all = all_apart(mpm) || mpm->by_weight || mpm->flip > 0.0 || (finds && cells->edge);
+  const bool all =
+      all_apart(mpm) || mpm->grid.by_weight || mpm->grid.flip > 0.0 || (finds && cells->edge);
   bool rough = false;
   for (int32_t k = 0; cells->inside && k < cells->pairs; k++) {
     const int32_t body = mpm->contact.cell_pair[cells->first_pair + k].body;
     const mps_contact *contact = mpm->contact.handle[body];
     rough = rough || (contact->def.friction > 0.0 && !mpsi_by_impulses(contact));
   }
-  for (int q = 0; q < 1 << mpm->dim; q++) {
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     box under = box_under(cells, q, low, high);
     under = common(&under, near);
     const bool in_contact = !is_empty(&under);
-    if (!in_contact && !cells->edge && !mpm->standard && !all_apart(mpm)) continue;
+    if (!in_contact && !cells->edge && !mpm->grid.standard && !all_apart(mpm)) continue;
     if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
     nodes->split = nodes->split || all || (in_contact && (rough || cells->pairs > 1));
   }
@@ -115,13 +116,13 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     const box near = near_bodies(mpm, cells);
     cells->inside = !is_empty(&near);
     cells->thin = cells->ghost ? cells->thin && mpm->contact.thin : near_thin(mpm, cells);
-    cells->cut = cells->edge || cells->inside || cells->thin || mpm->standard;
+    cells->cut = cells->edge || cells->inside || cells->thin || mpm->grid.standard;
     if (cells->cut || all_apart(mpm)) mark_cut(mpm, cells, &near, finds);
   }
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
     cells->split = false;
-    for (int q = 0; q < 1 << mpm->dim; q++)
+    for (int q = 0; q < 1 << mpm->grid.dim; q++)
       cells->split = cells->split || mpm->grid.nodes[cells->to[q]].split;
     cells->apart = cells->split || cells->cut;
   }

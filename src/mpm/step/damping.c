@@ -16,7 +16,7 @@ void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed) {
   const double keeps = 1.0 / (1.0 + mpm->def.viscous_damping * mpm->run.dt);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!(node[k][MPSI_MASS] > 0.0)) continue;
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       double *v = &node[k][MPSI_VECTOR + c];
       if (fixed[k] >> c & 1) continue;
       if (local > 0.0) { /* at most to a stop */
@@ -36,7 +36,7 @@ static double applied_to_particles(const mps_mpm *mpm, const mpsi_cell_block *ce
   double sum = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k++) {
     double square = 0.0;
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       const double f = p->m[k] * mpm->def.gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
       square += f * f;
     }
@@ -85,7 +85,7 @@ void mpsi_mpm_measure_balance(mps_mpm *mpm, int64_t g, const uint8_t *fixed,
     const double m = node[k][MPSI_MASS];
     double free[3] = {0.0}, by_boundary[3] = {0.0};
     if (!(m > 0.0)) continue;
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       const double v = node[k][MPSI_VECTOR + c];
       by_boundary[c] = v - held[k][MPSI_VECTOR + c];
       if (!(fixed[k] >> c & 1)) free[c] = v - side[k][MPSI_VECTOR + c];

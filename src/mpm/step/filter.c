@@ -33,7 +33,7 @@
 #define EVERY 8 /* steps */
 
 bool mpsi_mpm_filters(const mps_mpm *mpm) {
-  return mpm->laws.some_filtered && mpm->run.steps % EVERY == 0;
+  return mpm->p.laws.some_filtered && mpm->run.steps % EVERY == 0;
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
@@ -56,8 +56,8 @@ static double bulk_of(const mps_mpm *mpm, int64_t k) {
 static double closed_stress(const mps_mpm *mpm, int64_t k, double *slope) {
   const mpsi_law_use *law = mpsi_law_of(mpm, k);
   const double gap = *gap_of(law, k), density = mpm->p.m[k] / mpm->p.V[k];
-  const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * mpm->def.cell;
-  for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
+  const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * mpm->grid.cell;
+  for (int c = 0; c < 3; c++) slope[c] = c < mpm->grid.dim ? -weight * mpm->def.gravity[c] : 0.0;
   return mean_stress(mpm, k) + bulk_of(mpm, k) * gap;
 }
 
@@ -87,7 +87,7 @@ typedef struct axes {
 static void find_axes(const mps_mpm *mpm, const mpsi_cell_block *cells, axes *out) {
   for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_TILE_SIDE)
     for (int i = 0; i < MPSI_TILE_SIDE; i++) {
-      const int partner = c < mpm->dim ? mpsi_mpm_mirror_partner(mpm, cells, c, i) : i;
+      const int partner = c < mpm->grid.dim ? mpsi_mpm_mirror_partner(mpm, cells, c, i) : i;
       out->place[c][i] = partner;
       out->offset[c][i] = stride * partner;
     }
@@ -108,7 +108,7 @@ MPSI_INLINE void find_support(const mps_mpm *mpm, const mpsi_cell_block *cells, 
   mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
   for (int c = 0; c < dim; c++) {
     const double x = mpm->p.x[c][k] - dt * mpm->p.v[c][k];
-    const double t = mpsi_grid_coordinate(mpm, c, x) - (cells->at[c] * (double)MPSI_SIDE + base[c]);
+    const double t = mpsi_grid_at(&mpm->grid, c, x) - (cells->at[c] * (double)MPSI_SIDE + base[c]);
     mpsi_weights(spline, t < least ? least : t > least + 1.0 ? least + 1.0 : t, out->w[c]);
     for (int i = 0; i <= spline; i++) out->away[c][i] = all->place[c][base[c] + i] - (base[c] + t);
     out->at[c] = all->offset[c] + base[c];
@@ -222,7 +222,7 @@ MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
 MPSI_INLINE void choose_loop(mps_mpm *mpm, int64_t b, int32_t number, loop which) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
-  const int dim = mpm->dim, spline = mpm->def.spline;
+  const int dim = mpm->grid.dim, spline = mpm->grid.spline;
   if (dim == 2 && !cells->thin && spline == 2)
     run_loop(mpm, cells, worker, 2, 2, false, which);
   else if (dim == 2 && !cells->thin)

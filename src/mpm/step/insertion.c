@@ -27,7 +27,7 @@ static mps_status take_in(mps_mpm *mpm, const char *function, int64_t first, int
   if (status == MPS_OK) status = mpsi_mpm_check_states(mpm, function, first, first + count);
   for (int64_t k = first; k < first + count && status == MPS_OK; k++) {
     mpm->p.V[k] = mpsi_mpm_lattice_volume(mpm, k);
-    mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);
+    mpsi_mpm_begin_law(mpm, &mpm->p.laws.law[0], k);
   }
   return status;
 }
@@ -40,7 +40,8 @@ mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int6
 
 mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
   (void)count, (void)ids; /* lists of ids skip removed particles */
-  return mpsi_mpm_agree(self, function, mpsi_mpm_usable(self, function));
+  mps_mpm *mpm = self;
+  return mpsi_mpm_agree(mpm, function, mpsi_mpm_usable(mpm, function));
 }
 
 void mpsi_mpm_renew(void *self) {

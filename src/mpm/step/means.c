@@ -61,4 +61,4 @@ bool mpsi_any_failed(mps_mpm *mpm) {
   return on_any_rank(mpm, failed);
 }
 
-bool mpsi_any_refused(mps_mpm *mpm) { return on_any_rank(mpm, mpm->laws.refusal.cells != NULL); }
+bool mpsi_any_refused(mps_mpm *mpm) { return on_any_rank(mpm, mpm->p.laws.refusal.cells != NULL); }

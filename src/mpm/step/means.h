@@ -11,7 +11,7 @@ enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1, MPSI_SUM_FLOW = 2, MPSI_SUMS = 3
 /* Place (m) of a particle when G2P found its stencil: it has moved by dt v since. */
 static inline void mpsi_former_place(const mps_mpm *mpm, int64_t k, double *x) {
   for (int c = 0; c < 3; c++)
-    x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
+    x[c] = c < mpm->grid.dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
 }
 
 /* The sums of tile node (i, j, k): those of a block, in the tile of a worker, or (NULL) those of

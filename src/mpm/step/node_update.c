@@ -34,7 +34,9 @@ static bool update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
       continue;
     }
     const double own = node[k][MPSI_MASS], m = mpsi_node_mass(own, weight);
-    const double carried = mpm->by_weight ? weight : split ? mpsi_carried_mass(own, weight) : m;
+    const double carried = mpm->grid.by_weight ? weight
+                           : split             ? mpsi_carried_mass(own, weight)
+                                               : m;
     node[k][MPSI_MASS] = m;
     light = light || own < m;
     for (int c = MPSI_VECTOR; c < 4; c++) {
@@ -44,7 +46,7 @@ static bool update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
       side[k][c] = before;
     }
   }
-  return light && !mpm->by_weight && !mpm->standard;
+  return light && !mpm->grid.by_weight && !mpm->grid.standard;
 }
 
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {

@@ -17,8 +17,8 @@ mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function) {
 
 /* The open side that the particle has passed, or -1. */
 static int32_t passed(const mps_mpm *mpm, int64_t k) {
-  for (int c = 0; c < mpm->dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
+  for (int c = 0; c < mpm->grid.dim; c++) {
+    const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k]);
     if (mpm->boundaries.open >> (2 * c) & 1 && X < (double)mpm->grid.low[c]) return 2 * c;
     if (mpm->boundaries.open >> (2 * c + 1) & 1 && X > (double)mpm->grid.high[c]) return 2 * c + 1;
   }
@@ -28,13 +28,13 @@ static int32_t passed(const mps_mpm *mpm, int64_t k) {
 /* The momentum of a removed particle is subtracted from the total, as by an impulse. */
 static void carry_out(mps_mpm *mpm, int64_t k, mpsi_boundary *hold) {
   const mpsi_columns *p = &mpm->p;
-  const double m = p->m[k], h = mpm->def.cell;
-  const double second = mpm->standard ? 0.0 : h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  const double m = p->m[k], h = mpm->grid.cell;
+  const double second = mpm->grid.standard ? 0.0 : h * h / (mpm->grid.spline == 3 ? 3.0 : 4.0);
   double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}}, kinetic = 0.0;
   double impulse[3], moment[3];
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     x[c] = p->x[c][k], v[c] = p->v[c][k];
-    for (int d = 0; d < mpm->dim; d++) L[c][d] = p->L[mpm->dim * c + d][k];
+    for (int d = 0; d < mpm->grid.dim; d++) L[c][d] = p->L[mpm->grid.dim * c + d][k];
   }
   for (int c = 0; c < 3; c++) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
@@ -73,5 +73,5 @@ void mpsi_mpm_remove_leaving(mps_mpm *mpm) {
   if (!any) return;
   if (mpm->p.count > 0) memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
   if (through_sides(mpm, mpm->rooms.gone.item) > 0)
-    mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
+    mpsi_particles_take_out(mpm->p.set, mpm->rooms.gone.item);
 }

@@ -9,8 +9,8 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   if (!mpm->partition) return mpsi_mpm_sort_alone(mpm, function);
   mps_status status = MPS_OK;
   if (mpm->contact.bodies > 0)
-    status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->particles,
-                                       mpm->partition->domain, function, status);
+    status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, mpm->partition->domain,
+                                       function, status);
   if (status == MPS_OK) return mpsi_mpm_partition_sort(mpm, function);
   mpm->run.stale = true;
   return status;

@@ -62,7 +62,7 @@ static void stop_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
-  for (int c = 0; c < mpm->dim; c++) memset(mpm->p.v[c] + cells->begin, 0, bytes);
+  for (int c = 0; c < mpm->grid.dim; c++) memset(mpm->p.v[c] + cells->begin, 0, bytes);
   for (int c = 0; c < 9; c++)
     if (mpm->p.L[c]) memset(mpm->p.L[c] + cells->begin, 0, bytes);
 }
@@ -71,7 +71,7 @@ static void stop_block(mps_mpm *mpm, int64_t b, int32_t worker) {
 static void stop_particles(mps_mpm *mpm) {
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = 0; mpm->energy.counts && k < p->count; k++)
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       const double kinetic = 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
       mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_KINETIC, -kinetic);
       mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_DAMPING_LOSS, kinetic);
@@ -98,7 +98,7 @@ static double *keep_motion(mps_mpm *mpm, const char *function) {
     return NULL;
   }
   const size_t bytes = (size_t)n * sizeof *warm;
-  memcpy(warm, mpsi_particles_integers(mpm->particles, "id"), bytes);
+  memcpy(warm, mpsi_particles_integers(mpm->p.set, "id"), bytes);
   for (int c = 0; c < 12; c++) {
     const double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
     if (column) memcpy(warm + (c + 1) * n, column, bytes);
@@ -111,7 +111,7 @@ static void put_motion_back(mps_mpm *mpm, const double *warm) {
   for (int64_t k = 0; k < n; k++) {
     int64_t id;
     memcpy(&id, &warm[k], sizeof id);
-    const int64_t at = mps_particles_index(mpm->particles, id); /* the step may have sorted */
+    const int64_t at = mps_particles_index(mpm->p.set, id); /* the step may have sorted */
     for (int c = 0; c < 12 && at >= 0; c++) {
       double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
       if (column) column[at] = warm[(c + 1) * n + k];

@@ -9,7 +9,7 @@
 static mps_status evaluate_loads(mps_mpm *mpm, const char *function) {
   for (int32_t k = 0; k < mpm->loads.count; k++) {
     mpsi_traction *load = &mpm->loads.traction[k];
-    for (int c = 0; load->count > 0 && c < mpm->dim; c++) {
+    for (int c = 0; load->count > 0 && c < mpm->grid.dim; c++) {
       const mpsi_signal_use use = {mpm->context, function, "load", k, c};
       mpsi_signal_motion m = {.u = 1.0};
       const mps_status status =
@@ -24,7 +24,7 @@ static mps_status evaluate_loads(mps_mpm *mpm, const char *function) {
 static mps_status evaluate_boundaries(mps_mpm *mpm, const char *function, double dt) {
   for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
     mpsi_boundary *hold = &mpm->boundaries.hold[k];
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       const mpsi_signal_use use = {mpm->context, function, "boundary", k, c};
       mpsi_signal_motion m = {0};
       hold->v[c] = 0.0;
@@ -59,7 +59,7 @@ mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double 
 
 bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm) {
   bool may = false;
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     for (int32_t k = 0; k < mpm->loads.count; k++)
       may = may || mpsi_signal_may_fail(mpm->loads.traction[k].signal[c]);
     for (int32_t k = 0; k < mpm->boundaries.holds; k++)

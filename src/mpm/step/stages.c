@@ -25,13 +25,14 @@ static void warn_about_courant(mps_mpm *mpm, double dt) {
 
 static void warn_about_chatter(mps_mpm *mpm, double dt) {
   double stiffest = 0.0;
-  for (int32_t k = 0; k < mpm->laws.count; k++) stiffest = fmax(stiffest, mpm->laws.law[k].modulus);
+  for (int32_t k = 0; k < mpm->p.laws.count; k++)
+    stiffest = fmax(stiffest, mpm->p.laws.law[k].modulus);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     const mps_contact *contact = mpm->contact.handle[b];
     if (mpsi_by_impulses(contact)) continue;
-    const double k = mpm->def.measure * mpsi_contact_penalty(contact, stiffest,
-                                                             mps_particles_spacing(mpm->particles),
-                                                             mpm->def.cell, mpm->def.courant);
+    const double k = mpm->grid.measure * mpsi_contact_penalty(contact, stiffest,
+                                                              mps_particles_spacing(mpm->p.set),
+                                                              mpm->grid.cell, mpm->def.courant);
     const double ratio = k * dt * dt / mpm->contact.least_mass;
     if (!(ratio > CHATTER) || mpm->contact.state[b].warned) continue;
     mpm->contact.state[b].warned = true;
@@ -49,7 +50,7 @@ void mpsi_step_begin(mps_mpm *mpm, double dt) {
 }
 
 static mpsi_mpm_task g2p(const mps_mpm *mpm) {
-  return mpm->kernels->g2p[mpm->def.geometry][mpm->def.spline - 2];
+  return mpm->kernels->g2p[mpm->grid.geometry][mpm->grid.spline - 2];
 }
 
 static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
@@ -58,7 +59,7 @@ static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 mpsi_pass mpsi_step_scatter_pass(const mps_mpm *mpm) {
-  const mpsi_mpm_task p2g = mpm->kernels->p2g[mpm->def.geometry][mpm->def.spline - 2];
+  const mpsi_mpm_task p2g = mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2];
   return (mpsi_pass){.clear = mpsi_mpm_clear_nodes,
                      .scatter = mpm->contact.penalty_bodies > 0 ? mpsi_mpm_scatter_penalty : p2g,
                      .update = mpsi_mpm_update_nodes};
@@ -79,16 +80,17 @@ void mpsi_step_after_gather(mps_mpm *mpm) {
   mpsi_mpm_sum_boundaries(mpm);
   mpsi_mpm_drive_particles(mpm);
   mpsi_mpm_find_impulse_loss(mpm); /* before means take the nodes' places */
-  if (!mpm->laws.at_once || mpm->laws.some_filtered) mpsi_mpm_apply_laws_by_cell(mpm);
+  if (!mpm->p.laws.at_once || mpm->p.laws.some_filtered) mpsi_mpm_apply_laws_by_cell(mpm);
 }
 
 mps_status mpsi_step_refuse(mps_mpm *mpm, const char *function) {
-  mpsi_refusal *r = &mpm->laws.refusal;
+  mpsi_refusal *r = &mpm->p.laws.refusal;
   mpsi_mpm_undo(mpm);
   if (!r->cells) return MPS_OK;
   r->cells = NULL;
   return mpsi_material_refused(mpm->context, function, r->material, r->status, r->message,
-                               r->particle >= 0 ? mpm->laws.ids[r->particle] : -1, mpm->run.steps);
+                               r->particle >= 0 ? mpm->p.laws.ids[r->particle] : -1,
+                               mpm->run.steps);
 }
 
 void mpsi_step_complete(mps_mpm *mpm) {

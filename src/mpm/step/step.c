@@ -68,7 +68,7 @@ static bool can_solve_in_one_wave(const mps_mpm *mpm) {
 static void wait_for_constraints(mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   for (int64_t k = 0; k < all->block_count; k++)
-    for (int q = 0; q < 1 << mpm->dim; q++)
+    for (int q = 0; q < 1 << mpm->grid.dim; q++)
       mpm->grid.nodes[mpm->grid.cells[all->block[k].cells].to[q]].waits = true;
 }
 
@@ -104,7 +104,7 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   if (status == MPS_OK) status = transfer(mpm, function, dt);
   if (status != MPS_OK) return status;
   mpsi_step_after_gather(mpm);
-  if (mpm->laws.refusal.cells) return mpsi_step_refuse(mpm, function);
+  if (mpm->p.laws.refusal.cells) return mpsi_step_refuse(mpm, function);
   mpsi_step_complete(mpm);
   status = mpsi_mpm_collect_block_results(mpm, function);
   if (mpm->run.broken) return status;

@@ -89,7 +89,7 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   status = transfer(mpm, function, dt, status);
   if (status != MPS_OK) return status;
   mpsi_step_after_gather(mpm);
-  bool refused = mpm->laws.refusal.cells != NULL;
+  bool refused = mpm->p.laws.refusal.cells != NULL;
   if (mpm->undo.on) status = mpsi_mpm_any_rank(mpm, function, &refused);
   if (status != MPS_OK) return status;
   if (refused)

@@ -72,7 +72,7 @@ static void pack(void *data, int64_t k, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[partition->border[k]];
   double *parcel = mpsi_mpm_parcel(partition, false, k);
   mpsi_mpm_clear_penalty(mpm, cells, worker);
-  mpm->kernels->tile[mpm->def.geometry][mpm->def.spline - 2](mpm, partition->border[k], number);
+  mpm->kernels->tile[mpm->grid.geometry][mpm->grid.spline - 2](mpm, partition->border[k], number);
   parcel[0] = cells->apart;
   parcel[1] = cells->split;
   parcel[2] = cells->thin;

@@ -3,6 +3,7 @@
 #ifndef MPSI_MPM_TILES_H
 #define MPSI_MPM_TILES_H
 
+#include "mpm/base/parts.h"
 #include <mps/mpm.h>
 
 #include <stdbool.h>

@@ -7,8 +7,8 @@
 #include <string.h>
 
 static bool some_law_may_refuse(const mps_mpm *mpm) {
-  for (int32_t k = 0; k < mpm->laws.count; k++)
-    if (mpsi_material_may_refuse(mpm->laws.law[k].material)) return true;
+  for (int32_t k = 0; k < mpm->p.laws.count; k++)
+    if (mpsi_material_may_refuse(mpm->p.laws.law[k].material)) return true;
   return false;
 }
 
@@ -20,12 +20,12 @@ static void list_columns(mps_mpm *mpm) {
   const mpsi_columns *p = &mpm->p;
   mpsi_undo *u = &mpm->undo;
   u->columns = 0;
-  for (int c = 0; c < mpm->dim; c++) add(u, p->x[c]), add(u, p->v[c]);
-  for (int c = 0; c < 2 * mpm->dim; c++) add(u, p->s[c]);
+  for (int c = 0; c < mpm->grid.dim; c++) add(u, p->x[c]), add(u, p->v[c]);
+  for (int c = 0; c < 2 * mpm->grid.dim; c++) add(u, p->s[c]);
   for (int c = 0; c < 9; c++) add(u, p->L[c]), add(u, p->F[c]);
   add(u, p->V), add(u, p->J);
-  for (int32_t k = 0; k < mpm->laws.count; k++)
-    for (int32_t h = 0; h < mpm->laws.law[k].columns; h++) add(u, mpm->laws.law[k].history[h]);
+  for (int32_t k = 0; k < mpm->p.laws.count; k++)
+    for (int32_t h = 0; h < mpm->p.laws.law[k].columns; h++) add(u, mpm->p.laws.law[k].history[h]);
 }
 
 static double *warm(const mpsi_undo *u, int32_t c, int64_t count) {
@@ -72,7 +72,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   if (!u->on) return MPS_OK;
   int64_t most = MPSI_UNDO_COLUMNS, holds = 0;
   for (int32_t k = 0; k < b->holds; k++) holds += b->hold[k].sums != NULL;
-  for (int32_t k = 0; k < mpm->laws.count; k++) most += mpm->laws.law[k].columns;
+  for (int32_t k = 0; k < mpm->p.laws.count; k++) most += mpm->p.laws.law[k].columns;
   bool good =
       mpsi_room_ensure(mpm->context, &u->list_room, most, sizeof *u->column) &&
       mpsi_room_ensure(mpm->context, &u->hold_room, b->holds, sizeof *b->hold) &&

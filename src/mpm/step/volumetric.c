@@ -32,18 +32,18 @@
 
 /* A particle whose law takes its own tr(d). */
 static bool keeps_own(const mps_mpm *mpm, int64_t k) {
-  return mpm->laws.some_own && mpsi_law_of(mpm, k)->own_volume;
+  return mpm->p.laws.some_own && mpsi_law_of(mpm, k)->own_volume;
 }
 
 /* Columns of the velocity gradient's diagonal; that of zz is NULL in plane strain. */
 static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
   const mpsi_columns *p = &mpm->p;
-  const bool space = mpm->dim == 3;
+  const bool space = mpm->grid.dim == 3;
   diagonal[0] = p->D[0];
   diagonal[1] = p->D[space ? 4 : 3];
-  diagonal[2] = space                                                ? p->D[8]
-                : mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->L[4]
-                                                                     : NULL;
+  diagonal[2] = space                                                 ? p->D[8]
+                : mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->L[4]
+                                                                      : NULL;
 }
 
 /* Those of a cell that a thin body parts (thin_bodies.h) are two cells. */
@@ -68,7 +68,7 @@ static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM
 
 /* A particle whose mean stress is filtered, not smoothed (filter.c). */
 static bool is_filtered(const mps_mpm *mpm, int64_t k) {
-  return mpm->laws.some_filtered && mpsi_law_of(mpm, k)->filtered;
+  return mpm->p.laws.some_filtered && mpsi_law_of(mpm, k)->filtered;
 }
 
 /* Nodes of a tile along each axis, ghosts of mirrors by their partners, and weights. */
@@ -81,19 +81,19 @@ typedef struct support {
 
 /* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
 static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
-  const double least = mpm->def.spline == 3 ? 1.0 : 0.5;
+  const double least = mpm->grid.spline == 3 ? 1.0 : 0.5;
   support out = {.w = {{1.0}, {1.0}, {1.0}}};
   int base[3];
   double x[3];
   mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
   mpsi_former_place(mpm, k, x);
   if (cells->thin) out.across = mpsi_mpm_find_parted(mpm, cells, base, x).across;
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const double t =
-        mpsi_grid_coordinate(mpm, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
+        mpsi_grid_at(&mpm->grid, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
     out.x[c] = (double)base[c] + t;
-    mpsi_weights(mpm->def.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
-    for (int i = 0; i <= mpm->def.spline; i++)
+    mpsi_weights(mpm->grid.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
+    for (int i = 0; i <= mpm->grid.spline; i++)
       out.at[c][i] = mpsi_mpm_mirror_partner(mpm, cells, c, base[c] + i);
   }
   return out;
@@ -116,7 +116,7 @@ static double *node_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const m
 /* Adds {V, V value} by the weights; or the mean of the nodes' means. */
 static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                  const support *s, double V, double value, const double *slope) {
-  const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
+  const int n = mpm->grid.spline, depth = mpm->grid.dim == 3 ? n : 0;
   for (int k = 0; k <= depth; k++)
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
@@ -129,7 +129,7 @@ static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_wo
 
 static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s,
                    const double *slope) {
-  const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
+  const int n = mpm->grid.spline, depth = mpm->grid.dim == 3 ? n : 0;
   double sum = 0.0, weight = 0.0;
   for (int k = 0; k <= depth; k++)
     for (int j = 0; j <= n; j++)
@@ -152,7 +152,7 @@ static double mean_stress(const mps_mpm *mpm, int64_t k) {
 static void slope_at_rest(const mps_mpm *mpm, int64_t k, double *slope) {
   const bool fluid = mpsi_material_kept(mpsi_law_of(mpm, k)->material) == MPSI_KEPT_PRESSURE;
   const double weight = fluid ? mpm->p.m[k] / (mpm->p.V[k] * mpm->grid.inverse) : 0.0;
-  for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
+  for (int c = 0; c < 3; c++) slope[c] = c < mpm->grid.dim ? -weight * mpm->def.gravity[c] : 0.0;
 }
 
 static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
@@ -236,7 +236,7 @@ static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
     double *D[9], mean[3][MPSI_CHUNK];
-    for (int c = 0; c < mpm->dim * mpm->dim; c++) D[c] = mpm->p.D[c] + k;
+    for (int c = 0; c < mpm->grid.dim * mpm->grid.dim; c++) D[c] = mpm->p.D[c] + k;
     mean_diagonals(mpm, cells, k, end, mean);
     mpsi_mpm_apply_law(mpm, cells, k, end, D, mean, &law);
   }
@@ -252,7 +252,7 @@ static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
-  const bool means = !mpm->laws.at_once, filters = mpsi_mpm_filters(mpm);
+  const bool means = !mpm->p.laws.at_once, filters = mpsi_mpm_filters(mpm);
   if (!(means || filters) || mpsi_any_failed(mpm)) return;
   if (means) mpsi_run_sums(mpm, sum_rates, add_rates, apply_laws);
   if (!(by_nodes(mpm) || filters) || mpsi_any_refused(mpm)) return;

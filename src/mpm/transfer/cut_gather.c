@@ -186,7 +186,8 @@ MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
     const mpsi_node *node = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, side));
     before += f->phi[n] * mpsi_get(node[mpsi_support_local(at, i, j, k)]);
   }
-  for (int c = 0; c < dim; c++) own[c] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+  for (int c = 0; c < dim; c++)
+    own[c] = mpm->grid.flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
 }
 
 /* One particle by its shape functions. */
@@ -201,7 +202,7 @@ MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
     v += f->phi[n] * node;
     for (int d = 0; d < dim; d++) by[d] += f->gradient[d][n] * node;
   }
-  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, p, at, f, own);
+  if (mpm->grid.flip > 0.0) keep_own(mpm, cells, dim, spline, p, at, f, own);
   for (int c = 0; c < dim; c++) {
     out->v[c][to] = v[MPSI_VECTOR + c];
     out->own[c][to] = own[c];
@@ -219,7 +220,8 @@ MPSI_APART void gather_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
     const int64_t p = b->first + lane;
     mpsi_shape_values f;
     mpsi_values_of(mpm, dim, spline, b, lane, &f);
-    if (mpm->standard) gather_one(mpm, cells, worker, dim, spline, b, &at, &f, p, out, to + lane);
+    if (mpm->grid.standard)
+      gather_one(mpm, cells, worker, dim, spline, b, &at, &f, p, out, to + lane);
     for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
       if (mpsi_holds_some(mpm, cells, dim, spline, &at, q))
         mpsi_share_friction(mpm, cells, dim, spline, p, b, &at, &f,
@@ -240,7 +242,7 @@ MPSI_INLINE bool are_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
 MPSI_INLINE void gather_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                             int dim, int spline, bool thin, mpsi_cut *b, mpsi_gathered *out,
                             int at) {
-  if (!mpm->standard) {
+  if (!mpm->grid.standard) {
     if (mpsi_has_fits(mpm, cells, b))
       mpsi_take_fit(mpm, cells, dim, spline, b);
     else
@@ -249,7 +251,7 @@ MPSI_INLINE void gather_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
     if (b->held == 0) find_strain(mpm, cells, worker, dim, spline, thin, b, out, at);
     if (cells->light) give_all_back(mpm, cells, dim, spline, b, out, at);
   }
-  if (mpm->standard || b->held & MPSI_PENALTY)
+  if (mpm->grid.standard || b->held & MPSI_PENALTY)
     gather_each(mpm, cells, worker, dim, spline, b, out, at);
 }
 
@@ -281,7 +283,7 @@ bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(mps_mpm *mpm, const mpsi_cell_block *cel
                                         const mpsi_worker *worker, const mpsi_places *places,
                                         int64_t chunk, int begin, int end, mpsi_gathered *out) {
   const uint32_t held =
-      mpsi_support_state(worker, mpm->dim, mpm->def.spline, places->first[begin]) & MPSI_HELD;
+      mpsi_support_state(worker, mpm->grid.dim, mpm->grid.spline, places->first[begin]) & MPSI_HELD;
   return cells->thin ? MPSI_CHOOSE(gather_thin, held, places, chunk, begin, end, out)
                      : MPSI_CHOOSE(gather_body, held, places, chunk, begin, end, out);
 }
@@ -294,9 +296,9 @@ MPSI_INLINE bool fit_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
   mpsi_cut b;
   double determinant = 1.0;
   mpsi_place_one(mpm, cells, dim, spline, particle, &b);
-  if (!mpm->standard && cells->thin)
+  if (!mpm->grid.standard && cells->thin)
     determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, true, false, &b)[0];
-  else if (!mpm->standard)
+  else if (!mpm->grid.standard)
     determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, false, false, &b)[0];
   mpsi_values_of(mpm, dim, spline, &b, 0, out);
   out->determinant = determinant;
@@ -307,7 +309,7 @@ void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cell
                                  const mpsi_worker *worker, int64_t particle, mpsi_stencil *at,
                                  mpsi_shape_values *out) {
   memset(out, 0, sizeof *out);
-  mpsi_make_stencil(mpm, cells, mpm->dim, mpm->def.spline, particle, at);
+  mpsi_make_stencil(mpm, cells, mpm->grid.dim, mpm->grid.spline, particle, at);
   MPSI_CHOOSE(fit_body, particle, out);
 }
 
@@ -347,7 +349,7 @@ static void foot_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, const 
     if (f.w[n] == 0.0) continue;
     out->active |= UINT64_C(1) << n;
     out->psi[n] = f.phi[n];
-    for (int a = 0; a < mpm->dim; a++) out->psi[n] += f.gradient[a][n] * d[a];
+    for (int a = 0; a < mpm->grid.dim; a++) out->psi[n] += f.gradient[a][n] * d[a];
   }
 }
 
@@ -360,7 +362,7 @@ void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cel
     foot_by_fit(mpm, cells, worker, particle, d, out);
     return;
   }
-  mpsi_make_stencil(mpm, cells, mpm->dim, mpm->def.spline, particle, &at);
+  mpsi_make_stencil(mpm, cells, mpm->grid.dim, mpm->grid.spline, particle, &at);
   memcpy(out->at, at.at, sizeof out->at);
   out->active = mpm->grid.fit[slot].active;
   out->across = 0;

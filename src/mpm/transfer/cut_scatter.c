@@ -21,7 +21,7 @@ MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const mpsi_cut *b, mpsi
   for (int a = 0; a < dim; a++) {
     mpsi_quad body = out->m * mpm->def.gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
-    if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
+    if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
       body -= V * (mpsi_get_some(from->s[2] + p, n) - u) / mpsi_get_some(from->x[0] + p, n);
     for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
     for (int d = 0; d < dim; d++) {
@@ -39,7 +39,7 @@ MPSI_INLINE void find_source(const mps_mpm *mpm, int dim, const mpsi_cut *b, mps
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   out->m = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->m + p, n) & there);
-  const mpsi_quad mh = out->m * mpm->def.cell;
+  const mpsi_quad mh = out->m * mpm->grid.cell;
   for (int a = 0; a < dim; a++) {
     out->momentum[a][0] = out->m * mpsi_get_some(from->v[a] + p, n);
     for (int d = 0; d < dim; d++) {
@@ -155,11 +155,11 @@ static one_source source_of(const mps_mpm *mpm, int dim, int64_t p) {
     out.body[1 + a] = c->m[p] * mpm->def.gravity[a];
     if (c->f[a]) out.body[1 + a] += c->f[a][p];
     for (int d = 0; d < dim; d++) {
-      if (!mpm->standard) out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
+      if (!mpm->grid.standard) out.L[d][1 + a] = mpm->grid.cell * c->L[dim * a + d][p];
       out.stress[d][1 + a] = -c->V[p] * (c->s[symmetric[a][d]][p] - (a == d ? u : 0.0));
     }
   }
-  if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+  if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
     out.body[1] -= c->V[p] * (c->s[2][p] - u) / c->x[0][p];
   return out;
 }
@@ -180,7 +180,7 @@ MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int 
       v += s.L[2] * b->s[2][k][lane];
       force += s.stress[2] * f->gradient[2][n];
     }
-    mpsi_quad sum = v * (m * (mpm->by_weight ? w : phi));
+    mpsi_quad sum = v * (m * (mpm->grid.by_weight ? w : phi));
     sum[MPSI_MASS] = m * phi;
     force[MPSI_EXCESS] = m * (w - phi);
     const bool across = f->across >> n & 1;
@@ -243,8 +243,8 @@ MPSI_INLINE bool find_full(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
 
 MPSI_INLINE void scatter_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                              int dim, int spline, bool thin, mpsi_cut *b) {
-  const bool variant = mpm->standard || mpm->by_weight;
-  if (!mpm->standard) mpsi_make_fit(mpm, cells, worker, dim, spline, thin, b);
+  const bool variant = mpm->grid.standard || mpm->grid.by_weight;
+  if (!mpm->grid.standard) mpsi_make_fit(mpm, cells, worker, dim, spline, thin, b);
   for (int l = 0; l < b->lanes && thin; l++) /* for the way back */
     mpm->contact.across[b->first + l] =
         (mpsi_parted){(uint64_t)b->across[l], (uint64_t)b->parted[l]};
@@ -267,8 +267,8 @@ MPSI_INLINE bool scatter_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const 
 MPSI_INLINE bool scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, uint32_t held, const mpsi_places *places,
                               int64_t chunk, int begin, int end) {
-  if (held == MPSI_IMPULSE && cells->first_fit >= 0 && !mpm->by_weight && !mpm->standard &&
-      find_full(mpm, cells, worker, dim, spline, places, chunk, begin, end))
+  if (held == MPSI_IMPULSE && cells->first_fit >= 0 && !mpm->grid.by_weight &&
+      !mpm->grid.standard && find_full(mpm, cells, worker, dim, spline, places, chunk, begin, end))
     return false;
   for (int k = begin; k < end; k += 4) {
     mpsi_cut b;
@@ -282,7 +282,7 @@ bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mps_mpm *mpm, const mpsi_cell_block *ce
                                          const mpsi_worker *worker, const mpsi_places *places,
                                          int64_t chunk, int begin, int end) {
   const uint32_t held =
-      mpsi_support_state(worker, mpm->dim, mpm->def.spline, places->first[begin]) & MPSI_HELD;
+      mpsi_support_state(worker, mpm->grid.dim, mpm->grid.spline, places->first[begin]) & MPSI_HELD;
   return cells->thin ? MPSI_CHOOSE(scatter_thin, held, places, chunk, begin, end)
                      : MPSI_CHOOSE(scatter_body, held, places, chunk, begin, end);
 }

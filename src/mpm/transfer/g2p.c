@@ -256,7 +256,7 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry,
 
 /* FLIP: what the particles keep of their own velocities. */
 static void add_own(mps_mpm *mpm, int64_t begin, int n, const mpsi_gathered *from) {
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += from->own[c][k];
 }
 
@@ -271,23 +271,24 @@ static void add_own(mps_mpm *mpm, int64_t begin, int n, const mpsi_gathered *fro
 static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
   int64_t bad = -1;
   for (int64_t k = begin; k < end; k++)
-    for (int c = 0; c < mpm->dim; c++) {
+    for (int c = 0; c < mpm->grid.dim; c++) {
       double *x = &mpm->p.x[c][k];
-      const double X = mpsi_grid_coordinate(mpm, c, *x);
+      const double X = mpsi_grid_at(&mpm->grid, c, *x);
       const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
       if (X >= low && X <= high) continue;
       if (mpsi_mpm_passes(mpm, c, X)) {
         cells->gone = true;
         continue;
       }
-      const bool axis = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 && !(*x > 0.0);
+      const bool axis =
+          mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 && !(*x > 0.0);
       if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) {
         if (bad < 0) bad = k;
         break;
       }
       const double wall = X < low ? low : high, inwards = X < low ? INFINITY : -INFINITY;
-      *x = mpm->def.origin[c] + mpm->def.cell * wall;
-      while ((mpsi_grid_coordinate(mpm, c, *x) - wall) * inwards < 0.0) *x = nextafter(*x, inwards);
+      *x = mpm->grid.origin[c] + mpm->grid.cell * wall;
+      while ((mpsi_grid_at(&mpm->grid, c, *x) - wall) * inwards < 0.0) *x = nextafter(*x, inwards);
     }
   return bad;
 }
@@ -322,7 +323,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double v = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) v += v2[k] * v2[k];
-    const double c = (moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k];
+    const double c = (moduli ? moduli[k] : mpm->p.laws.law[0].modulus) * V[k] / m[k];
     square[k] =
         ((c < 0.0) | !(v <= FASTEST * FASTEST)) ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
   }
@@ -334,7 +335,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
 
 MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
                              int n) {
-  if (mpm->laws.one_modulus) {
+  if (mpm->p.laws.one_modulus) {
     find_speed(mpm, cells, dim, begin, n, NULL);
     return;
   }
@@ -368,7 +369,7 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
                                                  out)) for (int q = k; q < end; q += MPSI_LANES)
         OF_KIND(gather_lanes, dim, spline)(mpm, &places, q, tile, &rows, EVERY_AXIS, out);
   }
-  if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
+  if (mpm->grid.strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }
 
 MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
@@ -385,14 +386,14 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
   if (mpm->energy.counts) mpsi_mpm_energy_before(mpm, cells, begin, begin + n);
   const moved m = move(mpm, cells, geometry, spline, begin, n, &from);
   if (mpm->energy.counts) mpsi_mpm_energy_moved(mpm, cells, begin, begin + n);
-  if (mpm->flip > 0.0) add_own(mpm, begin, n, &from);
+  if (mpm->grid.flip > 0.0) add_own(mpm, begin, n, &from);
   if (m.left) cells->left = true;
   if (m.outside) {
     const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
     if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
   }
   if (mpm->energy.counts) mpsi_mpm_energy_after(mpm, cells, begin, begin + n);
-  if (!mpm->laws.at_once) return; /* the laws wait for the means */
+  if (!mpm->p.laws.at_once) return; /* the laws wait for the means */
   mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL, law);
   speed_chunk(mpm, cells, dim, begin, n);
 }
@@ -400,7 +401,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
 /* Whether some node under the block keeps momentum that its particles are to have: blocks.h. */
 static bool is_light(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   bool any = false;
-  for (int q = 0; q < 1 << mpm->dim; q++) {
+  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     any = any || nodes->light || (nodes->across >= 0 && mpm->grid.nodes[nodes->across].light);
   }
@@ -444,6 +445,6 @@ void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
   cells->speed = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    speed_chunk(mpm, cells, mpm->dim, k, n);
+    speed_chunk(mpm, cells, mpm->grid.dim, k, n);
   }
 }

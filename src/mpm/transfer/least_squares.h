@@ -187,7 +187,7 @@ MPSI_INLINE void mpsi_values_of(const mps_mpm *mpm, int dim, int spline, const m
                                 int lane, mpsi_shape_values *out) {
   out->across = (uint64_t)b->across[lane];
   out->determinant = 1.0;
-  if (mpm->standard) {
+  if (mpm->grid.standard) {
     mpsi_take_splines(mpm, dim, spline, b, lane, out);
     return;
   }
@@ -212,9 +212,9 @@ MPSI_INLINE void mpsi_place_one(const mps_mpm *mpm, const mpsi_cell_block *cells
 
 /* The function `body` with dimension and spline as literal arguments; of the solver's kind. */
 #define MPSI_CHOOSE(body, ...)                                                                     \
-  (mpm->dim == 2          ? mpm->def.spline == 2 ? body(mpm, cells, worker, 2, 2, __VA_ARGS__)     \
-                                                 : body(mpm, cells, worker, 2, 3, __VA_ARGS__)     \
-            : mpm->def.spline == 2 ? body(mpm, cells, worker, 3, 2, __VA_ARGS__)                   \
-                          : body(mpm, cells, worker, 3, 3, __VA_ARGS__))
+  (mpm->grid.dim == 2      ? mpm->grid.spline == 2 ? body(mpm, cells, worker, 2, 2, __VA_ARGS__)   \
+                                                   : body(mpm, cells, worker, 2, 3, __VA_ARGS__)   \
+        : mpm->grid.spline == 2 ? body(mpm, cells, worker, 3, 2, __VA_ARGS__)                      \
+                           : body(mpm, cells, worker, 3, 3, __VA_ARGS__))
 
 #endif

@@ -27,7 +27,7 @@ MPSI_INLINE void find_quad_parts(const mps_mpm *mpm, int geometry, int spline, b
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int dim = mpsi_dim_of(geometry);
   const mpsi_columns *p = &mpm->p;
-  const double h = mpm->def.cell, stiff = -mpsi_inverse_moment(spline) * mpm->grid.inverse;
+  const double h = mpm->grid.cell, stiff = -mpsi_inverse_moment(spline) * mpm->grid.inverse;
   const double dt = split ? 1.0 : mpm->run.dt;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
   const mpsi_quad mh = m * h, Vs = V * stiff, u = p->u ? mpsi_get(p->u + at) : zero;
@@ -591,7 +591,7 @@ MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
 }
 
 void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {
-  flush_body(mpm, b, worker, mpm->dim);
+  flush_body(mpm, b, worker, mpm->grid.dim);
 }
 
 #define DEFINE(g, s, geometry, spline)                                                             \

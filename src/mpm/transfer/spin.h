@@ -24,7 +24,7 @@
  * contact, which is as published. */
 MPSI_INLINE mpsi_mask mpsi_keeps_spin(const mps_mpm *mpm, const mpsi_cut *b) {
   const mpsi_mask all = {-1, -1, -1, -1};
-  if (mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || mpm->by_weight) return ~all;
+  if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || mpm->grid.by_weight) return ~all;
   return b->held & MPSI_IMPULSE ? all : b->parted != 0;
 }
 
@@ -106,7 +106,7 @@ MPSI_INLINE bool mpsi_give_spin(const mps_mpm *mpm, int dim, int spline, const m
     if (o >= dim) continue;
     const mpsi_quad more = (mpsi_quad)((mpsi_mask)spin[axis] & turns);
     const mpsi_quad turn =
-        (mpsi_quad)((mpsi_mask)(0.5 * mpm->def.cell * lack[axis]) & ~turns & keeps);
+        (mpsi_quad)((mpsi_mask)(0.5 * mpm->grid.cell * lack[axis]) & ~turns & keeps);
     s->momentum[o][1 + a] += more, s->momentum[a][1 + o] -= more;
     s->turn[o][a] = turn, s->turn[a][o] = -turn;
   }

@@ -32,7 +32,7 @@ typedef struct mpsi_wall {
 MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                int spline, uint32_t state, int32_t first) {
   int place[3], axis = -1;
-  if (state != MPSI_OUTSIDE || mpm->by_weight) return -1;
+  if (state != MPSI_OUTSIDE || mpm->grid.by_weight) return -1;
   mpsi_unravel(first, MPSI_TILE_SIDE, place);
   for (int c = 0; c < dim; c++) {
     const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place[c];

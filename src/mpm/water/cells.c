@@ -25,7 +25,7 @@ typedef struct tile {
 
 static tile tile_of(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   tile out = {{0.0}, {0}};
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, most = mpm->grid.high[c] - 1 - first;
     out.first[c] = (double)first;
     out.last[c] = most < MPSI_TILE_SIDE - 1 ? (int)most : MPSI_TILE_SIDE - 1;
@@ -37,7 +37,7 @@ static tile tile_of(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 MPSI_INLINE int find_place(const mps_mpm *mpm, const tile *in, int dim, int64_t particle) {
   int corner = 0, local = 0;
   for (int c = 0; c < dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]) - in->first[c];
+    const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][particle]) - in->first[c];
     int cell = X > 0.0 ? (int)X : 0; /* without a call of floor */
     cell = cell < in->last[c] ? cell : in->last[c];
     corner |= (cell >= MPSI_SIDE) << c;
@@ -95,7 +95,7 @@ MPSI_INLINE void sum_body(mps_mpm *mpm, int64_t b, int dim) {
 
 static void sum_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
-  if (mpm->dim == 2)
+  if (mpm->grid.dim == 2)
     sum_body(mpm, b, 2);
   else
     sum_body(mpm, b, 3);
@@ -110,7 +110,7 @@ static void find_means(mps_mpm *mpm, int64_t g, int32_t worker) {
     cell[k].p *= inverse;
     cell[k].n *= inverse;
     cell[k].k *= inverse;
-    for (int c = 0; c < mpm->dim; c++) cell[k].g[c] *= inverse;
+    for (int c = 0; c < mpm->grid.dim; c++) cell[k].g[c] *= inverse;
   }
 }
 
@@ -128,7 +128,8 @@ static int find_face(const mps_mpm *mpm, const double *x, int direction) {
   for (int64_t f = water->faces - 1; f >= 0; f--) {
     const mps_pore_face_def *def = &water->face[f];
     bool in = def->sides == 0 || (def->sides >> direction & 1) != 0;
-    for (int c = 0; c < mpm->dim; c++) in = in && x[c] >= def->lower[c] && x[c] <= def->upper[c];
+    for (int c = 0; c < mpm->grid.dim; c++)
+      in = in && x[c] >= def->lower[c] && x[c] <= def->upper[c];
     if (in) return (int)f;
   }
   return -1;
@@ -136,7 +137,7 @@ static int find_face(const mps_mpm *mpm, const double *x, int direction) {
 
 /* Whether cell k of block g has others on all its faces: most have. */
 static bool is_inside(const mps_mpm *mpm, int64_t g, int k, const int *place) {
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const int64_t at = (int64_t)mpm->grid.nodes[g].at[c] * MPSI_SIDE + place[c];
     if (at + 1 >= mpm->grid.high[c] || at <= mpm->grid.low[c]) return false;
     if (mpsi_pore_empty(mpsi_pore_beside(mpm, g, k, 2 * c))) return false;
@@ -153,7 +154,7 @@ static void find_beyond(mps_mpm *mpm, int64_t g, int k, int direction, const dou
   mpsi_unravel(k, MPSI_SIDE, place);
   const int64_t at = (int64_t)mpm->grid.nodes[g].at[axis] * MPSI_SIDE + place[axis];
   const bool side = up ? at + 1 >= mpm->grid.high[axis] : at <= mpm->grid.low[axis];
-  const double half = up ? 0.5 * mpm->def.cell : -0.5 * mpm->def.cell;
+  const double half = up ? 0.5 * mpm->grid.cell : -0.5 * mpm->grid.cell;
   double to[3] = {x[0], x[1], x[2]};
   edge->beyond[direction] = MPSI_PORE_CELL;
   edge->face[direction] = -1;
@@ -172,37 +173,37 @@ static void find_beyond(mps_mpm *mpm, int64_t g, int k, int direction, const dou
 
 /* The filled part of a cell whose box is at radius r. */
 static void find_filled(const mps_mpm *mpm, double r, mpsi_pore_cell *cell, mpsi_pore_edge *edge) {
-  const double h = mpm->def.cell;
-  const double box = (mpm->dim == 3 ? h * h * h : h * h) * r;
+  const double h = mpm->grid.cell;
+  const double box = (mpm->grid.dim == 3 ? h * h * h : h * h) * r;
   int axes = 0;
-  for (int c = 0; c < mpm->dim; c++) axes += (cell->free >> (2 * c) & 3) != 0;
-  const double f = axes == 0 ? 1.0 : fmin(1.0, cell->volume / (mpm->def.measure * box));
+  for (int c = 0; c < mpm->grid.dim; c++) axes += (cell->free >> (2 * c) & 3) != 0;
+  const double f = axes == 0 ? 1.0 : fmin(1.0, cell->volume / (mpm->grid.measure * box));
   const double part = axes <= 1 ? f : axes == 2 ? sqrt(f) : cbrt(f);
   edge->space = box * f;
   for (int c = 0; c < 3; c++) {
-    const int sides = c < mpm->dim ? cell->free >> (2 * c) & 3 : 0;
+    const int sides = c < mpm->grid.dim ? cell->free >> (2 * c) & 3 : 0;
     edge->fill[c] = sides != 0 ? part : 1.0;
     edge->shift[c] = 0.5 * h * (1.0 - edge->fill[c]) * (sides == 1 ? 1.0 : sides == 2 ? -1.0 : 0.0);
-    cell->p += c < mpm->dim ? cell->g[c] * edge->shift[c] : 0.0;
+    cell->p += c < mpm->grid.dim ? cell->g[c] * edge->shift[c] : 0.0;
   }
-  for (int d = 0; d < 2 * mpm->dim && mpm->water->flows; d++)
+  for (int d = 0; d < 2 * mpm->grid.dim && mpm->water->flows; d++)
     if (f < 0.5 && (cell->free >> d & 1) && edge->beyond[d] == MPSI_PORE_DRAINED) cell->thin = true;
 }
 
 /* Of a cell that is not inside. */
 static void find_edge(mps_mpm *mpm, int64_t g, int k, const int *place, mpsi_pore_cell *cell) {
-  const bool ring = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  const bool ring = mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
   mpsi_pore_edge *edge = mpm->water->edge + (cell - mpm->water->cell);
   double x[3];
   mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
-  for (int d = 0; d < 2 * mpm->dim; d++) find_beyond(mpm, g, k, d, x, cell, edge);
+  for (int d = 0; d < 2 * mpm->grid.dim; d++) find_beyond(mpm, g, k, d, x, cell, edge);
   find_filled(mpm, ring ? x[0] : 1.0, cell, edge);
 }
 
 static void find_faces(mps_mpm *mpm, int64_t g, int32_t worker) {
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
-  const bool ring = mpm->def.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  const bool ring = mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (mpsi_pore_empty(&cell[k])) continue;

@@ -28,11 +28,11 @@ static double weight_of_water(const mps_mpm *mpm) {
 static double area_of(const mps_mpm *mpm, const mpsi_pore_cell *cell, const mpsi_pore_cell *beside,
                       int direction, double X) {
   double area = mpsi_pore_radius(mpm, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
-  for (int c = 0; c < mpm->dim; c++)
+  for (int c = 0; c < mpm->grid.dim; c++)
     if (c != direction / 2)
-      area *= mpm->def.cell * (beside ? fmin(mpsi_pore_edge_of(mpm, cell)->fill[c],
-                                             mpsi_pore_edge_of(mpm, beside)->fill[c])
-                                      : mpsi_pore_edge_of(mpm, cell)->fill[c]);
+      area *= mpm->grid.cell * (beside ? fmin(mpsi_pore_edge_of(mpm, cell)->fill[c],
+                                              mpsi_pore_edge_of(mpm, beside)->fill[c])
+                                       : mpsi_pore_edge_of(mpm, cell)->fill[c]);
   return area;
 }
 
@@ -41,7 +41,7 @@ static double given_pressure(const mps_mpm *mpm, int face, const double *x) {
   if (face < 0) return 0.0;
   const mps_pore_face_def *def = &mpm->water->face[face];
   double p = def->pressure;
-  for (int c = 0; c < mpm->dim && def->at_rest; c++)
+  for (int c = 0; c < mpm->grid.dim && def->at_rest; c++)
     p += mpm->water->def.density * mpm->def.gravity[c] * x[c];
   return p;
 }
@@ -65,8 +65,8 @@ static face_flow to_cell(const mps_mpm *mpm, const mpsi_pore_cell *cell,
                          double area) {
   const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
   const double still = mpm->water->def.density * mpm->def.gravity[axis];
-  const double distance = mpm->def.cell + sign * (mpsi_pore_edge_of(mpm, beside)->shift[axis] -
-                                                  mpsi_pore_edge_of(mpm, cell)->shift[axis]);
+  const double distance = mpm->grid.cell + sign * (mpsi_pore_edge_of(mpm, beside)->shift[axis] -
+                                                   mpsi_pore_edge_of(mpm, cell)->shift[axis]);
   const double drive = (p_beside - p) / distance - sign * still; /* outwards */
   const double sum = cell->k + beside->k, own = sum > 0.0 ? 2.0 * beside->k / sum : 1.0;
   return (face_flow){.slope = sign * drive * own + still,
@@ -86,7 +86,7 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
                          const mpsi_pore_cell *cell, const double *x, double X,
                          const mpsi_pore_cell **behind) {
   const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
-  const double h = mpm->def.cell, p = pressure_of(cell, end);
+  const double h = mpm->grid.cell, p = pressure_of(cell, end);
   const face_flow none = {.known = false};
   *behind = NULL;
   if (!mpm->water->flows && mpsi_pore_edge_of(mpm, cell)->beyond[direction] != MPSI_PORE_CELL)
@@ -122,7 +122,7 @@ static double centre_of(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_ce
   mpsi_unravel(k, MPSI_SIDE, place);
   const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
   mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
-  for (int c = 0; c < mpm->dim; c++) x[c] += mpsi_pore_edge_of(mpm, cell)->shift[c];
+  for (int c = 0; c < mpm->grid.dim; c++) x[c] += mpsi_pore_edge_of(mpm, cell)->shift[c];
   return (double)mpm->grid.nodes[g].at[0] * MPSI_SIDE + place[0];
 }
 
@@ -132,7 +132,7 @@ static double centre_of(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_ce
 static bool find_whole(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell,
                        const mpsi_pore_cell **beside) {
   if (!cell->inside) return false;
-  for (int d = 0; d < 2 * mpm->dim; d++) {
+  for (int d = 0; d < 2 * mpm->grid.dim; d++) {
     beside[d] = mpsi_pore_beside(mpm, g, k, d);
     if (beside[d]->free) return false;
   }
@@ -150,16 +150,16 @@ static double drive_to(const mps_mpm *mpm, const mpsi_pore_cell *cell, const mps
 /* Flux (m3/s) into it, as to_cell has for each face. */
 static double flux_among_whole(const mps_mpm *mpm, const mpsi_pore_cell *cell,
                                const mpsi_pore_cell *const *beside) {
-  const double h = mpm->def.cell;
+  const double h = mpm->grid.cell;
   double sum = 0.0;
-  for (int d = 0; d < 2 * mpm->dim; d++)
+  for (int d = 0; d < 2 * mpm->grid.dim; d++)
     sum += drive_to(mpm, cell, beside[d], d, beside[d]->p - cell->p);
-  return sum * (mpm->dim == 3 ? h * h : h) * cell->k / weight_of_water(mpm);
+  return sum * (mpm->grid.dim == 3 ? h * h : h) * cell->k / weight_of_water(mpm);
 }
 
 static void slope_among_whole(const mps_mpm *mpm, mpsi_pore_cell *cell,
                               const mpsi_pore_cell *const *beside) {
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const mpsi_pore_cell *below = beside[2 * c], *above = beside[2 * c + 1];
     cell->g[c] = mpm->water->def.density * mpm->def.gravity[c] +
                  0.5 * (drive_to(mpm, cell, above, 2 * c + 1, above->now - cell->now) -
@@ -178,7 +178,7 @@ static void squeeze(mps_mpm *mpm, int64_t g, mpsi_pore_cell *cell) {
   int d = 0;
   while (!((cell->free >> d & 1) && mpsi_pore_edge_of(mpm, cell)->beyond[d] == MPSI_PORE_DRAINED))
     d++;
-  cell->gain = cell->change / (mpm->run.dt * mpm->def.measure);
+  cell->gain = cell->change / (mpm->run.dt * mpm->grid.measure);
   *outflow_of(mpm, g, mpsi_pore_edge_of(mpm, cell)->face[d]) -= cell->gain;
 }
 
@@ -187,7 +187,7 @@ static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *ce
   double x[3], flux = 0.0;
   if (find_whole(mpm, g, k, cell, beside)) return flux_among_whole(mpm, cell, beside);
   const double X = centre_of(mpm, g, k, cell, x);
-  for (int d = 0; d < 2 * mpm->dim; d++) {
+  for (int d = 0; d < 2 * mpm->grid.dim; d++) {
     const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
     if (f.known) flux += f.flux;
     if (f.known && behind) *outflow_of(mpm, g, mpsi_pore_edge_of(mpm, behind)->face[d]) -= f.flux;
@@ -197,8 +197,8 @@ static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *ce
 
 static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   const struct mpsi_water *water = mpm->water;
-  const double h = mpm->def.cell;
-  double space = mpm->dim == 3 ? h * h * h : h * h;
+  const double h = mpm->grid.cell;
+  double space = mpm->grid.dim == 3 ? h * h * h : h * h;
   cell->gain = flux_into(mpm, g, k, cell);
   /* a cell less than half full at an impervious surface: else its steps would be short */
   if (!cell->inside) {
@@ -241,7 +241,7 @@ static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cel
     return;
   }
   const double X = centre_of(mpm, g, k, cell, x);
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const face_flow below = at_face(mpm, g, k, 2 * c, true, cell, x, X, &behind);
     const face_flow above = at_face(mpm, g, k, 2 * c + 1, true, cell, x, X, &behind);
     cell->g[c] = between(&below, &above);
@@ -250,11 +250,11 @@ static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cel
 
 /* On the line from the neighbours inside to the surface, the mean over the axes that have one. */
 static void interpolate(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
-  const double h = mpm->def.cell;
+  const double h = mpm->grid.cell;
   double x[3], sum = 0.0;
   int lines = 0;
   centre_of(mpm, g, k, cell, x);
-  for (int d = 0; d < 2 * mpm->dim; d++) {
+  for (int d = 0; d < 2 * mpm->grid.dim; d++) {
     const int axis = d / 2, sign = d & 1 ? 1 : -1;
     if (!(cell->free >> d & 1) || mpsi_pore_edge_of(mpm, cell)->beyond[d] != MPSI_PORE_DRAINED)
       continue;
@@ -306,7 +306,7 @@ MPSI_INLINE void give_body(mps_mpm *mpm, int64_t b, int dim) {
     double centre[3];
     const mpsi_pore_cell *cell = mpsi_pore_cell_at(mpm, cells, at, centre);
     const double gain = water->flows ? water->def.density * mpm->run.dt * cell->gain *
-                                           mpm->def.measure / cell->volume
+                                           mpm->grid.measure / cell->volume
                                      : 0.0;
     for (int c = 0; c < dim; c++) centre[c] += mpsi_pore_edge_of(mpm, cell)->shift[c];
     for (; k < cells->end && water->place[k] == at; k++) {
@@ -330,7 +330,7 @@ MPSI_INLINE void give_body(mps_mpm *mpm, int64_t b, int dim) {
 
 static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
-  if (mpm->dim == 2)
+  if (mpm->grid.dim == 2)
     give_body(mpm, b, 2);
   else
     give_body(mpm, b, 3);

@@ -4,7 +4,7 @@
 
 static mps_status refuse_particle(const mps_mpm *mpm, const char *function, int64_t k,
                                   const char *field, double value, const char *allowed) {
-  const int64_t id = mpsi_particles_integers(mpm->particles, "id")[k];
+  const int64_t id = mpsi_particles_integers(mpm->p.set, "id")[k];
   (void)mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                   "'%s' of particle %lld is %g, must be %s", field, (long long)id, value, allowed);
   mpsi_fail_where(mpm->context, -1, id);

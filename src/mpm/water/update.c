@@ -47,7 +47,7 @@ static void link_blocks(mps_mpm *mpm) {
       int32_t at[3];
       memcpy(at, grid->nodes[g].at, sizeof at);
       at[d / 2] += d & 1 ? 1 : -1;
-      mpm->water->beside[6 * g + d] = d < 2 * mpm->dim ? find_block(grid, at) : -1;
+      mpm->water->beside[6 * g + d] = d < 2 * mpm->grid.dim ? find_block(grid, at) : -1;
     }
 }
 
@@ -64,7 +64,7 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
-        c < mpm->dim ? mpsi_particles_column(mpm->particles, "seepage", c) : NULL;
+        c < mpm->grid.dim ? mpsi_particles_column(mpm->p.set, "seepage", c) : NULL;
   if (mpm->run.steps == 0) mpm->water->start = mpsi_pore_mass(mpm);
   link_blocks(mpm);
   mpsi_mpm_for_cells(mpm, keep_volumes);
@@ -75,7 +75,7 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
 
 static void sum_outflow(mps_mpm *mpm) {
   struct mpsi_water *water = mpm->water;
-  const double amount = water->def.density * mpm->def.measure;
+  const double amount = water->def.density * mpm->grid.measure;
   for (int f = 0; f < MPSI_PORE_FACES; f++) {
     double sum = 0.0; /* m3/s, in the order of the blocks */
     for (int64_t g = 0; g < mpm->grid.node_count; g++) sum += water->outflow[g][f];

@@ -65,9 +65,9 @@ static inline mpsi_pore_cell *mpsi_pore_cell_at(const mps_mpm *mpm, const mpsi_c
   const int corner = place / MPSI_PORE_BLOCK, local = place % MPSI_PORE_BLOCK;
   int at[3];
   mpsi_unravel(local, MPSI_SIDE, at);
-  for (int c = 0; c < mpm->dim; c++) {
+  for (int c = 0; c < mpm->grid.dim; c++) {
     const int64_t cell = ((int64_t)cells->at[c] + (corner >> c & 1)) * MPSI_SIDE + at[c];
-    centre[c] = mpm->def.origin[c] + mpm->def.cell * ((double)cell + 0.5);
+    centre[c] = mpm->grid.origin[c] + mpm->grid.cell * ((double)cell + 0.5);
   }
   return mpm->water->cell + mpsi_first_node(mpm, cells->to[corner]) + local;
 }
@@ -78,8 +78,8 @@ static inline bool mpsi_pore_empty(const mpsi_pore_cell *cell) {
 /* Radius (m) that volumes and faces are multiplied by at grid coordinate X; 1 but in axisymmetry.
  */
 static inline double mpsi_pore_radius(const mps_mpm *mpm, double X) {
-  if (mpm->def.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) return 1.0;
-  return mpm->def.origin[0] + X * mpm->def.cell;
+  if (mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) return 1.0;
+  return mpm->grid.origin[0] + X * mpm->grid.cell;
 }
 
 /* Of a cell that is inside: one that is filled, with cells on all faces. */
