@@ -197,7 +197,7 @@ static void add_by_fit(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k, no
     if (f.w[n] == 0.0) continue;
     const int i = n % 4, j = n / 4 % 4, l = n / 16;
     const double s[3] = {at.s[0][i], at.s[1][j], at.s[2][l]};
-    double *to = sums[mpsi_node_under(mpm, cells, at.at[0] + i, at.at[1] + j, at.at[2] + l)];
+    double *to = sums[mpsi_node_under(&mpm->grid, cells, at.at[0] + i, at.at[1] + j, at.at[2] + l)];
     to[0] += m * f.phi[n];
     to[4] += m * (f.w[n] - f.phi[n]);
     for (int c = 0; c < dim; c++) {
@@ -226,7 +226,7 @@ static void check_nodes(const mps_mpm *mpm, node_sums *sums) {
     const double *side =
         nodes->side < 0
             ? NULL
-            : mpm->grid.side[mpsi_first_node(mpm, nodes->side) + n % mpm->grid.block_nodes];
+            : mpm->grid.side[mpsi_first_node(&mpm->grid, nodes->side) + n % mpm->grid.block_nodes];
     mps_assert_near(mpm->grid.node[n][0], sums[n][0], mass);
     mps_assert_near(side ? side[0] : 0.0, sums[n][4], mass);
     for (int c = 1; c <= mpm->grid.dim; c++) {
@@ -266,7 +266,7 @@ static void gather_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
     for (int c = 0; c < dim; c++) x[c] = h * (first[c] * MPSI_SIDE + at.at[c] + own[c]);
     beside = beside || near_bodies(mpm, x);
     if (f.w[n] == 0.0) continue;
-    const double *v = mpm->grid.node[mpsi_node_under(mpm, cells, at.at[0] + n % 4,
+    const double *v = mpm->grid.node[mpsi_node_under(&mpm->grid, cells, at.at[0] + n % 4,
                                                      at.at[1] + n / 4 % 4, at.at[2] + n / 16)];
     for (int c = 0; c < dim; c++) {
       out[c] += f.phi[n] * v[1 + c];

@@ -201,8 +201,10 @@ static void contact_by_own_modulus(void **state) {
   mpm_scene_contact(&s, floor, 0.0);
   const mps_contact *contact = s.mpm->contact.handle[0];
   mpsi_contact_particle a, b;
-  assert_true(mpsi_find_contact(s.mpm, contact, 2, mps_particles_index(s.particles, 0), &a));
-  assert_true(mpsi_find_contact(s.mpm, contact, 2, mps_particles_index(s.particles, 1), &b));
+  assert_true(mpsi_find_contact(&s.mpm->grid, &s.mpm->p, &s.mpm->def, contact, 2,
+                                mps_particles_index(s.particles, 0), &a));
+  assert_true(mpsi_find_contact(&s.mpm->grid, &s.mpm->p, &s.mpm->def, contact, 2,
+                                mps_particles_index(s.particles, 1), &b));
   mps_assert_near(a.force[1], 1.33 * confined(1e5, 0.3) * 0.002, 1e-9);
   mps_assert_near(b.force[1] / a.force[1], 7.0, 1e-9);
   mps_body_destroy(&floor);

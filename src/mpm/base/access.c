@@ -3,22 +3,24 @@
 #include "kernels.h"
 #include "mpm/particles/particles.h"
 
-mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function) {
-  return mpsi_guard_check(&mpm->run.guard, mpm->context, function);
+mps_status mpsi_mpm_between_steps(mps_context *context, const mpsi_run *run, const char *function) {
+  return mpsi_guard_check(&run->guard, context, function);
 }
 
 /* Not after a step that gave no numbers, nor while a field is being edited. */
-mps_status mpsi_mpm_check_whole(mps_mpm *mpm, const char *function) {
-  if (mpm->run.broken)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+mps_status mpsi_mpm_check_whole(mps_context *context, const mpsi_columns *p, const mpsi_run *run,
+                                const char *function) {
+  if (run->broken)
+    return mpsi_fail(context, function, MPS_ERROR_STATE,
                      "an earlier step has left no state to go on from: roll back, restore a "
                      "checkpoint or make a new solver");
-  return mpsi_particles_ready(mpm->p.set, function);
+  return mpsi_particles_ready(p->set, function);
 }
 
 mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_mpm_between_steps(mpm, function);
-  return status == MPS_OK ? mpsi_mpm_check_whole(mpm, function) : status;
+  const mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
+  return status == MPS_OK ? mpsi_mpm_check_whole(mpm->context, &mpm->p, &mpm->run, function)
+                          : status;
 }
 
 double mps_mpm_limit(const mps_mpm *mpm) {

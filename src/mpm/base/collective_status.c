@@ -2,98 +2,102 @@
  * of what any of them has found. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
-bool mpsi_mpm_counts_node_block(const mps_mpm *mpm, int64_t g) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
   int q = 0;
   while (nodes->from[q] < 0) q++;
-  return !mpm->grid.cells[nodes->from[q]].ghost;
+  return !grid->cells[nodes->from[q]].ghost;
 }
 
-bool mpsi_mpm_node_block_complete(const mps_mpm *mpm, int64_t g) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+bool mpsi_mpm_node_block_complete(const mpsi_grid *grid, int64_t g) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
   bool own = false;
-  for (int q = 0; q < 1 << mpm->grid.dim; q++)
-    own = own || (nodes->from[q] >= 0 && !mpm->grid.cells[nodes->from[q]].ghost);
+  for (int q = 0; q < 1 << grid->dim; q++)
+    own = own || (nodes->from[q] >= 0 && !grid->cells[nodes->from[q]].ghost);
   return own;
 }
 
-mps_status mpsi_mpm_any_rank(mps_mpm *mpm, const char *function, bool *any) {
+mps_status mpsi_mpm_any_rank(mpsi_partition *partition, const char *function, bool *any) {
   double one = *any;
-  const mps_status status = mpsi_domain_max(mpm->partition->domain, function, 1, &one);
+  const mps_status status = mpsi_domain_max(partition->domain, function, 1, &one);
   *any = one > 0.0;
   return status;
 }
 
-mps_status mpsi_mpm_compare_edits(mps_mpm *mpm, const char *function, mps_status status) {
-  double found[3] = {mpm->run.edited, mpm->run.stale, mpm->run.lost};
-  mpm->partition->ready = false;
-  status = mpsi_mpm_agree_alike(mpm, function, status, 3, found);
+mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition *partition,
+                                  mpsi_run *run, const mps_mpm_def *def, const char *function,
+                                  mps_status status) {
+  double found[3] = {run->edited, run->stale, run->lost};
+  partition->ready = false;
+  status = mpsi_mpm_agree_alike(contacts, partition, run, def, function, status, 3, found);
   if (status != MPS_OK) return status;
-  mpm->run.edited = found[0] > 0.0;
-  mpm->run.stale = found[1] > 0.0;
-  mpm->run.lost = found[2] > 0.0;
+  run->edited = found[0] > 0.0;
+  run->stale = found[1] > 0.0;
+  run->lost = found[2] > 0.0;
   return MPS_OK;
 }
 
 /* What all ranks have: time, step, where bodies are. */
-static void give_state(const mps_mpm *mpm, mpsi_given *list) {
+static void give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
+                       mpsi_given *list) {
   mpsi_given_begin(list);
-  mpsi_give(list, "the solver's time", mpm->run.time);
-  mpsi_give(list, "the solver's number of steps", (double)mpm->run.steps);
-  mpsi_give(list, "dt", mpm->def.dt);
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    mpsi_body_give_state(list, mpm->contact.body[b]);
+  mpsi_give(list, "the solver's time", run->time);
+  mpsi_give(list, "the solver's number of steps", (double)run->steps);
+  mpsi_give(list, "dt", def->dt);
+  for (int32_t b = 0; b < contacts->bodies; b++) mpsi_body_give_state(list, contacts->body[b]);
 }
 
 /* What signals say of the step to be made. */
-static void give_signals(const mps_mpm *mpm, mpsi_given *list) {
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++)
-    if (mpm->boundaries.hold[k].kind != MPSI_BOUNDARY_NONE)
-      mpsi_give_vector(list, "the velocity of a boundary", mpm->grid.dim,
-                       mpm->boundaries.hold[k].v);
-  for (int32_t k = 0; k < mpm->loads.count; k++)
-    if (mpm->loads.traction[k].count > 0)
-      mpsi_give_vector(list, "the present factor on a load", mpm->grid.dim,
-                       mpm->loads.traction[k].now);
-  for (int32_t b = 0; b < mpm->contact.bodies && !mpm->settling.on; b++)
-    if (mpm->contact.handle[b]->source.moves) mpsi_body_give_ahead(list, mpm->contact.body[b]);
+static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
+                         const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
+                         const mpsi_settling *settling, mpsi_given *list) {
+  for (int32_t k = 0; k < boundaries->holds; k++)
+    if (boundaries->hold[k].kind != MPSI_BOUNDARY_NONE)
+      mpsi_give_vector(list, "the velocity of a boundary", grid->dim, boundaries->hold[k].v);
+  for (int32_t k = 0; k < loads->count; k++)
+    if (loads->traction[k].count > 0)
+      mpsi_give_vector(list, "the present factor on a load", grid->dim, loads->traction[k].now);
+  for (int32_t b = 0; b < contacts->bodies && !settling->on; b++)
+    if (contacts->handle[b]->source.moves) mpsi_body_give_ahead(list, contacts->body[b]);
 }
 
-mps_status mpsi_mpm_agree_alike(mps_mpm *mpm, const char *function, mps_status status,
-                                int32_t count, double *values) {
+mps_status mpsi_mpm_agree_alike(const mpsi_contacts *contacts, mpsi_partition *partition,
+                                const mpsi_run *run, const mps_mpm_def *def, const char *function,
+                                mps_status status, int32_t count, double *values) {
   mpsi_given list;
-  give_state(mpm, &list);
-  return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
-                                     values);
+  give_state(contacts, run, def, &list);
+  return mpsi_domain_agree_given_max(partition->domain, function, status, &list, count, values);
 }
 
 mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
                                   int32_t count, double *values) {
   mpsi_given list;
-  give_state(mpm, &list);
-  if (status == MPS_OK) give_signals(mpm, &list);
+  give_state(&mpm->contact, &mpm->run, &mpm->def, &list);
+  if (status == MPS_OK)
+    give_signals(&mpm->grid, &mpm->loads, &mpm->boundaries, &mpm->contact, &mpm->settling, &list);
   return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
                                      values);
 }
 
-mps_status mpsi_mpm_agree(mps_mpm *mpm, const char *function, mps_status status) {
-  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+mps_status mpsi_mpm_agree(mpsi_partition *partition, const char *function, mps_status status) {
+  return partition ? mpsi_domain_agree(partition->domain, function, status) : status;
 }
 
-mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
-                              const int64_t *ids) {
-  int64_t found[2] = {0, mpm->p.count}; /* of the list; particles */
-  status = mpsi_mpm_agree(mpm, function, status);
+mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
+                              mpsi_partition *partition, const char *function, mps_status status,
+                              int64_t count, const int64_t *ids) {
+  int64_t found[2] = {0, p->count}; /* of the list; particles */
+  status = mpsi_mpm_agree(partition, function, status);
   if (status != MPS_OK) return status;
-  if (!mpm->partition) return mpsi_particles_check_ids(mpm->p.set, function, count, ids);
-  for (int64_t k = 0; k < count; k++) found[0] += mps_particles_index(mpm->p.set, ids[k]) >= 0;
-  status = mpsi_domain_sum(mpm->partition->domain, function, 2, found);
+  if (!partition) return mpsi_particles_check_ids(p->set, function, count, ids);
+  for (int64_t k = 0; k < count; k++) found[0] += mps_particles_index(p->set, ids[k]) >= 0;
+  status = mpsi_domain_sum(partition->domain, function, 2, found);
   if (status != MPS_OK || (found[0] == count && count <= found[1])) return status;
   if (count > found[1])
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld, allowed are 1 to %lld particles", (long long)count,
                      (long long)found[1]);
-  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                    "of %lld ids %lld are of particles of the set on any rank", (long long)count,
                    (long long)found[0]);
 }

@@ -6,35 +6,36 @@
 
 #include <string.h>
 
-void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy) {
-  if (mpm->energy.counts) mpsi_exact_add(&mpm->energy.step[which], energy);
+void mpsi_mpm_energy_add(mpsi_energy *budget, mpsi_energy_sum which, double energy) {
+  if (budget->counts) mpsi_exact_add(&budget->step[which], energy);
 }
 
-void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy) {
-  if (mpm->energy.counts) mpsi_exact_add(&mpm->energy.sum[which], energy);
+void mpsi_mpm_energy_add_at_once(mpsi_energy *budget, mpsi_energy_sum which, double energy) {
+  if (budget->counts) mpsi_exact_add(&budget->sum[which], energy);
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static mpsi_cell_energy *of_cells(const mps_mpm *mpm, const mpsi_cell_block *cells) {
-  return &mpm->energy.cells[cells - mpm->grid.cells];
+static mpsi_cell_energy *of_cells(const mpsi_grid *grid, const mpsi_energy *energy,
+                                  const mpsi_cell_block *cells) {
+  return &energy->cells[cells - grid->cells];
 }
 
-static double kinetic_of(const mps_mpm *mpm, int64_t begin, int64_t end) {
-  const mpsi_columns *p = &mpm->p;
+static double kinetic_of(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end) {
   double sum = 0.0;
   for (int64_t k = begin; k < end; k++)
-    for (int c = 0; c < mpm->grid.dim; c++) sum += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
+    for (int c = 0; c < grid->dim; c++) sum += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
   return sum;
 }
 
-void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
-                            int64_t end) {
-  of_cells(mpm, cells)->kinetic_before += kinetic_of(mpm, begin, end);
+void mpsi_mpm_energy_before(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                            const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  of_cells(grid, energy, cells)->kinetic_before += kinetic_of(grid, p, begin, end);
 }
 
-void mpsi_mpm_energy_after(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
-  of_cells(mpm, cells)->kinetic += kinetic_of(mpm, begin, end);
+void mpsi_mpm_energy_after(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                           const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  of_cells(grid, energy, cells)->kinetic += kinetic_of(grid, p, begin, end);
 }
 
 /* Column of the velocity gradient and of the stress of d(v_a)/d(x_b). */
@@ -44,39 +45,41 @@ static int stress_column(int a, int b) {
   return symmetric[a][b];
 }
 
-void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
-  const mpsi_columns *p = &mpm->p;
-  const int dim = mpm->grid.dim;
+void mpsi_mpm_energy_moved(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                           const mps_mpm_def *def, double dt, const mpsi_cell_block *cells,
+                           int64_t begin, int64_t end) {
+  const int dim = grid->dim;
   double loads = 0.0, stresses = 0.0;
   for (int64_t k = begin; k < end; k++) {
     double power = 0.0;
     for (int a = 0; a < dim; a++) {
-      loads += (p->m[k] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][k] : 0.0)) * p->v[a][k];
+      loads += (p->m[k] * def->gravity[a] + (p->f[a] ? p->f[a][k] : 0.0)) * p->v[a][k];
       for (int b = 0; b < dim; b++)
         power += p->s[stress_column(a, b)][k] * p->L[gradient_column(dim, a, b)][k];
     }
-    if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
+    if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
     stresses += p->V[k] * power;
   }
-  of_cells(mpm, cells)->loads += mpm->run.dt * loads;
-  of_cells(mpm, cells)->stresses += mpm->run.dt * stresses;
+  of_cells(grid, energy, cells)->loads += dt * loads;
+  of_cells(grid, energy, cells)->stresses += dt * stresses;
 }
 
-void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
-                                const double *v) {
-  const mpsi_columns *p = &mpm->p;
+void mpsi_mpm_energy_given_back(const mpsi_grid *grid, const mpsi_columns *p,
+                                const mpsi_energy *energy, const mps_mpm_def *def, double dt,
+                                const mpsi_cell_block *cells, int64_t particle, const double *v) {
   double power = 0.0;
-  for (int a = 0; a < mpm->grid.dim; a++)
-    power += (p->m[particle] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][particle] : 0.0)) * v[a];
-  if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+  for (int a = 0; a < grid->dim; a++)
+    power += (p->m[particle] * def->gravity[a] + (p->f[a] ? p->f[a][particle] : 0.0)) * v[a];
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
     power -= p->V[particle] * p->s[2][particle] * v[0] / p->x[0][particle];
-  of_cells(mpm, cells)->returned += mpm->run.dt * power;
+  of_cells(grid, energy, cells)->returned += dt * power;
 }
 
-void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out) {
+void mpsi_mpm_energy_keep(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end,
+                          mpsi_before_law *out) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
-  for (int c = 0; c < 2 * mpm->grid.dim; c++) memcpy(out->stress[c], mpm->p.s[c] + begin, bytes);
-  memcpy(out->volume, mpm->p.V + begin, bytes);
+  for (int c = 0; c < 2 * grid->dim; c++) memcpy(out->stress[c], p->s[c] + begin, bytes);
+  memcpy(out->volume, p->V + begin, bytes);
 }
 
 /* Recoverable energy (J/m3) of an isotropic elastic solid by its stress. */
@@ -103,16 +106,16 @@ static double stress_work(const mps_material_block *block, int64_t k, const doub
   return block->dt * work;
 }
 
-void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                         const mpsi_cell_block *cells, const mpsi_law_use *law,
                          const mps_material_block *block, const mpsi_before_law *before,
                          int64_t begin) {
-  const mpsi_columns *p = &mpm->p;
   const mpsi_kept warm = mpsi_material_kept(law->material);
   const double shear = mpsi_material_shear(law->material), bulk = law->modulus - 4.0 / 3.0 * shear;
-  mpsi_cell_energy *sum = of_cells(mpm, cells);
+  mpsi_cell_energy *sum = of_cells(grid, energy, cells);
   for (int64_t k = 0; k < block->count; k++) {
     double s0[6] = {0.0}, s1[6] = {0.0}, trace;
-    for (int c = 0; c < 2 * mpm->grid.dim; c++)
+    for (int c = 0; c < 2 * grid->dim; c++)
       s0[c] = before->stress[c][k], s1[c] = p->s[c][begin + k];
     const double V0 = before->volume[k], V1 = p->V[begin + k];
     sum->seen += stress_work(block, k, s0, s0, V0, V0, &trace);
@@ -123,21 +126,21 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
     else if (warm == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
       stays = 0.5 * (V0 + V1) *
               (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear)) /
-              mpsi_mpm_stiffness(mpm, begin + k);
+              mpsi_mpm_stiffness(p, begin + k);
     sum->warm += stays;
     sum->spent += work - stays;
   }
 }
 
-void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
+void mpsi_mpm_energy_smoothed(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mpsi_energy *energy, const mpsi_cell_block *cells,
                               const mpsi_before_law *before, int64_t begin, int64_t end) {
-  const mpsi_columns *p = &mpm->p;
-  mpsi_cell_energy *sum = of_cells(mpm, cells);
+  mpsi_cell_energy *sum = of_cells(grid, energy, cells);
   for (int64_t k = begin; k < end; k++) {
     double s0[6] = {0.0}, s1[6] = {0.0}, wave, shear;
-    if (!mpsi_law_of(mpm, k)->filtered) continue;
-    mpsi_mpm_elastic(mpm, k, &wave, &shear);
-    for (int c = 0; c < 2 * mpm->grid.dim; c++)
+    if (!mpsi_law_of(p, k)->filtered) continue;
+    mpsi_mpm_elastic(p, k, &wave, &shear);
+    for (int c = 0; c < 2 * grid->dim; c++)
       s0[c] = before->stress[c][k - begin], s1[c] = p->s[c][k];
     const double bulk = wave - 4.0 / 3.0 * shear, V = 0.5 * (before->volume[k - begin] + p->V[k]);
     const double lost = V * (elastic_energy(s0, bulk, shear) - elastic_energy(s1, bulk, shear));
@@ -148,31 +151,33 @@ void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
 /* Work of all bodies on node k with the velocity v. */
-static void count_contact(const mps_mpm *mpm, const mpsi_node_block *nodes, int k, const double *v,
+static void count_contact(const mpsi_grid *grid, const mpsi_contacts *contacts, double dt,
+                          const mpsi_node_block *nodes, int k, const double *v,
                           mpsi_node_energy *out) {
-  const int32_t pairs = mpm->contact.penalty_bodies > 0 ? nodes->pairs : 0;
+  const int32_t pairs = contacts->penalty_bodies > 0 ? nodes->pairs : 0;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
-    const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
-    const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
+    const mpsi_node_pair *pair = &contacts->node_pair[t];
+    const mpsi_contact_node *at = &contacts->node[(int64_t)t * grid->block_nodes + k];
     if (at->mass == 0.0) continue;
-    out->normal += mpm->run.dt * mpsi_dot3(at->force, v);
-    if (mpm->contact.handle[pair->body]->def.friction == 0.0 || pair->mass == 0.0) continue;
+    out->normal += dt * mpsi_dot3(at->force, v);
+    if (contacts->handle[pair->body]->def.friction == 0.0 || pair->mass == 0.0) continue;
     double x[3], surface[3], f[3];
-    mpsi_node_place(mpm, nodes->at, k, x);
-    mpsi_body_velocity(&mpm->contact.body[pair->body]->pose, x, surface);
-    for (int c = 0; c < 3; c++) f[c] = mpm->run.dt * at->mass * at->slip[c];
+    mpsi_node_place(grid, nodes->at, k, x);
+    mpsi_body_velocity(&contacts->body[pair->body]->pose, x, surface);
+    for (int c = 0; c < 3; c++) f[c] = dt * at->mass * at->slip[c];
     out->friction += mpsi_dot3(f, v);
     out->surface += mpsi_dot3(f, surface);
   }
 }
 
-void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held,
+void mpsi_mpm_energy_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                           const mpsi_energy *energy, double dt, int64_t g, const mpsi_node *held,
                            const mpsi_node *damped) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
-  const mpsi_node *side = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+  const mpsi_node_block *nodes = &grid->nodes[g];
+  const mpsi_node *node = (const mpsi_node *)(grid->node + mpsi_first_node(grid, g));
+  const mpsi_node *side = (const mpsi_node *)(grid->side + mpsi_first_node(grid, nodes->side));
   mpsi_node_energy sum = {0};
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+  for (int k = 0; k < grid->block_nodes; k++) {
     const double m = node[k][MPSI_MASS], *v = node[k] + MPSI_VECTOR;
     const double *before = side[k] + MPSI_VECTOR;
     if (!(m > 0.0)) continue;
@@ -183,30 +188,31 @@ void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held,
       sum.holds += m * (damped[k][MPSI_VECTOR + c] - held[k][MPSI_VECTOR + c]) * v[c];
       sum.damping += m * (v[c] - damped[k][MPSI_VECTOR + c]) * v[c];
     }
-    count_contact(mpm, nodes, k, v, &sum);
+    count_contact(grid, contacts, dt, nodes, k, v, &sum);
   }
-  mpm->energy.nodes[g] = sum;
+  energy->nodes[g] = sum;
 }
 
 /* ---- penalty contact ------------------------------------------------------------------------- */
 
 /* Half the normal force times the depth that it comes from, of all particles in penalty contact:
  * `sign` times that is the elastic energy of the contact now, and the bodies' work on it less. */
-static void add_springs(mps_mpm *mpm, double sign) {
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    const mps_contact *contact = mpm->contact.handle[b];
+static void add_springs(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
+                        mpsi_energy *budget, const mps_mpm_def *def, double sign) {
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    const mps_contact *contact = contacts->handle[b];
     if (mpsi_by_impulses(contact)) continue;
-    for (int64_t k = 0; k < mpm->p.count; k++) {
+    for (int64_t k = 0; k < p->count; k++) {
       mpsi_contact_particle c;
       double x[3] = {0.0};
-      for (int a = 0; a < mpm->grid.dim; a++) x[a] = mpm->p.x[a][k];
+      for (int a = 0; a < grid->dim; a++) x[a] = p->x[a][k];
       if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
-          !mpsi_find_contact(mpm, contact, mpm->grid.dim, k, &c))
+          !mpsi_find_contact(grid, p, def, contact, grid->dim, k, &c))
         continue;
       const double energy =
           sign * 0.5 * sqrt(mpsi_dot3(c.force, c.force)) * (c.depth + contact->def.offset);
-      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPRINGS, energy);
-      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, -energy);
+      mpsi_mpm_energy_add(budget, MPSI_ENERGY_SPRINGS, energy);
+      mpsi_mpm_energy_add(budget, MPSI_ENERGY_STEPPING, -energy);
     }
   }
 }
@@ -226,34 +232,34 @@ mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function) {
   if (cells > 0) memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
   if (nodes > 0) memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
   memset(e->step, 0, sizeof e->step);
-  add_springs(mpm, -1.0);
+  add_springs(&mpm->grid, &mpm->p, &mpm->contact, &mpm->energy, &mpm->def, -1.0);
   return MPS_OK;
 }
 
-static void add_cells(mps_mpm *mpm) {
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    const mpsi_cell_energy *e = &mpm->energy.cells[b];
-    if (mpm->grid.cells[b].ghost) continue;
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic + e->returned);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->warm - e->smoothed);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPENT, e->spent + e->smoothed);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_LOADS, e->loads);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->seen - e->warm - e->spent);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STRAIN, e->stresses - e->seen);
+static void add_cells(const mpsi_grid *grid, mpsi_energy *energy) {
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_energy *e = &energy->cells[b];
+    if (grid->cells[b].ghost) continue;
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic + e->returned);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_KEPT, e->warm - e->smoothed);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_SPENT, e->spent + e->smoothed);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_LOADS, e->loads);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_STEPPING, e->seen - e->warm - e->spent);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_STRAIN, e->stresses - e->seen);
   }
 }
 
 /* Of the bodies' work that is not by friction or on nodes, penalty contact stores some. */
-static void add_nodes(mps_mpm *mpm) {
-  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
-    const mpsi_node_energy *e = &mpm->energy.nodes[g];
-    if (mpm->partition && !mpsi_mpm_counts_node_block(mpm, g)) continue;
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic - e->kinetic_before);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->jump - e->surface - e->normal);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, -e->holds);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_FRICTION_LOSS, e->surface - e->friction);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_DAMPING_LOSS, -e->damping);
+static void add_nodes(const mpsi_grid *grid, mpsi_partition *partition, mpsi_energy *energy) {
+  for (int64_t g = 0; g < mpsi_all_nodes(grid); g++) {
+    const mpsi_node_energy *e = &energy->nodes[g];
+    if (partition && !mpsi_mpm_counts_node_block(grid, g)) continue;
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_TRANSFER, e->kinetic - e->kinetic_before);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_STEPPING, e->jump - e->surface - e->normal);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, -e->holds);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_FRICTION_LOSS, e->surface - e->friction);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_DAMPING_LOSS, -e->damping);
   }
 }
 
@@ -263,10 +269,10 @@ void mpsi_mpm_energy_end(mps_mpm *mpm) {
   e->work_bodies += bodies;
   e->bodies = 0.0;
   if (!e->counts) return;
-  add_cells(mpm);
-  add_nodes(mpm);
-  add_springs(mpm, 1.0);
+  add_cells(&mpm->grid, &mpm->energy);
+  add_nodes(&mpm->grid, mpm->partition, &mpm->energy);
+  add_springs(&mpm->grid, &mpm->p, &mpm->contact, &mpm->energy, &mpm->def, 1.0);
   if (!mpm->partition || mps_domain_rank(mpm->partition->domain) == 0)
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, bodies);
+    mpsi_mpm_energy_add(&mpm->energy, MPSI_ENERGY_STEPPING, bodies);
   for (int k = 0; k < MPSI_ENERGY_SUMS; k++) mpsi_exact_merge(&e->sum[k], &e->step[k]);
 }

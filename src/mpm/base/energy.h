@@ -78,32 +78,42 @@ typedef struct mpsi_before_law {
 } mpsi_before_law;
 
 /* With a budget: to the step being made, or (at once) to what has been. */
-void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy);
-void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy);
+void mpsi_mpm_energy_add(mpsi_energy *budget, mpsi_energy_sum which, double energy);
+void mpsi_mpm_energy_add_at_once(mpsi_energy *budget, mpsi_energy_sum which, double energy);
 /* Before the step: room, and the energy of penalty contact. */
 mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
 /* Particles [begin, end) of a block: kinetic energy before and after G2P, the latter before lists
  * of held particles get theirs (walls.c), though with means the laws come later than these. */
-void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
-void mpsi_mpm_energy_after(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_energy_before(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                            const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_energy_after(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                           const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* Works of loads and stresses by the velocities of the nodes. */
-void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_energy_moved(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                           const mps_mpm_def *def, double dt, const mpsi_cell_block *cells,
+                           int64_t begin, int64_t end);
 /* Of a particle: `v`, the part of its new velocity that light nodes give back. The nodes' forces do
  * no work by it, as the fit knows nothing of it. */
-void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
-                                const double *v);
+void mpsi_mpm_energy_given_back(const mpsi_grid *grid, const mpsi_columns *p,
+                                const mpsi_energy *energy, const mps_mpm_def *def, double dt,
+                                const mpsi_cell_block *cells, int64_t particle, const double *v);
 /* Particles of one law, at most 64 of them: before it, and after. */
-void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out);
-void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+void mpsi_mpm_energy_keep(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end,
+                          mpsi_before_law *out);
+void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
+                         const mpsi_cell_block *cells, const mpsi_law_use *law,
                          const mps_material_block *block, const mpsi_before_law *before,
                          int64_t begin);
 /* Frictional particles from `begin` on, as many, whose stresses were filtered after their law
  * (filter.c) and had been those of `before`: what their elastic energy loses is spent. */
-void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
+void mpsi_mpm_energy_smoothed(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mpsi_energy *energy, const mpsi_cell_block *cells,
                               const mpsi_before_law *before, int64_t begin, int64_t end);
 /* Nodes of block g, all forces known: `held` has their velocities before the boundaries, `damped`
  * those before damping. */
-void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held, const mpsi_node *damped);
+void mpsi_mpm_energy_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                           const mpsi_energy *energy, double dt, int64_t g, const mpsi_node *held,
+                           const mpsi_node *damped);
 /* After the step: adds it to the sums. */
 void mpsi_mpm_energy_end(mps_mpm *mpm);
 

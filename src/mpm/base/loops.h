@@ -152,9 +152,9 @@ MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
 }
 
 /* Cells from the block's first node to four particles at x, along axis c. */
-MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cell_block *cells, int c,
+MPSI_INLINE mpsi_quad mpsi_from_block(const mpsi_grid *grid, const mpsi_cell_block *cells, int c,
                                       mpsi_quad x) {
-  return (x - mpm->grid.origin[c]) * mpm->grid.inverse - (double)cells->at[c] * MPSI_SIDE;
+  return (x - grid->origin[c]) * grid->inverse - (double)cells->at[c] * MPSI_SIDE;
 }
 
 /* Weights of four particles along one axis. */
@@ -182,7 +182,7 @@ MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cel
     for (int c = 0, stride = 1; c < dim; c++, stride *= MPSI_TILE_SIDE) {
       /* counted from the block: not negative, so that truncation is floor */
       const mpsi_quad X =
-          mpsi_from_block(mpm, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
+          mpsi_from_block(&mpm->grid, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
       const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
                                           : __builtin_convertvector(X - 0.5, mpsi_index);
       const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);

@@ -58,72 +58,71 @@ struct mps_mpm {
 };
 
 /* Whether each node needs its velocity before the forces: all blocks are split then. */
-static inline bool mpsi_forces_apart(const mps_mpm *mpm) {
-  return mpm->energy.counts || mpm->settling.on || mpm->def.local_damping > 0.0;
+static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settling *settling,
+                                     const mps_mpm_def *def) {
+  return energy->counts || settling->on || def->local_damping > 0.0;
 }
 
-static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t particle) {
-  return &mpm->p.laws.law[mpm->p.law ? mpm->p.law[particle] : 0];
+static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t particle) {
+  return &p->laws.law[p->law ? p->law[particle] : 0];
 }
 
 /* Factor of the moduli of a particle's law. */
-static inline double mpsi_mpm_stiffness(const mps_mpm *mpm, int64_t particle) {
-  const double *factor = mpsi_law_of(mpm, particle)->stiffness;
+static inline double mpsi_mpm_stiffness(const mpsi_columns *p, int64_t particle) {
+  const double *factor = mpsi_law_of(p, particle)->stiffness;
   return factor && factor[particle] > 0.0 ? factor[particle] : 1.0;
 }
 
 /* K + 4G/3 and G (Pa) of a particle's material at zero strain. */
-static inline void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave,
+static inline void mpsi_mpm_elastic(const mpsi_columns *p, int64_t particle, double *wave,
                                     double *shear) {
-  const mps_material *material = mpsi_law_of(mpm, particle)->material;
-  const double factor = mpsi_mpm_stiffness(mpm, particle);
+  const mps_material *material = mpsi_law_of(p, particle)->material;
+  const double factor = mpsi_mpm_stiffness(p, particle);
   *wave = factor * mpsi_material_rest_modulus(material);
   *shear = factor * mpsi_material_shear(material);
 }
 
 /* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
-static inline int64_t mpsi_own_cell(const mps_mpm *mpm, int c, double X) {
+static inline int64_t mpsi_own_cell(const mpsi_grid *grid, int c, double X) {
   const int64_t cell = (int64_t)floor(X);
-  return cell < mpm->grid.high[c] ? cell : mpm->grid.high[c] - 1;
+  return cell < grid->high[c] ? cell : grid->high[c] - 1;
 }
 
 /* Whether X, outside the domain along axis c, lies beyond a side that is open. */
-static inline bool mpsi_mpm_passes(const mps_mpm *mpm, int c, double X) {
-  const bool upper = X > (double)mpm->grid.high[c];
-  return (upper || X < (double)mpm->grid.low[c]) &&
-         (mpm->boundaries.open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
+static inline bool mpsi_mpm_passes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int c,
+                                   double X) {
+  const bool upper = X > (double)grid->high[c];
+  return (upper || X < (double)grid->low[c]) &&
+         (boundaries->open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
 }
 
 /* Nodes of a stencil beyond its lowest, as the loops take them: rows along x are read and written
  * four nodes at a time whatever the spline. */
-static inline int32_t mpsi_reach(const mps_mpm *mpm, int c) {
-  return c == 0 ? 3 : mpm->grid.spline;
-}
+static inline int32_t mpsi_reach(const mpsi_grid *grid, int c) { return c == 0 ? 3 : grid->spline; }
 
 /* Memory of one worker. */
-static inline size_t mpsi_worker_bytes(const mps_mpm *mpm) {
-  return (size_t)mpm->grid.tile_nodes * (2 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
+static inline size_t mpsi_worker_bytes(const mpsi_grid *grid) {
+  return (size_t)grid->tile_nodes * (2 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
 }
 
-static inline int64_t mpsi_first_node(const mps_mpm *mpm, int64_t g) {
-  return mpsi_grid_first_node(&mpm->grid, g);
+static inline int64_t mpsi_first_node(const mpsi_grid *grid, int64_t g) {
+  return mpsi_grid_first_node(grid, g);
 }
 
 /* Position x[3] of the node `local` of the block at `at`. */
-static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, const double *local,
+static inline void mpsi_node_position(const mpsi_grid *grid, const int32_t *at, const double *local,
                                       double *x) {
   for (int c = 0; c < 3; c++)
-    x[c] = c < mpm->grid.dim
-               ? mpm->grid.origin[c] + mpm->grid.cell * ((double)at[c] * MPSI_SIDE + local[c])
-               : 0.0;
+    x[c] =
+        c < grid->dim ? grid->origin[c] + grid->cell * ((double)at[c] * MPSI_SIDE + local[c]) : 0.0;
 }
 
 /* The same of node k of the block of nodes at `at`. */
-static inline void mpsi_node_place(const mps_mpm *mpm, const int32_t *at, int k, double *x) {
+static inline void mpsi_node_place(const mpsi_grid *grid, const int32_t *at, int k, double *x) {
   int place[3];
   mpsi_unravel(k, MPSI_SIDE, place);
   const double local[3] = {place[0], place[1], place[2]};
-  mpsi_node_position(mpm, at, local, x);
+  mpsi_node_position(grid, at, local, x);
 }
 
 /* Block of nodes under the node (i, j, k) of a tile, and the node's number in it. */
@@ -136,16 +135,16 @@ static inline int mpsi_local_under(int i, int j, int k) {
 }
 
 /* Node of the grid under the node (i, j, k) of a tile. */
-static inline int64_t mpsi_node_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int i,
+static inline int64_t mpsi_node_under(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
                                       int j, int k) {
-  return mpsi_first_node(mpm, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
+  return mpsi_first_node(grid, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
 }
 
 /* The same of the tile for what thin bodies part from the nodes. */
-static inline int64_t mpsi_node_across(const mps_mpm *mpm, const mpsi_cell_block *cells, int i,
+static inline int64_t mpsi_node_across(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
                                        int j, int k) {
-  const int32_t across = mpm->grid.nodes[mpsi_block_under(cells, i, j, k)].across;
-  return mpsi_first_node(mpm, across) + mpsi_local_under(i, j, k);
+  const int32_t across = grid->nodes[mpsi_block_under(cells, i, j, k)].across;
+  return mpsi_first_node(grid, across) + mpsi_local_under(i, j, k);
 }
 
 #endif

@@ -33,11 +33,13 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
  * Not collective: `function` continues with the status where all ranks agree on one. */
 mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double dt, bool moves);
 /* signals.c: whether one of a load or boundary may, which all ranks know alike; not of bodies. */
-bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm);
+bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
+                                 const mpsi_boundaries *boundaries);
 /* access.c: MPS_ERROR_STATE in a callback of the solver; or after a step that has failed or while a
  * field is edited; or any of these. */
-mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function);
-mps_status mpsi_mpm_check_whole(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_between_steps(mps_context *context, const mpsi_run *run, const char *function);
+mps_status mpsi_mpm_check_whole(mps_context *context, const mpsi_columns *p, const mpsi_run *run,
+                                const char *function);
 mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function);
 /* ready.c: what the caller has written, added or removed is taken up: masses, blocks of the present
  * positions, the Courant limit of the present velocities. */

@@ -74,16 +74,17 @@ MPSI_INLINE void mpsi_slopes(int spline, double t, double *slope) {
   }
 }
 
-MPSI_INLINE void mpsi_make_stencil(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                   int spline, int64_t particle, mpsi_stencil *out) {
+MPSI_INLINE void mpsi_make_stencil(const mpsi_grid *grid, const mpsi_columns *p,
+                                   const mpsi_cell_block *cells, int dim, int spline,
+                                   int64_t particle, mpsi_stencil *out) {
   *out = (mpsi_stencil){.w[2][0] = 1.0};
   for (int c = 0; c < dim; c++) {
-    const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][particle]);
+    const double X = mpsi_grid_at(grid, c, p->x[c][particle]);
     const double base = mpsi_base(spline, X);
     mpsi_weights(spline, X - base, out->w[c]);
     for (int i = 0; i < 4; i++) out->s[c][i] = (double)i - (X - base);
     out->at[c] = (int)((int64_t)base - (int64_t)cells->at[c] * MPSI_SIDE);
-    out->own[c] = (int)(mpsi_own_cell(mpm, c, X) - (int64_t)base);
+    out->own[c] = (int)(mpsi_own_cell(grid, c, X) - (int64_t)base);
   }
 }
 

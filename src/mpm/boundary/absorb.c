@@ -15,16 +15,17 @@
 
 #include <string.h>
 
-void mpsi_mpm_apply_dashpot(const mps_mpm *mpm, const mpsi_boundary *hold, mpsi_dashpot *dashpot,
-                            const double *node, const double *before, double *velocity) {
-  const double per_mass = mpm->run.dt / node[MPSI_MASS];
+void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundary *hold,
+                            mpsi_dashpot *dashpot, const double *node, const double *before,
+                            double *velocity) {
+  const double per_mass = dt / node[MPSI_MASS];
   const bool settles = hold->finds && hold->settle > 0.0;
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) {
     const double v = node[MPSI_VECTOR + c],
                  damping = c == hold->axis ? dashpot->across : dashpot->along;
     if (settles) {
       const double force = (hold->v[c] - v) / per_mass;
-      dashpot->rest[c] += (force - dashpot->rest[c]) * (mpm->run.dt / hold->found);
+      dashpot->rest[c] += (force - dashpot->rest[c]) * (dt / hold->found);
       velocity[c] = hold->v[c];
       continue;
     }
@@ -35,44 +36,45 @@ void mpsi_mpm_apply_dashpot(const mps_mpm *mpm, const mpsi_boundary *hold, mpsi_
   }
 }
 
-bool mpsi_mpm_absorbs(const mps_mpm *mpm) {
+bool mpsi_mpm_absorbs(const mpsi_boundaries *boundaries) {
   bool any = false;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    any = any || mpm->boundaries.hold[k].kind == MPS_BOUNDARY_ABSORBING;
+    any = any || boundaries->hold[k].kind == MPS_BOUNDARY_ABSORBING;
   return any;
 }
 
 /* ---- coefficients ---------------------------------------------------------------------------- */
 
 /* Shape functions along one axis, fitted over the nodes of the domain. */
-static void fit_along(const mps_mpm *mpm, int c, double X, int64_t *base, double *phi) {
+static void fit_along(const mpsi_grid *grid, int c, double X, int64_t *base, double *phi) {
   double w[4], s[4], m0 = 0.0, m1 = 0.0, m2 = 0.0;
-  const double lowest = mpsi_base(mpm->grid.spline, X);
+  const double lowest = mpsi_base(grid->spline, X);
   *base = (int64_t)lowest;
-  mpsi_weights(mpm->grid.spline, X - lowest, w);
+  mpsi_weights(grid->spline, X - lowest, w);
   for (int i = 0; i < 4; i++) {
     const int64_t n = *base + i;
     s[i] = (double)i - (X - lowest);
-    if (n < mpm->grid.use_low[c] || n > mpm->grid.use_high[c]) w[i] = 0.0;
+    if (n < grid->use_low[c] || n > grid->use_high[c]) w[i] = 0.0;
     m0 += w[i], m1 += w[i] * s[i], m2 += w[i] * s[i] * s[i];
   }
   for (int i = 0; i < 4; i++) phi[i] = w[i] * (m2 - m1 * s[i]) / (m0 * m2 - m1 * m1);
   for (int i = 0; i < 4; i++) { /* ghosts of a mirror beside the wall: to their partners */
     const int64_t n = *base + i;
-    const int64_t wall = n < mpm->grid.low[c] ? mpm->grid.low[c] : mpm->grid.high[c];
-    if ((n >= mpm->grid.low[c] && n <= mpm->grid.high[c]) || phi[i] == 0.0) continue;
+    const int64_t wall = n < grid->low[c] ? grid->low[c] : grid->high[c];
+    if ((n >= grid->low[c] && n <= grid->high[c]) || phi[i] == 0.0) continue;
     phi[2 * wall - n - *base] += phi[i];
     phi[i] = 0.0;
   }
 }
 
-static mpsi_dashpot *dash_of(const mps_mpm *mpm, int32_t number, int64_t node) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
+static mpsi_dashpot *dash_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                             int32_t number, int64_t node) {
+  const mpsi_node_block *nodes = &grid->nodes[node / grid->block_nodes];
   int32_t t = nodes->first_held;
-  while (mpm->boundaries.held[t].hold != number) t++;
-  return &mpm->boundaries.dashpot[mpm->boundaries.held[t].dashpot +
-                                  mpsi_plane_index(mpm->boundaries.hold[number].axis,
-                                                   (int)(node % mpm->grid.block_nodes))];
+  while (boundaries->held[t].hold != number) t++;
+  return &boundaries->dashpot[boundaries->held[t].dashpot +
+                              mpsi_plane_index(boundaries->hold[number].axis,
+                                               (int)(node % grid->block_nodes))];
 }
 
 /* Node of the plane across `axis`, of those under the tile. */
@@ -81,21 +83,21 @@ static int tile_plane_index(int axis, const int *at) {
 }
 
 /* A particle in a cell at the wall. */
-static void add_particle(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
-                         int64_t k, double (*tile)[2]) {
-  const mpsi_columns *p = &mpm->p;
-  const int axis = mpm->boundaries.hold[number].axis;
-  const double per_area = p->m[k] * mpm->grid.inverse, density = p->m[k] / p->V[k];
+static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
+                         const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
+                         int32_t number, int64_t k, double (*tile)[2]) {
+  const int axis = boundaries->hold[number].axis;
+  const double per_area = p->m[k] * grid->inverse, density = p->m[k] / p->V[k];
   double wave, shear;
-  mpsi_mpm_elastic(mpm, k, &wave, &shear);
+  mpsi_mpm_elastic(p, k, &wave, &shear);
   const double across = per_area * sqrt(wave / density), along = per_area * sqrt(shear / density);
   int64_t base[3] = {0};
   double phi[3][4] = {{1.0}, {1.0}, {1.0}};
-  for (int c = 0; c < mpm->grid.dim; c++)
+  for (int c = 0; c < grid->dim; c++)
     if (c == axis)
-      base[c] = mpm->boundaries.hold[number].first[c];
+      base[c] = boundaries->hold[number].first[c];
     else
-      fit_along(mpm, c, mpsi_grid_at(&mpm->grid, c, p->x[c][k]), &base[c], phi[c]);
+      fit_along(grid, c, mpsi_grid_at(grid, c, p->x[c][k]), &base[c], phi[c]);
   for (int n = 0; n < MPSI_STENCIL; n++) {
     const int i[3] = {n % 4, n / 4 % 4, n / 16};
     const double fraction = phi[0][i[0]] * phi[1][i[1]] * phi[2][i[2]];
@@ -108,29 +110,31 @@ static void add_particle(const mps_mpm *mpm, const mpsi_cell_block *cells, int32
   }
 }
 
-bool mpsi_mpm_sum_dashpots(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
-                           double (*tile)[2]) {
-  const int c = mpm->boundaries.hold[number].axis;
-  const int64_t layer = mpm->boundaries.hold[number].first[c] - number % 2; /* of cells */
+bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
+                           const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
+                           int32_t number, double (*tile)[2]) {
+  const int c = boundaries->hold[number].axis;
+  const int64_t layer = boundaries->hold[number].first[c] - number % 2; /* of cells */
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
   if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
   memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
   for (int64_t k = cells->begin; k < cells->end; k++)
-    if (mpsi_own_cell(mpm, c, mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k])) == layer)
-      add_particle(mpm, cells, number, k, tile);
+    if (mpsi_own_cell(grid, c, mpsi_grid_at(grid, c, p->x[c][k])) == layer)
+      add_particle(grid, p, boundaries, cells, number, k, tile);
   return true;
 }
 
-static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
-                     const double *tile) {
-  const mpsi_boundary *hold = &mpm->boundaries.hold[number];
-  const int axis = hold->axis, planes = mpm->grid.dim == 3 ? MPSI_TILE_SIDE : 1;
+static void add_tile(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                     const mpsi_cell_block *cells, int32_t number, const double *tile) {
+  const mpsi_boundary *hold = &boundaries->hold[number];
+  const int axis = hold->axis, planes = grid->dim == 3 ? MPSI_TILE_SIDE : 1;
   for (int k = 0; k < planes * MPSI_TILE_SIDE; k++) {
     const int u = k % MPSI_TILE_SIDE, v = k / MPSI_TILE_SIDE;
     int at[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 2 ? v : 0, axis == 2 ? 0 : v};
     at[axis] = (int)(hold->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
     if (tile[2 * k] == 0.0 && tile[2 * k + 1] == 0.0) continue;
-    mpsi_dashpot *dashpot = dash_of(mpm, number, mpsi_node_under(mpm, cells, at[0], at[1], at[2]));
+    mpsi_dashpot *dashpot =
+        dash_of(grid, boundaries, number, mpsi_node_under(grid, cells, at[0], at[1], at[2]));
     dashpot->across += tile[2 * k];
     dashpot->along += tile[2 * k + 1];
   }
@@ -144,13 +148,15 @@ static const double *parcel_of(const mpsi_dashpot_parcels *parcels, const mpsi_c
          (cells->parcel * MPSI_SIDES + side) * parcels->doubles;
 }
 
-static void add_wall(mps_mpm *mpm, const mpsi_dashpot_parcels *parcels, int32_t number) {
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+static void add_wall(const mpsi_grid *grid, const mpsi_columns *p,
+                     const mpsi_boundaries *boundaries, const mpsi_dashpot_parcels *parcels,
+                     int32_t number) {
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
     double own[MPSI_DASH_PLANE][2];
     const double *tile = parcel_of(parcels, cells, number);
-    if (!tile && mpsi_mpm_sum_dashpots(mpm, cells, number, own)) tile = own[0];
-    if (tile) add_tile(mpm, cells, number, tile);
+    if (!tile && mpsi_mpm_sum_dashpots(grid, p, boundaries, cells, number, own)) tile = own[0];
+    if (tile) add_tile(grid, boundaries, cells, number, tile);
   }
 }
 
@@ -163,17 +169,19 @@ int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
   return (a->hold > b->hold) - (a->hold < b->hold);
 }
 
-void mpsi_mpm_place_dashpots(mps_mpm *mpm, const mpsi_dashpot_parcels *parcels,
+void mpsi_mpm_place_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
+                             const mpsi_boundaries *boundaries, const mpsi_dashpot_parcels *parcels,
                              const mpsi_held *old, int64_t old_count,
                              const mpsi_dashpot *old_dashpot) {
-  const int plane = mpm->grid.block_nodes / MPSI_SIDE;
+  const int plane = grid->block_nodes / MPSI_SIDE;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (mpm->boundaries.hold[k].kind == MPS_BOUNDARY_ABSORBING) add_wall(mpm, parcels, k);
+    if (boundaries->hold[k].kind == MPS_BOUNDARY_ABSORBING)
+      add_wall(grid, p, boundaries, parcels, k);
   int64_t from = 0;
-  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
-    const mpsi_held *held = &mpm->boundaries.held[t];
+  for (int64_t t = 0; t < boundaries->held_count; t++) {
+    const mpsi_held *held = &boundaries->held[t];
     if (held->dashpot < 0) continue;
-    mpsi_dashpot *dashpot = mpm->boundaries.dashpot + held->dashpot;
+    mpsi_dashpot *dashpot = boundaries->dashpot + held->dashpot;
     for (int k = 0; k < plane; k++) { /* a fit can give a node less than nothing */
       dashpot[k].across = fmax(dashpot[k].across, 0.0);
       dashpot[k].along = fmax(dashpot[k].along, 0.0);

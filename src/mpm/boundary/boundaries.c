@@ -25,153 +25,158 @@ mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size) {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static bool on_axis(const mps_mpm *mpm, int32_t number) {
-  return mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
-         mpm->def.lower[0] == 0.0;
+static bool on_axis(const mpsi_grid *grid, const mps_mpm_def *def, int32_t number) {
+  return grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
+         def->lower[0] == 0.0;
 }
 
-static bool has_side(const mps_mpm *mpm, int32_t number) {
-  if (number / 2 >= mpm->grid.dim) return false;
-  const int64_t at = number % 2 ? mpm->grid.high[number / 2] : mpm->grid.low[number / 2];
+static bool has_side(const mpsi_grid *grid, int32_t number) {
+  if (number / 2 >= grid->dim) return false;
+  const int64_t at = number % 2 ? grid->high[number / 2] : grid->low[number / 2];
   return at > -MPSI_NO_WALL && at < MPSI_NO_WALL;
 }
 
-static mps_status check_motion(mps_mpm *mpm, const char *function, int32_t number,
+static mps_status check_motion(mps_context *context, const mpsi_grid *grid, mpsi_run *run,
+                               const char *function, int32_t number,
                                const mps_mpm_boundary_def *def) {
-  const mpsi_guard outer =
-      mpsi_guard_close(&mpm->run.guard, mpm->context, "a signal of the solver");
+  const mpsi_guard outer = mpsi_guard_close(&run->guard, context, "a signal of the solver");
   mps_status status = MPS_OK;
-  for (int c = 0; c < mpm->grid.dim && status == MPS_OK; c++) {
-    const mpsi_signal_use use = {mpm->context, function, "boundary", number, c};
+  for (int c = 0; c < grid->dim && status == MPS_OK; c++) {
+    const mpsi_signal_use use = {context, function, "boundary", number, c};
     mpsi_signal_motion m;
     const double factor = def->factor[c];
-    status = mpsi_signal_evaluate(def->signal[c], use, mpm->run.time, &m);
+    status = mpsi_signal_evaluate(def->signal[c], use, run->time, &m);
     if (status == MPS_OK && (!isfinite(factor) || !isfinite(factor * m.v)))
-      status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+      status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                          "factor[%d] is %g, it and the velocity that it makes must be finite", c,
                          factor);
   }
-  mpm->run.guard = outer;
+  run->guard = outer;
   return status;
 }
 
-static mps_status check_numbers(mps_mpm *mpm, const char *function, int32_t number,
+static mps_status check_numbers(mps_context *context, const mpsi_grid *grid, mpsi_run *run,
+                                const char *function, int32_t number,
                                 const mps_mpm_boundary_def *def) {
   const bool frictional = def->kind == MPS_BOUNDARY_FRICTIONAL;
   if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !frictional))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "friction is %s with a boundary of kind %d, must be in 0 to %g, and 0 for "
                      "other than frictional ones (3)",
                      mpsi_outside(def->friction, 0.0, ROUGHEST).text, def->kind, ROUGHEST);
   if (!isfinite(def->settle) || def->settle < 0.0)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "settle is %g s, must be finite and >= 0", def->settle);
-  for (int c = 0; c < mpm->grid.dim && def->kind == MPS_BOUNDARY_HELD; c++)
+  for (int c = 0; c < grid->dim && def->kind == MPS_BOUNDARY_HELD; c++)
     if (def->signal[c])
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given and a held boundary takes none: make its kind DRIVEN",
                        c);
-  return check_motion(mpm, function, number, def);
+  return check_motion(context, grid, run, function, number, def);
 }
 
-static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
+static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_run *run,
+                             const mps_mpm_def *definition, const char *function, int32_t number,
                              const mps_mpm_boundary_def *def) {
-  if (!has_side(mpm, number))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+  if (!has_side(grid, number))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "number is %d, and the domain has no %s side across %c", number,
                      number % 2 ? "upper" : "lower", "xyz"[number / 2]);
   const bool open = def->kind == MPS_BOUNDARY_OPEN;
   if (!mpsi_boundary_kind_in(def->kind, ~(1u << MPS_BOUNDARY_FREE_FIELD)))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d (%s), WLS-MPM has on a side 0 (HELD), 1 (DRIVEN), 2 (ROLLER), 3 "
                      "(FRICTIONAL), 4 (ABSORBING), 6 (FREE) and 7 (OPEN)",
                      def->kind, mpsi_boundary_kind_name(def->kind));
   if (def->ids || def->id_count != 0 || def->dofs != 0)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
                      (long long)def->id_count, def->dofs);
-  if (mpm->grid.standard && def->kind == MPS_BOUNDARY_ABSORBING)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+  if (grid->standard && def->kind == MPS_BOUNDARY_ABSORBING)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is 4 (ABSORBING), which the standard method does not allow: its splines "
                      "reach over the side");
-  if (on_axis(mpm, number) && (def->kind > MPS_BOUNDARY_ROLLER || def->signal[0]))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+  if (on_axis(grid, definition, number) && (def->kind > MPS_BOUNDARY_ROLLER || def->signal[0]))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d with signal[0] %s on the axis r = 0: allowed are 0 (HELD), 1 "
                      "(DRIVEN) and 2 (ROLLER), and the radial velocity is 0",
                      def->kind, def->signal[0] ? "given" : "NULL");
-  for (int c = 0; c < mpm->grid.dim; c++)
+  for (int c = 0; c < grid->dim; c++)
     if (def->signal[c] && (def->kind == MPS_BOUNDARY_FREE || open ||
                            (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given, and a side of kind %d does not hold that component", c,
                        def->kind);
-  return check_numbers(mpm, function, number, def);
+  return check_numbers(context, grid, run, function, number, def);
 }
 
 /* First or last node of a box that begins or ends at x. */
-static int64_t box_node(const mps_mpm *mpm, int c, double x, bool last) {
-  const double X = mpsi_grid_at(&mpm->grid, c, x);
+static int64_t box_node(const mpsi_grid *grid, int c, double x, bool last) {
+  const double X = mpsi_grid_at(grid, c, x);
   if (!(X > -(double)MPSI_NO_WALL)) return -MPSI_NO_WALL;
   if (!(X < (double)MPSI_NO_WALL)) return MPSI_NO_WALL;
   return (int64_t)(last ? floor(X + ON_NODE) : ceil(X - ON_NODE));
 }
 
-static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def,
-                           mpsi_boundary *out) {
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    out->first[c] = box_node(mpm, c, def->lower[c], false);
-    out->last[c] = box_node(mpm, c, def->upper[c], true);
+static mps_status find_box(mps_context *context, const mpsi_grid *grid, const char *function,
+                           const mps_mpm_boundary_def *def, mpsi_boundary *out) {
+  for (int c = 0; c < grid->dim; c++) {
+    out->first[c] = box_node(grid, c, def->lower[c], false);
+    out->last[c] = box_node(grid, c, def->upper[c], true);
     if (!(def->lower[c] <= def->upper[c]) || out->first[c] > out->last[c])
       return mpsi_fail(
-          mpm->context, function, MPS_ERROR_ARGUMENT,
+          context, function, MPS_ERROR_ARGUMENT,
           "lower and upper: the box is [%g, %g] m in %c, must hold a node: origin %g m "
           "plus a multiple of the cell %g m",
-          def->lower[c], def->upper[c], "xyz"[c], mpm -> grid.origin[c], mpm->grid.cell);
+          def->lower[c], def->upper[c], "xyz"[c], grid -> origin[c], grid -> cell);
   }
   return MPS_OK;
 }
 
-static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def) {
-  const int64_t most = mpm->partition ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+static mps_status check_ids(mps_context *context, const mpsi_columns *p, mpsi_partition *partition,
+                            const char *function, const mps_mpm_boundary_def *def) {
+  const int64_t most = partition ? MPSI_MPM_MOST_PARTICLES : p->count;
   if ((def->id_count > 0) != (def->ids != NULL) || def->id_count < 0 || def->id_count > most)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld with ids %s, allowed are 1 to %lld particles, or 0 and NULL",
                      (long long)def->id_count, def->ids ? "given" : "NULL", (long long)most);
   return MPS_OK;
 }
 
-static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t number,
+static mps_status check_prescribed(mps_context *context, const mpsi_grid *grid,
+                                   const mpsi_columns *p, mpsi_partition *partition, mpsi_run *run,
+                                   const char *function, int32_t number,
                                    const mps_mpm_boundary_def *def, mpsi_boundary *out) {
-  const uint32_t all =
-      mpm->grid.dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
+  const uint32_t all = grid->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
   if (def->kind != MPS_BOUNDARY_HELD && def->kind != MPS_BOUNDARY_DRIVEN)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d (%s), boxes of nodes and particles are 0 (HELD) or 1 (DRIVEN)",
                      def->kind, mpsi_boundary_kind_name(def->kind));
   if (def->dofs & ~all)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
-                     mpm->grid.dim == 3 ? ", MPS_DOF_Z" : "");
-  mps_status status = check_numbers(mpm, function, number, def);
-  if (status == MPS_OK) status = check_ids(mpm, function, def);
-  if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
-  return mpsi_mpm_check_ids(mpm, function, status, def->id_count, def->ids);
+                     grid->dim == 3 ? ", MPS_DOF_Z" : "");
+  mps_status status = check_numbers(context, grid, run, function, number, def);
+  if (status == MPS_OK) status = check_ids(context, p, partition, function, def);
+  if (status == MPS_OK && !def->ids) status = find_box(context, grid, function, def, out);
+  return mpsi_mpm_check_ids(context, p, partition, function, status, def->id_count, def->ids);
 }
 
 /* ---- putting in place ------------------------------------------------------------------------ */
 
-static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
-  mpsi_boundary *hold = &mpm->boundaries.hold[number];
+static void place_side(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int32_t number,
+                       int32_t kind) {
+  mpsi_boundary *hold = &boundaries->hold[number];
   const int axis = number / 2;
   hold->axis = axis;
   /* the standard scheme has nodes beyond the side too */
-  const int64_t beyond = mpm->grid.standard ? MPSI_SIDE : 0;
-  for (int c = 0; c < mpm->grid.dim; c++)
-    hold->first[c] = mpm->grid.low[c] - beyond, hold->last[c] = mpm->grid.high[c] + beyond;
+  const int64_t beyond = grid->standard ? MPSI_SIDE : 0;
+  for (int c = 0; c < grid->dim; c++)
+    hold->first[c] = grid->low[c] - beyond, hold->last[c] = grid->high[c] + beyond;
   if (number % 2)
-    hold->first[axis] = mpm->grid.high[axis];
+    hold->first[axis] = grid->high[axis];
   else
-    hold->last[axis] = mpm->grid.low[axis];
+    hold->last[axis] = grid->low[axis];
   hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
   hold->finds = kind == MPS_BOUNDARY_ABSORBING;
   hold->found = 0.0;
@@ -179,34 +184,36 @@ static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
 }
 
 /* Sums of a new boundary, from 0; memory of a number stays. */
-static bool make_sums(mps_mpm *mpm, mpsi_boundary *hold) {
-  if (!hold->sums) hold->sums = mpsi_alloc(mpm->context, 1, sizeof *hold->sums);
+static bool make_sums(mps_context *context, mpsi_boundary *hold) {
+  if (!hold->sums) hold->sums = mpsi_alloc(context, 1, sizeof *hold->sums);
   return hold->sums != NULL;
 }
 
-bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
+bool mpsi_mpm_begin_sides(mps_context *context, const mpsi_grid *grid,
+                          mpsi_boundaries *boundaries) {
   bool good = true;
-  mpm->boundaries.hold = mpm->boundaries.hold_room.item;
-  mpm->boundaries.holds = MPSI_SIDES;
-  for (int32_t k = 0; k < MPSI_SIDES; k++) mpm->boundaries.hold[k].kind = MPSI_BOUNDARY_NONE;
+  boundaries->hold = boundaries->hold_room.item;
+  boundaries->holds = MPSI_SIDES;
+  for (int32_t k = 0; k < MPSI_SIDES; k++) boundaries->hold[k].kind = MPSI_BOUNDARY_NONE;
   for (int32_t k = 0; k < MPSI_SIDES && good; k++) {
-    if (!has_side(mpm, k)) continue;
-    place_side(mpm, k, MPS_BOUNDARY_ROLLER);
-    good = make_sums(mpm, &mpm->boundaries.hold[k]);
+    if (!has_side(grid, k)) continue;
+    place_side(grid, boundaries, k, MPS_BOUNDARY_ROLLER);
+    good = make_sums(context, &boundaries->hold[k]);
   }
   return good;
 }
 
-mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function) {
-  mpsi_boundary *hold = mpm->boundaries.hold;
+mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
+                                mpsi_boundaries *boundaries, const char *function) {
+  mpsi_boundary *hold = boundaries->hold;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (hold[k].kind == MPS_BOUNDARY_ABSORBING)
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "mpm: boundary %d is absorbing, which the standard method does not allow",
                        k);
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (hold[k].kind != MPSI_BOUNDARY_NONE) place_side(mpm, k, hold[k].kind);
-  mpm->boundaries.outdated = true;
+    if (hold[k].kind != MPSI_BOUNDARY_NONE) place_side(grid, boundaries, k, hold[k].kind);
+  boundaries->outdated = true;
   return MPS_OK;
 }
 
@@ -221,32 +228,32 @@ static void take_numbers(mpsi_boundary *hold, const mps_mpm_boundary_def *def) {
   }
 }
 
-static void drop(mps_mpm *mpm, mpsi_boundary *hold) {
+static void drop(mps_context *context, mpsi_boundary *hold) {
   const mps_mpm_boundary_def rest = boundary_defaults;
   take_numbers(hold, &rest);
-  mpsi_free(mpm->context, hold->ids);
+  mpsi_free(context, hold->ids);
   hold->ids = NULL;
   hold->id_count = 0;
   hold->kind = MPSI_BOUNDARY_NONE;
 }
 
-void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
-    drop(mpm, &mpm->boundaries.hold[k]);
-    mpsi_free(mpm->context, mpm->boundaries.hold[k].sums);
+void mpsi_mpm_drop_boundaries(mps_context *context, const mpsi_boundaries *boundaries) {
+  for (int32_t k = 0; k < boundaries->holds; k++) {
+    drop(context, &boundaries->hold[k]);
+    mpsi_free(context, boundaries->hold[k].sums);
   }
-  mpsi_free(mpm->context, mpm->boundaries.hold_room.item);
+  mpsi_free(context, boundaries->hold_room.item);
 }
 
 /* Number of the next boundary, the lowest free one, for which there is memory then. */
-static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *number) {
-  mpsi_boundaries *b = &mpm->boundaries;
+static mps_status find_number(mps_context *context, mpsi_boundaries *b, const char *function,
+                              int32_t *number) {
   int32_t at = MPSI_SIDES;
   while (at < b->holds && b->hold[at].kind != MPSI_BOUNDARY_NONE) at++;
   *number = at;
   if (at < b->holds) return MPS_OK;
-  if (!mpsi_room_keep(mpm->context, &b->hold_room, at + 1, sizeof *b->hold))
-    return mpsi_fail_memory(mpm->context, function, (size_t)(at + 1) * sizeof *b->hold);
+  if (!mpsi_room_keep(context, &b->hold_room, at + 1, sizeof *b->hold))
+    return mpsi_fail_memory(context, function, (size_t)(at + 1) * sizeof *b->hold);
   b->hold = b->hold_room.item;
   b->hold[b->holds++].kind = MPSI_BOUNDARY_NONE;
   return MPS_OK;
@@ -258,15 +265,16 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t nu
   mpsi_boundary *hold = &mpm->boundaries.hold[number];
   mpsi_boundary made = {.kind = MPS_BOUNDARY_DRIVEN,
                         .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
-  mps_status status = check_prescribed(mpm, function, number, def, &made);
-  if (status == MPS_OK && !make_sums(mpm, hold))
+  mps_status status = check_prescribed(mpm->context, &mpm->grid, &mpm->p, mpm->partition, &mpm->run,
+                                       function, number, def, &made);
+  if (status == MPS_OK && !make_sums(mpm->context, hold))
     status = mpsi_fail_memory(mpm->context, function, sizeof *hold->sums);
   if (status == MPS_OK && def->ids) {
     made.ids = mpsi_alloc(mpm->context, def->id_count, sizeof *made.ids);
     if (!made.ids)
       status = mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
   }
-  status = mpsi_mpm_agree(mpm, function, status);
+  status = mpsi_mpm_agree(mpm->partition, function, status);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, made.ids);
     return status;
@@ -290,16 +298,17 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t nu
   return MPS_OK;
 }
 
-static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *user,
-                           mps_mpm_boundary_def *def) {
-  if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  return MPSI_DEF_READ(mpm->context, function, mps_mpm_boundary_def, user, def);
+static mps_status read_def(mps_context *context, const char *function,
+                           const mps_mpm_boundary_def *user, mps_mpm_boundary_def *def) {
+  if (!user) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  return MPSI_DEF_READ(context, function, mps_mpm_boundary_def, user, def);
 }
 
 /* All ranks give the same boundary (`number` -1: a new one). */
-static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
-                                int32_t number, const mps_mpm_boundary_def *def) {
-  if (!mpm->partition) return status;
+static mps_status compare_ranks(const mpsi_grid *grid, mpsi_partition *partition,
+                                const char *function, mps_status status, int32_t number,
+                                const mps_mpm_boundary_def *def) {
+  if (!partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "boundary", number);
@@ -308,15 +317,15 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     MPSI_GIVE(&given, def, dofs);
     MPSI_GIVE(&given, def, friction);
     MPSI_GIVE(&given, def, settle);
-    MPSI_GIVE_VECTOR(&given, def, lower, mpm->grid.dim);
-    MPSI_GIVE_VECTOR(&given, def, upper, mpm->grid.dim);
-    MPSI_GIVE_VECTOR(&given, def, factor, mpm->grid.dim);
-    for (int c = 0; c < mpm->grid.dim; c++)
+    MPSI_GIVE_VECTOR(&given, def, lower, grid->dim);
+    MPSI_GIVE_VECTOR(&given, def, upper, grid->dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, grid->dim);
+    for (int c = 0; c < grid->dim; c++)
       mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
     mpsi_give_bytes(&given, "a hash of ids", def->id_count > 0 ? def->ids : NULL,
                     (size_t)def->id_count * sizeof *def->ids);
   }
-  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
 /* ---- the calls ------------------------------------------------------------------------------- */
@@ -324,11 +333,11 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
 mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_boundary_def def = boundary_defaults;
-  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
+  if (status == MPS_OK) status = read_def(mpm->context, __func__, user, &def);
   int32_t at = MPSI_SIDES;
-  if (status == MPS_OK) status = find_number(mpm, __func__, &at);
-  status = compare_ranks(mpm, __func__, status, -1, &def);
+  if (status == MPS_OK) status = find_number(mpm->context, &mpm->boundaries, __func__, &at);
+  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, -1, &def);
   if (status != MPS_OK) return status;
   status = take_prescribed(mpm, __func__, at, &def);
   if (status != MPS_OK) return status;
@@ -342,18 +351,19 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
   return MPS_OK;
 }
 
-static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
+static mps_status find(mps_context *context, const mpsi_grid *grid,
+                       const mpsi_boundaries *boundaries, const char *function, int32_t number) {
   const bool side = number >= 0 && number < MPSI_SIDES;
-  if (side ? has_side(mpm, number)
-           : number >= 0 && number < mpm->boundaries.holds &&
-                 mpm->boundaries.hold[number].kind != MPSI_BOUNDARY_NONE)
+  if (side ? has_side(grid, number)
+           : number >= 0 && number < boundaries->holds &&
+                 boundaries->hold[number].kind != MPSI_BOUNDARY_NONE)
     return MPS_OK;
   if (side)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "number is %d, and the domain has no %s side across %c", number,
                      number % 2 ? "upper" : "lower", "xyz"[number / 2]);
   return mpsi_fail(
-      mpm->context, function, MPS_ERROR_ARGUMENT,
+      context, function, MPS_ERROR_ARGUMENT,
       "number: boundary is %d, must be that of a side of the domain (0 to 5) or a number that "
       "mps_mpm_add_boundary gave",
       number);
@@ -362,19 +372,21 @@ static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
 mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_boundary_def def = boundary_defaults;
-  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = find(mpm, __func__, number);
-  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
-  status = compare_ranks(mpm, __func__, status, number, &def);
+  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
+  if (status == MPS_OK) status = find(mpm->context, &mpm->grid, &mpm->boundaries, __func__, number);
+  if (status == MPS_OK) status = read_def(mpm->context, __func__, user, &def);
+  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, number, &def);
   if (status != MPS_OK) return status;
   mpsi_boundary *hold = &mpm->boundaries.hold[number];
   if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, number, &def);
-  status = mpsi_mpm_agree(mpm, __func__, check_side(mpm, __func__, number, &def));
+  status = mpsi_mpm_agree(
+      mpm->partition, __func__,
+      check_side(mpm->context, &mpm->grid, &mpm->run, &mpm->def, __func__, number, &def));
   if (status != MPS_OK) return status;
   /* a side that is driven is held, and moves with its signals; DRIVEN is of boxes and particles */
   const int32_t kind = def.kind == MPS_BOUNDARY_DRIVEN ? MPS_BOUNDARY_HELD : def.kind;
   if (hold->kind != kind || kind == MPS_BOUNDARY_ABSORBING) {
-    place_side(mpm, number, kind);
+    place_side(&mpm->grid, &mpm->boundaries, number, kind);
     mpm->boundaries.outdated = true;
   }
   take_numbers(hold, &def);
@@ -383,15 +395,15 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
 
 mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = find(mpm, __func__, number);
-  if (status == MPS_OK && on_axis(mpm, number))
+  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
+  if (status == MPS_OK) status = find(mpm->context, &mpm->grid, &mpm->boundaries, __func__, number);
+  if (status == MPS_OK && on_axis(&mpm->grid, &mpm->def, number))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "number: boundary is 0, the axis r = 0, which cannot be free");
   if (mpm->partition)
     status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "boundary", number);
   if (status != MPS_OK) return status;
-  drop(mpm, &mpm->boundaries.hold[number]);
+  drop(mpm->context, &mpm->boundaries.hold[number]);
   mpm->boundaries.outdated = true;
   return MPS_OK;
 }
@@ -406,10 +418,10 @@ void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, c
   hold->count += count;
 }
 
-void mpsi_mpm_boundary_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
-  mpsi_exact_merge(sum, &mpm->boundaries.work);
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
-    const mpsi_boundary_sums *sums = mpm->boundaries.hold[k].sums;
+void mpsi_mpm_boundary_add_works(const mpsi_boundaries *boundaries, mpsi_exact *sum) {
+  mpsi_exact_merge(sum, &boundaries->work);
+  for (int32_t k = 0; k < boundaries->holds; k++) {
+    const mpsi_boundary_sums *sums = boundaries->hold[k].sums;
     if (!sums) continue;
     mpsi_exact_merge(sum, &sums->all[MPSI_BOUNDARY_WORK]);
     mpsi_exact_merge(sum, &sums->step[MPSI_BOUNDARY_WORK]);
@@ -417,16 +429,15 @@ void mpsi_mpm_boundary_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
 }
 
 /* All ranks together: the last step, and since it was made. */
-static mps_status sum_ranks(mps_mpm *mpm, const char *function, const mpsi_boundary *hold,
-                            mpsi_boundary_sums *out, int64_t *counts) {
+static mps_status sum_ranks(mpsi_partition *partition, const char *function,
+                            const mpsi_boundary *hold, mpsi_boundary_sums *out, int64_t *counts) {
   *out = *hold->sums;
   for (int k = 0; k < MPSI_BOUNDARY_MASS; k++) mpsi_exact_merge(&out->all[k], &out->step[k]);
   counts[0] = hold->count, counts[1] = hold->removed;
-  if (!mpm->partition) return MPS_OK;
-  const mps_status status = mpsi_domain_sum(mpm->partition->domain, function, 2, counts);
+  if (!partition) return MPS_OK;
+  const mps_status status = mpsi_domain_sum(partition->domain, function, 2, counts);
   if (status != MPS_OK) return status;
-  return mpsi_domain_sum_exact(mpm->partition->domain, function, 2 * MPSI_BOUNDARY_MASS + 1,
-                               out->step);
+  return mpsi_domain_sum_exact(partition->domain, function, 2 * MPSI_BOUNDARY_MASS + 1, out->step);
 }
 
 mps_status mps_mpm_get_reaction_sized(const mps_mpm *handle, int32_t number, mps_reaction *out,
@@ -436,11 +447,11 @@ mps_status mps_mpm_get_reaction_sized(const mps_mpm *handle, int32_t number, mps
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mpsi_boundary_sums sums;
   int64_t counts[2];
-  mps_status status = find(mpm, function, number);
+  mps_status status = find(mpm->context, &mpm->grid, &mpm->boundaries, function, number);
   if (mpm->partition)
     status = mpsi_domain_agree_same(mpm->partition->domain, function, status, "boundary", number);
   if (status != MPS_OK) return status;
-  status = sum_ranks(mpm, function, &mpm->boundaries.hold[number], &sums, counts);
+  status = sum_ranks(mpm->partition, function, &mpm->boundaries.hold[number], &sums, counts);
   if (status != MPS_OK) return status;
   const double rate = mpm->boundaries.dt > 0.0 ? 1.0 / mpm->boundaries.dt : 0.0;
   mps_reaction r = {.count = counts[0],

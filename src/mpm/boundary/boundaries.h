@@ -104,49 +104,64 @@ mps_status mpsi_mpm_put_dashpots(mps_mpm *mpm, const char *function, int64_t cou
                                  const mpsi_dashpot *dashpot);
 /* walls.c: on several ranks the ghosts must be found before: the dashpots are kept till then, in
  * warm_room, which has room for them; then, collective, both. */
-void mpsi_mpm_keep_dashpots(mps_mpm *mpm, int64_t count, const mpsi_dashpot *dashpot);
+void mpsi_mpm_keep_dashpots(mpsi_boundaries *boundaries, int64_t count,
+                            const mpsi_dashpot *dashpot);
 mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function);
 /* walls.c: the time at rest of absorbing walls grows by dt. */
-void mpsi_mpm_begin_boundaries(mps_mpm *mpm, double dt);
+void mpsi_mpm_begin_boundaries(const mpsi_boundaries *boundaries, double dt);
 void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, const double *moment,
                                    double work, int64_t count);
 /* boundaries.c: J, all that boundaries have done. */
-void mpsi_mpm_boundary_add_works(const mps_mpm *mpm, mpsi_exact *sum);
+void mpsi_mpm_boundary_add_works(const mpsi_boundaries *boundaries, mpsi_exact *sum);
 /* walls.c: before all others: no impulses yet on the held nodes of a block. */
-void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_begin_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int64_t g);
 /* walls.c: mirrored sides alone, also before the forces: for friction with bodies, which must see
  * nodes on a mirror as their own images. */
 void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g);
 /* `fixed`: of each node, bit c where a boundary alone moves component c; left where none acts. */
 void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed);
-void mpsi_mpm_sum_boundaries(mps_mpm *mpm);
+void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
+                             const mpsi_mirrors *mirrors, mpsi_energy *energy, double dt);
 /* walls.c: after G2P, the particles of the lists. */
-void mpsi_mpm_drive_particles(mps_mpm *mpm);
+void mpsi_mpm_drive_particles(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mpsi_boundaries *boundaries, mpsi_energy *energy, double dt);
 /* boundaries.c: rollers on the sides of a new solver; frees all. */
-bool mpsi_mpm_begin_sides(mps_mpm *mpm); /* hold_room has room; false: no memory */
-void mpsi_mpm_drop_boundaries(mps_mpm *mpm);
+bool mpsi_mpm_begin_sides(mps_context *context, const mpsi_grid *grid,
+                          mpsi_boundaries *boundaries); /* hold_room has room; false: no memory */
+void mpsi_mpm_drop_boundaries(mps_context *context, const mpsi_boundaries *boundaries);
 /* boundaries.c: sides hold the nodes beyond them too, where the standard method has some. */
-mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
+                                mpsi_boundaries *boundaries, const char *function);
 /* absorb.c: dashpots of the absorbing sides, after a sort, taking over the forces at rest from the
  * list before (`parcels`: of other ranks, or NULL); one of them at work: the velocity of its node
  * across and along; what a block gives to those of a side, false: nothing; order of the list;
  * whether a side absorbs. */
-void mpsi_mpm_place_dashpots(mps_mpm *mpm, const mpsi_dashpot_parcels *parcels,
+void mpsi_mpm_place_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
+                             const mpsi_boundaries *boundaries, const mpsi_dashpot_parcels *parcels,
                              const mpsi_held *old, int64_t old_count,
                              const mpsi_dashpot *old_dashpot);
-bool mpsi_mpm_sum_dashpots(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t side,
-                           double (*tile)[2]);
+bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
+                           const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
+                           int32_t side, double (*tile)[2]);
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b);
-bool mpsi_mpm_absorbs(const mps_mpm *mpm);
+bool mpsi_mpm_absorbs(const mpsi_boundaries *boundaries);
 /* dashpots.c: the same for all ranks, collective. */
-mps_status mpsi_mpm_exchange_dashpots(mps_mpm *mpm, const char *function, const mpsi_held *old,
-                                      int64_t old_count, const mpsi_dashpot *old_dashpot);
+mps_status mpsi_mpm_exchange_dashpots(mps_context *context, const mpsi_grid *grid,
+                                      const mpsi_columns *p, const mpsi_boundaries *boundaries,
+                                      mpsi_partition *partition, const char *function,
+                                      const mpsi_held *old, int64_t old_count,
+                                      const mpsi_dashpot *old_dashpot);
 /* The dashpots of a file: those of all ranks in its order, on rank 0; and back, those of the blocks
  * of nodes that this rank knows, of a file with these blocks of cells. `status` as ever. */
-mps_status mpsi_mpm_gather_dashpots(mps_mpm *mpm, const char *function, mpsi_value *dashpots);
-mps_status mpsi_mpm_take_dashpots(mps_mpm *mpm, const char *function, const mpsi_value *blocks,
+mps_status mpsi_mpm_gather_dashpots(mps_context *context, const mpsi_grid *grid,
+                                    const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                                    const char *function, mpsi_value *dashpots);
+mps_status mpsi_mpm_take_dashpots(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                                  const char *function, const mpsi_value *blocks,
                                   mpsi_value *dashpots);
-void mpsi_mpm_apply_dashpot(const mps_mpm *mpm, const mpsi_boundary *hold, mpsi_dashpot *dashpot,
-                            const double *node, const double *before, double *velocity);
+void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundary *hold,
+                            mpsi_dashpot *dashpot, const double *node, const double *before,
+                            double *velocity);
 
 #endif

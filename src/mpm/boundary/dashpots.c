@@ -9,35 +9,38 @@
 
 /* ---- coefficients ---------------------------------------------------------------------------- */
 
-static int64_t plane_doubles(const mps_mpm *mpm) {
-  return 2 * (mpm->grid.dim == 3 ? MPSI_DASH_PLANE : MPSI_TILE_SIDE);
+static int64_t plane_doubles(const mpsi_grid *grid) {
+  return 2 * (grid->dim == 3 ? MPSI_DASH_PLANE : MPSI_TILE_SIDE);
 }
 
-static void sum_border(mps_mpm *mpm, double *out) {
-  const size_t bytes = (size_t)plane_doubles(mpm) * sizeof *out;
-  for (int64_t k = 0; k < mpm->partition->borders; k++)
-    for (int32_t side = 0; side < MPSI_SIDES; side++, out += plane_doubles(mpm)) {
+static void sum_border(const mpsi_grid *grid, const mpsi_columns *p,
+                       const mpsi_boundaries *boundaries, mpsi_partition *partition, double *out) {
+  const size_t bytes = (size_t)plane_doubles(grid) * sizeof *out;
+  for (int64_t k = 0; k < partition->borders; k++)
+    for (int32_t side = 0; side < MPSI_SIDES; side++, out += plane_doubles(grid)) {
       double tile[MPSI_DASH_PLANE][2];
       memset(out, 0, bytes);
-      if (mpm->boundaries.hold[side].kind == MPS_BOUNDARY_ABSORBING &&
-          mpsi_mpm_sum_dashpots(mpm, &mpm->grid.cells[mpm->partition->border[k]], side, tile))
+      if (boundaries->hold[side].kind == MPS_BOUNDARY_ABSORBING &&
+          mpsi_mpm_sum_dashpots(grid, p, boundaries, &grid->cells[partition->border[k]], side,
+                                tile))
         memcpy(out, tile, bytes);
     }
 }
 
-static mps_status swap_sums(mps_mpm *mpm, const char *function, mpsi_dashpot_parcels *parcels) {
-  mpsi_partition *partition = mpm->partition;
-  const int64_t item = MPSI_SIDES * plane_doubles(mpm);
-  parcels->out = mpsi_alloc(mpm->context, partition->borders * item, sizeof *parcels->out);
-  parcels->in = mpsi_alloc(mpm->context, partition->ghosts * item, sizeof *parcels->in);
+static mps_status swap_sums(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                            const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                            const char *function, mpsi_dashpot_parcels *parcels) {
+  const int64_t item = MPSI_SIDES * plane_doubles(grid);
+  parcels->out = mpsi_alloc(context, partition->borders * item, sizeof *parcels->out);
+  parcels->in = mpsi_alloc(context, partition->ghosts * item, sizeof *parcels->in);
   mps_status status = MPS_OK;
   if (!parcels->out || !parcels->in)
-    status = mpsi_fail_memory(mpm->context, function,
+    status = mpsi_fail_memory(context, function,
                               (size_t)((partition->borders + partition->ghosts) * item) *
                                   sizeof(double));
   status = mpsi_domain_agree(partition->domain, function, status);
   if (status != MPS_OK) return status;
-  sum_border(mpm, parcels->out);
+  sum_border(grid, p, boundaries, partition, parcels->out);
   status =
       mpsi_halo_begin_bytes(partition->halo, function, (int32_t)(item * (int64_t)sizeof(double)),
                             parcels->out, parcels->in);
@@ -56,10 +59,10 @@ typedef struct parting {
   int32_t rank;
 } parting;
 
-static int64_t plane_nodes(const mps_mpm *mpm) { return mpm->grid.block_nodes / MPSI_SIDE; }
+static int64_t plane_nodes(const mpsi_grid *grid) { return grid->block_nodes / MPSI_SIDE; }
 
-static int64_t record_bytes(const mps_mpm *mpm) {
-  return (int64_t)sizeof(place) + plane_nodes(mpm) * (int64_t)(3 * sizeof(double));
+static int64_t record_bytes(const mpsi_grid *grid) {
+  return (int64_t)sizeof(place) + plane_nodes(grid) * (int64_t)(3 * sizeof(double));
 }
 
 static int by_rank(const void *left, const void *right) {
@@ -69,17 +72,17 @@ static int by_rank(const void *left, const void *right) {
 }
 
 /* Whom the forces are for: the other ranks that may have blocks of cells over these nodes. */
-static int64_t list_partings(const mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
-                             parting *out) {
-  const int32_t rank = mps_domain_rank(mpm->partition->domain);
+static int64_t list_partings(const mpsi_grid *grid, mpsi_partition *partition, const mpsi_held *old,
+                             int64_t old_count, parting *out) {
+  const int32_t rank = mps_domain_rank(partition->domain);
   int64_t count = 0;
   for (int64_t t = 0; t < old_count; t++) {
     if (old[t].dashpot < 0 || !old[t].counted) continue;
     const int64_t first = count;
-    for (int q = 0; q < 1 << mpm->grid.dim; q++) {
+    for (int q = 0; q < 1 << grid->dim; q++) {
       const int32_t at[3] = {old[t].at[0] - (q & 1), old[t].at[1] - (q >> 1 & 1),
                              old[t].at[2] - (q >> 2)};
-      const int32_t owner = mpsi_mpm_block_owner(mpm, at);
+      const int32_t owner = mpsi_mpm_block_owner(grid, partition, at);
       int64_t k = first;
       while (k < count && out[k].rank != owner) k++;
       if (owner != rank && k == count) out[count++] = (parting){t, owner};
@@ -89,17 +92,16 @@ static int64_t list_partings(const mps_mpm *mpm, const mpsi_held *old, int64_t o
   return count;
 }
 
-static void write_record(const mps_mpm *mpm, const mpsi_held *held, const mpsi_dashpot *dashpot,
+static void write_record(const mpsi_grid *grid, const mpsi_held *held, const mpsi_dashpot *dashpot,
                          char *to) {
   const place at = {{held->at[0], held->at[1], held->at[2]}, held->hold};
   memcpy(to, &at, sizeof at);
   to += sizeof at;
-  for (int64_t k = 0; k < plane_nodes(mpm); k++, to += sizeof dashpot->rest)
+  for (int64_t k = 0; k < plane_nodes(grid); k++, to += sizeof dashpot->rest)
     memcpy(to, dashpot[held->dashpot + k].rest, sizeof dashpot->rest);
 }
 
-static void read_record(mps_mpm *mpm, const char *from) {
-  mpsi_boundaries *b = &mpm->boundaries;
+static void read_record(const mpsi_grid *grid, const mpsi_boundaries *b, const char *from) {
   place at;
   memcpy(&at, from, sizeof at);
   from += sizeof at;
@@ -114,7 +116,7 @@ static void read_record(mps_mpm *mpm, const char *from) {
       high = middle;
   }
   if (low == b->held_count || mpsi_mpm_compare_held(&b->held[low], &key) != 0) return;
-  for (int64_t k = 0; k < plane_nodes(mpm); k++, from += sizeof b->dashpot->rest)
+  for (int64_t k = 0; k < plane_nodes(grid); k++, from += sizeof b->dashpot->rest)
     memcpy(b->dashpot[b->held[low].dashpot + k].rest, from, sizeof b->dashpot->rest);
 }
 
@@ -125,21 +127,21 @@ typedef struct rests {
   mpsi_mailbox box;
 } rests;
 
-static mps_status write_rests(const mps_mpm *mpm, const char *function, const mpsi_held *old,
+static mps_status write_rests(mps_context *context, const mpsi_grid *grid,
+                              mpsi_partition *partition, const char *function, const mpsi_held *old,
                               int64_t old_count, const mpsi_dashpot *old_dashpot, rests *r,
                               int32_t *messages) {
-  mps_context *context = mpm->context;
-  const int64_t record = record_bytes(mpm);
-  r->parting = mpsi_alloc(context, old_count << mpm->grid.dim, sizeof *r->parting);
-  r->message = mpsi_alloc(context, mps_domain_size(mpm->partition->domain), sizeof *r->message);
+  const int64_t record = record_bytes(grid);
+  r->parting = mpsi_alloc(context, old_count << grid->dim, sizeof *r->parting);
+  r->message = mpsi_alloc(context, mps_domain_size(partition->domain), sizeof *r->message);
   const int64_t count =
-      r->parting && r->message ? list_partings(mpm, old, old_count, r->parting) : 0;
+      r->parting && r->message ? list_partings(grid, partition, old, old_count, r->parting) : 0;
   r->mail = mpsi_alloc(context, count, (size_t)record);
   if (!r->parting || !r->message || !r->mail)
     return mpsi_fail_memory(context, function, (size_t)(count * record));
   for (int64_t k = 0; k < count; k++) {
     char *to = r->mail + k * record;
-    write_record(mpm, &old[r->parting[k].held], old_dashpot, to);
+    write_record(grid, &old[r->parting[k].held], old_dashpot, to);
     if (k == 0 || r->parting[k].rank != r->parting[k - 1].rank)
       r->message[(*messages)++] = (mps_domain_message){.rank = r->parting[k].rank, .data = to};
     r->message[*messages - 1].bytes += record;
@@ -148,33 +150,42 @@ static mps_status write_rests(const mps_mpm *mpm, const char *function, const mp
 }
 
 /* Into the new list. */
-static mps_status send_rests(mps_mpm *mpm, const char *function, const mpsi_held *old,
-                             int64_t old_count, const mpsi_dashpot *old_dashpot) {
-  mps_domain *domain = mpm->partition->domain;
-  rests r = {.box.context = mpm->context};
+static mps_status send_rests(mps_context *context, const mpsi_grid *grid,
+                             const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                             const char *function, const mpsi_held *old, int64_t old_count,
+                             const mpsi_dashpot *old_dashpot) {
+  mps_domain *domain = partition->domain;
+  rests r = {.box.context = context};
   int32_t messages = 0;
-  mps_status status = write_rests(mpm, function, old, old_count, old_dashpot, &r, &messages);
+  mps_status status =
+      write_rests(context, grid, partition, function, old, old_count, old_dashpot, &r, &messages);
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(domain, function, messages, r.message, &r.box);
   for (int32_t m = 0; status == MPS_OK && m < r.box.count; m++)
-    for (int64_t at = 0; at < r.box.mail[m].bytes; at += record_bytes(mpm))
-      read_record(mpm, (const char *)r.box.mail[m].data + at);
+    for (int64_t at = 0; at < r.box.mail[m].bytes; at += record_bytes(grid))
+      read_record(grid, boundaries, (const char *)r.box.mail[m].data + at);
   mpsi_domain_free_mail(&r.box);
-  mpsi_free(mpm->context, r.parting);
-  mpsi_free(mpm->context, r.mail);
-  mpsi_free(mpm->context, r.message);
+  mpsi_free(context, r.parting);
+  mpsi_free(context, r.mail);
+  mpsi_free(context, r.message);
   return status;
 }
 
-mps_status mpsi_mpm_exchange_dashpots(mps_mpm *mpm, const char *function, const mpsi_held *old,
-                                      int64_t old_count, const mpsi_dashpot *old_dashpot) {
-  mpsi_dashpot_parcels parcels = {.doubles = plane_doubles(mpm)};
-  mps_status status = swap_sums(mpm, function, &parcels);
-  if (status == MPS_OK) mpsi_mpm_place_dashpots(mpm, &parcels, old, old_count, old_dashpot);
-  mpsi_free(mpm->context, parcels.out);
-  mpsi_free(mpm->context, parcels.in);
-  return status == MPS_OK ? send_rests(mpm, function, old, old_count, old_dashpot) : status;
+mps_status mpsi_mpm_exchange_dashpots(mps_context *context, const mpsi_grid *grid,
+                                      const mpsi_columns *p, const mpsi_boundaries *boundaries,
+                                      mpsi_partition *partition, const char *function,
+                                      const mpsi_held *old, int64_t old_count,
+                                      const mpsi_dashpot *old_dashpot) {
+  mpsi_dashpot_parcels parcels = {.doubles = plane_doubles(grid)};
+  mps_status status = swap_sums(context, grid, p, boundaries, partition, function, &parcels);
+  if (status == MPS_OK)
+    mpsi_mpm_place_dashpots(grid, p, boundaries, &parcels, old, old_count, old_dashpot);
+  mpsi_free(context, parcels.out);
+  mpsi_free(context, parcels.in);
+  return status == MPS_OK ? send_rests(context, grid, boundaries, partition, function, old,
+                                       old_count, old_dashpot)
+                          : status;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -190,8 +201,7 @@ static int by_place(const void *left, const void *right) {
   return mpsi_mpm_compare_held(&a, &b);
 }
 
-static int64_t fill_rows(const mps_mpm *mpm, int64_t row, char *to) {
-  const mpsi_boundaries *b = &mpm->boundaries;
+static int64_t fill_rows(const mpsi_boundaries *b, int64_t row, char *to) {
   int64_t rows = 0;
   for (int64_t t = 0; t < b->held_count; t++) {
     const mpsi_held *held = &b->held[t];
@@ -206,31 +216,33 @@ static int64_t fill_rows(const mps_mpm *mpm, int64_t row, char *to) {
   return rows;
 }
 
-mps_status mpsi_mpm_gather_dashpots(mps_mpm *mpm, const char *function, mpsi_value *dashpots) {
-  mps_domain *domain = mpm->partition->domain;
-  const int64_t plane = plane_nodes(mpm), each = plane * MPSI_DASH;
+mps_status mpsi_mpm_gather_dashpots(mps_context *context, const mpsi_grid *grid,
+                                    const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                                    const char *function, mpsi_value *dashpots) {
+  mps_domain *domain = partition->domain;
+  const int64_t plane = plane_nodes(grid), each = plane * MPSI_DASH;
   const int64_t row = (int64_t)sizeof(place) + each * (int64_t)sizeof(double);
   mpsi_value wide = {.type = MPSI_STATE_F64, .columns = (int32_t)(row / 8)};
-  if (!mpsi_mpm_absorbs(mpm)) return MPS_OK;
-  const int64_t rows = fill_rows(mpm, row, NULL);
+  if (!mpsi_mpm_absorbs(boundaries)) return MPS_OK;
+  const int64_t rows = fill_rows(boundaries, row, NULL);
   mps_status status = MPS_OK;
-  if (!mpsi_value_reserve(mpm->context, &wide, wide.type, rows, wide.columns))
-    status = mpsi_fail_memory(mpm->context, function, (size_t)(rows * row));
+  if (!mpsi_value_reserve(context, &wide, wide.type, rows, wide.columns))
+    status = mpsi_fail_memory(context, function, (size_t)(rows * row));
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) {
-    fill_rows(mpm, row, wide.data);
+    fill_rows(boundaries, row, wide.data);
     status = mpsi_domain_gather_rows(domain, function, rows, &wide);
   }
   if (status == MPS_OK && mps_domain_rank(domain) == 0) {
     qsort(wide.data, (size_t)wide.rows, (size_t)row, by_place);
-    if (!mpsi_value_reserve(mpm->context, dashpots, MPSI_STATE_F64, wide.rows * plane, MPSI_DASH))
-      status = mpsi_fail_memory(mpm->context, function, (size_t)(wide.rows * row));
+    if (!mpsi_value_reserve(context, dashpots, MPSI_STATE_F64, wide.rows * plane, MPSI_DASH))
+      status = mpsi_fail_memory(context, function, (size_t)(wide.rows * row));
     if (status == MPS_OK) dashpots->rows = wide.rows * plane;
     for (int64_t k = 0; status == MPS_OK && k < wide.rows; k++)
       memcpy((double *)dashpots->data + k * each, (char *)wide.data + k * row + sizeof(place),
              (size_t)each * sizeof(double));
   }
-  mpsi_free(mpm->context, wide.data);
+  mpsi_free(context, wide.data);
   return mpsi_domain_agree(domain, function, status);
 }
 
@@ -247,15 +259,16 @@ static int by_block(const void *left, const void *right) {
   return 0;
 }
 
-static int64_t list_under(const mps_mpm *mpm, const mpsi_value *blocks, under *out) {
+static int64_t list_under(const mpsi_grid *grid, mpsi_partition *partition,
+                          const mpsi_value *blocks, under *out) {
   const mpsi_block *block = blocks->data;
-  const int32_t rank = mps_domain_rank(mpm->partition->domain);
+  const int32_t rank = mps_domain_rank(partition->domain);
   int64_t count = 0, warm = 0;
   for (int64_t b = 0; b < blocks->rows; b++) {
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
-    const bool own = mpsi_mpm_block_owner(mpm, at) == rank;
-    for (int q = 0; q < 1 << mpm->grid.dim; q++)
+    const bool own = mpsi_mpm_block_owner(grid, partition, at) == rank;
+    for (int q = 0; q < 1 << grid->dim; q++)
       out[count++] = (under){{at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)}, own};
   }
   qsort(out, (size_t)count, sizeof *out, by_block);
@@ -268,23 +281,24 @@ static int64_t list_under(const mps_mpm *mpm, const mpsi_value *blocks, under *o
   return warm;
 }
 
-mps_status mpsi_mpm_take_dashpots(mps_mpm *mpm, const char *function, const mpsi_value *blocks,
+mps_status mpsi_mpm_take_dashpots(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                                  const char *function, const mpsi_value *blocks,
                                   mpsi_value *dashpots) {
-  const int64_t plane = plane_nodes(mpm);
+  const int64_t plane = plane_nodes(grid);
   const size_t bytes = (size_t)plane * sizeof(mpsi_dashpot);
   mpsi_dashpot *dashpot = dashpots->data;
   int64_t from = 0, to = 0;
-  if (!mpsi_mpm_absorbs(mpm)) return MPS_OK;
-  under *nodes = mpsi_alloc(mpm->context, blocks->rows << mpm->grid.dim, sizeof *nodes);
-  if (!nodes)
-    return mpsi_fail_memory(mpm->context, function, (size_t)(blocks->rows << mpm->grid.dim) * 16);
-  const int64_t count = list_under(mpm, blocks, nodes);
+  if (!mpsi_mpm_absorbs(boundaries)) return MPS_OK;
+  under *nodes = mpsi_alloc(context, blocks->rows << grid->dim, sizeof *nodes);
+  if (!nodes) return mpsi_fail_memory(context, function, (size_t)(blocks->rows << grid->dim) * 16);
+  const int64_t count = list_under(grid, partition, blocks, nodes);
   for (int64_t g = 0; g < count; g++)
     for (int32_t side = 0; side < MPSI_SIDES; side++) {
-      const mpsi_boundary *hold = &mpm->boundaries.hold[side];
+      const mpsi_boundary *hold = &boundaries->hold[side];
       mpsi_range r;
       if (hold->kind != MPS_BOUNDARY_ABSORBING ||
-          !mpsi_find_range(mpm->grid.dim, nodes[g].at, hold, &r))
+          !mpsi_find_range(grid->dim, nodes[g].at, hold, &r))
         continue;
       if (nodes[g].own && from + plane <= dashpots->rows) {
         memmove(dashpot + to, dashpot + from, bytes);
@@ -292,9 +306,9 @@ mps_status mpsi_mpm_take_dashpots(mps_mpm *mpm, const char *function, const mpsi
       }
       from += plane;
     }
-  mpsi_free(mpm->context, nodes);
+  mpsi_free(context, nodes);
   if (from != dashpots->rows)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
+    return mpsi_fail(context, function, MPS_ERROR_FORMAT,
                      "there are %lld dashpots of absorbing walls, must be %lld",
                      (long long)dashpots->rows, (long long)from);
   dashpots->rows = to;

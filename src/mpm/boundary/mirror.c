@@ -8,62 +8,65 @@ enum { LAYERS = 2 }; /* of ghosts: the second only by what arithmetic rounds */
 
 /* ---- which ----------------------------------------------------------------------------------- */
 
-static bool is_mirror(const mps_mpm *mpm, int32_t k) {
-  const int32_t kind = mpm->boundaries.hold[k].kind;
-  return mpm->def.walls == MPS_MPM_WALLS_MIRROR && !mpm->grid.standard &&
+static bool is_mirror(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                      const mps_mpm_def *def, int32_t k) {
+  const int32_t kind = boundaries->hold[k].kind;
+  return def->walls == MPS_MPM_WALLS_MIRROR && !grid->standard &&
          (kind == MPS_BOUNDARY_ROLLER || kind == MPS_BOUNDARY_HELD);
 }
 
-static void find_sides(mps_mpm *mpm) {
-  mpm->mirrors.sides = 0;
-  for (int32_t k = 0; k < 2 * mpm->grid.dim; k++)
-    if (is_mirror(mpm, k)) mpm->mirrors.sides |= 1u << k;
+static void find_sides(mpsi_grid *grid, const mpsi_boundaries *boundaries, mpsi_mirrors *mirrors,
+                       const mps_mpm_def *def) {
+  mirrors->sides = 0;
+  for (int32_t k = 0; k < 2 * grid->dim; k++)
+    if (is_mirror(grid, boundaries, def, k)) mirrors->sides |= 1u << k;
   for (int c = 0; c < 3; c++) {
-    const bool lower = mpm->mirrors.sides >> (2 * c) & 1;
-    const bool upper = mpm->mirrors.sides >> (2 * c + 1) & 1;
-    mpm->grid.use_low[c] = lower ? -MPSI_NO_WALL : mpm->grid.low[c];
-    mpm->grid.use_high[c] = upper ? MPSI_NO_WALL : mpm->grid.high[c];
+    const bool lower = mirrors->sides >> (2 * c) & 1;
+    const bool upper = mirrors->sides >> (2 * c + 1) & 1;
+    grid->use_low[c] = lower ? -MPSI_NO_WALL : grid->low[c];
+    grid->use_high[c] = upper ? MPSI_NO_WALL : grid->high[c];
   }
 }
 
-static void find_of_block(const mps_mpm *mpm, mpsi_cell_block *cells) {
-  const mpsi_grid *grid = &mpm->grid;
+static void find_of_block(const mpsi_grid *grid, const mpsi_mirrors *mirrors,
+                          mpsi_cell_block *cells) {
   cells->edge = false;
   cells->mirrors = 0;
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) {
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = first + MPSI_TILE_SIDE - 1;
     if (first < grid->use_low[c] || last > grid->use_high[c]) cells->edge = true;
     if (first + cells->low[c] < grid->low[c])
-      cells->mirrors |= (uint8_t)(mpm->mirrors.sides & 1u << (2 * c));
+      cells->mirrors |= (uint8_t)(mirrors->sides & 1u << (2 * c));
     if (first + cells->high[c] - 1 > grid->high[c])
-      cells->mirrors |= (uint8_t)(mpm->mirrors.sides & 2u << (2 * c));
+      cells->mirrors |= (uint8_t)(mirrors->sides & 2u << (2 * c));
   }
 }
 
-mps_status mpsi_mpm_list_mirrors(mps_mpm *mpm, const char *function) {
-  mpsi_mirrors *all = &mpm->mirrors;
-  find_sides(mpm);
+mps_status mpsi_mpm_list_mirrors(mps_context *context, mpsi_grid *grid,
+                                 const mpsi_boundaries *boundaries, mpsi_mirrors *all,
+                                 const mps_mpm_def *def, const char *function) {
+  find_sides(grid, boundaries, all, def);
   int64_t count = 0;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    mpsi_cell_block *cells = &mpm->grid.cells[b];
-    find_of_block(mpm, cells);
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    mpsi_cell_block *cells = &grid->cells[b];
+    find_of_block(grid, all, cells);
     cells->first_mirror = (int32_t)count;
     for (uint32_t rest = cells->mirrors; rest; rest &= rest - 1) count++;
   }
-  const int64_t plane = mpsi_mirror_plane(mpm->grid.tile_nodes);
+  const int64_t plane = mpsi_mirror_plane(grid->tile_nodes);
   all->count = 0;
-  if (!mpsi_room_ensure(mpm->context, &all->mirror_room, count, sizeof *all->mirror) ||
-      !mpsi_room_ensure(mpm->context, &all->mass_room, count * plane, sizeof *all->mass))
-    return mpsi_fail_memory(mpm->context, function, (size_t)(count * plane) * sizeof *all->mass);
+  if (!mpsi_room_ensure(context, &all->mirror_room, count, sizeof *all->mirror) ||
+      !mpsi_room_ensure(context, &all->mass_room, count * plane, sizeof *all->mass))
+    return mpsi_fail_memory(context, function, (size_t)(count * plane) * sizeof *all->mass);
   all->mirror = all->mirror_room.item;
   all->mass = all->mass_room.item;
   all->count = count;
   return MPS_OK;
 }
 
-int mpsi_mpm_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
+int mpsi_mpm_mirror_partner(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int node) {
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-  const int64_t low = mpm->grid.low[c] - first, high = mpm->grid.high[c] - first;
+  const int64_t low = grid->low[c] - first, high = grid->high[c] - first;
   if (cells->mirrors >> (2 * c) & 1 && node < low) return (int)(2 * low - node);
   if (cells->mirrors >> (2 * c + 1) & 1 && node > high) return (int)(2 * high - node);
   return node;
@@ -81,10 +84,12 @@ typedef struct side {
   double *mass;
 } side;
 
-static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k, bool across) {
-  const mpsi_boundary *hold = &mpm->boundaries.hold[k];
+static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                    const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int32_t k,
+                    bool across) {
+  const mpsi_boundary *hold = &boundaries->hold[k];
   const int c = k / 2;
-  const int64_t node = k % 2 ? mpm->grid.high[c] : mpm->grid.low[c];
+  const int64_t node = k % 2 ? grid->high[c] : grid->low[c];
   side out = {.cells = cells,
               .axis = c,
               .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
@@ -96,9 +101,9 @@ static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k,
   }
   int64_t number = cells->first_mirror;
   for (uint32_t lower = cells->mirrors & ((1u << k) - 1); lower; lower &= lower - 1) number++;
-  out.mirror = &mpm->mirrors.mirror[number];
-  if (across) number += mpm->mirrors.count;
-  out.mass = mpm->mirrors.mass + number * mpsi_mirror_plane(mpm->grid.tile_nodes);
+  out.mirror = &mirrors->mirror[number];
+  if (across) number += mirrors->count;
+  out.mass = mirrors->mass + number * mpsi_mirror_plane(grid->tile_nodes);
   return out;
 }
 
@@ -128,7 +133,8 @@ static void for_couples(const mps_mpm *mpm, const side *s, couple_fn work, void 
         for (int image = 0; image < 2; image++) {
           at[c] = image ? ghost : partner;
           const double local[3] = {at[0], at[1], at[2]};
-          mpsi_node_position(mpm, s->cells->at, local, image ? pair.x_ghost : pair.x_partner);
+          mpsi_node_position(&mpm->grid, s->cells->at, local,
+                             image ? pair.x_ghost : pair.x_partner);
           *(image ? &pair.ghost : &pair.partner) = mpsi_tile_index(at[0], at[1], at[2]);
         }
         work(mpm, s, &pair, layer, data);
@@ -183,7 +189,7 @@ static void fold_node(const mps_mpm *mpm, const side *s, const couple *at, int l
 static void fold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k, of->across);
+    const side s = side_of(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, k, of->across);
     for_couples(mpm, &s, fold_node, of);
   }
 }
@@ -216,7 +222,7 @@ static void mirror_node(const mps_mpm *mpm, const side *s, const couple *at, int
 static void unfold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
   for (int32_t k = MPSI_SIDES - 1; k >= 0; k--) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k, of->across);
+    const side s = side_of(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, k, of->across);
     for_couples(mpm, &s, mirror_node, of);
   }
 }
@@ -238,7 +244,7 @@ static void copy_state(const mps_mpm *mpm, const side *s, const couple *at, int 
 void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k, false);
+    const side s = side_of(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, k, false);
     for_couples(mpm, &s, copy_state, worker);
   }
 }
@@ -252,10 +258,11 @@ static double share_of(const side *s, const int *at, int c) {
   return at[s->axis] == s->wall && s->keeps[c] < 0.0 ? 0.0 : s->keeps[c];
 }
 
-static void reflect_by(const mps_mpm *mpm, const side *s, int *at, double *vector, double impulse) {
+static void reflect_by(const mpsi_grid *grid, const side *s, int *at, double *vector,
+                       double impulse) {
   double x_before[3], x_after[3], before[3], after[3];
   const double from[3] = {at[0], at[1], at[2]};
-  mpsi_node_position(mpm, s->cells->at, from, x_before);
+  mpsi_node_position(grid, s->cells->at, from, x_before);
   for (int c = 0; c < 3; c++) {
     before[c] = impulse * vector[c];
     vector[c] *= share_of(s, at, c);
@@ -263,39 +270,42 @@ static void reflect_by(const mps_mpm *mpm, const side *s, int *at, double *vecto
   }
   at[s->axis] = 2 * s->wall - at[s->axis];
   const double to[3] = {at[0], at[1], at[2]};
-  mpsi_node_position(mpm, s->cells->at, to, x_after);
+  mpsi_node_position(grid, s->cells->at, to, x_after);
   if (impulse != 0.0) add_change(s->mirror, x_after, after, x_before, before);
 }
 
-void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *vector,
-                      double impulse) {
+void mpsi_mpm_reflect(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                      const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
+                      double *vector, double impulse) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k, false);
-    if (is_folded(&s, at)) reflect_by(mpm, &s, at, vector, impulse);
+    const side s = side_of(grid, boundaries, mirrors, cells, k, false);
+    if (is_folded(&s, at)) reflect_by(grid, &s, at, vector, impulse);
   }
 }
 
-void mpsi_mpm_reflect_impulse(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at,
+void mpsi_mpm_reflect_impulse(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                              const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
                               const double *impulse) {
   double vector[3] = {impulse[0], impulse[1], impulse[2]};
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k, false);
+    const side s = side_of(grid, boundaries, mirrors, cells, k, false);
     if (!is_folded(&s, at)) continue;
     const double before[3] = {vector[0], vector[1], vector[2]};
-    reflect_by(mpm, &s, at, vector, 1.0);
+    reflect_by(grid, &s, at, vector, 1.0);
     for (int c = 0; c < 3; c++) s.mirror->passed += 0.5 * (before[c] - vector[c]) * s.velocity[c];
   }
 }
 
-bool mpsi_mpm_find_image(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *keeps,
-                         double *carried) {
+bool mpsi_mpm_find_image(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                         const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
+                         double *keeps, double *carried) {
   bool any = false;
   for (int c = 0; c < 3; c++) keeps[c] = 1.0, carried[c] = 0.0;
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k, false);
+    const side s = side_of(grid, boundaries, mirrors, cells, k, false);
     if (!is_folded(&s, at)) continue;
     any = true;
     for (int c = 0; c < 3; c++) {
@@ -309,24 +319,25 @@ bool mpsi_mpm_find_image(const mps_mpm *mpm, const mpsi_cell_block *cells, int *
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-void mpsi_mpm_begin_mirrors(mps_mpm *mpm, const mpsi_cell_block *cells) {
+void mpsi_mpm_begin_mirrors(const mpsi_mirrors *mirrors, const mpsi_cell_block *cells) {
   int64_t number = cells->first_mirror;
   for (uint32_t rest = cells->mirrors; rest; rest &= rest - 1)
-    mpm->mirrors.mirror[number++] = (mpsi_mirror){.passed = 0.0};
+    mirrors->mirror[number++] = (mpsi_mirror){.passed = 0.0};
 }
 
-void mpsi_mpm_sum_mirrors(mps_mpm *mpm) {
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+void mpsi_mpm_sum_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                          const mpsi_mirrors *mirrors, mpsi_energy *energy) {
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
     int64_t number = cells->first_mirror;
     for (int32_t k = 0; k < MPSI_SIDES && !cells->ghost; k++) {
       if (!(cells->mirrors >> k & 1)) continue;
-      const mpsi_mirror *m = &mpm->mirrors.mirror[number++];
-      mpsi_boundary *hold = &mpm->boundaries.hold[k];
+      const mpsi_mirror *m = &mirrors->mirror[number++];
+      mpsi_boundary *hold = &boundaries->hold[k];
       const double work = mpsi_dot3(m->impulse, hold->v);
       mpsi_mpm_boundary_add_impulse(hold, m->impulse, m->moment, work, 0);
-      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
-      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, work + m->passed);
+      mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARIES, work);
+      mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, work + m->passed);
     }
   }
 }

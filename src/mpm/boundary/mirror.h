@@ -38,30 +38,36 @@ typedef struct mpsi_mirrors {
 static inline int64_t mpsi_mirror_plane(int32_t tile_nodes) { return tile_nodes / MPSI_TILE_SIDE; }
 
 /* Which sides are mirrors, which blocks of cells have one, or a node outside that none mirrors. */
-mps_status mpsi_mpm_list_mirrors(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_list_mirrors(mps_context *context, mpsi_grid *grid,
+                                 const mpsi_boundaries *boundaries, mpsi_mirrors *all,
+                                 const mps_mpm_def *def, const char *function);
 /* Before the particles of a block give: no impulses yet. */
-void mpsi_mpm_begin_mirrors(mps_mpm *mpm, const mpsi_cell_block *cells);
+void mpsi_mpm_begin_mirrors(const mpsi_mirrors *mirrors, const mpsi_cell_block *cells);
 /* The tile of a block, after its particles have given; before they take. */
 void mpsi_mpm_fold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
 void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
 /* Ghosts are in the bodies that their partners are in. */
 void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
 /* After the step: the impulses of the mirrors to the reactions of their sides. */
-void mpsi_mpm_sum_mirrors(mps_mpm *mpm);
+void mpsi_mpm_sum_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                          const mpsi_mirrors *mirrors, mpsi_energy *energy);
 
 /* Node of the tile along axis c, or its partner where it is beyond a mirror. */
-int mpsi_mpm_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node);
+int mpsi_mpm_mirror_partner(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int node);
 /* A momentum or force that a block's particle has at tile node `at`, a ghost or on a wall, as its
  * partner gets it; `at` becomes that. `impulse` times what changes is the wall's. */
-void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *vector,
-                      double impulse);
+void mpsi_mpm_reflect(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                      const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
+                      double *vector, double impulse);
 
 /* The same for an impulse, with its work. */
-void mpsi_mpm_reflect_impulse(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at,
+void mpsi_mpm_reflect_impulse(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                              const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
                               const double *impulse);
 /* Velocity at tile node `at`, which becomes its partner: `keeps` (by component) times that of the
  * partner and `carried`. Whether it is a ghost or on a wall. */
-bool mpsi_mpm_find_image(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *keeps,
-                         double *carried);
+bool mpsi_mpm_find_image(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                         const mpsi_mirrors *mirrors, const mpsi_cell_block *cells, int *at,
+                         double *keeps, double *carried);
 
 #endif

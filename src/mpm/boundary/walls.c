@@ -12,33 +12,33 @@
 /* ---- which nodes ----------------------------------------------------------------------------- */
 
 /* Lists what holds which block; false where there is no room, `count` says how much is needed. */
-static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashpots) {
-  mpsi_held *held = mpm->boundaries.held_room.item;
+static bool list(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                 mpsi_partition *partition, int64_t *count, int64_t *dashpots) {
+  mpsi_held *held = boundaries->held_room.item;
   *count = *dashpots = 0;
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
-    mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    mpsi_node_block *nodes = &grid->nodes[g];
     nodes->first_held = (int32_t)*count;
-    for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
+    for (int32_t k = 0; k < boundaries->holds; k++) {
       mpsi_range r;
-      const int32_t kind = mpm->boundaries.hold[k].kind;
-      if (kind == MPSI_BOUNDARY_NONE || kind == MPS_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
-          !mpsi_find_range(mpm->grid.dim, nodes->at, &mpm->boundaries.hold[k], &r))
+      const int32_t kind = boundaries->hold[k].kind;
+      if (kind == MPSI_BOUNDARY_NONE || kind == MPS_BOUNDARY_OPEN || boundaries->hold[k].ids ||
+          !mpsi_find_range(grid->dim, nodes->at, &boundaries->hold[k], &r))
         continue;
       const bool absorbs = kind == MPS_BOUNDARY_ABSORBING;
-      if (*count < mpm->boundaries.held_room.capacity) {
-        held[*count] =
-            (mpsi_held){.hold = k,
-                        .dashpot = absorbs ? *dashpots : -1,
-                        .counted = !mpm->partition || mpsi_mpm_counts_node_block(mpm, g),
-                        .whole = !mpm->partition || mpsi_mpm_node_block_complete(mpm, g)};
+      if (*count < boundaries->held_room.capacity) {
+        held[*count] = (mpsi_held){.hold = k,
+                                   .dashpot = absorbs ? *dashpots : -1,
+                                   .counted = !partition || mpsi_mpm_counts_node_block(grid, g),
+                                   .whole = !partition || mpsi_mpm_node_block_complete(grid, g)};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
-      if (absorbs) *dashpots += mpm->grid.block_nodes / MPSI_SIDE;
+      if (absorbs) *dashpots += grid->block_nodes / MPSI_SIDE;
       (*count)++;
     }
     nodes->holds = (int32_t)*count - nodes->first_held;
   }
-  return *count <= mpm->boundaries.held_room.capacity;
+  return *count <= boundaries->held_room.capacity;
 }
 
 static void swap_rooms(mpsi_room *a, mpsi_room *b) {
@@ -51,15 +51,16 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
 static mps_status make_list(mps_mpm *mpm, const char *function) {
   int64_t count, dashpots;
   mpm->boundaries.outdated = true;
-  const mps_status status = mpsi_mpm_list_mirrors(mpm, function);
+  const mps_status status = mpsi_mpm_list_mirrors(mpm->context, &mpm->grid, &mpm->boundaries,
+                                                  &mpm->mirrors, &mpm->def, function);
   if (status != MPS_OK) return status;
   swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
   swap_rooms(&mpm->boundaries.dashpot_room, &mpm->boundaries.old_dashpot_room);
-  bool good = list(mpm, &count, &dashpots);
+  bool good = list(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
   if (!good) {
     good = mpsi_room_ensure(mpm->context, &mpm->boundaries.held_room, count,
                             sizeof *mpm->boundaries.held);
-    if (good) list(mpm, &count, &dashpots);
+    if (good) list(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
   }
   good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dashpot_room, dashpots,
                                   sizeof *mpm->boundaries.dashpot);
@@ -85,14 +86,17 @@ mps_status mpsi_mpm_list_boundaries(mps_mpm *mpm, const char *function, mps_stat
   const mpsi_dashpot *old_dashpot = mpm->boundaries.dashpot;
   const int64_t old_count = mpm->boundaries.held_count;
   if (status == MPS_OK) status = make_list(mpm, function);
-  if (!mpsi_mpm_absorbs(mpm)) return status;
+  if (!mpsi_mpm_absorbs(&mpm->boundaries)) return status;
   if (!mpm->partition) {
-    if (status == MPS_OK) mpsi_mpm_place_dashpots(mpm, NULL, old, old_count, old_dashpot);
+    if (status == MPS_OK)
+      mpsi_mpm_place_dashpots(&mpm->grid, &mpm->p, &mpm->boundaries, NULL, old, old_count,
+                              old_dashpot);
     return status;
   }
   status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status == MPS_OK)
-    status = mpsi_mpm_exchange_dashpots(mpm, function, old, old_count, old_dashpot);
+    status = mpsi_mpm_exchange_dashpots(mpm->context, &mpm->grid, &mpm->p, &mpm->boundaries,
+                                        mpm->partition, function, old, old_count, old_dashpot);
   mpm->boundaries.outdated = status != MPS_OK;
   return status;
 }
@@ -121,9 +125,10 @@ mps_status mpsi_mpm_put_dashpots(mps_mpm *mpm, const char *function, int64_t cou
                    (long long)expected);
 }
 
-void mpsi_mpm_keep_dashpots(mps_mpm *mpm, int64_t count, const mpsi_dashpot *dashpot) {
-  if (count > 0) memcpy(mpm->boundaries.warm_room.item, dashpot, (size_t)count * sizeof *dashpot);
-  mpm->boundaries.warm = count;
+void mpsi_mpm_keep_dashpots(mpsi_boundaries *boundaries, int64_t count,
+                            const mpsi_dashpot *dashpot) {
+  if (count > 0) memcpy(boundaries->warm_room.item, dashpot, (size_t)count * sizeof *dashpot);
+  boundaries->warm = count;
 }
 
 mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function) {
@@ -160,7 +165,7 @@ static void set(block *b, const mpsi_boundary *hold, mpsi_held *held, int k, int
   double *at = &b->node[k][MPSI_VECTOR + c];
   const double impulse = b->node[k][MPSI_MASS] * (v - *at);
   double x[3];
-  mpsi_node_place(b->mpm, held->at, k, x);
+  mpsi_node_place(&b->mpm->grid, held->at, k, x);
   held->impulse[c] += impulse;
   held->moment[(c + 2) % 3] -= x[(c + 1) % 3] * impulse; /* x cross impulse */
   held->moment[(c + 1) % 3] += x[(c + 2) % 3] * impulse;
@@ -179,7 +184,7 @@ static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) 
   const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
   mpsi_dashpot *dashpot =
       &b->mpm->boundaries.dashpot[held->dashpot + mpsi_plane_index(hold->axis, k)];
-  mpsi_mpm_apply_dashpot(b->mpm, hold, dashpot, b->node[k], before, v);
+  mpsi_mpm_apply_dashpot(&b->mpm->grid, b->mpm->run.dt, hold, dashpot, b->node[k], before, v);
   for (int c = 0; c < b->mpm->grid.dim; c++)
     if (!(b->held[k] >> c & 1)) set(b, hold, held, k, c, v[c]);
 }
@@ -237,16 +242,16 @@ static void for_range(block *b, const mpsi_boundary *hold, mpsi_held *held, hold
 static void begin_block(mps_mpm *mpm, int64_t g, uint8_t *fixed, block *b) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   b->mpm = mpm; /* push is written before it is read */
-  b->node = mpm->grid.node + mpsi_first_node(mpm, g);
-  b->side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
+  b->node = mpm->grid.node + mpsi_first_node(&mpm->grid, g);
+  b->side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(&mpm->grid, nodes->side) : NULL;
   b->held = fixed;
   b->again = g >= mpm->grid.node_count;
   memset(fixed, 0, (size_t)mpm->grid.block_nodes);
 }
 
-void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g) {
-  mpsi_held *first = mpm->boundaries.held + mpm->grid.nodes[g].first_held;
-  for (int32_t t = 0; t < mpm->grid.nodes[g].holds; t++) {
+void mpsi_mpm_begin_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int64_t g) {
+  mpsi_held *first = boundaries->held + grid->nodes[g].first_held;
+  for (int32_t t = 0; t < grid->nodes[g].holds; t++) {
     memset(first[t].impulse, 0, sizeof first[t].impulse);
     memset(first[t].moment, 0, sizeof first[t].moment);
     first[t].work = 0.0;
@@ -296,9 +301,9 @@ void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-void mpsi_mpm_begin_boundaries(mps_mpm *mpm, double dt) {
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++)
-    if (mpm->boundaries.hold[k].finds) mpm->boundaries.hold[k].found += dt;
+void mpsi_mpm_begin_boundaries(const mpsi_boundaries *boundaries, double dt) {
+  for (int32_t k = 0; k < boundaries->holds; k++)
+    if (boundaries->hold[k].finds) boundaries->hold[k].found += dt;
 }
 
 /* What the step before has added is part of all. */
@@ -310,50 +315,52 @@ static void begin_sums(mpsi_boundary *hold) {
   hold->count = 0;
 }
 
-void mpsi_mpm_sum_boundaries(mps_mpm *mpm) {
-  mpsi_boundary *hold = mpm->boundaries.hold;
-  mpm->boundaries.dt = mpm->run.dt;
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
+void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
+                             const mpsi_mirrors *mirrors, mpsi_energy *energy, double dt) {
+  mpsi_boundary *hold = boundaries->hold;
+  boundaries->dt = dt;
+  for (int32_t k = 0; k < boundaries->holds; k++) {
     begin_sums(&hold[k]);
     if (hold[k].found >= hold[k].settle) hold[k].finds = false;
   }
-  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
-    const mpsi_held *held = &mpm->boundaries.held[t];
+  for (int64_t t = 0; t < boundaries->held_count; t++) {
+    const mpsi_held *held = &boundaries->held[t];
     if (!held->counted) continue;
     mpsi_mpm_boundary_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work,
                                   held->count);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, held->work);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, held->work);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARIES, held->work);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARY_LOSS, held->work);
   }
-  mpsi_mpm_sum_mirrors(mpm);
+  mpsi_mpm_sum_mirrors(grid, boundaries, mirrors, energy);
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
 /* The block that particle k is sorted to. */
-static mpsi_cell_block *block_of(const mps_mpm *mpm, int64_t k) {
-  int64_t low = 0, high = mpm->grid.cell_count;
+static mpsi_cell_block *block_of(const mpsi_grid *grid, int64_t k) {
+  int64_t low = 0, high = grid->cell_count;
   while (high - low > 1) {
     const int64_t middle = low + (high - low) / 2;
-    if (mpm->grid.cells[middle].begin <= k)
+    if (grid->cells[middle].begin <= k)
       low = middle;
     else
       high = middle;
   }
-  return &mpm->grid.cells[low];
+  return &grid->cells[low];
 }
 
 /* Notes, as G2P does, where the particle has left its block's tile or the domain. */
-static void check_place(mps_mpm *mpm, int64_t k) {
-  mpsi_cell_block *cells = block_of(mpm, k);
-  const double first = mpm->grid.spline == 3 ? 1.0 : 0.5;
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k]);
+static void check_place(const mpsi_grid *grid, const mpsi_columns *p,
+                        const mpsi_boundaries *boundaries, int64_t k) {
+  mpsi_cell_block *cells = block_of(grid, k);
+  const double first = grid->spline == 3 ? 1.0 : 0.5;
+  for (int c = 0; c < grid->dim; c++) {
+    const double X = mpsi_grid_at(grid, c, p->x[c][k]);
     const double local = X - (double)cells->at[c] * MPSI_SIDE - first;
-    if (!(local >= cells->low[c] && local < cells->high[c] - mpsi_reach(mpm, c)))
+    if (!(local >= cells->low[c] && local < cells->high[c] - mpsi_reach(grid, c)))
       cells->left = true;
-    if (X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]) continue;
-    if (mpsi_mpm_passes(mpm, c, X))
+    if (X >= (double)grid->low[c] && X <= (double)grid->high[c]) continue;
+    if (mpsi_mpm_passes(grid, boundaries, c, X))
       cells->gone = true;
     else if (cells->bad < 0)
       cells->bad = k, cells->lost = true;
@@ -361,18 +368,19 @@ static void check_place(mps_mpm *mpm, int64_t k) {
 }
 
 /* The velocity of the particle is prescribed; m dv is the impulse. */
-static void drive_particle(mps_mpm *mpm, mpsi_boundary *hold, int64_t k) {
-  const mpsi_columns *p = &mpm->p;
+static void drive_particle(const mpsi_grid *grid, const mpsi_columns *p,
+                           const mpsi_boundaries *boundaries, mpsi_energy *energy, double dt,
+                           mpsi_boundary *hold, int64_t k) {
   double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0, kinetic = 0.0;
-  for (int c = 0; c < mpm->grid.dim; c++) x[c] = p->x[c][k];
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) x[c] = p->x[c][k];
+  for (int c = 0; c < grid->dim; c++) {
     if (!(hold->dofs >> c & 1)) continue;
     const double change = hold->v[c] - p->v[c][k];
     impulse[c] = p->m[k] * change;
     work += impulse[c] * hold->v[c];
     kinetic += 0.5 * impulse[c] * (hold->v[c] + p->v[c][k]);
     p->v[c][k] = hold->v[c];
-    p->x[c][k] += mpm->run.dt * change;
+    p->x[c][k] += dt * change;
   }
   double moment[3];
   for (int c = 0; c < 3; c++) {
@@ -380,18 +388,19 @@ static void drive_particle(mps_mpm *mpm, mpsi_boundary *hold, int64_t k) {
     moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
   }
   mpsi_mpm_boundary_add_impulse(hold, impulse, moment, work, 1);
-  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
-  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, kinetic);
-  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, work - kinetic);
-  check_place(mpm, k);
+  mpsi_mpm_energy_add(energy, MPSI_ENERGY_BOUNDARIES, work);
+  mpsi_mpm_energy_add(energy, MPSI_ENERGY_KINETIC, kinetic);
+  mpsi_mpm_energy_add(energy, MPSI_ENERGY_TRANSFER, work - kinetic);
+  check_place(grid, p, boundaries, k);
 }
 
-void mpsi_mpm_drive_particles(mps_mpm *mpm) {
-  for (int32_t b = MPSI_SIDES; b < mpm->boundaries.holds; b++) {
-    mpsi_boundary *hold = &mpm->boundaries.hold[b];
+void mpsi_mpm_drive_particles(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mpsi_boundaries *boundaries, mpsi_energy *energy, double dt) {
+  for (int32_t b = MPSI_SIDES; b < boundaries->holds; b++) {
+    mpsi_boundary *hold = &boundaries->hold[b];
     for (int64_t i = 0; hold->ids && i < hold->id_count; i++) {
-      const int64_t k = mps_particles_index(mpm->p.set, hold->ids[i]);
-      if (k >= 0) drive_particle(mpm, hold, k);
+      const int64_t k = mps_particles_index(p->set, hold->ids[i]);
+      if (k >= 0) drive_particle(grid, p, boundaries, energy, dt, hold, k);
     }
   }
 }

@@ -35,10 +35,10 @@ typedef struct around {
 /* Bilinear weights over the corners of the foot's cell (`side` 2), or cubic ones over four nodes an
  * axis (4). The foot is hardly a cell off a particle of the block: what would lie beyond the tile
  * is at its edge. `block`: of the cells. */
-static around find_around(const mps_mpm *mpm, const int32_t *block, const double *x, int side) {
+static around find_around(const mpsi_grid *grid, const int32_t *block, const double *x, int side) {
   around out = {.side = side, .w = {{1.0}, {1.0}, {1.0}}};
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    const double local = mpsi_grid_at(&mpm->grid, c, x[c]) - (double)block[c] * MPSI_SIDE;
+  for (int c = 0; c < grid->dim; c++) {
+    const double local = mpsi_grid_at(grid, c, x[c]) - (double)block[c] * MPSI_SIDE;
     const int low = (int)fmin(MPSI_TILE_SIDE - side, fmax(0.0, floor(local) + 1.0 - side / 2));
     const double part = fmin(1.0, fmax(0.0, local - low + 1.0 - side / 2));
     out.low[c] = low;
@@ -50,8 +50,8 @@ static around find_around(const mps_mpm *mpm, const int32_t *block, const double
   return out;
 }
 
-static int nodes_around(const mps_mpm *mpm, int side) {
-  return mpm->grid.dim == 3 ? side * side * side : side * side;
+static int nodes_around(const mpsi_grid *grid, int side) {
+  return grid->dim == 3 ? side * side * side : side * side;
 }
 
 /* Place under the tile and weight of node n of them. */
@@ -61,12 +61,12 @@ static double node_around(const around *a, int n, int *at) {
   return a->w[0][i[0]] * a->w[1][i[1]] * a->w[2][i[2]];
 }
 
-static mpsi_area *area_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
-                             int32_t b) {
-  const int64_t node = mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
-  int64_t t = mpm->grid.nodes[node / mpm->grid.block_nodes].first_pair;
-  while (mpm->contact.node_pair[t].body != b) t++;
-  return mpm->contact.impulses.area + t * mpm->grid.block_nodes + node % mpm->grid.block_nodes;
+static mpsi_area *area_under(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                             const mpsi_cell_block *cells, const int *at, int32_t b) {
+  const int64_t node = mpsi_node_under(grid, cells, at[0], at[1], at[2]);
+  int64_t t = grid->nodes[node / grid->block_nodes].first_pair;
+  while (contacts->node_pair[t].body != b) t++;
+  return contacts->impulses.area + t * grid->block_nodes + node % grid->block_nodes;
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
@@ -76,9 +76,9 @@ typedef struct layer {
   double row, reach;
 } layer;
 
-static layer find_layer(const mps_mpm *mpm) {
-  const double row = mps_particles_spacing(mpm->p.set);
-  return (layer){row, fmin(2.0 * row, mpm->grid.cell)};
+static layer find_layer(const mpsi_grid *grid, const mpsi_columns *p) {
+  const double row = mps_particles_spacing(p->set);
+  return (layer){row, fmin(2.0 * row, grid->cell)};
 }
 
 /* 1/m: w at the distance D (m) below the reach. */
@@ -89,26 +89,27 @@ static double weight_at(layer l, double distance) {
   return (t < 1.0 ? t * t : t * (2.0 - t)) / l.row;
 }
 
-static double area_of(const mps_mpm *mpm, layer l, int64_t k, const mpsi_foot *foot) {
+static double area_of(const mpsi_grid *grid, const mpsi_columns *p, layer l, int64_t k,
+                      const mpsi_foot *foot) {
   if (!(foot->distance < l.reach)) return 0.0;
-  const double area = mpm->p.V[k] * foot->narrowing * weight_at(l, foot->distance);
-  return mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / mpm->p.x[0][k]
-                                                             : area;
+  const double area = p->V[k] * foot->narrowing * weight_at(l, foot->distance);
+  return grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / p->x[0][k] : area;
 }
 
 /* Distances change no faster than places: see constraints.c. */
-bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
-  const mps_contact *contact = mpm->contact.handle[pair->body];
-  const layer l = find_layer(mpm);
+bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
+                        const mpsi_cell_pair *pair, double *tile) {
+  const mpsi_cell_block *cells = &grid->cells[pair->cells];
+  const mps_contact *contact = contacts->handle[pair->body];
+  const layer l = find_layer(grid, p);
   double known[3] = {0.0}, distance = -1.0;
   bool any = false;
   if (!mpsi_has_strength(contact)) return false;
-  memset(tile, 0, (size_t)mpm->grid.tile_nodes * sizeof *tile);
+  memset(tile, 0, (size_t)grid->tile_nodes * sizeof *tile);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     double x[3] = {0.0}, square = 0.0;
-    for (int c = 0; c < mpm->grid.dim; c++) {
-      x[c] = mpm->p.x[c][k];
+    for (int c = 0; c < grid->dim; c++) {
+      x[c] = p->x[c][k];
       square += (x[c] - known[c]) * (x[c] - known[c]);
     }
     const double slack = distance - l.reach;
@@ -116,10 +117,10 @@ bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
     memcpy(known, x, sizeof known);
     distance = foot.distance;
-    const double area = area_of(mpm, l, k, &foot);
+    const double area = area_of(grid, p, l, k, &foot);
     if (!(area > 0.0)) continue;
-    const around corners = find_around(mpm, cells->at, foot.at, 2);
-    for (int n = 0; n < nodes_around(mpm, 2); n++) {
+    const around corners = find_around(grid, cells->at, foot.at, 2);
+    for (int n = 0; n < nodes_around(grid, 2); n++) {
       int at[3];
       const double weight = node_around(&corners, n, at);
       tile[mpsi_tile_index(at[0], at[1], at[2])] += weight * area;
@@ -137,11 +138,12 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
   (void)worker;
   for (int32_t q = 0; q < cells->pairs; q++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (!mpsi_mpm_sum_areas(mpm, pair, tile)) continue;
+    if (!mpsi_mpm_sum_areas(&mpm->grid, &mpm->p, &mpm->contact, pair, tile)) continue;
     for (int k = 0; k < mpm->grid.tile_nodes; k++) {
       int at[3];
       mpsi_unravel(k, MPSI_TILE_SIDE, at);
-      if (tile[k] > 0.0) area_under(mpm, cells, at, pair->body)->area += tile[k];
+      if (tile[k] > 0.0)
+        area_under(&mpm->grid, &mpm->contact, cells, at, pair->body)->area += tile[k];
     }
   }
 }
@@ -158,16 +160,17 @@ static void surround_block(void *data, int64_t unit, int32_t worker) {
     mpsi_constraint *constraint = &all->constraint[n];
     constraint->areas = 0;
     if (!mpsi_has_strength(mpm->contact.handle[constraint->body])) continue;
-    const around nodes = find_around(mpm, block->at, constraint->impulse.at, 4);
-    for (int k = 0; k < nodes_around(mpm, 4); k++) {
+    const around nodes = find_around(&mpm->grid, block->at, constraint->impulse.at, 4);
+    for (int k = 0; k < nodes_around(&mpm->grid, 4); k++) {
       int at[3];
       const double weight = node_around(&nodes, k, at);
       mpsi_area *area =
           mpm->partition
               ? mpsi_mpm_shared_area(&mpm->contact.exchange, block->at, at, constraint->body)
-              : area_under(mpm, &mpm->grid.cells[block->cells], at, constraint->body);
+              : area_under(&mpm->grid, &mpm->contact, &mpm->grid.cells[block->cells], at,
+                           constraint->body);
       if (area && area->area > 0.0 && weight > 0.0)
-        all->around[n * nodes_around(mpm, 4) + constraint->areas++] =
+        all->around[n * nodes_around(&mpm->grid, 4) + constraint->areas++] =
             (mpsi_area_share){area, weight};
     }
   }
@@ -179,7 +182,7 @@ static void count_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_constraint_block *block = &all->block[all->area_first + unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
+    const mpsi_area_share *at = all->around + n * nodes_around(&mpm->grid, 4);
     const double normal = all->constraint[n].impulse.normal_impulse;
     for (int q = 0; q < all->constraint[n].areas && normal > 0.0; q++)
       at[q].node->normal += at[q].weight * normal;
@@ -193,7 +196,7 @@ static void share_block(void *data, int64_t unit, int32_t worker) {
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_constraint *constraint = &all->constraint[n];
-    const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
+    const mpsi_area_share *at = all->around + n * nodes_around(&mpm->grid, 4);
     const mps_contact_def *def = &mpm->contact.handle[constraint->body]->def;
     double area = 0.0;
     if (!mpsi_has_strength(mpm->contact.handle[constraint->body])) continue;
@@ -208,16 +211,17 @@ static void share_block(void *data, int64_t unit, int32_t worker) {
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t constraints) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contacts,
+                        mpsi_partition *partition, int64_t constraints) {
+  mpsi_impulses *all = &contacts->impulses;
   bool wanted = false;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    wanted = wanted || mpsi_has_strength(mpm->contact.handle[b]);
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    wanted = wanted || mpsi_has_strength(contacts->handle[b]);
   all->areas = false;
   if (!wanted) return true;
-  const int64_t nodes = mpm->partition ? 0 : mpm->contact.node_pair_count * mpm->grid.block_nodes;
-  if (!mpsi_room_ensure(mpm->context, &all->area_room, nodes, sizeof *all->area) ||
-      !mpsi_room_ensure(mpm->context, &all->around_room, constraints * nodes_around(mpm, 4),
+  const int64_t nodes = partition ? 0 : contacts->node_pair_count * grid->block_nodes;
+  if (!mpsi_room_ensure(context, &all->area_room, nodes, sizeof *all->area) ||
+      !mpsi_room_ensure(context, &all->around_room, constraints * nodes_around(grid, 4),
                         sizeof *all->around))
     return false;
   all->area = all->area_room.item;
@@ -244,7 +248,7 @@ void mpsi_mpm_distribute_areas(mps_mpm *mpm) {
   if (!all->areas) return;
   for (int64_t n = 0; n < all->constraint_count; n++)
     for (int32_t q = 0; q < all->constraint[n].areas; q++)
-      all->around[n * nodes_around(mpm, 4) + q].node->normal = 0.0;
+      all->around[n * nodes_around(&mpm->grid, 4) + q].node->normal = 0.0;
   for (int k = 0; k < MPSI_CORNERS; k++) {
     all->area_first = all->colour[k];
     mpsi_parallel_for(mpm->context, all->colour[k + 1] - all->area_first, count_block, mpm);

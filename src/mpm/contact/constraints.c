@@ -25,11 +25,11 @@ static uint64_t slot_of(const mpsi_impulses *all, int64_t id, int64_t body) {
 }
 
 /* Twice as many slots as impulses at least. */
-bool mpsi_mpm_index_impulses(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts) {
+  mpsi_impulses *all = &contacts->impulses;
   int64_t slots = 16;
   while (slots < 2 * all->warm_count) slots *= 2;
-  if (!mpsi_room_ensure(mpm->context, &all->lookup_room, slots, sizeof *all->lookup)) return false;
+  if (!mpsi_room_ensure(context, &all->lookup_room, slots, sizeof *all->lookup)) return false;
   all->lookup = all->lookup_room.item;
   all->lookup_mask = (uint64_t)slots - 1;
   for (int64_t k = 0; k < slots; k++) all->lookup[k] = -1;
@@ -41,8 +41,9 @@ bool mpsi_mpm_index_impulses(mps_mpm *mpm) {
   return true;
 }
 
-const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mps_mpm *mpm, int64_t id, int32_t body) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
+const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
+                                               int32_t body) {
+  const mpsi_impulses *all = &contacts->impulses;
   for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
        at = (at + 1) & all->lookup_mask) {
     const mpsi_warm_impulse *warm = &all->warm[all->lookup[at]];
@@ -51,8 +52,8 @@ const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mps_mpm *mpm, int64_t id, i
   return NULL;
 }
 
-void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body) {
+  mpsi_impulses *all = &contacts->impulses;
   int64_t to = 0;
   for (int64_t k = 0; k < all->warm_count; k++) {
     mpsi_warm_impulse warm = all->warm[k];
@@ -66,31 +67,31 @@ void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body) {
 /* ---- candidates ------------------------------------------------------------------------------ */
 
 /* Half the size (m) of a particle along n. */
-static double half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
-                        const double *n) {
+static double half_size(const mpsi_grid *grid, const mpsi_columns *p, const mps_contact *contact,
+                        int64_t particle, const double *n) {
   double wave, shear, stress[6] = {0.0};
-  mpsi_mpm_elastic(mpm, particle, &wave, &shear);
-  for (int c = 0; c < 2 * mpm->grid.dim; c++) stress[c] = mpm->p.s[c][particle];
+  mpsi_mpm_elastic(p, particle, &wave, &shear);
+  for (int c = 0; c < 2 * grid->dim; c++) stress[c] = p->s[c][particle];
   return mpsi_impulse_half_size(contact->def.offset, wave, shear, stress, n);
 }
 
-mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
-                              const double *x) {
+mpsi_bearing mpsi_mpm_bearing(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mps_contact *contact, int64_t particle, const double *x) {
   const mpsi_foot own = mpsi_body_foot(contact->body, x);
-  const double half = half_size(mpm, contact, particle, own.normal);
+  const double half = half_size(grid, p, contact, particle, own.normal);
   return mpsi_corner_bearing(contact->body, contact->def.corner, x, half, &own);
 }
 
-static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
-  for (int c = 0; c < 3; c++) x[c] = c < mpm->grid.dim ? mpm->p.x[c][k] : 0.0;
+static void place_of(const mpsi_grid *grid, const mpsi_columns *p, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++) x[c] = c < grid->dim ? p->x[c][k] : 0.0;
 }
 
 /* Distance (m) beyond which no particle of the block is in contact. */
-static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
+static double longest_reach(const mpsi_grid *grid, const mpsi_columns *p,
+                            const mpsi_kernels *kernels, double dt, const mpsi_cell_block *cells,
                             const mps_contact *contact) {
-  const double fastest = mpm->kernels->fastest(&mpm->grid, &mpm->p, cells->begin, cells->end);
-  return (1.4 * contact->def.offset + mpm->run.dt * (mpsi_contact_speed(contact) + fastest)) *
-         (1.0 + 1e-9);
+  const double fastest = kernels->fastest(grid, p, cells->begin, cells->end);
+  return (1.4 * contact->def.offset + dt * (mpsi_contact_speed(contact) + fastest)) * (1.0 + 1e-9);
 }
 
 /* Bounds by the foot of x: distances change no faster than positions, and a convex body lies behind
@@ -106,54 +107,56 @@ static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const 
   return out;
 }
 
-static bool may_be_in_contact(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
-                              const double *x, const mpsi_foot *foot) {
-  const double half = half_size(mpm, contact, k, foot->normal);
+static bool may_be_in_contact(const mpsi_grid *grid, const mpsi_columns *p, double dt,
+                              const mps_contact *contact, int64_t k, const double *x,
+                              const mpsi_foot *foot) {
+  const double half = half_size(grid, p, contact, k, foot->normal);
   double surface[3], closing = 0.0;
   (void)x;
   mpsi_body_velocity(&contact->body->pose, foot->at, surface);
-  for (int c = 0; c < mpm->grid.dim; c++)
-    closing += (surface[c] - mpm->p.v[c][k]) * foot->normal[c];
-  return mpsi_impulse_near(foot->distance - half, half, closing, mpm->run.dt);
+  for (int c = 0; c < grid->dim; c++) closing += (surface[c] - p->v[c][k]) * foot->normal[c];
+  return mpsi_impulse_near(foot->distance - half, half, closing, dt);
 }
 
 /* Whether no particle of the block is within `reach` of the body: all are in the box from which
  * none has left (mpsi_cell_block.left). */
-static bool is_block_far(const mps_mpm *mpm, const mpsi_cell_block *cells,
+static bool is_block_far(const mpsi_grid *grid, const mpsi_cell_block *cells,
                          const mps_contact *contact, double reach) {
-  const double first = mpm->grid.spline == 3 ? 1.0 : 0.5;
+  const double first = grid->spline == 3 ? 1.0 : 0.5;
   double middle[3] = {0.0}, half[3] = {0.0}, x[3], square = 0.0, before = 0.0;
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    const double low = first + cells->low[c], high = first + (cells->high[c] - mpsi_reach(mpm, c));
+  for (int c = 0; c < grid->dim; c++) {
+    const double low = first + cells->low[c], high = first + (cells->high[c] - mpsi_reach(grid, c));
     middle[c] = 0.5 * (low + high);
-    half[c] = 0.5 * mpm->grid.cell * (high - low) * (1.0 + 1e-9);
+    half[c] = 0.5 * grid->cell * (high - low) * (1.0 + 1e-9);
     square += half[c] * half[c];
   }
-  mpsi_node_position(mpm, cells->at, middle, x);
+  mpsi_node_position(grid, cells->at, middle, x);
   const mpsi_foot foot = mpsi_body_foot(contact->body, x);
   if (foot.distance > reach + sqrt(square)) return true;
   if (!contact->convex || !(foot.distance > 0.0)) return false;
-  for (int c = 0; c < mpm->grid.dim; c++)
+  for (int c = 0; c < grid->dim; c++)
     before += (x[c] - foot.at[c]) * foot.normal[c] - half[c] * fabs(foot.normal[c]);
   return before > reach * (1.0 + 1e-9);
 }
 
 /* Candidates of a pair of a block and a body: the last foot found excludes most particles as too
  * far. */
-static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
-  const mps_contact *contact = mpm->contact.handle[pair->body];
-  const double reach = longest_reach(mpm, cells, contact);
-  int32_t *out = mpm->contact.impulses.candidate + pair->first_candidate;
+static void find_candidates(const mpsi_grid *grid, const mpsi_columns *p,
+                            const mpsi_contacts *contacts, const mpsi_kernels *kernels, double dt,
+                            const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
+  const mps_contact *contact = contacts->handle[pair->body];
+  const double reach = longest_reach(grid, p, kernels, dt, cells, contact);
+  int32_t *out = contacts->impulses.candidate + pair->first_candidate;
   mpsi_far far = {.before = INFINITY};
   pair->candidates = 0;
-  if (is_block_far(mpm, cells, contact, reach)) return;
+  if (is_block_far(grid, cells, contact, reach)) return;
   for (int64_t k = cells->begin;
-       (k = mpm->kernels->next_near(&mpm->grid, &mpm->p, &far, k, cells->end)) < cells->end; k++) {
+       (k = kernels->next_near(grid, p, &far, k, cells->end)) < cells->end; k++) {
     double x[3];
-    place_of(mpm, k, x);
+    place_of(grid, p, k, x);
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
     far = far_by(contact, &foot, x, reach);
-    if (foot.distance <= reach && may_be_in_contact(mpm, contact, k, x, &foot))
+    if (foot.distance <= reach && may_be_in_contact(grid, p, dt, contact, k, x, &foot))
       out[pair->candidates++] = (int32_t)(k - cells->begin);
   }
 }
@@ -163,41 +166,42 @@ static void find_in_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   for (int32_t q = 0; q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (mpsi_by_impulses(mpm->contact.handle[pair->body])) find_candidates(mpm, cells, pair);
+    if (mpsi_by_impulses(mpm->contact.handle[pair->body]))
+      find_candidates(&mpm->grid, &mpm->p, &mpm->contact, mpm->kernels, mpm->run.dt, cells, pair);
   }
 }
 
 /* Room for as many candidates as there are particles in the blocks near each body. */
-static int64_t share_candidates(mps_mpm *mpm) {
+static int64_t share_candidates(const mpsi_grid *grid, const mpsi_contacts *contacts) {
   int64_t count = 0;
-  for (int64_t t = 0; t < mpm->contact.cell_pair_count; t++) {
-    mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
-    const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
+  for (int64_t t = 0; t < contacts->cell_pair_count; t++) {
+    mpsi_cell_pair *pair = &contacts->cell_pair[t];
+    const mpsi_cell_block *cells = &grid->cells[pair->cells];
     pair->first_candidate = count;
     pair->candidates = 0;
     pair->in_contact = false; /* also of blocks scattered after the contacts are solved (step.c) */
     pair->deepest = 0.0;
-    if (mpsi_by_impulses(mpm->contact.handle[pair->body])) count += cells->end - cells->begin;
+    if (mpsi_by_impulses(contacts->handle[pair->body])) count += cells->end - cells->begin;
   }
   return count;
 }
 
 /* The blocks with candidates, colour by colour. */
-static void list_blocks(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+static void list_blocks(const mpsi_grid *grid, mpsi_contacts *contacts) {
+  mpsi_impulses *all = &contacts->impulses;
   all->constraint_count = all->block_count = 0;
   for (int colour = 0; colour < MPSI_CORNERS; colour++) {
     all->colour[colour] = all->block_count;
-    for (int64_t i = mpm->grid.colour[colour]; i < mpm->grid.colour[colour + 1]; i++) {
-      const mpsi_cell_block *cells = &mpm->grid.cells[mpm->grid.coloured[i]];
+    for (int64_t i = grid->colour[colour]; i < grid->colour[colour + 1]; i++) {
+      const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
       int64_t count = 0;
       for (int32_t q = 0; q < cells->pairs; q++)
-        count += mpm->contact.cell_pair[cells->first_pair + q].candidates;
+        count += contacts->cell_pair[cells->first_pair + q].candidates;
       if (count == 0) continue;
       all->block[all->block_count++] =
           (mpsi_constraint_block){.first = all->constraint_count,
                                   .count = count,
-                                  .cells = mpm->grid.coloured[i],
+                                  .cells = grid->coloured[i],
                                   .at = {cells->at[0], cells->at[1], cells->at[2]}};
       all->constraint_count += count;
     }
@@ -210,7 +214,7 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   mps_context *context = mpm->context;
   all->constraint_count = all->block_count = 0;
   if (mpm->contact.bodies == 0) return MPS_OK;
-  const int64_t candidates = share_candidates(mpm);
+  const int64_t candidates = share_candidates(&mpm->grid, &mpm->contact);
   const int32_t side = mpm->grid.spline + 1;
   all->stride = mpm->grid.dim == 3 ? side * side * side : side * side;
   bool good =
@@ -222,14 +226,15 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   all->block = all->block_room.item;
   if (good && candidates > 0) {
     mpsi_mpm_for_cells(mpm, find_in_block);
-    list_blocks(mpm);
+    list_blocks(&mpm->grid, &mpm->contact);
   }
   const int64_t n = all->constraint_count;
   good = good && mpsi_room_ensure(context, &all->constraint_room, n, sizeof *all->constraint) &&
          mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
          mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
          mpsi_room_ensure(context, &all->next_room, n, sizeof *all->warm) &&
-         mpsi_mpm_index_impulses(mpm) && mpsi_mpm_area_room(mpm, n);
+         mpsi_mpm_index_impulses(mpm->context, &mpm->contact) &&
+         mpsi_mpm_area_room(mpm->context, &mpm->grid, &mpm->contact, mpm->partition, n);
   if (!good) {
     all->constraint_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
@@ -263,8 +268,8 @@ static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *
   mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
   const mps_contact *contact = mpm->contact.handle[pair->body];
   *out = (mpsi_constraint){.particle = k, .id = id[k], .pair = t, .body = pair->body};
-  place_of(mpm, k, out->x);
-  const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, out->x);
+  place_of(&mpm->grid, &mpm->p, k, out->x);
+  const mpsi_bearing bearing = mpsi_mpm_bearing(&mpm->grid, &mpm->p, contact, k, out->x);
   const mpsi_foot foot = bearing.foot;
   mpsi_impulse *c = &out->impulse;
   for (int a = 0; a < mpm->grid.dim; a++) c->normal[a] = foot.normal[a];
@@ -310,9 +315,10 @@ static void add_node(mpsi_constraint *constraint, double **node, double (*to)[4]
 
 /* psi at the nodes of the constraint's stencil that have mass, where these may stand for ghosts or
  * be other ranks'. */
-static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
-                         int64_t n) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+static void fit_unevenly(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                         const mpsi_mirrors *mirrors, mpsi_contacts *contacts,
+                         const mpsi_cell_block *cells, const mpsi_foot_weights *f, int64_t n) {
+  mpsi_impulses *all = &contacts->impulses;
   mpsi_constraint *constraint = &all->constraint[n];
   double(*weight)[4] = all->weight + n * all->stride, **node = all->node + n * all->stride;
   for (uint64_t left = f->active; left != 0; left &= left - 1) {
@@ -321,16 +327,17 @@ static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
     find_place(f, s, place);
     const double psi = f->psi[s];
     double psis[3] = {psi, psi, psi}, keeps[3], carried[3];
-    const bool image = cells->mirrors && mpsi_mpm_find_image(mpm, cells, place, keeps, carried);
+    const bool image = cells->mirrors &&
+                       mpsi_mpm_find_image(grid, boundaries, mirrors, cells, place, keeps, carried);
     for (int a = 0; a < 3 && image; a++) {
       psis[a] *= keeps[a];
       constraint->carried[a] += psi * carried[a];
     }
     const int64_t g = f->across >> s & 1
-                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
-                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
-    if (mpm->grid.node[g][MPSI_MASS] > 0.0)
-      add_node(constraint, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
+                          ? mpsi_node_across(grid, cells, place[0], place[1], place[2])
+                          : mpsi_node_under(grid, cells, place[0], place[1], place[2]);
+    if (grid->node[g][MPSI_MASS] > 0.0)
+      add_node(constraint, node, weight, grid->node[g], psis, cells->mirrors != 0);
   }
   for (int32_t i = 0; i < constraint->nodes; i++)
     for (int a = 0; a < 3; a++) {
@@ -340,9 +347,9 @@ static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
 }
 
 /* The same where each stands for itself. */
-static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
-                       int64_t n) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+static void fit_evenly(const mpsi_grid *grid, mpsi_contacts *contacts, const mpsi_cell_block *cells,
+                       const mpsi_foot_weights *f, int64_t n) {
+  mpsi_impulses *all = &contacts->impulses;
   mpsi_constraint *constraint = &all->constraint[n];
   double(*weight)[2] = mpsi_even_weights(all, n), **node = all->node + n * all->stride;
   double mobility = 0.0;
@@ -352,9 +359,9 @@ static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_fo
     int place[3];
     find_place(f, s, place);
     const int64_t g = f->across >> s & 1
-                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
-                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
-    double *at = mpm->grid.node[g];
+                          ? mpsi_node_across(grid, cells, place[0], place[1], place[2])
+                          : mpsi_node_under(grid, cells, place[0], place[1], place[2]);
+    double *at = grid->node[g];
     if (!(at[MPSI_MASS] > 0.0)) continue;
     weight[count][0] = 1.0 / at[MPSI_MASS];
     weight[count][1] = f->psi[s];
@@ -373,9 +380,9 @@ static void fit_constraint(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t w
   constraint->nodes = 0;
   constraint->even = !mpm->partition && !cells->mirrors;
   if (constraint->even)
-    fit_evenly(mpm, cells, &f, n);
+    fit_evenly(&mpm->grid, &mpm->contact, cells, &f, n);
   else
-    fit_unevenly(mpm, cells, &f, n);
+    fit_unevenly(&mpm->grid, &mpm->boundaries, &mpm->mirrors, &mpm->contact, cells, &f, n);
 }
 
 /* States of nodes for the constraints whose fits were not kept. */
@@ -410,7 +417,8 @@ static void mirror_block(void *data, int64_t unit, int32_t number) {
       find_place(&f, s, place);
       for (int a = 0; a < 3; a++)
         by[a] = f.psi[s] * (c->normal_impulse * c->normal[a] + c->tangent_impulse[a]);
-      if (f.psi[s] != 0.0) mpsi_mpm_reflect_impulse(mpm, cells, place, by);
+      if (f.psi[s] != 0.0)
+        mpsi_mpm_reflect_impulse(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, place, by);
     }
   }
 }
@@ -439,7 +447,8 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
   for (n = block->first; n < block->first + block->count; n++) {
     fit_constraint(mpm, cells, worker, n);
     mpsi_constraint *constraint = &all->constraint[n];
-    const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(mpm, constraint->id, constraint->body);
+    const mpsi_warm_impulse *warm =
+        mpsi_mpm_warm_impulse(&mpm->contact, constraint->id, constraint->body);
     for (int a = 0; a < 3; a++) constraint->impulse.tangent_impulse[a] = warm ? warm->by[a] : 0.0;
   }
 }

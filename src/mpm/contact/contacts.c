@@ -12,28 +12,32 @@
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static mps_status check_body(mps_mpm *mpm, const char *function, const mps_body *body) {
-  if (!body) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "body is NULL");
-  if (body->context != mpm->context)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+static mps_status check_body(mps_context *context, const mpsi_grid *grid,
+                             const mpsi_contacts *contacts, const char *function,
+                             const mps_body *body) {
+  if (!body) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "body is NULL");
+  if (body->context != context)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the body was made from another context");
-  if (body->dim != mpm->grid.dim)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
-                     body->dim, mpm->grid.dim);
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    if (mpm->contact.body[b] == body)
-      return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+  if (body->dim != grid->dim)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
+                     body->dim, grid->dim);
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    if (contacts->body[b] == body)
+      return mpsi_fail(context, function, MPS_ERROR_STATE,
                        "the solver is in contact with the body already (contact %d)", b);
   return MPS_OK;
 }
 
 /* Half spaces are there to be laid one over the other, as floor and wall. */
-static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_body *body) {
-  const double depth = OVERLAP * mpm->grid.cell;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    const bool halves = body->shape == MPSI_HALF && mpm->contact.body[b]->shape == MPSI_HALF;
-    if (halves || !mpsi_body_overlap(mpm->contact.body[b], body, depth)) continue;
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+static mps_status check_overlap(mps_context *context, const mpsi_grid *grid,
+                                const mpsi_contacts *contacts, const char *function,
+                                const mps_body *body) {
+  const double depth = OVERLAP * grid->cell;
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    const bool halves = body->shape == MPSI_HALF && contacts->body[b]->shape == MPSI_HALF;
+    if (halves || !mpsi_body_overlap(contacts->body[b], body, depth)) continue;
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the body overlaps body %d of the solver by more than %g m (%g cells)", b,
                      depth, OVERLAP);
   }
@@ -42,68 +46,71 @@ static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_bo
 
 /* Contact by impulses separates the sides of a thin wall (thin_bodies.h), penalty contact does
  * not. */
-static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contact *contact) {
-  const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
+static mps_status check_thickness(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_contacts *contacts, const char *function,
+                                  mps_contact *contact) {
+  const double wall = mpsi_body_thickness(contact->body), cells = wall * grid->inverse;
   contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
   contact->convex = mpsi_body_is_convex(contact->body);
   if (!contact->thin || mpsi_by_impulses(contact)) return MPS_OK;
   if (!contact->def.thin && cells < SHARP)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "two faces of the body meet at less than 20 degrees: momentum passes through "
                      "such an edge where it is thinner than %g cells; blunt it, or allow it with "
                      "thin = 1",
                      MPSI_THIN_CELLS);
   if (!contact->def.thin)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the body has a wall %.4g m thin, %.3g cells: below %g cells momentum passes "
                      "through it; use a cell of at most %.4g m, a thicker wall, or allow it with "
                      "thin = 1",
                      wall, cells, MPSI_THIN_CELLS, wall / MPSI_THIN_CELLS);
-  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+  mpsi_log(context, MPS_CONTEXT_LOG_WARNING,
            "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it",
-           mpm->contact.bodies, wall, cells, MPSI_THIN_CELLS);
+           contacts->bodies, wall, cells, MPSI_THIN_CELLS);
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact,
-                                 int64_t from) {
+mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 const char *function, const mps_contact *contact, int64_t from) {
   int64_t count = 0, first = -1;
   double deepest = 0.0;
-  for (int64_t k = from; k < mpm->p.count; k++) {
+  for (int64_t k = from; k < p->count; k++) {
     double x[3] = {0.0};
-    for (int c = 0; c < mpm->grid.dim; c++) x[c] = mpm->p.x[c][k];
+    for (int c = 0; c < grid->dim; c++) x[c] = p->x[c][k];
     if (!mpsi_body_reaches(contact->body, x, 0.0)) continue;
     const double depth = -mpsi_body_foot(contact->body, x).distance;
     if (!(depth > 0.0)) continue;
-    if (first < 0) first = mpsi_particles_integers(mpm->p.set, "id")[k];
+    if (first < 0) first = mpsi_particles_integers(p->set, "id")[k];
     deepest = fmax(deepest, depth);
     count++;
   }
   if (count == 0 || contact->def.inside == MPS_CONTACT_INSIDE_PUSH) return MPS_OK;
-  const mps_status status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+  const mps_status status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                                       "%lld particles lie inside the body, the first is %lld, the "
                                       "deepest %.4g m below the surface: "
                                       "place it outside, or let them be pushed out with inside = 1",
                                       (long long)count, (long long)first, deepest);
-  mpsi_fail_where(mpm->context, -1, first);
+  mpsi_fail_where(context, -1, first);
   return status;
 }
 
 /* See area.c. */
-static void warn_of_areas(mps_mpm *mpm, const mps_contact *contact) {
-  const double spacing = mps_particles_spacing(mpm->p.set);
-  if (!mpsi_has_strength(contact) || 2.0 * spacing <= mpm->grid.cell * (1.0 + 1e-9)) return;
+static void warn_of_areas(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                          const mpsi_contacts *contacts, const mps_contact *contact) {
+  const double spacing = mps_particles_spacing(p->set);
+  if (!mpsi_has_strength(contact) || 2.0 * spacing <= grid->cell * (1.0 + 1e-9)) return;
   mpsi_log(
-      mpm->context, MPS_CONTEXT_LOG_WARNING,
+      context, MPS_CONTEXT_LOG_WARNING,
       "body %d bears shear by strength or adhesion, and the particles' spacing of %.4g m is more "
       "than half a cell, %.4g m: on curved surfaces that is a fifth too little",
-      mpm->contact.bodies, spacing, 0.5 * mpm->grid.cell);
+      contacts->bodies, spacing, 0.5 * grid->cell);
 }
 
 /* All ranks make the same contact with the same body. */
-static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
+static mps_status compare_ranks(mpsi_partition *partition, const char *function, mps_status status,
                                 const mps_contact *contact) {
-  if (!mpm->partition) return status;
+  if (!partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   if (status == MPS_OK) {
@@ -124,23 +131,23 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     MPSI_GIVE(&given, d, tolerance);
     mpsi_body_give(&given, contact->body);
   }
-  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
 /* ---- the handle's questions ------------------------------------------------------------------ */
 
 static mps_status check_owner(void *owner, const char *function) {
   mps_mpm *mpm = owner;
-  return mpsi_mpm_between_steps(mpm, function);
+  return mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
 }
 
 /* Without bodies the lists of pairs are not made any more: they must be empty. */
-static void forget_pairs(mps_mpm *mpm) {
-  mpm->contact.cell_pair_count = mpm->contact.node_pair_count = mpm->contact.mask_count = 0;
-  mpm->contact.thin = false;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->grid.cells[b].pairs = 0;
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
-    mpsi_node_block *nodes = &mpm->grid.nodes[g];
+static void forget_pairs(const mpsi_grid *grid, mpsi_contacts *contacts) {
+  contacts->cell_pair_count = contacts->node_pair_count = contacts->mask_count = 0;
+  contacts->thin = false;
+  for (int64_t b = 0; b < grid->cell_count; b++) grid->cells[b].pairs = 0;
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    mpsi_node_block *nodes = &grid->nodes[g];
     nodes->near = -1;
     nodes->inside = nodes->thin = false;
     nodes->across = -1;
@@ -162,9 +169,9 @@ static void end(void *owner, mps_contact *contact) {
     all->state[to++] = all->state[b];
   }
   all->bodies = to;
-  mpsi_mpm_forget_impulses(mpm, ended);
+  mpsi_mpm_forget_impulses(&mpm->contact, ended);
   for (int32_t b = 0; b < to; b++) all->state[b].warned = false;
-  forget_pairs(mpm);
+  forget_pairs(&mpm->grid, &mpm->contact);
   mpsi_contact_leave(contact);
 }
 
@@ -177,15 +184,15 @@ static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_
   *half = contact->def.offset;
   if (!mpsi_by_impulses(contact)) {
     if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
-        !mpsi_find_contact(mpm, contact, mpm->grid.dim, k, c))
+        !mpsi_find_contact(&mpm->grid, &mpm->p, &mpm->def, contact, mpm->grid.dim, k, c))
       return false;
     *foot = mpsi_body_foot(contact->body, x);
     return true;
   }
-  const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(mpm, id, body);
+  const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(&mpm->contact, id, body);
   if (!warm) return false;
   for (int a = 0; a < 3; a++) c->force[a] = warm->by[a] / mpm->contact.impulses.warm_dt;
-  const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, x);
+  const mpsi_bearing bearing = mpsi_mpm_bearing(&mpm->grid, &mpm->p, contact, k, x);
   *foot = bearing.foot;
   *half = bearing.half;
   return true;
@@ -198,7 +205,7 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
   const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
   int64_t n = 0;
   int32_t body = 0;
-  if (!mpsi_mpm_index_impulses(mpm))
+  if (!mpsi_mpm_index_impulses(mpm->context, &mpm->contact))
     return mpsi_fail_memory(mpm->context, "mps_contact_get_particles",
                             (size_t)mpm->contact.impulses.warm_count * 4 * sizeof(int32_t));
   while (mpm->contact.handle[body] != contact) body++;
@@ -229,17 +236,15 @@ static const mpsi_contact_owner owner_of_contacts = {
 /* ---- making and ending ----------------------------------------------------------------------- */
 
 /* For one more than there are. */
-static mps_status ensure_contact(mps_mpm *mpm, const char *function) {
-  mpsi_contacts *all = &mpm->contact;
+static mps_status ensure_contact(mps_context *context, mpsi_contacts *all, const char *function) {
   const int64_t count = (int64_t)all->bodies + 1;
-  const bool good = mpsi_room_keep(mpm->context, &all->handle_room, count, sizeof(mps_contact *)) &&
-                    mpsi_room_keep(mpm->context, &all->body_room, count, sizeof(mps_body *)) &&
-                    mpsi_room_keep(mpm->context, &all->state_room, count, sizeof *all->state);
+  const bool good = mpsi_room_keep(context, &all->handle_room, count, sizeof(mps_contact *)) &&
+                    mpsi_room_keep(context, &all->body_room, count, sizeof(mps_body *)) &&
+                    mpsi_room_keep(context, &all->state_room, count, sizeof *all->state);
   all->handle = all->handle_room.item;
   all->body = all->body_room.item;
   all->state = all->state_room.item;
-  return good ? MPS_OK
-              : mpsi_fail_memory(mpm->context, function, (size_t)count * sizeof *all->state);
+  return good ? MPS_OK : mpsi_fail_memory(context, function, (size_t)count * sizeof *all->state);
 }
 
 /* Both shares of a contact that is not made. */
@@ -254,16 +259,18 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_contact *contact = NULL;
   if (out) *out = NULL;
-  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(mpm->p.set, __func__);
-  if (status == MPS_OK) status = check_body(mpm, __func__, body);
-  if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
+  if (status == MPS_OK)
+    status = check_body(mpm->context, &mpm->grid, &mpm->contact, __func__, body);
+  if (status == MPS_OK)
+    status = check_overlap(mpm->context, &mpm->grid, &mpm->contact, __func__, body);
   if (status == MPS_OK)
     status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
-  if (status == MPS_OK) status = ensure_contact(mpm, __func__);
+  if (status == MPS_OK) status = ensure_contact(mpm->context, &mpm->contact, __func__);
   if (status == MPS_OK && mpm->partition)
     status = mpsi_mpm_begin_partners(&mpm->contact.partners, mpm->partition->domain, __func__);
-  status = compare_ranks(mpm, __func__, status, contact);
+  status = compare_ranks(mpm->partition, __func__, status, contact);
   if (status != MPS_OK) {
     give_up(contact);
     return status;
@@ -274,16 +281,19 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
     d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH     ? INFINITY
                : d->inside == MPS_CONTACT_INSIDE_REMOVE ? 0.5 * mps_particles_spacing(mpm->p.set)
                                                         : mpm->grid.cell;
-  status = check_thickness(mpm, __func__, contact);
+  status = check_thickness(mpm->context, &mpm->grid, &mpm->contact, __func__, contact);
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
-    status = mpsi_mpm_clear_body(mpm, __func__, contact);
+    status = mpsi_mpm_clear_body(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, mpm->partition,
+                                 __func__, contact);
   else if (status == MPS_OK)
-    status = mpsi_mpm_agree(mpm, __func__, mpsi_mpm_check_inside(mpm, __func__, contact, 0));
+    status = mpsi_mpm_agree(
+        mpm->partition, __func__,
+        mpsi_mpm_check_inside(mpm->context, &mpm->grid, &mpm->p, __func__, contact, 0));
   if (status != MPS_OK) {
     give_up(contact);
     return status;
   }
-  warn_of_areas(mpm, contact);
+  warn_of_areas(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, contact);
   mpsi_contact_join(contact);
   mpm->contact.state[mpm->contact.bodies] = (mpsi_contact_state){.mass = 0.0};
   mpm->contact.handle[mpm->contact.bodies] = contact;
@@ -295,26 +305,28 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   return MPS_OK;
 }
 
-void mpsi_mpm_end_contacts(mps_mpm *mpm) {
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) mpsi_contact_leave(mpm->contact.handle[b]);
-  mpm->contact.bodies = 0;
+void mpsi_mpm_end_contacts(mpsi_contacts *contacts) {
+  for (int32_t b = 0; b < contacts->bodies; b++) mpsi_contact_leave(contacts->handle[b]);
+  contacts->bodies = 0;
 }
 
-mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function) {
-  for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
-    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
-    const double most = mpm->contact.handle[pair->body]->def.depth;
+mps_status mpsi_mpm_check_depth(mps_context *context, const mpsi_columns *p,
+                                const mpsi_contacts *contacts, const mpsi_run *run,
+                                const char *function) {
+  for (int64_t k = 0; k < contacts->cell_pair_count; k++) {
+    const mpsi_cell_pair *pair = &contacts->cell_pair[k];
+    const double most = contacts->handle[pair->body]->def.depth;
     if (!pair->in_contact || !(pair->deepest > most) ||
-        mpm->contact.handle[pair->body]->def.inside == MPS_CONTACT_INSIDE_REMOVE)
+        contacts->handle[pair->body]->def.inside == MPS_CONTACT_INSIDE_REMOVE)
       continue;
-    const int64_t id = mpsi_particles_integers(mpm->p.set, "id")[pair->deep];
+    const int64_t id = mpsi_particles_integers(p->set, "id")[pair->deep];
     const mps_status status = mpsi_fail(
-        mpm->context, function, MPS_ERROR_DIVERGED,
+        context, function, MPS_ERROR_DIVERGED,
         "step %lld, t = %.6g s: particle %lld is %.4g m below the surface of body %d, at most %.4g "
         "m is allowed (`depth` of the contact): the body is driven too fast or against what cannot "
         "yield, or the contact is too soft",
-        (long long)mpm->run.steps, mpm->run.time, (long long)id, pair->deepest, pair->body, most);
-    mpsi_fail_where(mpm->context, mpm->run.steps, id);
+        (long long)run->steps, run->time, (long long)id, pair->deepest, pair->body, most);
+    mpsi_fail_where(context, run->steps, id);
     return status;
   }
   return MPS_OK;

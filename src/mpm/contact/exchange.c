@@ -38,13 +38,13 @@ typedef struct named_node {
 static int under_index(int i, int j, int k) { return (k * UNDER + j) * UNDER + i; }
 
 /* The node of the grid, one of those under the tile of `cells`. */
-static int place_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const double *node) {
-  const int64_t number = (node - (const double *)mpm->grid.node) / 4;
-  const int64_t block = number / mpm->grid.block_nodes;
-  const bool across = block >= mpm->grid.node_count;
+static int place_under(const mpsi_grid *grid, const mpsi_cell_block *cells, const double *node) {
+  const int64_t number = (node - (const double *)grid->node) / 4;
+  const int64_t block = number / grid->block_nodes;
+  const bool across = block >= grid->node_count;
   int q = 0, at[3];
-  while ((across ? mpm->grid.nodes[cells->to[q]].across : cells->to[q]) != block) q++;
-  mpsi_unravel((int)(number % mpm->grid.block_nodes), MPSI_SIDE, at);
+  while ((across ? grid->nodes[cells->to[q]].across : cells->to[q]) != block) q++;
+  mpsi_unravel((int)(number % grid->block_nodes), MPSI_SIDE, at);
   return (across ? PLACES : 0) + under_index(at[0] + MPSI_SIDE * (q & 1),
                                              at[1] + MPSI_SIDE * (q >> 1 & 1),
                                              at[2] + MPSI_SIDE * (q >> 2));
@@ -53,13 +53,13 @@ static int place_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const d
 static int64_t index_bytes(int64_t nodes) { return (nodes + 1) / 2 * 8; }
 
 /* At most. `block`: NULL where there are areas alone. */
-static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                           const mpsi_constraint_block *block) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
+static int64_t entry_bytes(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                           const mpsi_cell_block *cells, const mpsi_constraint_block *block) {
+  const mpsi_impulses *all = &contacts->impulses;
   int64_t bytes = (int64_t)sizeof(head), nodes = 0;
   for (int32_t q = 0; q < cells->pairs && all->areas; q++)
-    if (mpsi_has_strength(mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + q].body]))
-      bytes += mpm->grid.tile_nodes * (int64_t)sizeof(named_area);
+    if (mpsi_has_strength(contacts->handle[contacts->cell_pair[cells->first_pair + q].body]))
+      bytes += grid->tile_nodes * (int64_t)sizeof(named_area);
   if (!block) return bytes;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     nodes += all->constraint[n].nodes;
@@ -69,16 +69,16 @@ static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_cell_block *cells,
 }
 
 /* The nodes of the block's constraints, each once; `number` of each place in that list. */
-static int64_t name_nodes(const mps_mpm *mpm, const mpsi_constraint_block *block, int32_t *number,
-                          named_node *out) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+static int64_t name_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                          const mpsi_constraint_block *block, int32_t *number, named_node *out) {
+  const mpsi_impulses *all = &contacts->impulses;
+  const mpsi_cell_block *cells = &grid->cells[block->cells];
   int64_t count = 0;
   memset(number, -1, 2 * PLACES * sizeof *number);
   for (int64_t n = block->first; n < block->first + block->count; n++)
     for (int32_t i = 0; i < all->constraint[n].nodes; i++) {
       const double *node = all->node[n * all->stride + i];
-      const int place = place_under(mpm, cells, node);
+      const int place = place_under(grid, cells, node);
       if (number[place] >= 0) continue;
       out[count].place = place;
       memcpy(out[count].value, node, sizeof out->value);
@@ -87,40 +87,43 @@ static int64_t name_nodes(const mps_mpm *mpm, const mpsi_constraint_block *block
   return count;
 }
 
-static char *write_constraint(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t n,
-                              const int32_t *number, int64_t components, char *to) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
+static char *write_constraint(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                              const mpsi_cell_block *cells, int64_t n, const int32_t *number,
+                              int64_t components, char *to) {
+  const mpsi_impulses *all = &contacts->impulses;
   const mpsi_constraint *constraint = &all->constraint[n];
   memcpy(to, constraint, sizeof *constraint);
   to += sizeof *constraint;
   int32_t *index = (int32_t *)to;
   for (int32_t i = 0; i < constraint->nodes; i++)
-    index[i] = number[place_under(mpm, cells, all->node[n * all->stride + i])];
+    index[i] = number[place_under(grid, cells, all->node[n * all->stride + i])];
   to += index_bytes(constraint->nodes);
   for (int32_t i = 0; i < constraint->nodes; i++, to += components * (int64_t)sizeof(double))
     memcpy(to, all->weight[n * all->stride + i] + MPSI_VECTOR, (size_t)components * sizeof(double));
   return to;
 }
 
-static char *write_constraints(const mps_mpm *mpm, const mpsi_constraint_block *block, head *h,
-                               char *to) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+static char *write_constraints(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                               const mpsi_constraint_block *block, head *h, char *to) {
+  const mpsi_cell_block *cells = &grid->cells[block->cells];
   int32_t number[2 * PLACES];
-  h->nodes = name_nodes(mpm, block, number, (named_node *)to);
+  h->nodes = name_nodes(grid, contacts, block, number, (named_node *)to);
   h->constraints = block->count;
   to += h->nodes * (int64_t)sizeof(named_node);
   for (int64_t n = block->first; n < block->first + block->count; n++)
-    to = write_constraint(mpm, cells, n, number, h->components, to);
+    to = write_constraint(grid, contacts, cells, n, number, h->components, to);
   return to;
 }
 
-static char *write_areas(const mps_mpm *mpm, const mpsi_cell_block *cells, head *h, char *to) {
+static char *write_areas(const mpsi_grid *grid, const mpsi_columns *p,
+                         const mpsi_contacts *contacts, const mpsi_cell_block *cells, head *h,
+                         char *to) {
   double tile[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
   named_area *out = (named_area *)to;
-  for (int32_t q = 0; q < cells->pairs && mpm->contact.impulses.areas; q++) {
-    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (!mpsi_mpm_sum_areas(mpm, pair, tile)) continue;
-    for (int k = 0; k < mpm->grid.tile_nodes; k++) {
+  for (int32_t q = 0; q < cells->pairs && contacts->impulses.areas; q++) {
+    const mpsi_cell_pair *pair = &contacts->cell_pair[cells->first_pair + q];
+    if (!mpsi_mpm_sum_areas(grid, p, contacts, pair, tile)) continue;
+    for (int k = 0; k < grid->tile_nodes; k++) {
       int at[3];
       if (!(tile[k] > 0.0)) continue;
       mpsi_unravel(k, MPSI_TILE_SIDE, at);
@@ -131,16 +134,17 @@ static char *write_areas(const mps_mpm *mpm, const mpsi_cell_block *cells, head 
 }
 
 /* `block`: NULL where there are areas alone. Returns `to` where there are none either. */
-static char *write_block(const mps_mpm *mpm, const mpsi_cell_block *cells,
+static char *write_block(const mpsi_grid *grid, const mpsi_columns *p,
+                         const mpsi_contacts *contacts, const mpsi_cell_block *cells,
                          const mpsi_constraint_block *block, char *to) {
   const int32_t *at = cells->at;
   head h = {.colour = (at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2,
-            .cells = cells - mpm->grid.cells,
+            .cells = cells - grid->cells,
             .components = cells->mirrors ? 3 : 1};
   memcpy(h.at, at, sizeof h.at);
   char *end = to + sizeof h;
-  if (block) end = write_constraints(mpm, block, &h, end);
-  end = write_areas(mpm, cells, &h, end);
+  if (block) end = write_constraints(grid, contacts, block, &h, end);
+  end = write_areas(grid, p, contacts, cells, &h, end);
   if (h.constraints == 0 && h.areas == 0) return to;
   h.bytes = end - to;
   memcpy(to, &h, sizeof h);
@@ -209,7 +213,8 @@ static bool make_room(exchange *m, int64_t slots) {
          mpsi_room_ensure(context, &r->shared, m->nodes, sizeof(mpsi_shared_node)) &&
          mpsi_room_ensure(context, &r->lookup, slots, sizeof(int32_t)) &&
          mpsi_room_ensure(context, &all->next_room, m->constraints, sizeof *all->warm) &&
-         mpsi_mpm_area_room(m->mpm, m->constraints);
+         mpsi_mpm_area_room(m->mpm->context, &m->mpm->grid, &m->mpm->contact, m->mpm->partition,
+                            m->constraints);
 }
 
 static void place_of(const int32_t *block, int place, int32_t *at) {
@@ -324,27 +329,27 @@ static bool has_entry(const mpsi_cell_block *cells, const mpsi_constraint_block 
   return block || (cells->in_contact && !cells->ghost);
 }
 
-static int64_t message_bytes(const mps_mpm *mpm) {
-  const mpsi_grid *grid = &mpm->grid;
-  const mpsi_impulses *all = &mpm->contact.impulses;
+static int64_t message_bytes(const mpsi_grid *grid, const mpsi_contacts *contacts) {
+  const mpsi_impulses *all = &contacts->impulses;
   int64_t bytes = 0, next = 0;
   for (int64_t i = 0; i < grid->cell_count; i++) {
     const mpsi_constraint_block *block = constraints_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
-    if (has_entry(cells, block)) bytes += entry_bytes(mpm, cells, block);
+    if (has_entry(cells, block)) bytes += entry_bytes(grid, contacts, cells, block);
   }
   return bytes;
 }
 
 /* Constraints that are sent to partners, or the others. */
-static char *write_blocks(const mps_mpm *mpm, bool sent, char *to) {
-  const mpsi_grid *grid = &mpm->grid;
-  const mpsi_impulses *all = &mpm->contact.impulses;
+static char *write_blocks(const mpsi_grid *grid, const mpsi_columns *p,
+                          const mpsi_contacts *contacts, bool sent, char *to) {
+  const mpsi_impulses *all = &contacts->impulses;
   int64_t next = 0;
   for (int64_t i = 0; i < grid->cell_count; i++) {
     const mpsi_constraint_block *block = constraints_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
-    if (has_entry(cells, block) && cells->sent == sent) to = write_block(mpm, cells, block, to);
+    if (has_entry(cells, block) && cells->sent == sent)
+      to = write_block(grid, p, contacts, cells, block, to);
   }
   return to;
 }
@@ -354,7 +359,7 @@ static mps_status make_room_for_message(exchange *m, mps_domain_message **list) 
   mps_mpm *mpm = m->mpm;
   mps_domain *domain = mpm->partition->domain;
   mpsi_room *mail = &mpm->contact.exchange.mail;
-  const int64_t bytes = message_bytes(mpm);
+  const int64_t bytes = message_bytes(&mpm->grid, &mpm->contact);
   if (bytes == 0) return MPS_OK;
   *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
   if (!*list || !mpsi_room_ensure(mpm->context, mail, bytes, 1))
@@ -369,9 +374,9 @@ static int32_t address(exchange *m, mps_domain_message *list) {
   int32_t count = 0;
   if (!list) return 0;
   char *own = mpm->contact.exchange.mail.item;
-  const int64_t bytes = write_blocks(mpm, true, own) - own;
+  const int64_t bytes = write_blocks(&mpm->grid, &mpm->p, &mpm->contact, true, own) - own;
   m->own = own;
-  m->own_bytes = write_blocks(mpm, false, own + bytes) - own;
+  m->own_bytes = write_blocks(&mpm->grid, &mpm->p, &mpm->contact, false, own + bytes) - own;
   for (int32_t r = 0; r < mps_domain_size(domain) && bytes > 0; r++)
     if (r != mps_domain_rank(domain) && mpsi_mpm_is_partner(&mpm->contact.partners, r))
       list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = own};
@@ -399,9 +404,9 @@ mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_st
   return status;
 }
 
-void mpsi_mpm_end_contact_exchange(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_contact_exchange *r = &mpm->contact.exchange;
+void mpsi_mpm_end_contact_exchange(mpsi_contacts *contacts) {
+  mpsi_impulses *all = &contacts->impulses;
+  mpsi_contact_exchange *r = &contacts->exchange;
   mpsi_shared_node *shared = r->shared.item;
   for (int64_t k = 0; k < r->nodes; k++)
     if (shared[k].home)
@@ -413,9 +418,9 @@ void mpsi_mpm_end_contact_exchange(mps_mpm *mpm) {
     }
 }
 
-void mpsi_mpm_free_contact_exchange(mps_mpm *mpm) {
-  mpsi_contact_exchange *r = &mpm->contact.exchange;
+void mpsi_mpm_free_contact_exchange(mps_context *context, mpsi_contacts *contacts) {
+  mpsi_contact_exchange *r = &contacts->exchange;
   mpsi_room *const rooms[] = {&r->constraint, &r->block,  &r->weight, &r->node,
                               &r->shared,     &r->lookup, &r->mail,   &r->list};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]->item);
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(context, rooms[k]->item);
 }

@@ -44,7 +44,7 @@ void mpsi_mpm_order_warm_start(mpsi_impulses *impulses);
  * of one rank, until the next step finds its own. First all agree on `status`. Collective. */
 mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_status status);
 /* After the sweeps: velocities to the nodes that are here. Not collective. */
-void mpsi_mpm_end_contact_exchange(mps_mpm *mpm);
+void mpsi_mpm_end_contact_exchange(mpsi_contacts *contacts);
 /* shared_nodes.c: the node of all ranks at `at`; where none is yet, one with these values, for
  * which there is room. Not collective. */
 mpsi_shared_node *mpsi_mpm_shared_node(mpsi_contact_exchange *exchange,
@@ -54,6 +54,6 @@ mpsi_shared_node *mpsi_mpm_shared_node(mpsi_contact_exchange *exchange,
  * covers nothing there. Not collective. */
 mpsi_area *mpsi_mpm_shared_area(const mpsi_contact_exchange *exchange, const int32_t *block,
                                 const int *at, int32_t body);
-void mpsi_mpm_free_contact_exchange(mps_mpm *mpm);
+void mpsi_mpm_free_contact_exchange(mps_context *context, mpsi_contacts *contacts);
 
 #endif

@@ -54,20 +54,20 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
 /* ---- when sweeps end ------------------------------------------------------------------------- */
 
 /* The most sweeps and the least tolerance of all contacts. */
-static int32_t most_sweeps(const mps_mpm *mpm, double *tolerance) {
+static int32_t most_sweeps(const mpsi_contacts *contacts, double *tolerance) {
   int32_t most = 0;
   *tolerance = INFINITY;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    const mps_contact_def *def = &mpm->contact.handle[b]->def;
-    if (!mpsi_by_impulses(mpm->contact.handle[b])) continue;
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    const mps_contact_def *def = &contacts->handle[b]->def;
+    if (!mpsi_by_impulses(contacts->handle[b])) continue;
     if (def->sweeps > most) most = def->sweeps;
     *tolerance = fmin(*tolerance, def->tolerance);
   }
   return most;
 }
 
-void mpsi_mpm_sweep_sums(const mps_mpm *mpm, double *most) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
+void mpsi_mpm_sweep_sums(const mpsi_contacts *contacts, double *most) {
+  const mpsi_impulses *all = &contacts->impulses;
   most[MPSI_SWEEP_CHANGED] = most[MPSI_SWEEP_IMPULSES] = 0.0;
   for (int64_t k = 0; k < all->block_count && all->sweeps > 0; k++) {
     if (all->block[k].cells < 0) continue;
@@ -83,13 +83,13 @@ double mpsi_mpm_relative_change(const double *most) {
 
 /* Of all ranks where sweeps may end by it (`agree`); else they hear of it at the end of the step,
  * with what they agree on there (block_results.c). */
-static void find_change(mps_mpm *mpm, bool agree) {
+static void find_change(mpsi_contacts *contacts, mpsi_partition *partition, bool agree) {
   double most[MPSI_SWEEP_SUMS];
-  mpsi_mpm_sweep_sums(mpm, most);
-  if (agree && mpm->partition && mpm->partition->lost == MPS_OK)
-    mpm->partition->lost = mpsi_domain_agree_max(mpm->partition->domain, "mps_mpm_step", MPS_OK,
-                                                 MPSI_SWEEP_SUMS, most);
-  mpm->contact.impulses.left = mpsi_mpm_relative_change(most);
+  mpsi_mpm_sweep_sums(contacts, most);
+  if (agree && partition && partition->lost == MPS_OK)
+    partition->lost =
+        mpsi_domain_agree_max(partition->domain, "mps_mpm_step", MPS_OK, MPSI_SWEEP_SUMS, most);
+  contacts->impulses.left = mpsi_mpm_relative_change(most);
 }
 
 /* Sweeps may end after so many: half of them went backward, and fewer than ten follow what changes
@@ -99,23 +99,24 @@ static bool is_checked(int32_t sweeps) { return sweeps >= 10 && sweeps % 4 == 2;
 /* ---- a step ---------------------------------------------------------------------------------- */
 
 /* The impulse `by` on the particle, to the impulses on its block and on the body. */
-static void add_reaction(mps_mpm *mpm, const mpsi_constraint *constraint, const double *by) {
-  mpsi_cell_pair *pair = &mpm->contact.cell_pair[constraint->pair];
-  const double *x = mpm->contact.body[constraint->body]->pose.x;
+static void add_reaction(const mpsi_contacts *contacts, double dt,
+                         const mpsi_constraint *constraint, const double *by) {
+  mpsi_cell_pair *pair = &contacts->cell_pair[constraint->pair];
+  const double *x = contacts->body[constraint->body]->pose.x;
   double arm[3], force[3];
   for (int a = 0; a < 3; a++) {
-    force[a] = -by[a] / mpm->run.dt;
+    force[a] = -by[a] / dt;
     arm[a] = constraint->impulse.at[a] - x[a];
   }
   pair->in_contact = true;
-  mpsi_pair_load *load = &mpm->contact.load[pair->first_load + constraint->part];
+  mpsi_pair_load *load = &contacts->load[pair->first_load + constraint->part];
   load->contacts++;
   mpsi_contact_add_load(&load->by, arm, force);
 }
 
 /* Forces on the bodies, and the initial state of the next step. */
-static void take_over(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+static void take_over(mpsi_contacts *contacts, double dt) {
+  mpsi_impulses *all = &contacts->impulses;
   mpsi_warm_impulse *next = all->next_room.item;
   int64_t count = 0;
   for (int64_t n = 0; n < all->constraint_count; n++) {
@@ -125,7 +126,7 @@ static void take_over(mps_mpm *mpm) {
     next[count] = (mpsi_warm_impulse){.id = constraint->id, .body = constraint->body};
     for (int a = 0; a < 3; a++)
       next[count].by[a] = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
-    if (constraint->pair >= 0) add_reaction(mpm, constraint, next[count].by);
+    if (constraint->pair >= 0) add_reaction(contacts, dt, constraint, next[count].by);
     count++;
   }
   const mpsi_room old = all->warm_room;
@@ -133,7 +134,7 @@ static void take_over(mps_mpm *mpm) {
   all->next_room = old;
   all->warm = all->warm_room.item;
   all->warm_count = count;
-  all->warm_dt = mpm->run.dt;
+  all->warm_dt = dt;
 }
 
 void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
@@ -141,7 +142,7 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
   const bool any =
       mpm->partition ? mpm->contact.exchange.constraints > 0 : all->constraint_count > 0;
   double tolerance;
-  const int32_t most = most_sweeps(mpm, &tolerance);
+  const int32_t most = most_sweeps(&mpm->contact, &tolerance);
   if (any) sweep_all(mpm, true, false);
   all->sweeps = 0, all->left = 0.0;
   for (int32_t s = 1; any && s <= most; s++) {
@@ -149,39 +150,40 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
     sweep_all(mpm, false, s % 2 == 0);
     all->sweeps = s;
     if (s < most && (tolerance == 0.0 || !is_checked(s))) continue;
-    find_change(mpm, tolerance > 0.0);
+    find_change(&mpm->contact, mpm->partition, tolerance > 0.0);
     if (!(all->left > tolerance)) break;
   }
   mpsi_mpm_mirror_constraints(mpm);
-  take_over(mpm);
+  take_over(&mpm->contact, mpm->run.dt);
 }
 
-void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
-  if (!mpm->energy.counts) return;
+void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                mpsi_energy *energy, const mpsi_kernels *kernels) {
+  const mpsi_impulses *all = &contacts->impulses;
+  if (!energy->counts) return;
   for (int64_t n = 0; n < all->constraint_count; n++) {
     const mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_impulse *c = &constraint->impulse;
     double v[3], surface[3];
     if (!(c->normal_impulse > 0.0) || constraint->pair < 0) continue;
-    mpm->kernels->foot_velocity(&mpm->contact.impulses, n, v);
-    mpsi_body_velocity(&mpm->contact.body[constraint->body]->pose, c->at, surface);
+    kernels->foot_velocity(&contacts->impulses, n, v);
+    mpsi_body_velocity(&contacts->body[constraint->body]->pose, c->at, surface);
     double work = 0.0, loss = 0.0;
-    for (int a = 0; a < mpm->grid.dim; a++) {
+    for (int a = 0; a < grid->dim; a++) {
       const double by = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
       work += by * surface[a];
       loss += by * (surface[a] - v[a]);
     }
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_FRICTION_LOSS, loss);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, -work);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_FRICTION_LOSS, loss);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_STEPPING, -work);
   }
 }
 
-void mpsi_mpm_free_impulses(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+void mpsi_mpm_free_impulses(mps_context *context, mpsi_contacts *contacts) {
+  mpsi_impulses *all = &contacts->impulses;
   void *rooms[] = {all->constraint_room.item, all->block_room.item,     all->weight_room.item,
                    all->node_room.item,       all->candidate_room.item, all->warm_room.item,
                    all->next_room.item,       all->lookup_room.item,    all->area_room.item,
                    all->around_room.item,     all->body_room.item};
-  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]);
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(context, rooms[k]);
 }

@@ -88,7 +88,8 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function);
 void mpsi_mpm_fit_constraints(mps_mpm *mpm);
 /* area.c: room for the areas of the step and of so many constraints; the areas; and the shear
  * strength of each constraint by its part of them, with the present normal impulses. */
-bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t constraints);
+bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contacts,
+                        mpsi_partition *partition, int64_t constraints);
 void mpsi_mpm_find_areas(mps_mpm *mpm);
 void mpsi_mpm_distribute_areas(mps_mpm *mpm);
 /* constraints.c: what mirrors give with the impulses of a step. */
@@ -96,16 +97,18 @@ void mpsi_mpm_mirror_constraints(mps_mpm *mpm);
 /* constraints.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of
  * the last step on a particle, or NULL; where a particle bears on the contact's body; a contact has
  * ended: bodies above it move down by one. */
-bool mpsi_mpm_index_impulses(mps_mpm *mpm);
-const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mps_mpm *mpm, int64_t id, int32_t body);
-mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
-                              const double *x);
-void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body);
+bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts);
+const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
+                                               int32_t body);
+mpsi_bearing mpsi_mpm_bearing(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mps_contact *contact, int64_t particle, const double *x);
+void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body);
 /* impulses.c: the impulses of a step, to nodes and pairs; and, the nodes' last velocities known,
  * what the contacts have lost. */
 void mpsi_mpm_apply_impulses(mps_mpm *mpm);
-void mpsi_mpm_find_impulse_loss(mps_mpm *mpm);
-void mpsi_mpm_free_impulses(mps_mpm *mpm);
+void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                mpsi_energy *energy, const mpsi_kernels *kernels);
+void mpsi_mpm_free_impulses(mps_context *context, mpsi_contacts *contacts);
 
 static inline bool mpsi_has_strength(const mps_contact *contact) {
   return contact->def.adhesion > 0.0 || !isnan(contact->def.strength);

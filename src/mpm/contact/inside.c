@@ -19,44 +19,45 @@ static void note_inside(mpsi_node_block *nodes, const int *place) {
 
 /* Distances change no faster than places: where a node is `far` (m) from the surface, the next
  * nodes of its row are on the same side of it, as many as this. */
-static int same_behind(const mps_mpm *mpm, double far) {
-  const double cells = far * mpm->grid.inverse * (1.0 - 1e-9);
+static int same_behind(const mpsi_grid *grid, double far) {
+  const double cells = far * grid->inverse * (1.0 - 1e-9);
   return cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
 }
 
 /* How many nodes of the block from the one at `place` on, x, lie before the tangent plane at the
  * foot of a point outside, where no convex body holds them: itself, its row, its plane, the rest.
  */
-static int count_before(const mps_mpm *mpm, const mpsi_foot *foot, const int *place,
+static int count_before(const mpsi_grid *grid, const mpsi_foot *foot, const int *place,
                         const double *x) {
-  const double least = 1e-9 * mpm->grid.cell;
+  const double least = 1e-9 * grid->cell;
   double before = 0.0;
   int count = 1;
-  for (int c = 0; c < mpm->grid.dim; c++) before += (x[c] - foot->at[c]) * foot->normal[c];
+  for (int c = 0; c < grid->dim; c++) before += (x[c] - foot->at[c]) * foot->normal[c];
   if (!(foot->distance > 0.0) || !(before > least)) return 0;
-  for (int c = 0; c < mpm->grid.dim && place[c] == 0; c++, count *= MPSI_SIDE) {
-    before += fmin(0.0, (MPSI_SIDE - 1) * mpm->grid.cell * foot->normal[c]);
+  for (int c = 0; c < grid->dim && place[c] == 0; c++, count *= MPSI_SIDE) {
+    before += fmin(0.0, (MPSI_SIDE - 1) * grid->cell * foot->normal[c]);
     if (!(before > least)) break;
   }
   return count;
 }
 
 /* Nodes of a block that lie inside the body of its pair t. */
-static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t t, uint8_t *inside) {
-  const int32_t b = mpm->contact.node_pair[t].body;
-  const bool convex = mpm->contact.handle[b]->convex;
+static void find_inside_body(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                             mpsi_node_block *nodes, int32_t t, uint8_t *inside) {
+  const int32_t b = contacts->node_pair[t].body;
+  const bool convex = contacts->handle[b]->convex;
   const unsigned state =
-      MPSI_INSIDE | (mpsi_by_impulses(mpm->contact.handle[b]) ? MPSI_IMPULSE : MPSI_PENALTY);
-  uint8_t *held = mpm->contact.held + (int64_t)t * mpm->grid.block_nodes;
+      MPSI_INSIDE | (mpsi_by_impulses(contacts->handle[b]) ? MPSI_IMPULSE : MPSI_PENALTY);
+  uint8_t *held = contacts->held + (int64_t)t * grid->block_nodes;
   mpsi_foot foot = {.distance = 0.0};
-  for (int k = 0, done; k < mpm->grid.block_nodes; k += done) {
+  for (int k = 0, done; k < grid->block_nodes; k += done) {
     int place[3];
     double x[3];
     mpsi_unravel(k, MPSI_SIDE, place);
-    mpsi_node_place(mpm, nodes->at, k, x);
-    if (convex && (done = count_before(mpm, &foot, place, x)) > 0) continue;
-    foot = mpsi_body_foot(mpm->contact.body[b], x);
-    done = 1 + same_behind(mpm, fabs(foot.distance));
+    mpsi_node_place(grid, nodes->at, k, x);
+    if (convex && (done = count_before(grid, &foot, place, x)) > 0) continue;
+    foot = mpsi_body_foot(contacts->body[b], x);
+    done = 1 + same_behind(grid, fabs(foot.distance));
     if (done > MPSI_SIDE - place[0]) done = MPSI_SIDE - place[0];
     for (int i = 0; i < done && foot.distance < 0.0; i++, place[0]++) {
       held[k + i] = 1;
@@ -73,10 +74,10 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   nodes->inside = nodes->thin = false;
   for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
   if (nodes->near < 0) return;
-  mpsi_mpm_find_sight(mpm, g);
-  uint8_t *inside = mpm->contact.inside + mpsi_first_node(mpm, nodes->near);
+  mpsi_mpm_find_sight(&mpm->grid, &mpm->contact, g);
+  uint8_t *inside = mpm->contact.inside + mpsi_first_node(&mpm->grid, nodes->near);
   memset(inside, 0, count);
-  memset((void *)(mpm->contact.reached + mpsi_first_node(mpm, nodes->near)), 0, count);
+  memset((void *)(mpm->contact.reached + mpsi_first_node(&mpm->grid, nodes->near)), 0, count);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const int32_t b = mpm->contact.node_pair[t].body;
     memset(mpm->contact.held + (int64_t)t * mpm->grid.block_nodes, 0, count);
@@ -84,18 +85,18 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
       memset(mpm->contact.node + (int64_t)t * mpm->grid.block_nodes, 0,
              count * sizeof *mpm->contact.node);
     if (mpm->contact.state[b].parts) continue; /* cuts no support: thin_bodies.h */
-    if (mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE))
-      find_inside_body(mpm, nodes, t, inside);
+    if (mpsi_mpm_body_reaches(&mpm->grid, &mpm->contact, b, nodes->at, MPSI_SIDE))
+      find_inside_body(&mpm->grid, &mpm->contact, nodes, t, inside);
   }
 }
 
 /* Cells low to high - 1 of the block along each axis with corners inside bodies; false where there
  * are none. */
-static bool cells_near(const mps_mpm *mpm, const mpsi_cell_block *cells, int *low, int *high) {
+static bool cells_near(const mpsi_grid *grid, const mpsi_cell_block *cells, int *low, int *high) {
   bool any = false;
   for (int c = 0; c < 3; c++) low[c] = MPSI_TILE_SIDE, high[c] = 0;
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+  for (int q = 0; q < 1 << grid->dim; q++) {
+    const mpsi_node_block *nodes = &grid->nodes[cells->to[q]];
     any = any || nodes->inside;
     for (int c = 0; c < 3 && nodes->inside; c++) {
       const int first = q >> c & 1 ? MPSI_SIDE : 0;
@@ -113,7 +114,7 @@ typedef void (*corner_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells, cons
 static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner_fn work,
                         void *data) {
   int low[3], high[3];
-  if (cells->pairs == 0 || !cells_near(mpm, cells, low, high)) return;
+  if (cells->pairs == 0 || !cells_near(&mpm->grid, cells, low, high)) return;
   bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
   memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
   for (int64_t k = cells->begin;
@@ -140,30 +141,30 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
 }
 
 /* Normals of the bodies that hold the node `local` of a block. */
-static void find_normals(const mps_mpm *mpm, const mpsi_node_block *nodes, int local) {
+static void find_normals(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                         const mpsi_node_block *nodes, int local) {
   double x[3];
-  mpsi_node_place(mpm, nodes->at, local, x);
+  mpsi_node_place(grid, nodes->at, local, x);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
-    const int64_t at = (int64_t)t * mpm->grid.block_nodes + local;
-    if (!mpm->contact.held[at]) continue;
-    const mps_body *body = mpm->contact.body[mpm->contact.node_pair[t].body];
+    const int64_t at = (int64_t)t * grid->block_nodes + local;
+    if (!contacts->held[at]) continue;
+    const mps_body *body = contacts->body[contacts->node_pair[t].body];
     const mpsi_foot foot = mpsi_body_foot(body, x);
-    for (int c = 0; c < 3; c++)
-      mpm->contact.normal[at][c] = c < mpm->grid.dim ? foot.normal[c] : 0.0;
+    for (int c = 0; c < 3; c++) contacts->normal[at][c] = c < grid->dim ? foot.normal[c] : 0.0;
   }
 }
 
 /* Several blocks may mark one node at once: the first finds the normals there. */
 static void mark_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
   _Atomic uint8_t *reached = data;
-  const int64_t node = mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
+  const int64_t node = mpsi_node_under(&mpm->grid, cells, at[0], at[1], at[2]);
   const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
   const int local = (int)(node % mpm->grid.block_nodes);
-  reached += mpsi_first_node(mpm, nodes->near) + local;
+  reached += mpsi_first_node(&mpm->grid, nodes->near) + local;
   if (atomic_load_explicit(reached, memory_order_relaxed) ||
       atomic_exchange_explicit(reached, 1, memory_order_relaxed))
     return;
-  if (nodes->inside) find_normals(mpm, nodes, local);
+  if (nodes->inside) find_normals(&mpm->grid, &mpm->contact, nodes, local);
 }
 
 void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
@@ -217,53 +218,53 @@ mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool kn
 /* ---- states under a tile --------------------------------------------------------------------- */
 
 /* Nodes low to high - 1 of the tile along axis c are in the domain, or beyond a mirror. */
-static void domain_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int *low,
+static void domain_under(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int *low,
                          int *high) {
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-  *low = mpm->grid.use_low[c] > first ? (int)(mpm->grid.use_low[c] - first) : 0;
-  *high = mpm->grid.use_high[c] < first + MPSI_TILE_SIDE ? (int)(mpm->grid.use_high[c] - first) + 1
-                                                         : MPSI_TILE_SIDE;
+  *low = grid->use_low[c] > first ? (int)(grid->use_low[c] - first) : 0;
+  *high = grid->use_high[c] < first + MPSI_TILE_SIDE ? (int)(grid->use_high[c] - first) + 1
+                                                     : MPSI_TILE_SIDE;
 }
 
-static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t *state) {
+static void mark_outside(const mpsi_grid *grid, const mpsi_cell_block *cells, uint8_t *state) {
   int low[3] = {0}, high[3] = {1, 1, 1};
-  for (int c = 0; c < mpm->grid.dim; c++) domain_under(mpm, cells, c, &low[c], &high[c]);
-  memset(state, MPSI_OUTSIDE, (size_t)mpm->grid.tile_nodes);
+  for (int c = 0; c < grid->dim; c++) domain_under(grid, cells, c, &low[c], &high[c]);
+  memset(state, MPSI_OUTSIDE, (size_t)grid->tile_nodes);
   for (int k = low[2]; k < high[2]; k++)
     for (int j = low[1]; j < high[1] && low[0] < high[0]; j++)
-      memset(state + mpsi_tile_index(low[0], j, k), mpm->grid.standard ? MPSI_PLAIN : 0,
+      memset(state + mpsi_tile_index(low[0], j, k), grid->standard ? MPSI_PLAIN : 0,
              (size_t)(high[0] - low[0]));
 }
 
 /* Of the nodes of a block under the corner q of the tile, in bodies or beside thin ones. */
-static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
-                      mpsi_worker *worker) {
+static void mark_near(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                      const mpsi_node_block *nodes, int q, mpsi_worker *worker) {
   int from[3] = {0}, to[3] = {1, 1, 1}, shift[3] = {0};
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) {
     const int size = q >> c & 1 ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
     shift[c] = q >> c & 1 ? MPSI_SIDE : 0;
     from[c] = nodes->thin ? 0 : nodes->low[c];
     to[c] = nodes->thin || nodes->high[c] > size ? size : nodes->high[c];
   }
-  const int64_t first = mpsi_first_node(mpm, nodes->near);
+  const int64_t first = mpsi_first_node(grid, nodes->near);
   for (int k = from[2]; k < to[2]; k++)
     for (int j = from[1]; j < to[1]; j++)
       for (int i = from[0]; i < to[0]; i++) {
         const int64_t at = first + (k * MPSI_SIDE + j) * MPSI_SIDE + i;
         const int t = mpsi_tile_index(shift[0] + i, shift[1] + j, shift[2] + k);
-        if (nodes->thin && mpm->contact.beside[at]) worker->state[t] |= MPSI_THIN;
-        if (!mpm->contact.inside[at]) continue;
+        if (nodes->thin && contacts->beside[at]) worker->state[t] |= MPSI_THIN;
+        if (!contacts->inside[at]) continue;
         const bool reached =
-            atomic_load_explicit(&mpm->contact.reached[at], memory_order_relaxed) != 0;
-        worker->state[t] |= (uint8_t)(mpm->contact.inside[at] | (reached ? MPSI_REACHED : 0));
+            atomic_load_explicit(&contacts->reached[at], memory_order_relaxed) != 0;
+        worker->state[t] |= (uint8_t)(contacts->inside[at] | (reached ? MPSI_REACHED : 0));
       }
 }
 
 void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
-  mark_outside(mpm, cells, worker->state);
+  mark_outside(&mpm->grid, cells, worker->state);
   for (int q = 0; q < 1 << mpm->grid.dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
-    if (nodes->inside || nodes->thin) mark_near(mpm, nodes, q, worker);
+    if (nodes->inside || nodes->thin) mark_near(&mpm->grid, &mpm->contact, nodes, q, worker);
   }
   if (cells->mirrors) mpsi_mpm_mirror_states(mpm, cells, worker);
 }

@@ -87,18 +87,23 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
 /* pairs.c: lists the pairs; whether a body may have a node inside of the tile or block at `at` of
  * `side` nodes an axis; the masses that friction with free bodies needs, once those of the node
  * pairs are known: of all ranks. */
-mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function);
-bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side);
-void mpsi_mpm_find_contact_mass(mps_mpm *mpm);
+mps_status mpsi_mpm_list_pairs(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contact,
+                               const char *function);
+bool mpsi_mpm_body_reaches(const mpsi_grid *grid, const mpsi_contacts *contacts, int32_t body,
+                           const int32_t *at, int side);
+void mpsi_mpm_find_contact_mass(const mpsi_grid *grid, const mpsi_contacts *contact,
+                                mpsi_partition *partition);
 /* penalty.c: room for their tiles, the pairs being listed; whether a block has one for its pair
  * number `pair`; that one; emptied; added to the nodes; all of that with p2g in between. */
-bool mpsi_mpm_penalty_room(mps_mpm *mpm);
-bool mpsi_mpm_has_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair);
-mpsi_penalty_node *mpsi_mpm_penalty_tile(const mps_mpm *mpm, const mpsi_worker *worker,
+bool mpsi_mpm_penalty_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contact);
+bool mpsi_mpm_has_penalty(const mpsi_contacts *contacts, const mpsi_cell_block *cells,
+                          int32_t pair);
+mpsi_penalty_node *mpsi_mpm_penalty_tile(const mpsi_grid *grid, const mpsi_worker *worker,
                                          int32_t pair);
-void mpsi_mpm_clear_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                            const mpsi_worker *worker);
-void mpsi_mpm_add_penalty(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker);
+void mpsi_mpm_clear_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                            const mpsi_cell_block *cells, const mpsi_worker *worker);
+void mpsi_mpm_add_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                          const mpsi_cell_block *cells, const mpsi_worker *worker);
 void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t worker);
 /* inside.c: nodes of a block inside bodies; corners of the cells of a block that hold particles. */
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
@@ -106,27 +111,34 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
 /* The same of ghosts from other ranks, where `known` here. Collective. */
 mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);
 /* area.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
-bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
+bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
+                        const mpsi_cell_pair *pair, double *tile);
 /* penalty_friction.c: normal forces of all bodies on a block of nodes; friction; forces on the
  * bodies, and their motion, for which there is memory. */
-bool mpsi_mpm_sum_room(mps_mpm *mpm);
-void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
-void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);
+bool mpsi_mpm_sum_room(mps_context *context, mpsi_contacts *contacts);
+void mpsi_mpm_apply_contact(const mpsi_grid *grid, const mpsi_contacts *contacts, double dt,
+                            int64_t g);
+void mpsi_mpm_apply_friction(const mpsi_grid *grid, const mpsi_contacts *contacts, double dt,
+                             int64_t g);
 void mpsi_mpm_update_bodies(mps_mpm *mpm);
 /* contacts.c: MPS_ERROR_ARGUMENT where particles from index `from` on lie inside the body, unless
  * the contact pushes them out. */
-mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact,
-                                 int64_t from);
+mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 const char *function, const mps_contact *contact, int64_t from);
 /* removal.c: whether some body takes away what it finds; before a step, what they take, `cleared`
  * where they do, on whatever rank (`status`: of the step so far on this rank); and, when its
  * contact is made, what one takes. The latter two are collective. */
 bool mpsi_mpm_some_take_away(const mpsi_contacts *contacts);
 mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
                                  bool *cleared);
-mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact);
+mps_status mpsi_mpm_clear_body(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               mpsi_contacts *contacts, mpsi_partition *partition,
+                               const char *function, mps_contact *contact);
 /* contacts.c: MPS_ERROR_DIVERGED where a particle is deeper in a body than its contact allows; ends
  * all contacts. */
-mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function);
-void mpsi_mpm_end_contacts(mps_mpm *mpm);
+mps_status mpsi_mpm_check_depth(mps_context *context, const mpsi_columns *p,
+                                const mpsi_contacts *contacts, const mpsi_run *run,
+                                const char *function);
+void mpsi_mpm_end_contacts(mpsi_contacts *contacts);
 
 #endif

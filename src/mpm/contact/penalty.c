@@ -6,26 +6,24 @@
 
 #include <string.h>
 
-bool mpsi_mpm_has_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t pair) {
+bool mpsi_mpm_has_penalty(const mpsi_contacts *contacts, const mpsi_cell_block *cells,
+                          int32_t pair) {
   return cells->inside &&
-         !mpsi_by_impulses(
-             mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + pair].body]);
+         !mpsi_by_impulses(contacts->handle[contacts->cell_pair[cells->first_pair + pair].body]);
 }
 
-mpsi_penalty_node *mpsi_mpm_penalty_tile(const mps_mpm *mpm, const mpsi_worker *worker,
+mpsi_penalty_node *mpsi_mpm_penalty_tile(const mpsi_grid *grid, const mpsi_worker *worker,
                                          int32_t pair) {
-  return worker->penalty + (int64_t)pair * mpm->grid.tile_nodes;
+  return worker->penalty + (int64_t)pair * grid->tile_nodes;
 }
 
-bool mpsi_mpm_penalty_room(mps_mpm *mpm) {
-  mpsi_grid *grid = &mpm->grid;
-  mpsi_contacts *contact = &mpm->contact;
+bool mpsi_mpm_penalty_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contact) {
   int32_t most = 0;
   if (contact->penalty_bodies == 0) return true;
   for (int64_t b = 0; b < grid->cell_count; b++)
     if (grid->cells[b].pairs > most) most = grid->cells[b].pairs;
   const int64_t each = (int64_t)most * grid->tile_nodes;
-  if (!mpsi_room_ensure(mpm->context, &contact->penalty_room, each * grid->worker_count,
+  if (!mpsi_room_ensure(context, &contact->penalty_room, each * grid->worker_count,
                         sizeof(mpsi_penalty_node)))
     return false;
   for (int32_t k = 0; k < grid->worker_count; k++)
@@ -33,48 +31,50 @@ bool mpsi_mpm_penalty_room(mps_mpm *mpm) {
   return true;
 }
 
-void mpsi_mpm_clear_penalty(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                            const mpsi_worker *worker) {
+void mpsi_mpm_clear_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                            const mpsi_cell_block *cells, const mpsi_worker *worker) {
   const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_penalty_node);
   for (int32_t q = 0; q < cells->pairs; q++) {
-    if (!mpsi_mpm_has_penalty(mpm, cells, q)) continue;
-    mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(mpm, worker, q);
+    if (!mpsi_mpm_has_penalty(contacts, cells, q)) continue;
+    mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(grid, worker, q);
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
         memset(tile + mpsi_tile_index(cells->low[0], j, k), 0, bytes);
   }
 }
 
-static void add_row(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t body, int j, int k,
+static void add_row(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                    const mpsi_cell_block *cells, int32_t body, int j, int k,
                     const mpsi_penalty_node *row) {
   for (int i = cells->low[0]; i < cells->high[0]; i++) {
     const mpsi_penalty_node *from = &row[i - cells->low[0]];
     if (from->mass == 0.0) continue;
-    const int64_t node = mpsi_node_under(mpm, cells, i, j, k);
-    int32_t t = mpm->grid.nodes[node / mpm->grid.block_nodes].first_pair;
-    while (mpm->contact.node_pair[t].body != body) t++;
+    const int64_t node = mpsi_node_under(grid, cells, i, j, k);
+    int32_t t = grid->nodes[node / grid->block_nodes].first_pair;
+    while (contacts->node_pair[t].body != body) t++;
     mpsi_contact_node *to =
-        &mpm->contact.node[t * (int64_t)mpm->grid.block_nodes + node % mpm->grid.block_nodes];
+        &contacts->node[t * (int64_t)grid->block_nodes + node % grid->block_nodes];
     to->mass += from->mass;
     for (int c = 0; c < 3; c++) to->slip[c] += from->slip[c], to->force[c] += from->force[c];
   }
 }
 
-void mpsi_mpm_add_penalty(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker) {
+void mpsi_mpm_add_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                          const mpsi_cell_block *cells, const mpsi_worker *worker) {
   for (int32_t q = 0; q < cells->pairs; q++) {
-    if (!mpsi_mpm_has_penalty(mpm, cells, q)) continue;
-    const int32_t body = mpm->contact.cell_pair[cells->first_pair + q].body;
-    const mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(mpm, worker, q);
+    if (!mpsi_mpm_has_penalty(contacts, cells, q)) continue;
+    const int32_t body = contacts->cell_pair[cells->first_pair + q].body;
+    const mpsi_penalty_node *tile = mpsi_mpm_penalty_tile(grid, worker, q);
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
-        add_row(mpm, cells, body, j, k, tile + mpsi_tile_index(cells->low[0], j, k));
+        add_row(grid, contacts, cells, body, j, k, tile + mpsi_tile_index(cells->low[0], j, k));
   }
 }
 
 void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
-  mpsi_mpm_clear_penalty(mpm, cells, worker);
+  mpsi_mpm_clear_penalty(&mpm->grid, &mpm->contact, cells, worker);
   mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2](mpm, b, number);
-  mpsi_mpm_add_penalty(mpm, cells, worker);
+  mpsi_mpm_add_penalty(&mpm->grid, &mpm->contact, cells, worker);
 }

@@ -17,18 +17,18 @@ bool mpsi_mpm_some_take_away(const mpsi_contacts *all) {
   return any;
 }
 
-static double *place_of(const mps_mpm *mpm, int64_t k, double *x) {
-  for (int c = 0; c < 3; c++) x[c] = c < mpm->grid.dim ? mpm->p.x[c][k] : 0.0;
+static double *place_of(const mpsi_grid *grid, const mpsi_columns *p, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++) x[c] = c < grid->dim ? p->x[c][k] : 0.0;
   return x;
 }
 
 /* Marks particles [begin, end) that lie deeper than `depth` below the surface. */
-static int64_t into_body(const mps_mpm *mpm, const mps_contact *contact, double depth,
-                         int64_t begin, int64_t end, uint8_t *gone, uint8_t mark) {
+static int64_t into_body(const mpsi_grid *grid, const mpsi_columns *p, const mps_contact *contact,
+                         double depth, int64_t begin, int64_t end, uint8_t *gone, uint8_t mark) {
   int64_t count = 0;
   for (int64_t k = begin; k < end; k++) {
     double x[3];
-    if (gone[k] || !mpsi_body_reaches(contact->body, place_of(mpm, k, x), 0.0)) continue;
+    if (gone[k] || !mpsi_body_reaches(contact->body, place_of(grid, p, k, x), 0.0)) continue;
     if (!(mpsi_body_foot(contact->body, x).distance < -depth)) continue;
     gone[k] = mark;
     count++;
@@ -40,22 +40,24 @@ enum { MASS, COUNT, AMOUNTS };
 typedef mpsi_exact amounts[AMOUNTS];
 
 /* What the body has taken away, on all ranks. */
-static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *contact,
-                            const uint8_t *gone, uint8_t mark) {
-  amounts *sum = mpm->contact.sum_room.item;
+static mps_status count_out(const mpsi_grid *grid, const mpsi_columns *p,
+                            const mpsi_contacts *contacts, mpsi_partition *partition,
+                            const char *function, mps_contact *contact, const uint8_t *gone,
+                            uint8_t mark) {
+  amounts *sum = contacts->sum_room.item;
   const int32_t parts = contact->body->parts;
   mps_status status = MPS_OK;
   memset(sum, 0, (size_t)parts * sizeof *sum);
-  for (int64_t k = 0; k < mpm->p.count; k++) {
+  for (int64_t k = 0; k < p->count; k++) {
     double x[3];
     if (gone[k] != mark) continue;
-    const mpsi_foot foot = mpsi_body_foot(contact->body, place_of(mpm, k, x));
+    const mpsi_foot foot = mpsi_body_foot(contact->body, place_of(grid, p, k, x));
     const int32_t part = contact->body->part_of[foot.face];
-    mpsi_exact_add(&sum[part][MASS], mpm->p.m[k]);
+    mpsi_exact_add(&sum[part][MASS], p->m[k]);
     mpsi_exact_add(&sum[part][COUNT], 1.0);
   }
-  if (mpm->partition)
-    status = mpsi_domain_sum_exact(mpm->partition->domain, function, parts * AMOUNTS, sum[0]);
+  if (partition)
+    status = mpsi_domain_sum_exact(partition->domain, function, parts * AMOUNTS, sum[0]);
   for (int32_t part = 0; status == MPS_OK && part < parts; part++) {
     mps_reaction *r = &contact->source.reaction[part];
     r->removed += (int64_t)mpsi_exact_value(&sum[part][COUNT]);
@@ -65,46 +67,52 @@ static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *con
 }
 
 /* Room for the sums of a contact, which need not be one of the solver's yet. */
-static mps_status ensure_amounts(mps_mpm *mpm, const char *function, const mps_contact *contact) {
+static mps_status ensure_amounts(mps_context *context, mpsi_contacts *contacts,
+                                 const char *function, const mps_contact *contact) {
   const int32_t parts = contact->body->parts;
-  return mpsi_room_ensure(mpm->context, &mpm->contact.sum_room, parts, sizeof(amounts))
+  return mpsi_room_ensure(context, &contacts->sum_room, parts, sizeof(amounts))
              ? MPS_OK
-             : mpsi_fail_memory(mpm->context, function, (size_t)parts * sizeof(amounts));
+             : mpsi_fail_memory(context, function, (size_t)parts * sizeof(amounts));
 }
 
 /* Marks particles in the body, which no body before it has marked. */
-static int64_t mark_inside(mps_mpm *mpm, int32_t body, uint8_t mark) {
-  const mps_contact *contact = mpm->contact.handle[body];
+static int64_t mark_inside(const mpsi_grid *grid, const mpsi_columns *p,
+                           const mpsi_contacts *contacts, const mpsi_rooms *rooms, int32_t body,
+                           uint8_t mark) {
+  const mps_contact *contact = contacts->handle[body];
   int64_t count = 0;
-  for (int64_t t = 0; t < mpm->contact.cell_pair_count; t++) {
-    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
-    const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
+  for (int64_t t = 0; t < contacts->cell_pair_count; t++) {
+    const mpsi_cell_pair *pair = &contacts->cell_pair[t];
+    const mpsi_cell_block *cells = &grid->cells[pair->cells];
     if (pair->body == body)
-      count += into_body(mpm, contact, contact->def.depth, cells->begin, cells->end,
-                         mpm->rooms.gone.item, mark);
+      count += into_body(grid, p, contact, contact->def.depth, cells->begin, cells->end,
+                         rooms->gone.item, mark);
   }
   return count;
 }
 
 /* The same of all bodies, with the same mark. */
-static int64_t mark_all(mps_mpm *mpm) {
+static int64_t mark_all(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
+                        const mpsi_rooms *rooms) {
   int64_t count = 0;
-  if (mpm->p.count > 0) memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    if (takes_away(mpm->contact.handle[b])) count += mark_inside(mpm, b, TAKEN);
+  if (p->count > 0) memset(rooms->gone.item, 0, (size_t)p->count);
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    if (takes_away(contacts->handle[b])) count += mark_inside(grid, p, contacts, rooms, b, TAKEN);
   return count;
 }
 
 /* What each body takes away, on all ranks. */
-static mps_status count_by_body(mps_mpm *mpm, const char *function) {
-  uint8_t *gone = mpm->rooms.gone.item;
+static mps_status count_by_body(const mpsi_grid *grid, const mpsi_columns *p,
+                                const mpsi_contacts *contacts, mpsi_partition *partition,
+                                const mpsi_rooms *rooms, const char *function) {
+  uint8_t *gone = rooms->gone.item;
   mps_status status = MPS_OK;
-  if (mpm->p.count > 0) memset(gone, 0, (size_t)mpm->p.count);
-  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++) {
-    if (!takes_away(mpm->contact.handle[b])) continue;
-    mark_inside(mpm, b, BY_THIS);
-    status = count_out(mpm, function, mpm->contact.handle[b], gone, BY_THIS);
-    for (int64_t k = 0; k < mpm->p.count; k++)
+  if (p->count > 0) memset(gone, 0, (size_t)p->count);
+  for (int32_t b = 0; b < contacts->bodies && status == MPS_OK; b++) {
+    if (!takes_away(contacts->handle[b])) continue;
+    mark_inside(grid, p, contacts, rooms, b, BY_THIS);
+    status = count_out(grid, p, contacts, partition, function, contacts->handle[b], gone, BY_THIS);
+    for (int64_t k = 0; k < p->count; k++)
       if (gone[k]) gone[k] = TAKEN;
   }
   return status;
@@ -114,31 +122,34 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
                                  bool *cleared) {
   if (!mpsi_mpm_some_take_away(&mpm->contact)) return status;
   for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
-    status = ensure_amounts(mpm, function, mpm->contact.handle[b]);
-  const int64_t count = status == MPS_OK ? mark_all(mpm) : 0;
+    status = ensure_amounts(mpm->context, &mpm->contact, function, mpm->contact.handle[b]);
+  const int64_t count =
+      status == MPS_OK ? mark_all(&mpm->grid, &mpm->p, &mpm->contact, &mpm->rooms) : 0;
   double any = (double)count;
   if (mpm->partition)
     status = mpsi_domain_agree_max(mpm->partition->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
-  status = count_by_body(mpm, function);
+  status = count_by_body(&mpm->grid, &mpm->p, &mpm->contact, mpm->partition, &mpm->rooms, function);
   if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->p.set, mpm->rooms.gone.item);
   *cleared = status == MPS_OK;
   return status;
 }
 
-mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact) {
+mps_status mpsi_mpm_clear_body(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               mpsi_contacts *contacts, mpsi_partition *partition,
+                               const char *function, mps_contact *contact) {
   if (!takes_away(contact)) return MPS_OK;
-  uint8_t *gone = mpsi_alloc(mpm->context, mpm->p.count, 1);
+  uint8_t *gone = mpsi_alloc(context, p->count, 1);
   mps_status status = MPS_OK;
-  if (!gone) status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
-  if (status == MPS_OK) status = ensure_amounts(mpm, function, contact);
-  status = mpsi_mpm_agree(mpm, function, status);
+  if (!gone) status = mpsi_fail_memory(context, function, (size_t)p->count);
+  if (status == MPS_OK) status = ensure_amounts(context, contacts, function, contact);
+  status = mpsi_mpm_agree(partition, function, status);
   int64_t count = 0;
   if (status == MPS_OK) {
-    count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, TAKEN);
-    status = count_out(mpm, function, contact, gone, TAKEN);
+    count = into_body(grid, p, contact, 0.0, 0, p->count, gone, TAKEN);
+    status = count_out(grid, p, contacts, partition, function, contact, gone, TAKEN);
   }
-  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->p.set, gone);
-  mpsi_free(mpm->context, gone);
+  if (status == MPS_OK && count > 0) mpsi_particles_take_out(p->set, gone);
+  mpsi_free(context, gone);
   return status;
 }

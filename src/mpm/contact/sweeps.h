@@ -9,7 +9,7 @@ enum { MPSI_SWEEP_CHANGED, MPSI_SWEEP_IMPULSES, MPSI_SWEEP_SUMS };
 
 /* (N s)2, the largest sums of squares over a block of cells of this rank, of changes and of
  * impulses: their maxima over all ranks are the same on any number of these. */
-void mpsi_mpm_sweep_sums(const mps_mpm *mpm, double *most);
+void mpsi_mpm_sweep_sums(const mpsi_contacts *contacts, double *most);
 /* Root of the change over the impulses; 0 where nothing has changed. */
 double mpsi_mpm_relative_change(const double *most);
 

@@ -39,14 +39,17 @@ typedef struct mpsi_parted {
 } mpsi_parted;
 
 /* Which bodies part particles in the step being made; room for what is known of nodes. */
-bool mpsi_mpm_begin_across(mps_mpm *mpm);
+bool mpsi_mpm_begin_across(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                           mpsi_contacts *contact);
 /* The nodes of block g for its bodies that do; those beside them are marked. */
-void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_find_sight(const mpsi_grid *grid, const mpsi_contacts *contacts, int64_t g);
 /* The blocks of cells and nodes concerned being known, those across; false: memory refused. */
-bool mpsi_mpm_list_across(mps_mpm *mpm);
+bool mpsi_mpm_list_across(mps_context *context, mpsi_grid *grid, mpsi_mirrors *mirrors,
+                          const mpsi_contacts *contacts);
 /* Which nodes of the stencil from tile node `base` are across for a particle at x[3] (m), and which
  * of them lie too deep to take part, unless they are corners of its own cell. */
-mpsi_parted mpsi_mpm_find_parted(const mps_mpm *mpm, const struct mpsi_cell_block *cells,
-                                 const int *base, const double *x);
+mpsi_parted mpsi_mpm_find_parted(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                 const struct mpsi_cell_block *cells, const int *base,
+                                 const double *x);
 
 #endif

@@ -237,10 +237,11 @@ mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function);
 /* layout.c: its parts: the particles in order, by blocks of cells; room for such; and, once
  * they are in grid.cells in their order, what follows from them. */
 mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function);
-bool mpsi_mpm_ensure_cells(mps_mpm *mpm, int64_t cells);
-bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells);
+bool mpsi_mpm_ensure_cells(mps_context *context, mpsi_grid *grid, int64_t cells);
+bool mpsi_mpm_build_nodes(mps_context *context, mpsi_grid *grid, int64_t cells);
 /* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
-mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                                 mpsi_partition *partition, const char *function, int64_t count,
                                  const mpsi_block *block);
 /* node_update.c: one block of nodes: emptied; velocities, normal contact forces; friction and
  * walls. */

@@ -10,10 +10,10 @@
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
 /* Widens the part of the tile in use by a stencil, and by a cell to either side. */
-static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cell_block *cells) {
-  for (int c = 0; c < mpm->grid.dim; c++, within /= MPSI_SIDE) {
+static void widen_use(const mpsi_grid *grid, uint64_t within, mpsi_cell_block *cells) {
+  for (int c = 0; c < grid->dim; c++, within /= MPSI_SIDE) {
     const int32_t low = (int32_t)(within % MPSI_SIDE);
-    const int32_t high = low + 3 + mpsi_reach(mpm, c);
+    const int32_t high = low + 3 + mpsi_reach(grid, c);
     if (low < cells->low[c]) cells->low[c] = low;
     if (high > cells->high[c]) cells->high[c] = high;
   }
@@ -132,22 +132,22 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
   for (int64_t k = cells->begin, end; k < cells->end; k = end) {
     for (end = k + 1; end < cells->end && key[end].key == key[k].key;) end++;
-    widen_use(mpm, key[k].key & own, cells);
+    widen_use(&mpm->grid, key[k].key & own, cells);
     order_by_id(key, mpm->p.laws.ids, k, end);
   }
 }
 
 /* The sorted list of blocks shifted to each corner of a tile gives sorted lists; merging them gives
  * the blocks of nodes, and the tiles that cover each. The count alone where `nodes` is NULL. */
-static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
-  mpsi_cell_block *cells = mpm->grid.cells;
-  const int corners = 1 << mpm->grid.dim;
+static int64_t make_nodes(const mpsi_grid *grid, mpsi_node_block *nodes) {
+  mpsi_cell_block *cells = grid->cells;
+  const int corners = 1 << grid->dim;
   int64_t head[MPSI_CORNERS] = {0}, count = 0;
   for (;;) {
     int32_t at[MPSI_CORNERS][3], least[3];
     bool any = false;
     for (int q = 0; q < corners; q++) {
-      if (head[q] == mpm->grid.cell_count) continue;
+      if (head[q] == grid->cell_count) continue;
       for (int c = 0; c < 3; c++) at[q][c] = cells[head[q]].at[c] + (q >> c & 1);
       if (!any || mpsi_block_before(at[q], least)) memcpy(least, at[q], sizeof least);
       any = true;
@@ -159,7 +159,7 @@ static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
       memcpy(nodes[count].at, least, sizeof least);
     }
     for (int q = 0; q < corners; q++) {
-      if (head[q] == mpm->grid.cell_count || mpsi_block_before(least, at[q])) continue;
+      if (head[q] == grid->cell_count || mpsi_block_before(least, at[q])) continue;
       cells[head[q]].to[q] = (int32_t)count;
       if (nodes) nodes[count].from[q] = (int32_t)head[q];
       head[q]++;
@@ -169,84 +169,87 @@ static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
 }
 
 /* Same colour: the same parities of the block coordinates. */
-static void sort_colours(mps_mpm *mpm) {
+static void sort_colours(mpsi_grid *grid) {
   int64_t count = 0;
   for (int colour = 0; colour < MPSI_CORNERS; colour++) {
-    mpm->grid.colour[colour] = count;
-    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-      const int32_t *at = mpm->grid.cells[b].at;
+    grid->colour[colour] = count;
+    for (int64_t b = 0; b < grid->cell_count; b++) {
+      const int32_t *at = grid->cells[b].at;
       if (((at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2) == colour)
-        mpm->grid.coloured[count++] = (int32_t)b;
+        grid->coloured[count++] = (int32_t)b;
     }
   }
-  mpm->grid.colour[MPSI_CORNERS] = count;
+  grid->colour[MPSI_CORNERS] = count;
 }
 
-bool mpsi_mpm_ensure_cells(mps_mpm *mpm, int64_t cells) {
-  const bool good =
-      mpsi_room_ensure(mpm->context, &mpm->grid.cells_room, cells, sizeof *mpm->grid.cells) &&
-      mpsi_room_ensure(mpm->context, &mpm->grid.coloured_room, cells, sizeof *mpm->grid.coloured);
-  mpm->grid.cell_count = mpm->grid.node_count = mpm->grid.across_count = 0;
-  mpm->grid.cells = mpm->grid.cells_room.item;
-  mpm->grid.coloured = mpm->grid.coloured_room.item;
+bool mpsi_mpm_ensure_cells(mps_context *context, mpsi_grid *grid, int64_t cells) {
+  const bool good = mpsi_room_ensure(context, &grid->cells_room, cells, sizeof *grid->cells) &&
+                    mpsi_room_ensure(context, &grid->coloured_room, cells, sizeof *grid->coloured);
+  grid->cell_count = grid->node_count = grid->across_count = 0;
+  grid->cells = grid->cells_room.item;
+  grid->coloured = grid->coloured_room.item;
   return good;
 }
 
 /* What follows from the blocks of cells. */
-bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells) {
-  mpm->grid.cell_count = cells;
-  sort_colours(mpm);
-  const int64_t nodes = make_nodes(mpm, NULL);
-  if (!mpsi_room_ensure(mpm->context, &mpm->grid.nodes_room, nodes, sizeof *mpm->grid.nodes) ||
-      !mpsi_room_ensure(mpm->context, &mpm->grid.node_room, nodes * mpm->grid.block_nodes,
-                        sizeof *mpm->grid.node)) {
-    mpm->grid.cell_count = 0;
+bool mpsi_mpm_build_nodes(mps_context *context, mpsi_grid *grid, int64_t cells) {
+  grid->cell_count = cells;
+  sort_colours(grid);
+  const int64_t nodes = make_nodes(grid, NULL);
+  if (!mpsi_room_ensure(context, &grid->nodes_room, nodes, sizeof *grid->nodes) ||
+      !mpsi_room_ensure(context, &grid->node_room, nodes * grid->block_nodes, sizeof *grid->node)) {
+    grid->cell_count = 0;
     return false;
   }
-  mpm->grid.node_count = nodes;
-  mpm->grid.across_count = 0;
-  mpm->grid.nodes = mpm->grid.nodes_room.item;
-  mpm->grid.node = mpm->grid.node_room.item;
-  make_nodes(mpm, mpm->grid.nodes);
-  mpsi_mpm_link_blocks(mpm);
-  return mpsi_mpm_ensure_pass(mpm);
+  grid->node_count = nodes;
+  grid->across_count = 0;
+  grid->nodes = grid->nodes_room.item;
+  grid->node = grid->node_room.item;
+  make_nodes(grid, grid->nodes);
+  mpsi_mpm_link_blocks(grid);
+  return mpsi_mpm_ensure_pass(context, grid);
 }
 
-static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {
-  return mpsi_fail_memory(mpm->context, function,
-                          (size_t)(cells * mpm->grid.block_nodes) * sizeof *mpm->grid.node);
+static mps_status no_room(mps_context *context, const mpsi_grid *grid, const char *function,
+                          int64_t cells) {
+  return mpsi_fail_memory(context, function,
+                          (size_t)(cells * grid->block_nodes) * sizeof *grid->node);
 }
 
 static mps_status find_cells(mps_mpm *mpm, const char *function) {
   key_chunks chunks = {.mpm = mpm};
   mpm->grid.sorted = mpsi_mpm_find_order(mpm->context, &mpm->grid, &mpm->p, &mpm->grid.own_bits);
-  if (!mpm->grid.sorted) return no_room(mpm, function, mpm->p.count / mpm->grid.block_nodes + 1);
+  if (!mpm->grid.sorted)
+    return no_room(mpm->context, &mpm->grid, function, mpm->p.count / mpm->grid.block_nodes + 1);
   const int64_t cells = count_cells(&chunks);
-  if (!mpsi_mpm_ensure_cells(mpm, cells)) return no_room(mpm, function, cells);
+  if (!mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, cells))
+    return no_room(mpm->context, &mpm->grid, function, cells);
   make_cells(&chunks, cells, mpm->grid.cells);
   mpm->grid.cell_count = cells;
   mpsi_mpm_for_cells(mpm, place_block);
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                                 mpsi_partition *partition, const char *function, int64_t count,
                                  const mpsi_block *block) {
-  if (!mpsi_mpm_ensure_cells(mpm, count)) return no_room(mpm, function, count);
+  if (!mpsi_mpm_ensure_cells(context, grid, count)) return no_room(context, grid, function, count);
   for (int64_t k = 0; k < count; k++) {
-    const int64_t end = k + 1 < count ? block[k + 1][0] : mpm->p.count;
-    mpm->grid.cells[k] = (mpsi_cell_block){.begin = block[k][0], .end = end, .bad = -1};
+    const int64_t end = k + 1 < count ? block[k + 1][0] : p->count;
+    grid->cells[k] = (mpsi_cell_block){.begin = block[k][0], .end = end, .bad = -1};
     for (int c = 0; c < 3; c++) {
-      mpm->grid.cells[k].at[c] = (int32_t)block[k][MPSI_BLOCK_AT + c];
-      mpm->grid.cells[k].low[c] = (int32_t)block[k][MPSI_BLOCK_LOW + c];
-      mpm->grid.cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
+      grid->cells[k].at[c] = (int32_t)block[k][MPSI_BLOCK_AT + c];
+      grid->cells[k].low[c] = (int32_t)block[k][MPSI_BLOCK_LOW + c];
+      grid->cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
     }
   }
-  if (mpm->partition) { /* its ghosts follow before the next step */
-    mpm->grid.cell_count = count;
-    mpm->partition->outdated = true;
+  if (partition) { /* its ghosts follow before the next step */
+    grid->cell_count = count;
+    partition->outdated = true;
     return MPS_OK;
   }
-  return mpsi_mpm_build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
+  return mpsi_mpm_build_nodes(context, grid, count) ? MPS_OK
+                                                    : no_room(context, grid, function, count);
 }
 
 /* The particles in the order of the sorted keys. */
@@ -264,7 +267,10 @@ static mps_status put_in_order(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function) {
   mpm->run.stale = false;
-  if (mpm->p.count == 0) return mpsi_mpm_ensure_cells(mpm, 0) ? MPS_OK : no_room(mpm, function, 0);
+  if (mpm->p.count == 0)
+    return mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, 0)
+               ? MPS_OK
+               : no_room(mpm->context, &mpm->grid, function, 0);
   const mps_status status = find_cells(mpm, function);
   return status == MPS_OK ? put_in_order(mpm, function) : status;
 }
@@ -272,12 +278,14 @@ mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function) {
 mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function) {
   if (mpm->p.count == 0) {
     mpm->run.stale = false;
-    const bool good = mpsi_mpm_ensure_cells(mpm, 0) && mpsi_mpm_build_nodes(mpm, 0);
-    return good ? MPS_OK : no_room(mpm, function, 0);
+    const bool good = mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, 0) &&
+                      mpsi_mpm_build_nodes(mpm->context, &mpm->grid, 0);
+    return good ? MPS_OK : no_room(mpm->context, &mpm->grid, function, 0);
   }
   mps_status status = find_cells(mpm, function);
   if (status != MPS_OK) return status;
   const int64_t cells = mpm->grid.cell_count;
-  if (!mpsi_mpm_build_nodes(mpm, cells)) return no_room(mpm, function, cells);
+  if (!mpsi_mpm_build_nodes(mpm->context, &mpm->grid, cells))
+    return no_room(mpm->context, &mpm->grid, function, cells);
   return put_in_order(mpm, function);
 }

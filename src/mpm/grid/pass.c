@@ -21,12 +21,12 @@ static int parity_of(const mpsi_node_block *nodes) {
 }
 
 /* Whether the nodes, those of cells b, concern this rank: see partition.h. */
-static bool has_nodes(const mps_mpm *mpm, const mpsi_pass *pass, int64_t g) {
-  return pass->ghosts || !mpm->grid.nodes[g].foreign;
+static bool has_nodes(const mpsi_grid *grid, const mpsi_pass *pass, int64_t g) {
+  return pass->ghosts || !grid->nodes[g].foreign;
 }
 
-static bool has_cells(const mps_mpm *mpm, const mpsi_pass *pass, int64_t b) {
-  return pass->ghosts || !mpm->grid.cells[b].ghost;
+static bool has_cells(const mpsi_grid *grid, const mpsi_pass *pass, int64_t b) {
+  return pass->ghosts || !grid->cells[b].ghost;
 }
 
 /* ---- one thread ------------------------------------------------------------------------------ */
@@ -56,8 +56,8 @@ static bool mark(_Atomic int32_t *done, int32_t stage) {
 }
 
 /* The block that gives to the block of nodes g just before the one at its corner q, or -1. */
-static int32_t giver_before(const mps_mpm *mpm, int32_t g, int q) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+static int32_t giver_before(const mpsi_grid *grid, int32_t g, int q) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
   const int parity = parity_of(nodes);
   for (int colour = (q ^ parity) - 1; colour >= 0; colour--)
     if (nodes->from[colour ^ parity] >= 0) return nodes->from[colour ^ parity];
@@ -70,7 +70,7 @@ static void give_in_turn(wave *w, int32_t b) {
   const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
   if (!mark(&w->given[b], 1)) return;
   for (int q = 0; q < 1 << w->mpm->grid.dim; q++) {
-    const int32_t before = giver_before(w->mpm, cells->to[q], q);
+    const int32_t before = giver_before(&w->mpm->grid, cells->to[q], q);
     if (before >= 0) give_in_turn(w, before);
   }
   clear_and_scatter(w->mpm, w->pass, b, 0);
@@ -90,9 +90,9 @@ static void finish_in_turn(wave *w, int32_t g) {
 }
 
 /* Whether some node under the block waits for ghosts (partition.h). */
-static bool is_late(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+static bool is_late(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   bool late = false;
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) late = late || mpm->grid.nodes[cells->to[q]].late;
+  for (int q = 0; q < 1 << grid->dim; q++) late = late || grid->nodes[cells->to[q]].late;
   return late;
 }
 
@@ -101,7 +101,7 @@ static void gather_in_turn(wave *w, bool late) {
   const mpsi_grid *grid = &w->mpm->grid;
   for (int64_t b = 0; b < grid->cell_count; b++) {
     const mpsi_cell_block *cells = &grid->cells[b];
-    if (!has_cells(w->mpm, w->pass, b) || is_late(w->mpm, cells) != late) continue;
+    if (!has_cells(&w->mpm->grid, w->pass, b) || is_late(&w->mpm->grid, cells) != late) continue;
     for (int q = 0; q < 1 << w->mpm->grid.dim; q++) finish_in_turn(w, cells->to[q]);
     if (w->pass->gather) w->pass->gather(w->mpm, b, 0);
   }
@@ -157,17 +157,17 @@ static bool count_down(_Atomic int32_t *count) {
 
 static void finish_nodes(flow *f, int32_t g, int32_t worker) {
   const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
-  if (f->pass->finish && has_nodes(f->mpm, f->pass, g)) f->pass->finish(f->mpm, g, worker);
+  if (f->pass->finish && has_nodes(&f->mpm->grid, f->pass, g)) f->pass->finish(f->mpm, g, worker);
   for (int q = 0; q < 1 << f->mpm->grid.dim; q++) {
     const int32_t b = nodes->from[q];
     if (b >= 0 && count_down(&f->gather_waits[b]) && f->pass->gather &&
-        has_cells(f->mpm, f->pass, b))
+        has_cells(&f->mpm->grid, f->pass, b))
       put(f, f->cells + b);
   }
 }
 
 static void update_nodes(flow *f, int32_t g, int32_t worker) {
-  if (f->pass->update && has_nodes(f->mpm, f->pass, g)) f->pass->update(f->mpm, g, worker);
+  if (f->pass->update && has_nodes(&f->mpm->grid, f->pass, g)) f->pass->update(f->mpm, g, worker);
   if (!f->pass->between || !f->mpm->grid.nodes[g].waits) {
     finish_nodes(f, g, worker);
     return;
@@ -278,7 +278,7 @@ static void fill(flow *f) {
     const int32_t message = f->pass->arrive && grid->cells[b].ghost;
     atomic_store_explicit(&f->scatter_waits[b], grid->cells[b].waits + message,
                           memory_order_relaxed);
-    gathers += f->pass->gather && has_cells(f->mpm, f->pass, b);
+    gathers += f->pass->gather && has_cells(&f->mpm->grid, f->pass, b);
     atomic_store_explicit(&f->gather_waits[b], 1 << f->mpm->grid.dim, memory_order_relaxed);
   }
   for (int32_t g = 0; f->pass->between && g < f->nodes; g++) held += grid->nodes[g].waits;
@@ -294,13 +294,13 @@ static void fill(flow *f) {
   atomic_store_explicit(&f->head, f->starts, memory_order_relaxed);
 }
 
-bool mpsi_mpm_passes_alone(const mps_mpm *mpm) {
-  return mpm->grid.worker_count == 1 || mpm->p.count < SMALL_SET;
+bool mpsi_mpm_passes_alone(const mpsi_grid *grid, const mpsi_columns *p) {
+  return grid->worker_count == 1 || p->count < SMALL_SET;
 }
 
 void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
   mpsi_grid *grid = &mpm->grid;
-  if (mpsi_mpm_passes_alone(mpm)) {
+  if (mpsi_mpm_passes_alone(&mpm->grid, &mpm->p)) {
     run_wave(mpm, pass);
     return;
   }
@@ -320,23 +320,23 @@ void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
   mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
 }
 
-bool mpsi_mpm_ensure_pass(mps_mpm *mpm) {
-  const int64_t entries = 4 * mpm->grid.cell_count + mpm->grid.node_count;
-  return mpsi_room_ensure(mpm->context, &mpm->grid.pass_room, entries, sizeof(_Atomic int32_t));
+bool mpsi_mpm_ensure_pass(mps_context *context, mpsi_grid *grid) {
+  const int64_t entries = 4 * grid->cell_count + grid->node_count;
+  return mpsi_room_ensure(context, &grid->pass_room, entries, sizeof(_Atomic int32_t));
 }
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
 /* The tile of the block of cells at corner q begins q blocks below the block of nodes, so that
  * their parities, and the colour of the cells, follow from those of the nodes. */
-void mpsi_mpm_link_blocks(mps_mpm *mpm) {
-  mpsi_cell_block *cells = mpm->grid.cells;
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+void mpsi_mpm_link_blocks(const mpsi_grid *grid) {
+  mpsi_cell_block *cells = grid->cells;
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    const mpsi_node_block *nodes = &grid->nodes[g];
     const int parity = parity_of(nodes);
     int32_t last = -1;
     int last_q = 0;
-    for (int colour = 0; colour < 1 << mpm->grid.dim; colour++) {
+    for (int colour = 0; colour < 1 << grid->dim; colour++) {
       const int q = colour ^ parity;
       const int32_t b = nodes->from[q];
       if (b < 0) continue;

@@ -37,14 +37,14 @@ typedef struct mpsi_pass {
 } mpsi_pass;
 
 /* Whether one thread makes the passes. */
-bool mpsi_mpm_passes_alone(const mps_mpm *mpm);
+bool mpsi_mpm_passes_alone(const mpsi_grid *grid, const mpsi_columns *p);
 /* Returns when all is done. */
 void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass);
 
 /* Room for the passes over the present blocks; false when out of memory. */
-bool mpsi_mpm_ensure_pass(mps_mpm *mpm);
+bool mpsi_mpm_ensure_pass(mps_context *context, mpsi_grid *grid);
 /* Which blocks follow each other on each block of nodes, from mpsi_node_block.from. */
-void mpsi_mpm_link_blocks(mps_mpm *mpm);
+void mpsi_mpm_link_blocks(const mpsi_grid *grid);
 
 /* task(mpm, index, worker) for all blocks of cells, which do not depend on each other. */
 void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task);

@@ -198,26 +198,26 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
 
 /* Each rank has been given a part of the set, not all of it. */
-static bool in_parts(const mps_mpm *mpm) { return mpsi_particles_deal(mpm->p.set) != NULL; }
+static bool in_parts(const mpsi_columns *p) { return mpsi_particles_deal(p->set) != NULL; }
 
 /* What has been found of the particles here becomes what all ranks have found of all. */
-static mps_status join_extremes(mps_mpm *mpm, mps_status status) {
-  double most[2] = {mpm->run.speed,
-                    isnan(mpm->contact.least_mass) ? -INFINITY : -mpm->contact.least_mass};
-  status = mpsi_domain_agree_max(mpm->def.domain, create, status, 2, most);
+static mps_status join_extremes(mpsi_contacts *contacts, mpsi_run *run, const mps_mpm_def *def,
+                                mps_status status) {
+  double most[2] = {run->speed, isnan(contacts->least_mass) ? -INFINITY : -contacts->least_mass};
+  status = mpsi_domain_agree_max(def->domain, create, status, 2, most);
   if (status != MPS_OK) return status;
-  mpm->run.speed = most[0];
-  mpm->contact.least_mass = most[1] == -INFINITY ? NAN : -most[1];
+  run->speed = most[0];
+  contacts->least_mass = most[1] == -INFINITY ? NAN : -most[1];
   return status;
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
-static mps_status add_fields(mps_mpm *mpm) {
+static mps_status add_fields(mps_context *context, const mpsi_columns *p) {
   static const char *const names[] = {"velocity", "velocity_gradient", "stress", "volume", "mass"};
   mps_status status = MPS_OK;
   for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
-    status = mpsi_as(mpm->context, create, mps_particles_add_field(mpm->p.set, names[k], 0));
+    status = mpsi_as(context, create, mps_particles_add_field(p->set, names[k], 0));
   return status;
 }
 
@@ -226,62 +226,59 @@ static mps_status add_fields(mps_mpm *mpm) {
 /* Columns that mpsi_mpm_begin_particles writes: volume, mass, V/V0, F and the law's histories. */
 enum { OWN_COLUMNS = 12 };
 
-static double *written(const mps_mpm *mpm, int32_t number) {
-  const mpsi_columns *p = &mpm->p;
+static double *written(const mpsi_columns *p, int32_t number) {
   if (number == 0) return p->V;
   if (number == 1) return p->m;
   if (number == 2) return p->J;
-  return number < OWN_COLUMNS ? p->F[number - 3] : mpm->p.laws.law[0].history[number - OWN_COLUMNS];
+  return number < OWN_COLUMNS ? p->F[number - 3] : p->laws.law[0].history[number - OWN_COLUMNS];
 }
 
-static int32_t written_count(const mps_mpm *mpm) {
-  return OWN_COLUMNS + mps_material_history_count(mpm->p.laws.law[0].material);
+static int32_t written_count(const mpsi_columns *p) {
+  return OWN_COLUMNS + mps_material_history_count(p->laws.law[0].material);
 }
 
 /* Whether the caller's fields, the first `fields`, are among them. */
-static bool writes_given(const mps_mpm *mpm, int32_t fields) {
+static bool writes_given(const mpsi_columns *p, int32_t fields) {
   for (int32_t f = 0; f < fields; f++) {
     mps_particles_field_info info = {.name = ""};
-    if (mps_particles_get_field_info(mpm->p.set, f, &info) != MPS_OK) return true;
-    for (int32_t c = 0; c < written_count(mpm) && info.dtype.code != 0; c++)
-      if (written(mpm, c) == mpsi_particles_column(mpm->p.set, info.name, 0)) return true;
+    if (mps_particles_get_field_info(p->set, f, &info) != MPS_OK) return true;
+    for (int32_t c = 0; c < written_count(p) && info.dtype.code != 0; c++)
+      if (written(p, c) == mpsi_particles_column(p->set, info.name, 0)) return true;
   }
   return false;
 }
 
-static mps_status save_columns(mps_mpm *mpm, double **copy) {
-  const int32_t columns = written_count(mpm);
-  const int64_t count = mpm->p.count;
-  *copy = mpsi_alloc(mpm->context, columns * count, sizeof **copy);
-  if (!*copy)
-    return mpsi_fail_memory(mpm->context, create, (size_t)(columns * count) * sizeof **copy);
+static mps_status save_columns(mps_context *context, const mpsi_columns *p, double **copy) {
+  const int32_t columns = written_count(p);
+  const int64_t count = p->count;
+  *copy = mpsi_alloc(context, columns * count, sizeof **copy);
+  if (!*copy) return mpsi_fail_memory(context, create, (size_t)(columns * count) * sizeof **copy);
   for (int32_t c = 0; c < columns; c++)
-    if (written(mpm, c)) memcpy(*copy + c * count, written(mpm, c), (size_t)count * sizeof **copy);
+    if (written(p, c)) memcpy(*copy + c * count, written(p, c), (size_t)count * sizeof **copy);
   return MPS_OK;
 }
 
-static void put_columns_back(mps_mpm *mpm, const double *copy) {
-  const int64_t count = mpm->p.count;
-  for (int32_t c = 0; c < written_count(mpm); c++)
-    if (written(mpm, c)) memcpy(written(mpm, c), copy + c * count, (size_t)count * sizeof *copy);
+static void put_columns_back(const mpsi_columns *p, const double *copy) {
+  const int64_t count = p->count;
+  for (int32_t c = 0; c < written_count(p); c++)
+    if (written(p, c)) memcpy(written(p, c), copy + c * count, (size_t)count * sizeof *copy);
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-static mps_status make_workers(mps_mpm *mpm) {
-  mpm->grid.worker_count = mps_context_threads(mpm->context);
-  mpm->grid.workers = mpsi_alloc(mpm->context, mpm->grid.worker_count, sizeof *mpm->grid.workers);
-  const size_t bytes = mpsi_worker_bytes(mpm), tile = (size_t)mpm->grid.tile_nodes;
-  for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++) {
-    mpsi_worker *w = &mpm->grid.workers[k];
-    char *memory = w->memory = mpsi_alloc(mpm->context, 1, bytes);
-    if (!memory) return mpsi_fail_memory(mpm->context, create, bytes);
+static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
+  grid->worker_count = mps_context_threads(context);
+  grid->workers = mpsi_alloc(context, grid->worker_count, sizeof *grid->workers);
+  const size_t bytes = mpsi_worker_bytes(grid), tile = (size_t)grid->tile_nodes;
+  for (int32_t k = 0; grid->workers && k < grid->worker_count; k++) {
+    mpsi_worker *w = &grid->workers[k];
+    char *memory = w->memory = mpsi_alloc(context, 1, bytes);
+    if (!memory) return mpsi_fail_memory(context, create, bytes);
     w->tile = (mpsi_node *)memory;
     w->force = w->tile + tile;
     w->state = (uint8_t *)(w->force + tile); /* and a little more: rows are read as four */
   }
-  return mpm->grid.workers ? MPS_OK
-                           : mpsi_fail_memory(mpm->context, create, sizeof *mpm->grid.workers);
+  return grid->workers ? MPS_OK : mpsi_fail_memory(context, create, sizeof *grid->workers);
 }
 
 /* The greatest speed of the first state; in the set's own order. */
@@ -290,7 +287,7 @@ static mps_status find_speed(mps_mpm *mpm) {
   double moduli[MPSI_CHUNK];
   for (int64_t begin = 0; begin < p->count; begin += MPSI_CHUNK) {
     const int64_t end = begin + MPSI_CHUNK < p->count ? begin + MPSI_CHUNK : p->count;
-    mpsi_mpm_find_moduli(mpm, begin, end, moduli);
+    mpsi_mpm_find_moduli(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, begin, end, moduli);
     for (int64_t k = begin; k < end; k++) {
       double square = 0.0;
       for (int c = 0; c < mpm->grid.dim && mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED; c++)
@@ -320,12 +317,12 @@ static mps_status check_step(const mps_mpm *mpm) {
 static mps_status make_memory(mps_mpm *mpm) {
   if (!mpsi_mpm_make_room(mpm, mpm->p.count))
     return mpsi_fail_memory(mpm->context, create, (size_t)mpm->p.count * sizeof *mpm->grid.radix);
-  return make_workers(mpm);
+  return make_workers(mpm->context, &mpm->grid);
 }
 
 /* The state in which the particles begin, and their order. */
 static mps_status begin(mps_mpm *mpm) {
-  mpsi_mpm_begin_particles(mpm);
+  mpsi_mpm_begin_particles(&mpm->grid, &mpm->p, &mpm->contact);
   mps_status status = find_speed(mpm);
   if (status == MPS_OK) status = check_step(mpm);
   if (status == MPS_OK) status = make_memory(mpm);
@@ -340,17 +337,21 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
   const int32_t fields = mps_particles_field_count(mpm->p.set);
   const bool shared = is_shared(&mpm->def);
   double *copy = NULL;
-  if (status == MPS_OK) status = add_fields(mpm);
-  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
+  if (status == MPS_OK) status = add_fields(mpm->context, &mpm->p);
+  if (status == MPS_OK)
+    status = mpsi_mpm_add_law(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->def, create,
+                              material);
   if (status == MPS_OK) {
-    mpsi_mpm_bind(mpm);
-    status = mpsi_mpm_check_start(mpm, create);
-    if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
-    if (status == MPS_OK) status = mpsi_mpm_check_states(mpm, create, 0, mpm->p.count);
+    mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
+    status = mpsi_mpm_check_start(mpm->context, &mpm->grid, &mpm->p, &mpm->def, create);
+    if (status == MPS_OK)
+      status = mpsi_mpm_check_amounts(mpm->context, &mpm->grid, &mpm->p, create);
+    if (status == MPS_OK)
+      status = mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, create, 0, mpm->p.count);
     status = mpsi_fail_of(mpm->context, status, "particles");
-    if (status == MPS_OK && !shared) status = save_columns(mpm, &copy);
+    if (status == MPS_OK && !shared) status = save_columns(mpm->context, &mpm->p, &copy);
     if (status == MPS_OK) status = begin(mpm);
-    if (status != MPS_OK && copy) put_columns_back(mpm, copy);
+    if (status != MPS_OK && copy) put_columns_back(&mpm->p, copy);
     mpsi_free(mpm->context, copy);
   }
   if (shared) status = mpsi_mpm_partition_create(mpm, create, status, former);
@@ -367,23 +368,27 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
   const int32_t fields = mps_particles_field_count(mpm->p.set);
   status = mpsi_mpm_share_deal(mpm, create, status);
   if (status != MPS_OK) return status;
-  status = add_fields(mpm);
-  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
+  status = add_fields(mpm->context, &mpm->p);
+  if (status == MPS_OK)
+    status = mpsi_mpm_add_law(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->def, create,
+                              material);
   if (status == MPS_OK) {
-    mpsi_mpm_bind(mpm);
-    status = mpsi_mpm_check_start(mpm, create);
-    if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
-    if (status == MPS_OK) status = mpsi_mpm_check_states(mpm, create, 0, mpm->p.count);
+    mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
+    status = mpsi_mpm_check_start(mpm->context, &mpm->grid, &mpm->p, &mpm->def, create);
+    if (status == MPS_OK)
+      status = mpsi_mpm_check_amounts(mpm->context, &mpm->grid, &mpm->p, create);
+    if (status == MPS_OK)
+      status = mpsi_mpm_check_states(mpm->context, &mpm->grid, &mpm->p, create, 0, mpm->p.count);
     status = mpsi_fail_of(mpm->context, status, "particles");
   }
-  if (status == MPS_OK && writes_given(mpm, fields))
+  if (status == MPS_OK && writes_given(&mpm->p, fields))
     status = mpsi_particles_back_up(mpm->p.set, create, backup);
   backup->field_count = fields;
   if (status == MPS_OK) {
-    mpsi_mpm_begin_particles(mpm);
+    mpsi_mpm_begin_particles(&mpm->grid, &mpm->p, &mpm->contact);
     status = find_speed(mpm);
   }
-  status = join_extremes(mpm, status);
+  status = join_extremes(&mpm->contact, &mpm->run, &mpm->def, status);
   if (status == MPS_OK) status = check_step(mpm);
   if (status == MPS_OK) status = make_memory(mpm);
   if (status == MPS_OK) status = mpsi_mpm_sort_cells(mpm, create);
@@ -485,7 +490,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->p.set = particles;
   hold(mpm, __func__, is_shared(&def)); /* checked above */
   describe(mpm, &def, low, high);
-  if (!mpsi_mpm_begin_sides(mpm))
+  if (!mpsi_mpm_begin_sides(mpm->context, &mpm->grid, &mpm->boundaries))
     status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_boundary_sums));
   if (def.kernel)
     mpm->weights = mpsi_kernel_retain(def.kernel);
@@ -494,8 +499,8 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                      mps_kernel_create(context,
                                        def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
                                        radius_of(&def), &mpm->weights));
-  status = in_parts(mpm) ? build_parts(mpm, material, status, &backup)
-                         : build(mpm, material, status, &former);
+  status = in_parts(&mpm->p) ? build_parts(mpm, material, status, &backup)
+                             : build(mpm, material, status, &former);
   if (status != MPS_OK) {
     mpsi_particles_take_back(particles, &former);
     if (is_shared(&def)) mpsi_particles_go_back(particles, &backup);
@@ -567,16 +572,16 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   if (!pointer || !*pointer) return;
   mps_mpm *mpm = *pointer;
   mps_context *context = mpm->context;
-  if (mpsi_mpm_between_steps(mpm, __func__) != MPS_OK) return;
+  if (mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__) != MPS_OK) return;
   *pointer = NULL;
-  mpsi_mpm_end_contacts(mpm);
+  mpsi_mpm_end_contacts(&mpm->contact);
   free_rooms(mpm);
   mpsi_pore_free(mpm);
-  mpsi_mpm_free_impulses(mpm);
-  mpsi_mpm_free_contact_exchange(mpm);
+  mpsi_mpm_free_impulses(mpm->context, &mpm->contact);
+  mpsi_mpm_free_contact_exchange(mpm->context, &mpm->contact);
   mpsi_mpm_free_partners(&mpm->contact.partners, context);
-  mpsi_mpm_drop_loads(mpm);
-  mpsi_mpm_drop_boundaries(mpm);
+  mpsi_mpm_drop_loads(mpm->context, &mpm->loads);
+  mpsi_mpm_drop_boundaries(mpm->context, &mpm->boundaries);
   for (int32_t k = 0; k < mpm->p.laws.count; k++) {
     mps_material_destroy(&mpm->p.laws.law[k].material);
     mpsi_free(context, mpm->p.laws.law[k].history);
@@ -605,20 +610,22 @@ mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : N
 /* ---- for comparison -------------------------------------------------------------------------- */
 
 /* The variant is chosen before the first step, the same on all ranks. */
-static mps_status check_before_steps(mps_mpm *mpm, const char *function, const char *name,
+static mps_status check_before_steps(mps_context *context, const mpsi_run *run,
+                                     const mps_mpm_def *def, const char *function, const char *name,
                                      double value) {
-  mps_status status = mpsi_mpm_between_steps(mpm, function);
+  mps_status status = mpsi_mpm_between_steps(context, run, function);
   if (status != MPS_OK) return status;
-  if (mpm->run.steps > 0)
-    status = mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+  if (run->steps > 0)
+    status = mpsi_fail(context, function, MPS_ERROR_STATE,
                        "the solver has taken %lld steps: the variant is chosen before the first",
-                       (long long)mpm->run.steps);
-  return mpsi_domain_agree_same(mpm->def.domain, function, status, name, value);
+                       (long long)run->steps);
+  return mpsi_domain_agree_same(def->domain, function, status, name, value);
 }
 
 mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_before_steps(mpm, __func__, "transfer", transfer);
+  const mps_status status =
+      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "transfer", transfer);
   if (status != MPS_OK) return status;
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
@@ -629,7 +636,8 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
 
 mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_before_steps(mpm, __func__, "strain", strain);
+  const mps_status status =
+      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "strain", strain);
   if (status != MPS_OK) return status;
   if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
@@ -640,7 +648,8 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
 
 mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_before_steps(mpm, __func__, "flip", flip);
+  const mps_status status =
+      check_before_steps(mpm->context, &mpm->run, &mpm->def, __func__, "flip", flip);
   if (status != MPS_OK) return status;
   if (!(flip >= 0.0 && flip <= 1.0))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %s, must be in [0, 1]",
@@ -648,7 +657,8 @@ mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   mpm->grid.standard = true;
   mpm->grid.flip = flip;
   const mps_status widened =
-      mpsi_domain_agree(mpm->def.domain, __func__, mpsi_mpm_widen_sides(mpm, __func__));
+      mpsi_domain_agree(mpm->def.domain, __func__,
+                        mpsi_mpm_widen_sides(mpm->context, &mpm->grid, &mpm->boundaries, __func__));
   if (widened != MPS_OK) mpm->grid.standard = false, mpm->grid.flip = 0.0;
   return widened;
 }

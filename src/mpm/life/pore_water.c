@@ -35,27 +35,27 @@ mps_status mps_pore_face_def_init(mps_pore_face_def *def, size_t size) {
 static const char add[] = "mps_mpm_add_pore_water";
 
 /* A value that is not from `low` to `high`. */
-static mps_status refuse(const mps_mpm *mpm, const char *name, double value, double low,
+static mps_status refuse(mps_context *context, const char *name, double value, double low,
                          double high, const char *allowed) {
-  return mpsi_fail(mpm->context, add, MPS_ERROR_ARGUMENT, "%s is %s, must be %s", name,
+  return mpsi_fail(context, add, MPS_ERROR_ARGUMENT, "%s is %s, must be %s", name,
                    mpsi_outside(value, low, high).text, allowed);
 }
 
-static mps_status check_definition(const mps_mpm *mpm, const mps_pore_water_def *d) {
+static mps_status check_definition(mps_context *context, const mps_pore_water_def *d) {
   if (!isnan(d->porosity) && !(d->porosity > 0.0 && d->porosity < 1.0))
-    return refuse(mpm, "porosity", d->porosity, 0.0, 1.0,
+    return refuse(context, "porosity", d->porosity, 0.0, 1.0,
                   "in (0, 1), or NaN for the field 'porosity'");
   if (!isnan(d->permeability) && !(d->permeability > 0.0 && d->permeability <= MPSI_PORE_FASTEST))
-    return refuse(mpm, "permeability", d->permeability, 0.0, MPSI_PORE_FASTEST,
+    return refuse(context, "permeability", d->permeability, 0.0, MPSI_PORE_FASTEST,
                   "in (0, 1] m/s, or NaN for the field 'permeability' or undrained ground");
   if (!isnan(d->bulk) && !(d->bulk > 0.0 && d->bulk <= LARGE))
-    return refuse(mpm, "bulk", d->bulk, 0.0, LARGE, "in (0, 1e15] Pa, or NaN for the default");
+    return refuse(context, "bulk", d->bulk, 0.0, LARGE, "in (0, 1e15] Pa, or NaN for the default");
   if (!(d->density > 0.0 && d->density <= 1e6))
-    return refuse(mpm, "density", d->density, 0.0, 1e6, "in (0, 1e6] kg/m3");
+    return refuse(context, "density", d->density, 0.0, 1e6, "in (0, 1e6] kg/m3");
   if (!(d->exponent >= 0.0 && d->exponent <= 100.0))
-    return refuse(mpm, "exponent", d->exponent, 0.0, 100.0, "0 to 100");
+    return refuse(context, "exponent", d->exponent, 0.0, 100.0, "0 to 100");
   if (!(d->ratio_slope >= 1e-3))
-    return refuse(mpm, "ratio_slope", d->ratio_slope, 1e-3, INFINITY,
+    return refuse(context, "ratio_slope", d->ratio_slope, 1e-3, INFINITY,
                   "at least 0.001, or infinite");
   return MPS_OK;
 }
@@ -81,25 +81,26 @@ static mps_status check_solver(mps_mpm *mpm) {
 /* ---- adding ---------------------------------------------------------------------------------- */
 
 /* Adds the field, and gives all particles the value unless it is NaN. */
-static mps_status fill(mps_mpm *mpm, const char *field, double value) {
-  mps_status status = mpsi_as(mpm->context, add, mps_particles_add_field(mpm->p.set, field, 0));
-  double *column = status == MPS_OK ? mpsi_particles_column(mpm->p.set, field, 0) : NULL;
-  for (int64_t k = 0; column && !isnan(value) && k < mpm->p.count; k++) column[k] = value;
+static mps_status fill(mps_context *context, const mpsi_columns *p, const char *field,
+                       double value) {
+  mps_status status = mpsi_as(context, add, mps_particles_add_field(p->set, field, 0));
+  double *column = status == MPS_OK ? mpsi_particles_column(p->set, field, 0) : NULL;
+  for (int64_t k = 0; column && !isnan(value) && k < p->count; k++) column[k] = value;
   return status;
 }
 
 /* K_w from the particles' moduli at rest, where the caller gave none. */
-static mps_status find_bulk(mps_mpm *mpm) {
-  double *bulk = &mpm->water->def.bulk, most = 0.0;
+static mps_status find_bulk(mps_context *context, const mpsi_columns *p, mpsi_water *water) {
+  double *bulk = &water->def.bulk, most = 0.0;
   if (!isnan(*bulk)) return MPS_OK;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
+  for (int64_t k = 0; k < p->count; k++) {
     double wave, shear;
-    mpsi_mpm_elastic(mpm, k, &wave, &shear);
+    mpsi_mpm_elastic(p, k, &wave, &shear);
     if (!(wave > 0.0 && wave <= LARGE))
-      return mpsi_fail(mpm->context, add, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(context, add, MPS_ERROR_ARGUMENT,
                        "bulk is NaN and the law of particle %lld has no modulus at rest: give K_w",
-                       (long long)mpsi_particles_integers(mpm->p.set, "id")[k]);
-    most = fmax(most, STIFF * wave * mpm->p.n[k]);
+                       (long long)mpsi_particles_integers(p->set, "id")[k]);
+    most = fmax(most, STIFF * wave * p->n[k]);
   }
   *bulk = most;
   return MPS_OK;
@@ -122,23 +123,24 @@ static mps_status begin(mps_mpm *mpm) {
   const mps_pore_water_def *def = &mpm->water->def;
   const bool layers = mpsi_particles_column(mpm->p.set, "permeability", 0) != NULL;
   mpm->water->flows = !isnan(def->permeability) || layers;
-  mps_status status = fill(mpm, "porosity", def->porosity);
-  if (status == MPS_OK) status = fill(mpm, "pore_pressure", NAN);
-  if (status == MPS_OK) status = fill(mpm, "pore_pressure_gradient", NAN);
-  if (status == MPS_OK && mpm->water->flows) status = fill(mpm, "permeability", def->permeability);
+  mps_status status = fill(mpm->context, &mpm->p, "porosity", def->porosity);
+  if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure", NAN);
+  if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure_gradient", NAN);
+  if (status == MPS_OK && mpm->water->flows)
+    status = fill(mpm->context, &mpm->p, "permeability", def->permeability);
   if (status != MPS_OK) return status;
-  mpsi_mpm_bind(mpm);
-  status = mpsi_pore_check(mpm, add);
-  if (status == MPS_OK) status = find_bulk(mpm);
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
+  status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, add);
+  if (status == MPS_OK) status = find_bulk(mpm->context, &mpm->p, mpm->water);
   if (status == MPS_OK) status = renew_limit(mpm);
   return status;
 }
 
-static void warn(mps_mpm *mpm) {
+static void warn(mps_context *context, const mpsi_columns *p) {
   double most = 0.0;
-  for (int64_t k = 0; mpm->p.k && k < mpm->p.count; k++) most = fmax(most, mpm->p.k[k]);
+  for (int64_t k = 0; p->k && k < p->count; k++) most = fmax(most, p->k[k]);
   if (most > SLOW)
-    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+    mpsi_log(context, MPS_CONTEXT_LOG_WARNING,
              "permeability is up to %g m/s: above %g m/s the inertia of the water, which is left "
              "out, counts",
              most, SLOW);
@@ -152,22 +154,22 @@ typedef struct kept {
   int32_t fields;
 } kept;
 
-static double *written(const mps_mpm *mpm, int number) {
+static double *written(const mpsi_columns *p, int number) {
   static const char *const names[] = {"porosity", "permeability"};
-  return mpsi_particles_column(mpm->p.set, names[number], 0);
+  return mpsi_particles_column(p->set, names[number], 0);
 }
 
-static mps_status keep(mps_mpm *mpm, kept *out) {
-  *out = (kept){.speed = mpm->run.speed,
-                .one_modulus = mpm->p.laws.one_modulus,
-                .fields = mps_particles_field_count(mpm->p.set)};
-  out->values = mpsi_alloc(mpm->context, 2 * mpm->p.count, sizeof *out->values);
+static mps_status keep(mps_context *context, const mpsi_columns *p, const mpsi_run *run,
+                       kept *out) {
+  *out = (kept){.speed = run->speed,
+                .one_modulus = p->laws.one_modulus,
+                .fields = mps_particles_field_count(p->set)};
+  out->values = mpsi_alloc(context, 2 * p->count, sizeof *out->values);
   if (!out->values)
-    return mpsi_fail_memory(mpm->context, add, 2 * (size_t)mpm->p.count * sizeof *out->values);
+    return mpsi_fail_memory(context, add, 2 * (size_t)p->count * sizeof *out->values);
   for (int f = 0; f < 2; f++)
-    if (written(mpm, f))
-      memcpy(out->values + f * mpm->p.count, written(mpm, f),
-             (size_t)mpm->p.count * sizeof(double));
+    if (written(p, f))
+      memcpy(out->values + f * p->count, written(p, f), (size_t)p->count * sizeof(double));
   return MPS_OK;
 }
 
@@ -178,10 +180,10 @@ static void restore(mps_mpm *mpm, const kept *before) {
   mpm->run.speed = before->speed;
   mpm->p.laws.one_modulus = before->one_modulus;
   for (int f = 0; f < 2; f++)
-    if (written(mpm, f))
-      memcpy(written(mpm, f), before->values + f * mpm->p.count,
+    if (written(&mpm->p, f))
+      memcpy(written(&mpm->p, f), before->values + f * mpm->p.count,
              (size_t)mpm->p.count * sizeof(double));
-  mpsi_mpm_bind(mpm);
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
 }
 
 mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_def) {
@@ -190,11 +192,11 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   mps_status status = check_solver(mpm);
   if (status == MPS_OK && user_def)
     status = MPSI_DEF_READ(mpm->context, __func__, mps_pore_water_def, user_def, &def);
-  if (status == MPS_OK) status = check_definition(mpm, &def);
+  if (status == MPS_OK) status = check_definition(mpm->context, &def);
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   if (status != MPS_OK) return status;
   kept before;
-  status = keep(mpm, &before);
+  status = keep(mpm->context, &mpm->p, &mpm->run, &before);
   if (status != MPS_OK) return status;
   mpm->water = mpsi_alloc(mpm->context, 1, sizeof *mpm->water);
   if (!mpm->water) status = mpsi_fail_memory(mpm->context, __func__, sizeof *mpm->water);
@@ -203,7 +205,7 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
     status = begin(mpm);
   }
   if (status == MPS_OK)
-    warn(mpm);
+    warn(mpm->context, &mpm->p);
   else
     restore(mpm, &before);
   mpsi_free(mpm->context, before.values);
@@ -212,15 +214,15 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
 
 /* ---- questions ------------------------------------------------------------------------------- */
 
-static mps_status check_water(const mps_mpm *mpm, const char *function) {
-  if (mpm->water) return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+static mps_status check_water(mps_context *context, mpsi_water *water, const char *function) {
+  if (water) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_STATE,
                    "the solver has no pore water: mps_mpm_add_pore_water adds it");
 }
 
 mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_water(mpm, __func__);
+  const mps_status status = check_water(mpm->context, mpm->water, __func__);
   if (status != MPS_OK) return status;
   return mpsi_def_write(mpm->context, "mps_mpm_get_pore_water", out, size, &mpm->water->def,
                         sizeof mpm->water->def);
@@ -228,9 +230,10 @@ mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *
 
 mps_status mps_mpm_get_pore_budget_sized(const mps_mpm *mpm, mps_pore_budget *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_water(mpm, __func__);
+  const mps_status status = check_water(mpm->context, mpm->water, __func__);
   if (status != MPS_OK) return status;
-  mps_pore_budget budget = {.mass = mpsi_pore_mass(mpm), .start = mpm->water->start};
+  mps_pore_budget budget = {.mass = mpsi_pore_mass(&mpm->p, mpm->water),
+                            .start = mpm->water->start};
   if (mpm->run.steps == 0) budget.start = budget.mass;
   for (int f = 0; f < MPSI_PORE_FACES; f++) budget.drained += mpm->water->drained[f];
   budget.residual = budget.start - budget.mass - budget.drained;
@@ -239,7 +242,7 @@ mps_status mps_mpm_get_pore_budget_sized(const mps_mpm *mpm, mps_pore_budget *ou
 
 mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rate, double *mass) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_water(mpm, __func__);
+  const mps_status status = check_water(mpm->context, mpm->water, __func__);
   if (status != MPS_OK) return status;
   if (number < -1 || number >= mpm->water->faces)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
@@ -256,7 +259,7 @@ mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rat
 mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_mpm_usable(mpm, __func__);
-  if (status == MPS_OK) status = check_water(mpm, __func__);
+  if (status == MPS_OK) status = check_water(mpm->context, mpm->water, __func__);
   if (status != MPS_OK) return status;
   if (!point) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "point is NULL");
   double square = 0.0;
@@ -281,30 +284,29 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
   return MPS_OK;
 }
 
-static mps_status read_face(mps_mpm *mpm, const char *function, const mps_pore_face_def *user_def,
-                            mps_pore_face_def *def) {
+static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_water *water,
+                            const mpsi_run *run, const char *function,
+                            const mps_pore_face_def *user_def, mps_pore_face_def *def) {
   *def = face_defaults;
-  mps_status status = mpsi_mpm_between_steps(mpm, function);
-  if (status == MPS_OK) status = check_water(mpm, function);
-  if (status == MPS_OK)
-    status = MPSI_DEF_READ(mpm->context, function, mps_pore_face_def, user_def, def);
+  mps_status status = mpsi_mpm_between_steps(context, run, function);
+  if (status == MPS_OK) status = check_water(context, water, function);
+  if (status == MPS_OK) status = MPSI_DEF_READ(context, function, mps_pore_face_def, user_def, def);
   if (status != MPS_OK) return status;
   if (def->kind != MPS_PORE_FACE_IMPERVIOUS && def->kind != MPS_PORE_FACE_DRAINED)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d, allowed are 0 (impervious) and 1 (drained)", def->kind);
-  if (def->sides >> (2 * mpm->grid.dim) != 0)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "sides is 0x%x, allowed are the bits 0 to %d", def->sides,
-                     2 * mpm->grid.dim - 1);
+  if (def->sides >> (2 * grid->dim) != 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "sides is 0x%x, allowed are the bits 0 to %d", def->sides, 2 * grid->dim - 1);
   if (def->at_rest != 0 && def->at_rest != 1)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "at_rest is %d, allowed are 0 and 1", def->at_rest);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "at_rest is %d, allowed are 0 and 1",
+                     def->at_rest);
   if (!(fabs(def->pressure) <= LARGE))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "pressure is %g Pa, must be within +-1e15", def->pressure);
-  for (int c = 0; c < mpm->grid.dim; c++)
+  for (int c = 0; c < grid->dim; c++)
     if (!(def->lower[c] < def->upper[c]))
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "lower[%d] is %g m and upper[%d] %g m, the first must be below the second",
                        c, def->lower[c], c, def->upper[c]);
   return MPS_OK;
@@ -313,7 +315,8 @@ static mps_status read_face(mps_mpm *mpm, const char *function, const mps_pore_f
 mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_pore_face_def def;
-  const mps_status status = read_face(mpm, __func__, user_def, &def);
+  const mps_status status =
+      read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
   if (status != MPS_OK) return status;
   if (mpm->water->faces == MPS_PORE_MAX_FACES)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
@@ -326,7 +329,8 @@ mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def
 mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_face_def *user_def) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_pore_face_def def;
-  const mps_status status = read_face(mpm, __func__, user_def, &def);
+  const mps_status status =
+      read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
   if (status != MPS_OK) return status;
   if (number < 0 || number >= mpm->water->faces)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is %d, must be 0 to %lld",

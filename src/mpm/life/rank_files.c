@@ -42,13 +42,14 @@ static int by_place(const void *left, const void *right) {
 
 /* The blocks of all ranks in their order; during the exchange they have the number of particles in
  * place of the first. */
-static mps_status gather_blocks(mps_mpm *mpm, const char *function, mpsi_value *value) {
+static mps_status gather_blocks(const mpsi_columns *p, mpsi_partition *partition,
+                                const char *function, mpsi_value *value) {
   mpsi_block *block = value->data;
   for (int64_t k = 0; k < value->rows; k++)
-    block[k][0] = (k + 1 < value->rows ? block[k + 1][0] : mpm->p.count) - block[k][0];
+    block[k][0] = (k + 1 < value->rows ? block[k + 1][0] : p->count) - block[k][0];
   const mps_status status =
-      mpsi_domain_gather_rows(mpm->partition->domain, function, value->rows, value);
-  if (status != MPS_OK || mps_domain_rank(mpm->partition->domain) > 0) return status;
+      mpsi_domain_gather_rows(partition->domain, function, value->rows, value);
+  if (status != MPS_OK || mps_domain_rank(partition->domain) > 0) return status;
   block = value->data;
   qsort(block, (size_t)value->rows, sizeof *block, by_place);
   int64_t begin = 0;
@@ -60,8 +61,10 @@ static mps_status gather_blocks(mps_mpm *mpm, const char *function, mpsi_value *
   return MPS_OK;
 }
 
-static mps_status merge(mps_mpm *mpm, const char *function, mpsi_values *state) {
-  mps_domain *domain = mpm->partition->domain;
+static mps_status merge(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                        const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                        const char *function, mpsi_values *state) {
+  mps_domain *domain = partition->domain;
   mps_status status = MPS_OK;
   for (int32_t k = 0; k < state->count && status == MPS_OK; k++) {
     mpsi_value *value = &state->item[k];
@@ -77,10 +80,10 @@ static mps_status merge(mps_mpm *mpm, const char *function, mpsi_values *state) 
       status = mpsi_domain_sum(domain, function, numbers, value->data);
       break;
     case BLOCKS:
-      status = gather_blocks(mpm, function, value);
+      status = gather_blocks(p, partition, function, value);
       break;
     case DASHES:
-      status = mpsi_mpm_gather_dashpots(mpm, function, value);
+      status = mpsi_mpm_gather_dashpots(context, grid, boundaries, partition, function, value);
       break;
     }
   }
@@ -99,7 +102,9 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
   mpsi_mpm_order_warm_start(&mpm->contact.impulses);
   if (status == MPS_OK)
     status = mpsi_domain_agree(domain, function, mpsi_state_get(of, function, &state));
-  if (status == MPS_OK) status = merge(mpm, function, &state.state);
+  if (status == MPS_OK)
+    status = merge(mpm->context, &mpm->grid, &mpm->p, &mpm->boundaries, mpm->partition, function,
+                   &state.state);
   if (status == MPS_OK)
     status = mpsi_domain_write_rows(domain, function, mpm->p.set, mpsi_checkpoint_save_rows,
                                     (void *)&request);
@@ -111,16 +116,16 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
 
 /* The rows of the file that are this rank's, in their order: those of its blocks, which are left of
  * all. Returns how many. */
-static int64_t take_blocks(const mps_mpm *mpm, mpsi_value *blocks, int64_t particles,
-                           int64_t *rows) {
+static int64_t take_blocks(const mpsi_grid *grid, mpsi_partition *partition, mpsi_value *blocks,
+                           int64_t particles, int64_t *rows) {
   mpsi_block *block = blocks->data;
-  const int32_t rank = mps_domain_rank(mpm->partition->domain);
+  const int32_t rank = mps_domain_rank(partition->domain);
   int64_t warm = 0, count = 0;
   for (int64_t b = 0; b < blocks->rows; b++) {
     const int64_t begin = block[b][0], end = b + 1 < blocks->rows ? block[b + 1][0] : particles;
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
-    if (mpsi_mpm_block_owner(mpm, at) != rank) continue;
+    if (mpsi_mpm_block_owner(grid, partition, at) != rank) continue;
     memmove(block[warm], block[b], sizeof *block); /* kept <= b */
     block[warm++][0] = count;
     for (int64_t k = begin; k < end; k++) rows[count++] = k;
@@ -142,8 +147,8 @@ static void take_fields(mps_snapshot *values, const int64_t *rows, int64_t count
   values->particles = count;
 }
 
-static void take_values(const mps_mpm *mpm, mpsi_values *state) {
-  const bool first = mps_domain_rank(mpm->partition->domain) == 0;
+static void take_values(mpsi_partition *partition, mpsi_values *state) {
+  const bool first = mps_domain_rank(partition->domain) == 0;
   for (int32_t k = 0; k < state->count; k++) {
     mpsi_value *value = &state->item[k];
     const merging how = merging_of(value);
@@ -164,14 +169,15 @@ mps_status mpsi_mpm_restore_on_ranks(void *solver, const char *function, mps_sta
       status = mpsi_fail_memory(mpm->context, function, (size_t)values->particles * sizeof *rows);
   }
   if (status == MPS_OK)
-    status = mpsi_mpm_take_dashpots(mpm, function, mpsi_values_find(&values->state, "blocks"),
+    status = mpsi_mpm_take_dashpots(mpm->context, &mpm->grid, &mpm->boundaries, mpm->partition,
+                                    function, mpsi_values_find(&values->state, "blocks"),
                                     (mpsi_value *)mpsi_values_find(&values->state, "dashpots"));
   status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status == MPS_OK) {
     mpsi_value *blocks = (mpsi_value *)mpsi_values_find(&values->state, "blocks");
-    const int64_t count = take_blocks(mpm, blocks, values->particles, rows);
+    const int64_t count = take_blocks(&mpm->grid, mpm->partition, blocks, values->particles, rows);
     take_fields(values, rows, count);
-    take_values(mpm, &values->state);
+    take_values(mpm->partition, &values->state);
     mpm->partition->heaviest = 0.0; /* to be cut again at the next sort */
   }
   mpsi_free(mpm->context, rows);

@@ -63,8 +63,8 @@ static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
 static void set_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   mpm->run.lost = false;
-  mpm->run.broken =
-      mpsi_mpm_place_blocks(mpm, "restore", rows, (const mpsi_block *)values) != MPS_OK;
+  mpm->run.broken = mpsi_mpm_place_blocks(mpm->context, &mpm->grid, &mpm->p, mpm->partition,
+                                          "restore", rows, (const mpsi_block *)values) != MPS_OK;
 }
 
 /* How much room the lists that follow from the blocks take: blocks of nodes, held ones, dashpots,
@@ -147,7 +147,7 @@ static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
 static void set_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   if (mpm->partition)
-    mpsi_mpm_keep_dashpots(mpm, rows, values);
+    mpsi_mpm_keep_dashpots(&mpm->boundaries, rows, values);
   else if (!mpm->run.broken)
     mpm->run.broken = mpsi_mpm_put_dashpots(mpm, "restore", rows, values) != MPS_OK;
 }
@@ -209,24 +209,25 @@ static const mpsi_state_table kept_owners_table = {
 static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_kept,
                                             get_kept,       NULL, set_kept};
 
-static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
+static void list_setting(mpsi_state *s, const mpsi_grid *grid, const mpsi_loads *all_loads,
+                         const mpsi_contacts *contacts, const mps_mpm_def *def) {
   int64_t loads = 0;
-  for (int32_t k = 0; k < mpm->loads.count; k++) loads += mpm->loads.traction[k].count > 0;
-  mpsi_state_agree_integer(s, "geometry", mpm->grid.geometry);
-  mpsi_state_agree_integer(s, "scheme", mpm->grid.standard);
-  mpsi_state_agree_integer(s, "walls", mpm->def.walls);
-  mpsi_state_agree_integer(s, "spline", mpm->grid.spline);
-  mpsi_state_agree_number(s, "cell", mpm->grid.cell);
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int32_t k = 0; k < all_loads->count; k++) loads += all_loads->traction[k].count > 0;
+  mpsi_state_agree_integer(s, "geometry", grid->geometry);
+  mpsi_state_agree_integer(s, "scheme", grid->standard);
+  mpsi_state_agree_integer(s, "walls", def->walls);
+  mpsi_state_agree_integer(s, "spline", grid->spline);
+  mpsi_state_agree_number(s, "cell", grid->cell);
+  for (int c = 0; c < grid->dim; c++) {
     mpsi_state_enter(s, "axis%d", c);
-    mpsi_state_agree_number(s, "origin", mpm->grid.origin[c]);
-    mpsi_state_agree_integer(s, "lowest_node", mpm->grid.low[c]);
-    mpsi_state_agree_integer(s, "highest_node", mpm->grid.high[c]);
+    mpsi_state_agree_number(s, "origin", grid->origin[c]);
+    mpsi_state_agree_integer(s, "lowest_node", grid->low[c]);
+    mpsi_state_agree_integer(s, "highest_node", grid->high[c]);
     mpsi_state_leave(s);
   }
   mpsi_state_agree_integer(s, "loads", loads);
-  mpsi_state_agree_number(s, "measure", mpm->grid.measure);
-  mpsi_state_agree_integer(s, "bodies", mpm->contact.bodies);
+  mpsi_state_agree_number(s, "measure", grid->measure);
+  mpsi_state_agree_integer(s, "bodies", contacts->bodies);
 }
 
 /* A call of mps_mpm_settle that was cut. */
@@ -243,17 +244,16 @@ static void list_settling(mpsi_state *s, mpsi_settling *settling) {
 #define FILE_BOUNDARIES 64 /* numbers that every file has */
 
 /* Numbers of boundaries that a state has: up to the last in use. */
-static int32_t listed_boundaries(const mps_mpm *mpm) {
-  int32_t count = mpm->boundaries.holds;
-  while (count > FILE_BOUNDARIES && mpm->boundaries.hold[count - 1].kind == MPSI_BOUNDARY_NONE)
-    count--;
+static int32_t listed_boundaries(const mpsi_boundaries *boundaries) {
+  int32_t count = boundaries->holds;
+  while (count > FILE_BOUNDARIES && boundaries->hold[count - 1].kind == MPSI_BOUNDARY_NONE) count--;
   return count > FILE_BOUNDARIES ? count : FILE_BOUNDARIES;
 }
 
 static void list_state(mpsi_state *s, void *solver) {
   mps_mpm *mpm = solver;
-  list_setting(s, mpm);
-  const int32_t numbers = listed_boundaries(mpm);
+  list_setting(s, &mpm->grid, &mpm->loads, &mpm->contact, &mpm->def);
+  const int32_t numbers = listed_boundaries(&mpm->boundaries);
   if (numbers > FILE_BOUNDARIES) mpsi_state_agree_integer(s, "boundaries", numbers);
   for (int32_t k = 0; k < numbers; k++) {
     mpsi_boundary *hold = k < mpm->boundaries.holds ? &mpm->boundaries.hold[k] : NULL;
@@ -285,7 +285,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_bool(s, "stale", &mpm->run.stale);
   mpsi_state_bool(s, "moments", &mpm->run.moments);
   list_settling(s, &mpm->settling);
-  mpsi_pore_list_state(s, mpm);
+  mpsi_pore_list_state(s, mpm->water);
   mpsi_state_i64(s, "energies", mpm->energy.sum[0].limb, MPSI_ENERGY_SUMS * MPSI_EXACT_LIMBS);
   mpsi_state_f64(s, "work_bodies", &mpm->energy.work_bodies, 1);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
@@ -309,27 +309,27 @@ static void list_state(mpsi_state *s, void *solver) {
 #define ROUNDED 1e-6 /* cells */
 
 /* The part of the tile in use: within the tile, and wide enough for a stencil. */
-static bool within_tile(const mps_mpm *mpm, const int64_t *b) {
+static bool within_tile(const mpsi_grid *grid, const int64_t *b) {
   for (int c = 0; c < 3; c++) {
     const int64_t low = b[MPSI_BLOCK_LOW + c], high = b[MPSI_BLOCK_HIGH + c];
-    const int64_t reach = mpsi_reach(mpm, c);
-    if (c >= mpm->grid.dim ? low != 0 || high != 1
-                           : low < 0 || high > MPSI_SIDE + 2 + reach || high - low <= reach)
+    const int64_t reach = mpsi_reach(grid, c);
+    if (c >= grid->dim ? low != 0 || high != 1
+                       : low < 0 || high > MPSI_SIDE + 2 + reach || high - low <= reach)
       return false;
   }
   return true;
 }
 
-static bool orderly(const mps_mpm *mpm, int64_t rows, const mpsi_block *block, int64_t particles) {
+static bool orderly(const mpsi_grid *grid, int64_t rows, const mpsi_block *block,
+                    int64_t particles) {
   if (particles == 0) return rows == 0;
   if (rows < 1 || rows > particles || block[0][0] != 0) return false;
   for (int64_t k = 0; k < rows; k++) {
     const int64_t *b = block[k], *next = block[k + 1 < rows ? k + 1 : k];
     for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
-      if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL ||
-          (c >= mpm->grid.dim && b[1 + c] != 0))
+      if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL || (c >= grid->dim && b[1 + c] != 0))
         return false;
-    if (!within_tile(mpm, b)) return false;
+    if (!within_tile(grid, b)) return false;
     if (next == b) break;
     int c = 3;
     while (c > 1 && b[c] == next[c]) c--;
@@ -341,18 +341,18 @@ static bool orderly(const mps_mpm *mpm, int64_t rows, const mpsi_block *block, i
 /* Where the particle at X[3], in m, of the file is: 1 in its tile, -1 in no place that a run leads
  * to unless it sorts next, and 0 in between: outside by what the steps' own arithmetic, which has
  * fused products, may round away. */
-static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const double *x,
+static int place_of(const mpsi_grid *grid, const int64_t *block, bool stale, const double *x,
                     int64_t stride) {
-  const double first = mpm->grid.spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
+  const double first = grid->spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
   int place = 1;
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    const double X = mpsi_grid_at(&mpm->grid, c, x[c * stride]);
-    const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
+  for (int c = 0; c < grid->dim; c++) {
+    const double X = mpsi_grid_at(grid, c, x[c * stride]);
+    const double low = (double)grid->low[c], high = (double)grid->high[c];
     if (!(fabs(X) < MPSI_MAX_CELLS && X >= low - ROUNDED && X <= high + ROUNDED)) return -1;
     if (stale) continue;
     const double local = X - (double)(block[MPSI_BLOCK_AT + c] * MPSI_SIDE) - first;
     const double begin = (double)block[MPSI_BLOCK_LOW + c];
-    const double end = (double)(block[MPSI_BLOCK_HIGH + c] - mpsi_reach(mpm, c));
+    const double end = (double)(block[MPSI_BLOCK_HIGH + c] - mpsi_reach(grid, c));
     if (local < begin - ROUNDED || local > end + ROUNDED) return -1;
     if (!(local >= begin && local < end)) place = 0;
   }
@@ -361,28 +361,28 @@ static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const 
 
 /* A step relies on it that the blocks hold their particles, and these have laws that there are: a
  * stencil outside its tile is memory outside. */
-static bool holds_particles(const mps_mpm *mpm, mps_snapshot *from) {
+static bool holds_particles(const mpsi_grid *grid, const mpsi_columns *p, mps_snapshot *from) {
   const mpsi_value *blocks = mpsi_values_find(&from->state, "blocks");
   const mpsi_value *x = mpsi_values_find(&from->fields, "position");
   const mpsi_value *law = mpsi_values_find(&from->fields, "material");
   int64_t *stale = mpsi_values_find(&from->state, "stale")->data;
   const mpsi_block *block = blocks->data;
   const int64_t count = from->particles;
-  if (!x || x->type != MPSI_STATE_F64 || x->columns != mpm->grid.dim) return false;
-  if (mpm->p.law && !(law && law->type == MPSI_STATE_I64)) return false;
-  if (!orderly(mpm, blocks->rows, block, count)) return false;
+  if (!x || x->type != MPSI_STATE_F64 || x->columns != grid->dim) return false;
+  if (p->law && !(law && law->type == MPSI_STATE_I64)) return false;
+  if (!orderly(grid, blocks->rows, block, count)) return false;
   for (int64_t k = 0, b = 0; k < count; k++) {
-    const int64_t number = mpm->p.law ? ((const int64_t *)law->data)[k] : 0;
-    if (number < 0 || number >= mpm->p.laws.count) return false;
+    const int64_t number = p->law ? ((const int64_t *)law->data)[k] : 0;
+    if (number < 0 || number >= p->laws.count) return false;
     if (b + 1 < blocks->rows && k == block[b + 1][0]) b++;
-    const int place = place_of(mpm, block[b], *stale != 0, (const double *)x->data + k, count);
+    const int place = place_of(grid, block[b], *stale != 0, (const double *)x->data + k, count);
     if (place < 0) return false;
     if (place == 0) *stale = 1; /* it needs no block then */
   }
   return true;
 }
 
-static bool holds_impulses(const mps_mpm *mpm, const mps_snapshot *from) {
+static bool holds_impulses(const mpsi_contacts *contacts, const mps_snapshot *from) {
   const mpsi_value *owners = mpsi_values_find(&from->state, "impulses_of");
   const mpsi_value *impulses = mpsi_values_find(&from->state, "impulses");
   const double dt = *(const double *)mpsi_values_find(&from->state, "impulses_dt")->data;
@@ -390,7 +390,7 @@ static bool holds_impulses(const mps_mpm *mpm, const mps_snapshot *from) {
   if (!(dt >= 0.0) || !isfinite(dt)) return false;
   for (int64_t k = 0; k < owners->rows; k++) {
     const int64_t body = ((const int64_t *)owners->data)[2 * k + 1];
-    if (body < 0 || body >= mpm->contact.bodies) return false;
+    if (body < 0 || body >= contacts->bodies) return false;
     for (int c = 0; c < 3; c++)
       if (!isfinite(((const double *)impulses->data)[3 * k + c])) return false;
   }
@@ -409,16 +409,16 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
     const int64_t size = ((const int64_t *)sizes->data)[k];
     if (size < 0 || size > MPSI_NO_WALL) return false;
   }
-  if (!holds_particles(mpm, from)) return false;
+  if (!holds_particles(&mpm->grid, &mpm->p, from)) return false;
   *what = "its impulses of contact are not one of each particle and body";
-  return holds_impulses(mpm, from);
+  return holds_impulses(&mpm->contact, from);
 }
 
 /* ---- public ---------------------------------------------------------------------------------- */
 
 static void bind(void *solver) {
   mps_mpm *mpm = solver;
-  mpsi_mpm_bind(mpm);
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
 }
 
 /* Snapshots are of a state that has taken up what the caller wrote. */
@@ -426,7 +426,7 @@ static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
   mps_mpm *mpm = solver;
-  return mpsi_mpm_agree(mpm, function, status);
+  return mpsi_mpm_agree(mpm->partition, function, status);
 }
 
 static mpsi_state_of state_of(mps_mpm *mpm) {
@@ -460,18 +460,18 @@ static mps_status make_whole(mps_mpm *mpm, const char *function) {
 
 mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
+  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
   mps_status status = make_whole(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_state_snapshot(&of, __func__, snapshot);
-  status = mpsi_mpm_agree(mpm, __func__, status);
-  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
+  status = mpsi_mpm_agree(mpm->partition, __func__, status);
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
   return status;
 }
 
 mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
   return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;
@@ -479,21 +479,21 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
-  mps_status status = mpsi_mpm_agree(mpm, __func__, make_whole(mpm, __func__));
+  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
+  mps_status status = mpsi_mpm_agree(mpm->partition, __func__, make_whole(mpm, __func__));
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) {
     mpsi_mpm_order_warm_start(&mpm->contact.impulses);
     status = mpm->partition ? mpsi_mpm_save_on_ranks(mpm, &of, __func__, path, info)
                             : mpsi_checkpoint_save(&of, __func__, path, info);
   }
-  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
   return status;
 }
 
 mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
   return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;

@@ -4,17 +4,17 @@
 #include "mpm/particles/particles.h"
 
 /* How many particles a list means, NULL being all, and where the i-th of them is. */
-static int64_t listed(const mps_mpm *mpm, int64_t count, const int64_t *ids) {
-  return ids ? count : mpm->p.count;
+static int64_t listed(const mpsi_columns *p, int64_t count, const int64_t *ids) {
+  return ids ? count : p->count;
 }
-static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
-  return ids ? mps_particles_index(mpm->p.set, ids[i]) : i;
+static int64_t place(const mpsi_columns *p, const int64_t *ids, int64_t i) {
+  return ids ? mps_particles_index(p->set, ids[i]) : i;
 }
 
 /* In the list of laws; as many as there are for a new one. */
-static int32_t number_of(const mps_mpm *mpm, const mps_material *material) {
+static int32_t number_of(const mpsi_columns *p, const mps_material *material) {
   int32_t number = 0;
-  while (number < mpm->p.laws.count && mpm->p.laws.law[number].material != material) number++;
+  while (number < p->laws.count && p->laws.law[number].material != material) number++;
   return number;
 }
 
@@ -29,7 +29,7 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
   mpsi_given_begin(&given);
   mpsi_give(&given, "having a list of ids", ids != NULL);
   mpsi_material_give(&given, material);
-  mpsi_give(&given, "the number of the material", number_of(mpm, material));
+  mpsi_give(&given, "the number of the material", number_of(&mpm->p, material));
   status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->p.set, ids[k]) >= 0;
@@ -45,8 +45,8 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
   const double *J = mpsi_material_reads_volume(material)
                         ? mpsi_particles_column(mpm->p.set, "volume_ratio", 0)
                         : NULL;
-  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
-    const int64_t k = place(mpm, ids, i);
+  for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {
+    const int64_t k = place(&mpm->p, ids, i);
     if (k >= 0 && J && !(J[k] >= 0.0 && J[k] < INFINITY))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "ids: particle %lld has a volume_ratio of %g, must be > 0, or 0 for 1",
@@ -54,37 +54,39 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
   }
   if (!mpsi_material_has_start(material)) return MPS_OK;
   mpsi_first_state first;
-  mpsi_mpm_find_state(mpm, material, &first);
-  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
-    const int64_t k = place(mpm, ids, i);
-    status = k >= 0 ? mpsi_mpm_check_state(mpm, function, &first, k) : MPS_OK;
+  mpsi_mpm_find_state(&mpm->p, material, &first);
+  for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {
+    const int64_t k = place(&mpm->p, ids, i);
+    status = k >= 0 ? mpsi_mpm_check_state(mpm->context, &mpm->grid, &mpm->p, function, &first, k)
+                    : MPS_OK;
     if (status != MPS_OK) return status;
   }
   return MPS_OK;
 }
 
 /* The column of the laws' numbers, which a set of one law does without. */
-static mps_status number_particles(mps_mpm *mpm) {
-  if (mpm->p.law) return MPS_OK;
-  const mps_status status = mps_particles_add_field(mpm->p.set, "material", 0);
+static mps_status number_particles(mpsi_columns *p) {
+  if (p->law) return MPS_OK;
+  const mps_status status = mps_particles_add_field(p->set, "material", 0);
   if (status != MPS_OK) return status;
-  mpm->p.law = mpsi_particles_integers(mpm->p.set, "material");
-  for (int64_t k = 0; k < mpm->p.count; k++) mpm->p.law[k] = 0;
+  p->law = mpsi_particles_integers(p->set, "material");
+  for (int64_t k = 0; k < p->count; k++) p->law[k] = 0;
   return MPS_OK;
 }
 
 /* Number of the law in the list, where it is put if it is new. */
-static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *material,
-                           int32_t *number) {
-  *number = number_of(mpm, material);
-  if (*number < mpm->p.laws.count) return MPS_OK;
-  const bool numbered = mpm->p.law != NULL;
-  const int32_t fields = mps_particles_field_count(mpm->p.set);
-  mps_status status = mpsi_as(mpm->context, function, number_particles(mpm));
-  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, function, material);
+static mps_status list_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                           mpsi_rooms *rooms, const mps_mpm_def *def, const char *function,
+                           mps_material *material, int32_t *number) {
+  *number = number_of(p, material);
+  if (*number < p->laws.count) return MPS_OK;
+  const bool numbered = p->law != NULL;
+  const int32_t fields = mps_particles_field_count(p->set);
+  mps_status status = mpsi_as(context, function, number_particles(p));
+  if (status == MPS_OK) status = mpsi_mpm_add_law(context, grid, p, rooms, def, function, material);
   if (status == MPS_OK || numbered) return status;
-  mpsi_particles_drop_fields(mpm->p.set, fields);
-  mpm->p.law = NULL;
+  mpsi_particles_drop_fields(p->set, fields);
+  p->law = NULL;
   return status;
 }
 
@@ -93,17 +95,21 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
   if (!mpm) return MPS_ERROR_ARGUMENT;
   int32_t number = 0;
   mps_status status = mpsi_mpm_usable(mpm, __func__);
-  if (mpm->partition) status = mpsi_mpm_compare_edits(mpm, __func__, status);
+  if (mpm->partition)
+    status = mpsi_mpm_compare_edits(&mpm->contact, mpm->partition, &mpm->run, &mpm->def, __func__,
+                                    status);
   if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
-  status = mpsi_mpm_agree(mpm, __func__, status);
-  if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
-  status = mpsi_mpm_agree(mpm, __func__, status);
+  status = mpsi_mpm_agree(mpm->partition, __func__, status);
+  if (status == MPS_OK)
+    status = list_law(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->def, __func__, material,
+                      &number);
+  status = mpsi_mpm_agree(mpm->partition, __func__, status);
   if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
-    const int64_t k = place(mpm, ids, i);
+  for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {
+    const int64_t k = place(&mpm->p, ids, i);
     if (k < 0) continue;                    /* another rank's */
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
-    mpsi_mpm_begin_law(mpm, &mpm->p.laws.law[number], k);
+    mpsi_mpm_begin_law(&mpm->grid, &mpm->p, &mpm->p.laws.law[number], k);
   }
   mpm->boundaries.outdated = true; /* the dashpots of absorbing walls follow the laws */
   if (mpm->run.edited || mpm->run.lost) return MPS_OK; /* waits for what else is new */

@@ -11,28 +11,28 @@ void mpsi_mpm_begin_block(mps_material_block *block) {
 
 /* Columns of particles [begin, end) as the law sees them: all members but its outputs. `flags` has
  * room for a chunk. */
-static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin, int64_t end,
-                         int64_t *flags, mps_material_block *block) {
+static void find_columns(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_run *run,
+                         const mpsi_law_use *law, int64_t begin, int64_t end, int64_t *flags,
+                         mps_material_block *block) {
   static const int planar[5] = {0, 1, 3, 4, 8};
-  const mpsi_columns *p = &mpm->p;
-  block->dim = mpm->grid.dim;
+  block->dim = grid->dim;
   block->count = end - begin;
-  block->dt = mpm->run.dt;
-  block->time = mpm->run.time + mpm->run.dt;
-  block->ids = mpm->p.laws.ids + begin;
+  block->dt = run->dt;
+  block->time = run->time + run->dt;
+  block->ids = p->laws.ids + begin;
   block->volume_ratio = (law->reads_volume ? p->J : p->V) + begin;
   memset(flags, 0, (size_t)(end - begin) * sizeof *flags);
   block->flags = flags;
-  const int tensors = mpm->grid.dim == 3 ? 9 : 5;
+  const int tensors = grid->dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
-    const int to = mpm->grid.dim == 3 ? c : planar[c];
-    if (mpm->grid.geometry != MPS_MPM_GEOMETRY_PLANE_STRAIN || c < 4)
+    const int to = grid->dim == 3 ? c : planar[c];
+    if (grid->geometry != MPS_MPM_GEOMETRY_PLANE_STRAIN || c < 4)
       block->gradient[to] = p->L[c] + begin;
     block->deformation[to] = law->needs_deformation ? p->F[c] + begin : NULL;
   }
-  for (int c = 0; c < 2 * mpm->grid.dim; c++) block->stress[c] = p->s[c] + begin;
-  for (int c = 0; c < mpm->grid.dim; c++) block->position[c] = p->x[c] + begin;
-  if (mpm->p.laws.temperature) block->temperature = mpm->p.laws.temperature + begin;
+  for (int c = 0; c < 2 * grid->dim; c++) block->stress[c] = p->s[c] + begin;
+  for (int c = 0; c < grid->dim; c++) block->position[c] = p->x[c] + begin;
+  if (p->laws.temperature) block->temperature = p->laws.temperature + begin;
 }
 
 /* The end of the particles from `begin` that obey its law, at most `end`. */
@@ -44,9 +44,10 @@ static int64_t end_of_run(const int64_t *law, int64_t begin, int64_t end) {
 }
 
 /* Refusals are rare: threads wait for one another. */
-static void note_refusal(mps_mpm *mpm, const mpsi_cell_block *cells, const mps_material *material,
-                         mps_status status, int64_t particle, const char *message) {
-  mpsi_refusal *r = &mpm->p.laws.refusal;
+static void note_refusal(mpsi_columns *p, const mpsi_cell_block *cells,
+                         const mps_material *material, mps_status status, int64_t particle,
+                         const char *message) {
+  mpsi_refusal *r = &p->laws.refusal;
   while (atomic_flag_test_and_set_explicit(&r->busy, memory_order_acquire)) continue;
   if (!r->cells || cells < r->cells) {
     r->cells = cells;
@@ -58,7 +59,7 @@ static void note_refusal(mps_mpm *mpm, const mpsi_cell_block *cells, const mps_m
   atomic_flag_clear_explicit(&r->busy, memory_order_release);
 }
 
-static void apply_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+static void apply_law(mpsi_columns *p, const mpsi_cell_block *cells, const mpsi_law_use *law,
                       mps_material_block *block, int64_t begin) {
   double *history[MPSI_MATERIAL_COLUMNS];
   char message[MPSI_MATERIAL_MESSAGE];
@@ -73,15 +74,14 @@ static void apply_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law
   const mps_status status = mpsi_material_apply(law->material, block);
   if (status == MPS_OK) return;
   const bool there = refused >= 0 && refused < block->count;
-  note_refusal(mpm, cells, law->material, status, there ? begin + refused : -1, message);
+  note_refusal(p, cells, law->material, status, there ? begin + refused : -1, message);
 }
 
 /* Gives the law the derivatives D of its particles from the `first` on in place of L. */
-static void take_strains(const mps_mpm *mpm, double *const *D, int64_t first,
+static void take_strains(const mpsi_grid *grid, double *const *D, int64_t first,
                          mps_material_block *block) {
-  for (int a = 0; a < mpm->grid.dim; a++)
-    for (int b = 0; b < mpm->grid.dim; b++)
-      block->gradient[3 * a + b] = D[mpm->grid.dim * a + b] + first;
+  for (int a = 0; a < grid->dim; a++)
+    for (int b = 0; b < grid->dim; b++) block->gradient[3 * a + b] = D[grid->dim * a + b] + first;
 }
 
 /* The particles from `begin` on; `first` is its place in the columns D and the means. */
@@ -89,20 +89,21 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
                       double *const *D, double (*mean)[MPSI_CHUNK], int64_t first,
                       mps_material_block *block) {
   mpsi_columns *p = &mpm->p;
-  const mpsi_law_use *law = mpsi_law_of(mpm, begin);
+  const mpsi_law_use *law = mpsi_law_of(&mpm->p, begin);
   int64_t flags[MPSI_CHUNK];
-  find_columns(mpm, law, begin, end, flags, block);
-  take_strains(mpm, D, first, block);
+  find_columns(&mpm->grid, &mpm->p, &mpm->run, law, begin, end, flags, block);
+  take_strains(&mpm->grid, D, first, block);
   for (int c = 0; mean && c < 3; c++) block->gradient[4 * c] = mean[c] + first;
   for (int64_t k = begin; law->filtered && k < end; k++)
     p->rough[k] = law->history[law->strain][k]; /* filter.c subtracts it from the new one */
   mpsi_before_law before;
-  if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
+  if (mpm->energy.counts) mpsi_mpm_energy_keep(&mpm->grid, &mpm->p, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
-  apply_law(mpm, cells, law, block, begin);
+  apply_law(&mpm->p, cells, law, block, begin);
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
-  if (mpm->energy.counts) mpsi_mpm_energy_law(mpm, cells, law, block, &before, begin);
+  if (mpm->energy.counts)
+    mpsi_mpm_energy_law(&mpm->grid, &mpm->p, &mpm->energy, cells, law, block, &before, begin);
 }
 
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
@@ -113,56 +114,59 @@ void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int
   }
 }
 
-void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
-                            int64_t end) {
+void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_run *run,
+                            const mpsi_cell_block *cells, int64_t begin, int64_t end) {
   static const double rest[MPSI_CHUNK] = {0.0};
   for (int64_t k = begin, next; k < end; k = next) {
-    next = end_of_run(mpm->p.law, k, end);
-    const mpsi_law_use *law = mpsi_law_of(mpm, k);
+    next = end_of_run(p->law, k, end);
+    const mpsi_law_use *law = mpsi_law_of(p, k);
     mps_material_block block;
     int64_t flags[MPSI_CHUNK];
     if (!law->filtered) continue;
     mpsi_mpm_begin_block(&block);
-    find_columns(mpm, law, k, next, flags, &block);
+    find_columns(grid, p, run, law, k, next, flags, &block);
     for (int c = 0; c < 9; c++)
       if (block.gradient[c]) block.gradient[c] = rest;
-    apply_law(mpm, cells, law, &block, k);
+    apply_law(p, cells, law, &block, k);
   }
 }
 
 /* A viscous law requires dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
-static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
-                             int64_t end, double *moduli) {
-  const double v = 4.0 * mpm->grid.dim * mpsi_material_viscosity(law->material) * mpm->grid.inverse;
+static void raise_to_viscous(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_law_use *law,
+                             int64_t begin, int64_t end, double *moduli) {
+  const double v = 4.0 * grid->dim * mpsi_material_viscosity(law->material) * grid->inverse;
   for (int64_t k = begin; v > 0.0 && k < end; k++)
-    moduli[k - begin] = fmax(moduli[k - begin], v * v * mpm->p.V[k] / mpm->p.m[k]);
+    moduli[k - begin] = fmax(moduli[k - begin], v * v * p->V[k] / p->m[k]);
 }
 
 /* Waves go through the water too. Where it flows, its pressures have the limit
  * 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever the fraction of the limit that a step takes:
  * cells at a surface, half full, need that. */
-static void stiffen_by_water(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
-  const mps_pore_water_def *water = &mpm->water->def;
-  const double v = 2.0 * mpm->grid.dim * mpm->def.courant / 0.3 * mpm->grid.inverse *
+static void stiffen_by_water(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *pores,
+                             const mps_mpm_def *def, int64_t begin, int64_t end, double *moduli) {
+  const mps_pore_water_def *water = &pores->def;
+  const double v = 2.0 * grid->dim * def->courant / 0.3 * grid->inverse *
                    (water->bulk / (water->density * MPS_PORE_GRAVITY));
   for (int64_t k = begin; k < end; k++) {
-    moduli[k - begin] += water->bulk / mpm->p.n[k];
-    if (!mpm->p.k) continue;
-    const double c = v * mpm->p.k[k] / mpm->p.n[k];
-    moduli[k - begin] = fmax(moduli[k - begin], c * c * mpm->p.m[k] / mpm->p.V[k]);
+    moduli[k - begin] += water->bulk / p->n[k];
+    if (!p->k) continue;
+    const double c = v * p->k[k] / p->n[k];
+    moduli[k - begin] = fmax(moduli[k - begin], c * c * p->m[k] / p->V[k]);
   }
 }
 
-void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
+void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
+                          const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
+                          double *moduli) {
   for (int64_t k = begin, next; k < end; k = next) {
-    next = end_of_run(mpm->p.law, k, end);
-    const mpsi_law_use *law = mpsi_law_of(mpm, k);
+    next = end_of_run(p->law, k, end);
+    const mpsi_law_use *law = mpsi_law_of(p, k);
     if (mpsi_material_stiffens(law->material)) {
       mps_material_block block;
       mpsi_mpm_begin_block(&block);
       int64_t flags[MPSI_CHUNK];
       double *history[MPSI_MATERIAL_COLUMNS];
-      find_columns(mpm, law, k, next, flags, &block);
+      find_columns(grid, p, run, law, k, next, flags, &block);
       for (int32_t h = 0; h < law->columns; h++) history[h] = law->history[h] + k;
       block.history = history;
       block.history_count = law->columns;
@@ -170,7 +174,7 @@ void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double
     } else {
       for (int64_t q = k; q < next; q++) moduli[q - begin] = law->modulus;
     }
-    raise_to_viscous(mpm, law, k, next, moduli + (k - begin));
+    raise_to_viscous(grid, p, law, k, next, moduli + (k - begin));
   }
-  if (mpm->water) stiffen_by_water(mpm, begin, end, moduli);
+  if (water) stiffen_by_water(grid, p, water, def, begin, end, moduli);
 }

@@ -55,28 +55,36 @@ void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int
                         double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block);
 /* laws.c: the returns to the yield surface of those among particles [begin, end), at most a chunk,
  * whose stress is filtered, without strain. */
-void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_run *run,
+                            const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* laws.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
-void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
+void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
+                          const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
+                          double *moduli);
 /* volumetric.c: after the step's G2P the laws that wait for means, and what is smoothed. */
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
-mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
+mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                            mpsi_rooms *rooms, const mps_mpm_def *def, const char *function,
+                            mps_material *material);
 /* materials.c: MPS_ERROR_ARGUMENT where the law cannot begin in the state of the particle, which
  * the message names. `columns`: found once for the law. */
 typedef struct mpsi_first_state {
   const mps_material *material;
   const double *history[MPSI_MATERIAL_COLUMNS]; /* NULL: the set has no such field yet */
 } mpsi_first_state;
-void mpsi_mpm_find_state(const mps_mpm *mpm, const mps_material *material, mpsi_first_state *out);
-mps_status mpsi_mpm_check_state(const mps_mpm *mpm, const char *function,
-                                const mpsi_first_state *first, int64_t particle);
+void mpsi_mpm_find_state(const mpsi_columns *p, const mps_material *material,
+                         mpsi_first_state *out);
+mps_status mpsi_mpm_check_state(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                const char *function, const mpsi_first_state *first,
+                                int64_t particle);
 /* Of the particles [begin, end) under the law of creation. */
-mps_status mpsi_mpm_check_states(const mps_mpm *mpm, const char *function, int64_t begin,
-                                 int64_t end);
+mps_status mpsi_mpm_check_states(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 const char *function, int64_t begin, int64_t end);
 /* materials.c: where the columns of a law's own fields are now. */
-void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law);
-void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);
+void mpsi_mpm_bind_law(mpsi_columns *p, mpsi_law_use *law);
+void mpsi_mpm_begin_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_law_use *law,
+                        int64_t particle);
 
 #endif

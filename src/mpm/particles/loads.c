@@ -11,9 +11,10 @@
 
 /* ---- forces of a step ------------------------------------------------------------------------ */
 
-static mps_status make_forces(mps_mpm *mpm, const char *function) {
-  if (mpm->rooms.force.item || mpsi_mpm_force_room(mpm, mpm->p.count)) return MPS_OK;
-  return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof(double));
+static mps_status make_forces(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                              mpsi_rooms *rooms, const char *function) {
+  if (rooms->force.item || mpsi_mpm_force_room(context, grid, p, rooms, p->count)) return MPS_OK;
+  return mpsi_fail_memory(context, function, (size_t)p->count * sizeof(double));
 }
 
 static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
@@ -26,24 +27,23 @@ static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
 }
 
-static double area_by_spacing(const mps_mpm *mpm, int64_t particle) {
-  const double spacing = mps_particles_spacing(mpm->p.set);
-  if (mpm->grid.dim == 3) return spacing * spacing;
-  const double radius =
-      mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->p.x[0][particle] : 1.0;
-  return spacing * mpm->grid.measure * radius;
+static double area_by_spacing(const mpsi_grid *grid, const mpsi_columns *p, int64_t particle) {
+  const double spacing = mps_particles_spacing(p->set);
+  if (grid->dim == 3) return spacing * spacing;
+  const double radius = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->x[0][particle] : 1.0;
+  return spacing * grid->measure * radius;
 }
 
-static void add_traction(mps_mpm *mpm, const mpsi_traction *load) {
+static void add_traction(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_traction *load) {
   double traction[3] = {0.0};
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) {
     traction[c] = load->factor[c] * load->now[c] * load->traction[c];
   }
   for (int64_t k = 0; k < load->count; k++) {
-    const int64_t particle = mps_particles_index(mpm->p.set, load->id[k]);
+    const int64_t particle = mps_particles_index(p->set, load->id[k]);
     if (particle < 0) continue; /* removed */
-    const double area = load->area ? load->area[k] : area_by_spacing(mpm, particle);
-    for (int c = 0; c < mpm->grid.dim; c++) mpm->p.f[c][particle] += area * traction[c];
+    const double area = load->area ? load->area[k] : area_by_spacing(grid, p, particle);
+    for (int c = 0; c < grid->dim; c++) p->f[c][particle] += area * traction[c];
   }
 }
 
@@ -54,12 +54,12 @@ mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
     loads->external_force[c] = mpsi_particles_column(mpm->p.set, "external_force", c);
   }
   if (loads->body_acceleration[0] || loads->external_force[0]) {
-    const mps_status status = make_forces(mpm, function);
+    const mps_status status = make_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, function);
     if (status != MPS_OK) return status;
   }
   if (!mpm->rooms.force.item) return MPS_OK;
   mpsi_mpm_for_cells(mpm, begin_forces);
-  for (int32_t k = 0; k < loads->count; k++) add_traction(mpm, &loads->traction[k]);
+  for (int32_t k = 0; k < loads->count; k++) add_traction(&mpm->grid, &mpm->p, &loads->traction[k]);
   return MPS_OK;
 }
 
@@ -72,35 +72,37 @@ mps_status mps_mpm_load_def_init(mps_mpm_load_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_mpm_load_def, def, size, &load_defaults);
 }
 
-static void drop(mps_mpm *mpm, mpsi_traction *load) {
-  mpsi_free(mpm->context, load->id);
-  mpsi_free(mpm->context, load->area);
+static void drop(mps_context *context, mpsi_traction *load) {
+  mpsi_free(context, load->id);
+  mpsi_free(context, load->area);
   for (int c = 0; c < 3; c++) mps_signal_destroy(&load->signal[c]);
   memset(load, 0, sizeof *load);
 }
 
-void mpsi_mpm_drop_loads(mps_mpm *mpm) {
-  for (int32_t k = 0; k < mpm->loads.count; k++) drop(mpm, &mpm->loads.traction[k]);
-  mpsi_free(mpm->context, mpm->loads.traction);
+void mpsi_mpm_drop_loads(mps_context *context, const mpsi_loads *loads) {
+  for (int32_t k = 0; k < loads->count; k++) drop(context, &loads->traction[k]);
+  mpsi_free(context, loads->traction);
 }
 
 #define STRONGEST 1e150 /* N: impulses are numbers */
 
-static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def) {
-  const int64_t most = mpm->partition ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+static mps_status check_numbers(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                mpsi_partition *partition, const char *function,
+                                const mps_mpm_load_def *def) {
+  const int64_t most = partition ? MPSI_MPM_MOST_PARTICLES : p->count;
   if (def->id_count < 1 || def->id_count > most || !def->ids)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld and ids %s, allowed are 1 to %lld particles",
                      (long long)def->id_count, def->ids ? "given" : "NULL", (long long)most);
   for (int64_t k = 0; def->area && k < def->id_count; k++)
     if (!isfinite(def->area[k]))
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "area[%lld] is %g m2, must be finite", (long long)k, def->area[k]);
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "area[%lld] is %g m2, must be finite",
+                       (long long)k, def->area[k]);
     else
-      for (int c = 0; c < mpm->grid.dim; c++) {
+      for (int c = 0; c < grid->dim; c++) {
         const double force = def->area[k] * def->traction[c] * def->factor[c];
         if (!(fabs(force) <= STRONGEST))
-          return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+          return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                            "area[%lld] is %g m2 with traction[%d] %g Pa and factor[%d] %g, a force "
                            "of %g N: allowed is up to %g N",
                            (long long)k, def->area[k], c, def->traction[c], c, def->factor[c],
@@ -109,19 +111,20 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mp
   return MPS_OK;
 }
 
-static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
+static mps_status check_list(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                             mpsi_partition *partition, const char *function, mps_status status,
                              const mps_mpm_load_def *def) {
-  if (status == MPS_OK) status = check_numbers(mpm, function, def);
-  return mpsi_mpm_check_ids(mpm, function, status, def->id_count, def->ids);
+  if (status == MPS_OK) status = check_numbers(context, grid, p, partition, function, def);
+  return mpsi_mpm_check_ids(context, p, partition, function, status, def->id_count, def->ids);
 }
 
-static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,
-                           mps_mpm_load_def *def) {
-  if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  const mps_status status = MPSI_DEF_READ(mpm->context, function, mps_mpm_load_def, user, def);
-  for (int c = 0; c < mpm->grid.dim && status == MPS_OK; c++)
+static mps_status read_def(mps_context *context, const mpsi_grid *grid, const char *function,
+                           const mps_mpm_load_def *user, mps_mpm_load_def *def) {
+  if (!user) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  const mps_status status = MPSI_DEF_READ(context, function, mps_mpm_load_def, user, def);
+  for (int c = 0; c < grid->dim && status == MPS_OK; c++)
     if (!isfinite(def->traction[c]) || !isfinite(def->factor[c]))
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "traction[%d] is %g Pa and factor[%d] %g, must be finite", c,
                        def->traction[c], c, def->factor[c]);
   return status;
@@ -138,15 +141,15 @@ static void take_traction(mpsi_traction *load, const mps_mpm_load_def *def) {
 }
 
 /* Copies of the ids and areas. */
-static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def,
+static mps_status copy_list(mps_context *context, const char *function, const mps_mpm_load_def *def,
                             mpsi_traction *out) {
   const size_t bytes = (size_t)def->id_count * 8;
-  out->id = mpsi_alloc(mpm->context, def->id_count, sizeof *out->id);
-  if (out->id && def->area) out->area = mpsi_alloc(mpm->context, def->id_count, sizeof *out->area);
+  out->id = mpsi_alloc(context, def->id_count, sizeof *out->id);
+  if (out->id && def->area) out->area = mpsi_alloc(context, def->id_count, sizeof *out->area);
   if (!out->id || (def->area && !out->area)) {
-    mpsi_free(mpm->context, out->id);
+    mpsi_free(context, out->id);
     out->id = NULL;
-    return mpsi_fail_memory(mpm->context, function, bytes);
+    return mpsi_fail_memory(context, function, bytes);
   }
   out->count = def->id_count;
   memcpy(out->id, def->ids, bytes);
@@ -155,36 +158,38 @@ static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_lo
 }
 
 /* All ranks give the same load (`number` -1: a new one). */
-static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
-                                int32_t number, const mps_mpm_load_def *def) {
-  if (!mpm->partition) return status;
+static mps_status compare_ranks(const mpsi_grid *grid, mpsi_partition *partition,
+                                const char *function, mps_status status, int32_t number,
+                                const mps_mpm_load_def *def) {
+  if (!partition) return status;
   mpsi_given given;
   mpsi_given_begin(&given);
   mpsi_give(&given, "load", number);
   if (status == MPS_OK) {
     const size_t bytes = def->id_count > 0 ? (size_t)def->id_count * 8 : 0;
     MPSI_GIVE(&given, def, id_count);
-    MPSI_GIVE_VECTOR(&given, def, traction, mpm->grid.dim);
-    MPSI_GIVE_VECTOR(&given, def, factor, mpm->grid.dim);
-    for (int c = 0; c < mpm->grid.dim; c++)
+    MPSI_GIVE_VECTOR(&given, def, traction, grid->dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, grid->dim);
+    for (int c = 0; c < grid->dim; c++)
       mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
     mpsi_give_bytes(&given, "a hash of ids", def->ids, bytes);
     mpsi_give_bytes(&given, "a hash of area", def->area, bytes);
   }
-  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
 /* The lowest free number, with a place in the list. */
-static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *number) {
+static mps_status find_number(mps_context *context, mpsi_loads *loads, const char *function,
+                              int32_t *number) {
   int32_t at = 0;
-  while (at < mpm->loads.count && mpm->loads.traction[at].count > 0) at++;
+  while (at < loads->count && loads->traction[at].count > 0) at++;
   if (number) *number = at;
-  if (at < mpm->loads.count) return MPS_OK;
-  void *list = mpm->loads.traction;
-  if (!mpsi_grow(mpm->context, &list, at, at + 1, sizeof *mpm->loads.traction))
-    return mpsi_fail_memory(mpm->context, function, sizeof *mpm->loads.traction);
-  mpm->loads.traction = list;
-  mpm->loads.count++;
+  if (at < loads->count) return MPS_OK;
+  void *list = loads->traction;
+  if (!mpsi_grow(context, &list, at, at + 1, sizeof *loads->traction))
+    return mpsi_fail_memory(context, function, sizeof *loads->traction);
+  loads->traction = list;
+  loads->count++;
   return MPS_OK;
 }
 
@@ -193,16 +198,17 @@ mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t 
   mps_mpm_load_def def = load_defaults;
   mpsi_traction made = {.count = 0};
   int32_t at = 0;
-  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
-  status = compare_ranks(mpm, __func__, status, -1, &def);
-  status = check_list(mpm, __func__, status, &def);
-  if (status == MPS_OK) status = make_forces(mpm, __func__);
-  if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);
-  if (status == MPS_OK) status = find_number(mpm, __func__, &at);
-  status = mpsi_mpm_agree(mpm, __func__, status);
+  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
+  if (status == MPS_OK) status = read_def(mpm->context, &mpm->grid, __func__, user, &def);
+  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, -1, &def);
+  status = check_list(mpm->context, &mpm->grid, &mpm->p, mpm->partition, __func__, status, &def);
+  if (status == MPS_OK)
+    status = make_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, __func__);
+  if (status == MPS_OK) status = copy_list(mpm->context, __func__, &def, &made);
+  if (status == MPS_OK) status = find_number(mpm->context, &mpm->loads, __func__, &at);
+  status = mpsi_mpm_agree(mpm->partition, __func__, status);
   if (status != MPS_OK) {
-    drop(mpm, &made);
+    drop(mpm->context, &made);
     return status;
   }
   take_traction(&made, &def);
@@ -211,30 +217,30 @@ mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t 
   return MPS_OK;
 }
 
-static mps_status find_load(mps_mpm *mpm, const char *function, int32_t number) {
-  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+static mps_status find_load(mps_context *context, const mpsi_loads *loads, const mpsi_run *run,
+                            const char *function, int32_t number) {
+  const mps_status status = mpsi_mpm_between_steps(context, run, function);
   if (status != MPS_OK) return status;
-  if (number >= 0 && number < mpm->loads.count && mpm->loads.traction[number].count > 0)
-    return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+  if (number >= 0 && number < loads->count && loads->traction[number].count > 0) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                    "load is %d, must be a number that mps_mpm_add_load gave", number);
 }
 
 mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def *user) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_load_def def = load_defaults;
-  mps_status status = find_load(mpm, __func__, number);
-  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
-  status = compare_ranks(mpm, __func__, status, number, &def);
+  mps_status status = find_load(mpm->context, &mpm->loads, &mpm->run, __func__, number);
+  if (status == MPS_OK) status = read_def(mpm->context, &mpm->grid, __func__, user, &def);
+  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, number, &def);
   if (status != MPS_OK) return status;
   mpsi_traction *load = &mpm->loads.traction[number];
   if (def.ids || def.id_count != 0 || def.area) {
     mpsi_traction list = {.count = 0};
-    status = check_list(mpm, __func__, status, &def);
-    if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &list);
-    status = mpsi_mpm_agree(mpm, __func__, status);
+    status = check_list(mpm->context, &mpm->grid, &mpm->p, mpm->partition, __func__, status, &def);
+    if (status == MPS_OK) status = copy_list(mpm->context, __func__, &def, &list);
+    status = mpsi_mpm_agree(mpm->partition, __func__, status);
     if (status != MPS_OK) {
-      drop(mpm, &list);
+      drop(mpm->context, &list);
       return status;
     }
     mpsi_free(mpm->context, load->id);
@@ -247,9 +253,9 @@ mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def
 
 mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = find_load(mpm, __func__, number);
+  mps_status status = find_load(mpm->context, &mpm->loads, &mpm->run, __func__, number);
   if (mpm->partition)
     status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "load", number);
-  if (status == MPS_OK) drop(mpm, &mpm->loads.traction[number]);
+  if (status == MPS_OK) drop(mpm->context, &mpm->loads.traction[number]);
   return status;
 }

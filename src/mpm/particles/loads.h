@@ -26,6 +26,6 @@ typedef struct mpsi_loads {
 
 /* loads.c: fields of forces and loads of the step to the column f. */
 mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function);
-void mpsi_mpm_drop_loads(mps_mpm *mpm);
+void mpsi_mpm_drop_loads(mps_context *context, const mpsi_loads *loads);
 
 #endif

@@ -18,23 +18,23 @@ static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
   return status;
 }
 
-void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law) {
-  mps_particles *set = mpm->p.set;
-  if (law->reads_volume) mpm->p.J = mpsi_particles_column(set, "volume_ratio", 0);
+void mpsi_mpm_bind_law(mpsi_columns *p, mpsi_law_use *law) {
+  mps_particles *set = p->set;
+  if (law->reads_volume) p->J = mpsi_particles_column(set, "volume_ratio", 0);
   for (int c = 0; c < 9 && law->needs_deformation; c++)
-    mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
+    p->F[c] = mpsi_particles_column(set, "deformation_gradient", c);
   for (int32_t h = 0; h < law->columns; h++)
     law->history[h] = mpsi_particles_column(set, mps_material_history_field(law->material, h), 0);
   law->stiffness = mpsi_material_stiffness(law->material, law->history);
-  mpm->p.laws.ids = mpsi_particles_integers(set, "id");
-  mpm->p.laws.temperature = mpsi_particles_column(set, "temperature", 0);
+  p->laws.ids = mpsi_particles_integers(set, "id");
+  p->laws.temperature = mpsi_particles_column(set, "temperature", 0);
 }
 
 /* A mean change of volume beside each particle's own pressure does work from nothing where dilation
  * makes pressures rough: volumetric.c. */
-static void choose_volume(const mps_mpm *mpm, mpsi_law_use *law) {
+static void choose_volume(const mps_mpm_def *def, mpsi_law_use *law) {
   const mpsi_volume suits = mpsi_material_volume(law->material);
-  switch (mpm->def.volumetric) {
+  switch (def->volumetric) {
   case MPS_MPM_VOLUMETRIC_BY_LAW:
     law->own_volume = suits != MPSI_VOLUME_MEAN;
     law->filtered = suits == MPSI_VOLUME_FILTERED;
@@ -50,13 +50,13 @@ static void choose_volume(const mps_mpm *mpm, mpsi_law_use *law) {
   }
 }
 
-mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
-  if (!mpsi_room_keep(mpm->context, &mpm->p.laws.room, mpm->p.laws.count + 1,
-                      sizeof *mpm->p.laws.law))
-    return mpsi_fail_memory(mpm->context, function,
-                            (size_t)(mpm->p.laws.count + 1) * sizeof *mpm->p.laws.law);
-  mpm->p.laws.law = mpm->p.laws.room.item;
-  mps_particles *set = mpm->p.set;
+mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                            mpsi_rooms *rooms, const mps_mpm_def *def, const char *function,
+                            mps_material *material) {
+  if (!mpsi_room_keep(context, &p->laws.room, p->laws.count + 1, sizeof *p->laws.law))
+    return mpsi_fail_memory(context, function, (size_t)(p->laws.count + 1) * sizeof *p->laws.law);
+  p->laws.law = p->laws.room.item;
+  mps_particles *set = p->set;
   mpsi_law_use law = {.material = material,
                       .modulus = mps_material_wave_modulus(material),
                       .reads_volume = mpsi_material_reads_volume(material),
@@ -64,41 +64,42 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
                       .bulk = mpsi_material_rest_modulus(material) -
                               4.0 / 3.0 * mpsi_material_shear(material),
                       .columns = mps_material_history_count(material)};
-  choose_volume(mpm, &law);
+  choose_volume(def, &law);
   if (law.filtered) mpsi_material_sand_columns(material, &law.strain, &law.gap);
-  const bool at_once = law.own_volume && mpm->p.laws.at_once;
-  const bool some_filtered = law.filtered || mpm->p.laws.some_filtered;
-  if (mpm->p.laws.count > 0 && !mpsi_mpm_volume_room(mpm, mpm->p.count, !at_once, some_filtered))
-    return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * 10 * sizeof(double));
-  law.history = mpsi_alloc(mpm->context, law.columns, sizeof *law.history);
+  const bool at_once = law.own_volume && p->laws.at_once;
+  const bool some_filtered = law.filtered || p->laws.some_filtered;
+  if (p->laws.count > 0 &&
+      !mpsi_mpm_volume_room(context, grid, p, rooms, p->count, !at_once, some_filtered))
+    return mpsi_fail_memory(context, function, (size_t)p->count * 10 * sizeof(double));
+  law.history = mpsi_alloc(context, law.columns, sizeof *law.history);
   if (!law.history)
-    return mpsi_fail_memory(mpm->context, function, (size_t)law.columns * sizeof *law.history);
+    return mpsi_fail_memory(context, function, (size_t)law.columns * sizeof *law.history);
   const int32_t fields = mps_particles_field_count(set);
-  const mps_status status = mpsi_as(mpm->context, function, add_fields(set, &law));
+  const mps_status status = mpsi_as(context, function, add_fields(set, &law));
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(set, fields);
-    mpsi_free(mpm->context, law.history);
+    mpsi_free(context, law.history);
     return status;
   }
-  mpsi_mpm_bind_law(mpm, &law);
+  mpsi_mpm_bind_law(p, &law);
   mpsi_material_retain(material);
-  if (mpm->p.laws.count == 0) atomic_flag_clear(&mpm->p.laws.refusal.busy);
-  mpm->p.laws.one_modulus = mpm->p.laws.count == 0 && !mpsi_material_stiffens(material) &&
-                            mpsi_material_viscosity(material) == 0.0;
-  mpm->p.laws.at_once = at_once;
-  mpm->p.laws.some_own = mpm->p.laws.some_own || law.own_volume;
-  mpm->p.laws.some_filtered = some_filtered;
-  mpm->p.laws.law[mpm->p.laws.count++] = law;
+  if (p->laws.count == 0) atomic_flag_clear(&p->laws.refusal.busy);
+  p->laws.one_modulus = p->laws.count == 0 && !mpsi_material_stiffens(material) &&
+                        mpsi_material_viscosity(material) == 0.0;
+  p->laws.at_once = at_once;
+  p->laws.some_own = p->laws.some_own || law.own_volume;
+  p->laws.some_filtered = some_filtered;
+  p->laws.law[p->laws.count++] = law;
   return MPS_OK;
 }
 
-void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
-  const mpsi_columns *p = &mpm->p;
+void mpsi_mpm_begin_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_law_use *law,
+                        int64_t k) {
   if (law->reads_volume && p->J[k] == 0.0) p->J[k] = 1.0;
   bool deformed = !law->needs_deformation;
   for (int c = 0; c < 9 && !deformed && p->F[c]; c++) deformed = p->F[c][k] != 0.0;
   for (int c = 0; c < 9 && !deformed && p->F[c]; c++) {
-    const bool diagonal = mpm->grid.dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
+    const bool diagonal = grid->dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
     p->F[c][k] = diagonal ? 1.0 : 0.0;
   }
   mpsi_material_begin(law->material, law->history, k, k + 1);
@@ -106,35 +107,35 @@ void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
 
 /* ---- a first state --------------------------------------------------------------------------- */
 
-void mpsi_mpm_find_state(const mps_mpm *mpm, const mps_material *material, mpsi_first_state *out) {
+void mpsi_mpm_find_state(const mpsi_columns *p, const mps_material *material,
+                         mpsi_first_state *out) {
   out->material = material;
   for (int32_t h = 0; h < mps_material_history_count(material); h++)
-    out->history[h] = mpsi_particles_column(mpm->p.set, mps_material_history_field(material, h), 0);
+    out->history[h] = mpsi_particles_column(p->set, mps_material_history_field(material, h), 0);
 }
 
-mps_status mpsi_mpm_check_state(const mps_mpm *mpm, const char *function,
-                                const mpsi_first_state *first, int64_t k) {
+mps_status mpsi_mpm_check_state(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                const char *function, const mpsi_first_state *first, int64_t k) {
   enum { MOST = 8 }; /* columns of a law that has a start */
   double stress[6] = {0.0}, history[MOST] = {0.0};
   char reason[200];
   if (!mpsi_material_has_start(first->material)) return MPS_OK;
-  for (int32_t c = 0; c < 2 * mpm->grid.dim; c++) stress[c] = mpm->p.s[c][k];
+  for (int32_t c = 0; c < 2 * grid->dim; c++) stress[c] = p->s[c][k];
   for (int32_t h = 0; h < mps_material_history_count(first->material) && h < MOST; h++)
     if (first->history[h]) history[h] = first->history[h][k];
-  if (mpsi_material_check_state(first->material, mpm->grid.dim, stress, history, reason,
-                                sizeof reason))
+  if (mpsi_material_check_state(first->material, grid->dim, stress, history, reason, sizeof reason))
     return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material: particle %lld %s",
-                   (long long)mpm->p.laws.ids[k], reason);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material: particle %lld %s",
+                   (long long)p->laws.ids[k], reason);
 }
 
-mps_status mpsi_mpm_check_states(const mps_mpm *mpm, const char *function, int64_t begin,
-                                 int64_t end) {
+mps_status mpsi_mpm_check_states(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 const char *function, int64_t begin, int64_t end) {
   mpsi_first_state first;
   mps_status status = MPS_OK;
-  if (!mpsi_material_has_start(mpm->p.laws.law[0].material)) return MPS_OK;
-  mpsi_mpm_find_state(mpm, mpm->p.laws.law[0].material, &first);
+  if (!mpsi_material_has_start(p->laws.law[0].material)) return MPS_OK;
+  mpsi_mpm_find_state(p, p->laws.law[0].material, &first);
   for (int64_t k = begin; k < end && status == MPS_OK; k++)
-    status = mpsi_mpm_check_state(mpm, function, &first, k);
+    status = mpsi_mpm_check_state(context, grid, p, function, &first, k);
   return status;
 }

@@ -19,133 +19,137 @@ static void bind_water(mps_particles *set, mpsi_columns *p) {
   for (int c = 0; c < 3; c++) p->g[c] = mpsi_particles_column(set, "pore_pressure_gradient", c);
 }
 
-void mpsi_mpm_bind(mps_mpm *mpm) {
-  mps_particles *set = mpm->p.set;
-  mpsi_columns *p = &mpm->p;
+void mpsi_mpm_bind(const mpsi_grid *grid, mpsi_columns *p, mpsi_water *water) {
+  mps_particles *set = p->set;
   p->count = mps_particles_count(set);
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) {
     p->x[c] = mpsi_particles_column(set, "position", c);
     p->v[c] = mpsi_particles_column(set, "velocity", c);
   }
-  for (int c = 0; c < 2 * mpm->grid.dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
-  if (mpm->water) bind_water(set, p);
+  for (int c = 0; c < 2 * grid->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
+  if (water) bind_water(set, p);
   for (int c = 0; c < 9; c++) /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
   p->V = mpsi_particles_column(set, "volume", 0);
   p->m = mpsi_particles_column(set, "mass", 0);
   if (p->law) p->law = mpsi_particles_integers(set, "material");
-  for (int32_t k = 0; k < mpm->p.laws.count; k++) mpsi_mpm_bind_law(mpm, &mpm->p.laws.law[k]);
+  for (int32_t k = 0; k < p->laws.count; k++) mpsi_mpm_bind_law(p, &p->laws.law[k]);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-mps_status mpsi_mpm_check_places(const mps_mpm *mpm, const char *function, int64_t first,
+mps_status mpsi_mpm_check_places(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 const mps_mpm_def *def, const char *function, int64_t first,
                                  int64_t end) {
-  const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
+  const int64_t *id = mpsi_particles_integers(p->set, "id");
   for (int64_t k = first; k < end; k++)
-    for (int c = 0; c < mpm->grid.dim; c++) {
-      const double x = mpm->p.x[c][k], X = mpsi_grid_at(&mpm->grid, c, x);
+    for (int c = 0; c < grid->dim; c++) {
+      const double x = p->x[c][k], X = mpsi_grid_at(grid, c, x);
       if (!(fabs(X) < MPSI_MAX_CELLS))
-        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+        return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, more than 2^30 cells from the origin",
                          (long long)id[k], "xyz"[c], x);
-      if (!(X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]))
-        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+      if (!(X >= (double)grid->low[c] && X <= (double)grid->high[c]))
+        return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, outside the domain [%g, %g] m",
-                         (long long)id[k], "xyz"[c], x, mpm -> def.lower[c], mpm->def.upper[c]);
+                         (long long)id[k], "xyz"[c], x, def -> lower[c], def -> upper[c]);
     }
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_check_start(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                const mps_mpm_def *def, const char *function) {
   static const char *const names[] = {
       "position",          "velocity",      "velocity_gradient", "stress",
       "volume_ratio",      "volume",        "density",           "deformation_gradient",
       "body_acceleration", "external_force"};
   for (size_t f = 0; f < sizeof names / sizeof *names; f++)
     for (int32_t c = 0; c < 9; c++) {
-      const double *value = mpsi_particles_column(mpm->p.set, names[f], c);
-      for (int64_t k = 0; value && k < mpm->p.count; k++)
+      const double *value = mpsi_particles_column(p->set, names[f], c);
+      for (int64_t k = 0; value && k < p->count; k++)
         if (!isfinite(value[k]))
-          return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+          return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                            "'%s' of particle %lld is %g, must be finite", names[f],
-                           (long long)mpsi_particles_integers(mpm->p.set, "id")[k], value[k]);
+                           (long long)mpsi_particles_integers(p->set, "id")[k], value[k]);
     }
-  return mpsi_mpm_check_places(mpm, function, 0, mpm->p.count);
+  return mpsi_mpm_check_places(context, grid, p, def, function, 0, p->count);
 }
 
-mps_status mpsi_mpm_check_lost(mps_mpm *mpm, const char *function) {
-  if (!mpm->run.lost || mpsi_mpm_check_places(mpm, function, 0, mpm->p.count) == MPS_OK)
+mps_status mpsi_mpm_check_lost(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               const mpsi_run *run, const mps_mpm_def *def, const char *function) {
+  if (!run->lost || mpsi_mpm_check_places(context, grid, p, def, function, 0, p->count) == MPS_OK)
     return MPS_OK;
-  mps_error found = *mps_context_error(mpm->context);
-  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+  mps_error found = *mps_context_error(context);
+  return mpsi_fail(context, function, MPS_ERROR_STATE,
                    "%s, since the last step: edit its position, remove it or go back",
                    found.message);
 }
 
 /* ---- volume and mass ------------------------------------------------------------------------- */
 
-double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t k) {
-  const double spacing = mps_particles_spacing(mpm->p.set);
-  if (mpm->grid.dim == 3) return spacing * spacing * spacing;
-  const double radius = mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0;
-  return spacing * spacing * mpm->grid.measure * radius;
+double mpsi_mpm_lattice_volume(const mpsi_grid *grid, const mpsi_columns *p, int64_t k) {
+  const double spacing = mps_particles_spacing(p->set);
+  if (grid->dim == 3) return spacing * spacing * spacing;
+  const double radius = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->x[0][k] : 1.0;
+  return spacing * spacing * grid->measure * radius;
 }
 
-static mps_status check_amount(const mps_mpm *mpm, const char *function, int64_t k,
-                               double density) {
-  const mpsi_columns *p = &mpm->p;
-  const double volume = p->V[k] != 0.0 ? p->V[k] : mpsi_mpm_lattice_volume(mpm, k);
+static mps_status check_amount(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               const char *function, int64_t k, double density) {
+  const double volume = p->V[k] != 0.0 ? p->V[k] : mpsi_mpm_lattice_volume(grid, p, k);
   const double ratio = !p->J ? 1.0 : p->J[k] != 0.0 ? p->J[k] : 1.0;
   if (density >= DENSITY_MIN && density <= DENSITY_MAX && volume > 0.0 && ratio > 0.0)
     return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                    "particle %lld has density %g kg/m3, volume %g m3 and volume ratio %g: must "
                    "be %g to %g, > 0 and > 0%s",
-                   (long long)mpsi_particles_integers(mpm->p.set, "id")[k], density, volume, ratio,
+                   (long long)mpsi_particles_integers(p->set, "id")[k], density, volume, ratio,
                    DENSITY_MIN, DENSITY_MAX, volume == 0.0 ? " (it lies on the axis, r = 0)" : "");
 }
 
-mps_status mpsi_mpm_check_amounts(const mps_mpm *mpm, const char *function) {
-  const double *density = mpsi_particles_column(mpm->p.set, "density", 0);
+mps_status mpsi_mpm_check_amounts(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_columns *p, const char *function) {
+  const double *density = mpsi_particles_column(p->set, "density", 0);
   mps_status status = MPS_OK;
-  for (int64_t k = 0; k < mpm->p.count && status == MPS_OK; k++)
-    status = check_amount(mpm, function, k, density[k]);
+  for (int64_t k = 0; k < p->count && status == MPS_OK; k++)
+    status = check_amount(context, grid, p, function, k, density[k]);
   return status;
 }
 
 /* The density is that of the present volume. */
-static void set_mass(mps_mpm *mpm, int64_t k, double density) {
-  mpsi_columns *p = &mpm->p;
-  if (p->V[k] == 0.0) p->V[k] = mpsi_mpm_lattice_volume(mpm, k);
+static void set_mass(const mpsi_grid *grid, const mpsi_columns *p, mpsi_contacts *contacts,
+                     int64_t k, double density) {
+  if (p->V[k] == 0.0) p->V[k] = mpsi_mpm_lattice_volume(grid, p, k);
   p->m[k] = density * p->V[k];
   const double mass =
-      mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
-  if (mass > 0.0 && !(mass >= mpm->contact.least_mass)) mpm->contact.least_mass = mass;
+      grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
+  if (mass > 0.0 && !(mass >= contacts->least_mass)) contacts->least_mass = mass;
 }
 
-void mpsi_mpm_begin_particles(mps_mpm *mpm) {
-  const double *density = mpsi_particles_column(mpm->p.set, "density", 0);
-  mpm->contact.least_mass = NAN;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    set_mass(mpm, k, density[k]);
-    mpsi_mpm_begin_law(mpm, &mpm->p.laws.law[0], k);
+void mpsi_mpm_begin_particles(const mpsi_grid *grid, const mpsi_columns *p,
+                              mpsi_contacts *contacts) {
+  const double *density = mpsi_particles_column(p->set, "density", 0);
+  contacts->least_mass = NAN;
+  for (int64_t k = 0; k < p->count; k++) {
+    set_mass(grid, p, contacts, k, density[k]);
+    mpsi_mpm_begin_law(grid, p, &p->laws.law[0], k);
   }
 }
 
 /* The caller has written density or volume: the mass follows in the particles that changed. Added
  * particles have none yet. */
-static mps_status renew_masses(mps_mpm *mpm, const char *function, const char *field,
+static mps_status renew_masses(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               mpsi_contacts *contacts, const char *function, const char *field,
                                const double *former) {
-  const double *density = mpsi_particles_column(mpm->p.set, "density", 0);
-  const double *now = strcmp(field, "density") == 0 ? density : mpm->p.V;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    if (now[k] == former[k] || (mpm->p.m[k] == 0.0 && density[k] == 0.0)) continue;
-    const mps_status status = check_amount(mpm, function, k, density[k]);
+  const double *density = mpsi_particles_column(p->set, "density", 0);
+  const double *now = strcmp(field, "density") == 0 ? density : p->V;
+  for (int64_t k = 0; k < p->count; k++) {
+    if (now[k] == former[k] || (p->m[k] == 0.0 && density[k] == 0.0)) continue;
+    const mps_status status = check_amount(context, grid, p, function, k, density[k]);
     if (status != MPS_OK) return status;
   }
-  for (int64_t k = 0; k < mpm->p.count; k++)
-    if (now[k] != former[k]) set_mass(mpm, k, density[k]);
+  for (int64_t k = 0; k < p->count; k++)
+    if (now[k] != former[k]) set_mass(grid, p, contacts, k, density[k]);
   return MPS_OK;
 }
 
@@ -167,8 +171,12 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   const bool moved = strcmp(field, "position") == 0;
   mps_status status = MPS_OK;
   if (read_by_steps(field)) return MPS_OK;
-  if (moved) status = mpsi_mpm_check_places(mpm, function, 0, mpm->p.count);
-  if (status == MPS_OK && former) status = renew_masses(mpm, function, field, former);
+  if (moved)
+    status = mpsi_mpm_check_places(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function, 0,
+                                   mpm->p.count);
+  if (status == MPS_OK && former)
+    status =
+        renew_masses(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, function, field, former);
   if (status != MPS_OK) return status;
   mpm->run.edited = true;
   mpm->run.stale = mpm->run.stale || moved;
@@ -179,39 +187,41 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function) {
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    if (mpm->p.m[k] > 0.0) continue;
-    const int64_t id = mpsi_particles_integers(mpm->p.set, "id")[k];
-    (void)mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+mps_status mpsi_mpm_check_masses(mps_context *context, const mpsi_columns *p,
+                                 const char *function) {
+  for (int64_t k = 0; k < p->count; k++) {
+    if (p->m[k] > 0.0) continue;
+    const int64_t id = mpsi_particles_integers(p->set, "id")[k];
+    (void)mpsi_fail(context, function, MPS_ERROR_STATE,
                     "particle %lld has come since the last step and has density 0: give it one by "
                     "mps_particles_edit or mps_particles_set of 'density'",
                     (long long)id);
-    mpsi_fail_where(mpm->context, -1, id);
+    mpsi_fail_where(context, -1, id);
     return MPS_ERROR_STATE;
   }
   return MPS_OK;
 }
 
-static double determinant(const mps_mpm *mpm, int64_t k) {
+static double determinant(const mpsi_grid *grid, const mpsi_columns *p, int64_t k) {
   double F[9];
-  for (int c = 0; c < 9; c++) F[c] = mpm->p.F[c] ? mpm->p.F[c][k] : 0.0;
-  if (mpm->grid.dim == 2) return (F[0] * F[3] - F[1] * F[2]) * F[4];
+  for (int c = 0; c < 9; c++) F[c] = p->F[c] ? p->F[c][k] : 0.0;
+  if (grid->dim == 2) return (F[0] * F[3] - F[1] * F[2]) * F[4];
   return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
          F[2] * (F[3] * F[7] - F[4] * F[6]);
 }
 
-mps_status mpsi_mpm_check_deformations(const mps_mpm *mpm, const char *function) {
-  for (int64_t k = 0; mpm->p.F[0] && k < mpm->p.count; k++) {
-    const mpsi_law_use *law = &mpm->p.laws.law[mpm->p.law ? mpm->p.law[k] : 0];
-    const double J = law->needs_deformation ? determinant(mpm, k) : 1.0;
+mps_status mpsi_mpm_check_deformations(mps_context *context, const mpsi_grid *grid,
+                                       const mpsi_columns *p, const char *function) {
+  for (int64_t k = 0; p->F[0] && k < p->count; k++) {
+    const mpsi_law_use *law = &p->laws.law[p->law ? p->law[k] : 0];
+    const double J = law->needs_deformation ? determinant(grid, p, k) : 1.0;
     if (J > 0.0) continue;
-    const int64_t id = mpsi_particles_integers(mpm->p.set, "id")[k];
-    (void)mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+    const int64_t id = mpsi_particles_integers(p->set, "id")[k];
+    (void)mpsi_fail(context, function, MPS_ERROR_STATE,
                     "deformation_gradient of particle %lld has the determinant %g, must be above "
                     "0: write all its components at once by mps_particles_edit",
                     (long long)id, J);
-    mpsi_fail_where(mpm->context, -1, id);
+    mpsi_fail_where(context, -1, id);
     return MPS_ERROR_STATE;
   }
   return MPS_OK;

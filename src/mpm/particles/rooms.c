@@ -5,31 +5,31 @@
 #include <string.h>
 
 /* So many columns, each over the particles, in one room. */
-static bool make_columns(mps_mpm *mpm, mpsi_room *room, int64_t particles, int32_t columns,
+static bool make_columns(mps_context *context, mpsi_room *room, int64_t particles, int32_t columns,
                          double **column) {
   const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
   const int64_t stride = (particles + MPSI_PARTICLES_PADDING + line - 1) / line * line;
-  if (!mpsi_room_ensure(mpm->context, room, columns * stride, sizeof(double))) return false;
+  if (!mpsi_room_ensure(context, room, columns * stride, sizeof(double))) return false;
   const int64_t widest = room->capacity / columns / line * line;
   for (int c = 0; c < columns; c++)
     column[c] = (double *)room->item + c * (widest > stride ? widest : stride);
   return true;
 }
 
-bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
-  return make_columns(mpm, &mpm->rooms.force, particles, mpm->grid.dim, mpm->p.f);
+bool mpsi_mpm_force_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                         mpsi_rooms *rooms, int64_t particles) {
+  return make_columns(context, &rooms->force, particles, grid->dim, p->f);
 }
 
-bool mpsi_mpm_volume_room(mps_mpm *mpm, int64_t particles, bool means, bool filter) {
-  mpsi_rooms *r = &mpm->rooms;
+bool mpsi_mpm_volume_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                          mpsi_rooms *r, int64_t particles, bool means, bool filter) {
   means = means || r->strain.item, filter = filter || r->rough.item; /* G2P writes what is there */
   const bool stencil = means || filter;
-  const bool good = (!stencil || mpsi_room_ensure(mpm->context, &r->stencil, particles,
-                                                  sizeof *mpm->p.stencil)) &&
-                    (!means || make_columns(mpm, &r->strain, particles,
-                                            mpm->grid.dim * mpm->grid.dim, mpm->p.D)) &&
-                    (!filter || make_columns(mpm, &r->rough, particles, 1, &mpm->p.rough));
-  mpm->p.stencil = r->stencil.item;
+  const bool good =
+      (!stencil || mpsi_room_ensure(context, &r->stencil, particles, sizeof *p->stencil)) &&
+      (!means || make_columns(context, &r->strain, particles, grid->dim * grid->dim, p->D)) &&
+      (!filter || make_columns(context, &r->rough, particles, 1, &p->rough));
+  p->stencil = r->stencil.item;
   return good;
 }
 
@@ -38,8 +38,10 @@ bool mpsi_mpm_make_room(void *solver, int64_t particles) {
   mpsi_rooms *r = &mpm->rooms;
   const bool good =
       mpsi_room_ensure(mpm->context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
-      mpsi_mpm_volume_room(mpm, particles, !mpm->p.laws.at_once, mpm->p.laws.some_filtered) &&
-      (!r->force.item || mpsi_mpm_force_room(mpm, particles));
+      mpsi_mpm_volume_room(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, particles,
+                           !mpm->p.laws.at_once, mpm->p.laws.some_filtered) &&
+      (!r->force.item ||
+       mpsi_mpm_force_room(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, particles));
   mpm->grid.radix = r->radix.item;
   return good;
 }

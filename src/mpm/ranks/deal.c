@@ -20,11 +20,11 @@ static int compare(const void *left, const void *right) {
   return mpsi_block_before(b->at, a->at) ? 1 : 0;
 }
 
-static mpsi_placed *list_own(const mps_mpm *mpm) {
-  const int64_t blocks = mpm->grid.cell_count;
-  mpsi_placed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
+static mpsi_placed *list_own(mps_context *context, const mpsi_grid *grid) {
+  const int64_t blocks = grid->cell_count;
+  mpsi_placed *list = mpsi_alloc(context, blocks, sizeof *list);
   for (int64_t b = 0; list && b < blocks; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    const mpsi_cell_block *cells = &grid->cells[b];
     list[b].particles = cells->end - cells->begin;
     memcpy(list[b].at, cells->at, sizeof list[b].at);
   }
@@ -32,11 +32,11 @@ static mpsi_placed *list_own(const mps_mpm *mpm) {
 }
 
 /* The blocks of all ranks in one list, in order, each once. */
-static mpsi_placed *join_lists(mps_mpm *mpm, const mpsi_mailbox *box, int64_t *blocks) {
+static mpsi_placed *join_lists(mps_context *context, const mpsi_mailbox *box, int64_t *blocks) {
   int64_t count = 0, warm = 0;
   for (int32_t m = 0; m < box->count; m++)
     count += box->mail[m].bytes / (int64_t)sizeof(mpsi_placed);
-  mpsi_placed *list = mpsi_alloc(mpm->context, count, sizeof *list);
+  mpsi_placed *list = mpsi_alloc(context, count, sizeof *list);
   if (!list) return NULL;
   char *to = (char *)list;
   for (int32_t m = 0; m < box->count; to += box->mail[m++].bytes)
@@ -52,57 +52,59 @@ static mpsi_placed *join_lists(mps_mpm *mpm, const mpsi_mailbox *box, int64_t *b
 }
 
 /* Every rank's list to every rank. */
-static mps_status place_by_list(mps_mpm *mpm, const char *function) {
-  mps_domain *domain = mpm->partition->domain;
+static mps_status place_by_list(mps_context *context, const mpsi_grid *grid,
+                                mpsi_partition *partition, const char *function) {
+  mps_domain *domain = partition->domain;
   const int32_t ranks = mps_domain_size(domain);
-  mpsi_mailbox box = {.context = mpm->context};
+  mpsi_mailbox box = {.context = context};
   int64_t blocks = 0;
-  mpsi_placed *own = list_own(mpm), *all = NULL;
-  mps_domain_message *message = mpsi_alloc(mpm->context, ranks, sizeof *message);
+  mpsi_placed *own = list_own(context, grid), *all = NULL;
+  mps_domain_message *message = mpsi_alloc(context, ranks, sizeof *message);
   mps_status status = MPS_OK;
   if (!own || !message)
-    status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->grid.cell_count * sizeof *own);
+    status = mpsi_fail_memory(context, function, (size_t)grid->cell_count * sizeof *own);
   for (int32_t r = 0; status == MPS_OK && r < ranks; r++)
     message[r] = (mps_domain_message){
-        .rank = r, .bytes = mpm->grid.cell_count * (int64_t)sizeof *own, .data = own};
+        .rank = r, .bytes = grid->cell_count * (int64_t)sizeof *own, .data = own};
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK) status = mpsi_domain_exchange(domain, function, ranks, message, &box);
-  if (status == MPS_OK && (!(all = join_lists(mpm, &box, &blocks)) ||
-                           !mpsi_mpm_choose_orientation(mpm->context, mpm->grid.dim, ranks, blocks,
-                                                        all, &mpm->partition->orientation)))
-    status = mpsi_fail_memory(mpm->context, function, (size_t)blocks * sizeof *all);
+  if (status == MPS_OK && (!(all = join_lists(context, &box, &blocks)) ||
+                           !mpsi_mpm_choose_orientation(context, grid->dim, ranks, blocks, all,
+                                                        &partition->orientation)))
+    status = mpsi_fail_memory(context, function, (size_t)blocks * sizeof *all);
   mpsi_domain_free_mail(&box);
-  mpsi_free(mpm->context, own);
-  mpsi_free(mpm->context, all);
-  mpsi_free(mpm->context, message);
+  mpsi_free(context, own);
+  mpsi_free(context, all);
+  mpsi_free(context, message);
   return mpsi_domain_agree(domain, function, status);
 }
 
 /* Over the first and the last block along each axis. */
-static mps_status place_by_bounds(mps_mpm *mpm, const char *function) {
+static mps_status place_by_bounds(mps_context *context, const mpsi_grid *grid,
+                                  mpsi_partition *partition, const char *function) {
   double bound[6];
   for (int k = 0; k < 6; k++) bound[k] = -INFINITY;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+  for (int64_t b = 0; b < grid->cell_count; b++)
     for (int c = 0; c < 3; c++) {
-      const double at = mpm->grid.cells[b].at[c];
+      const double at = grid->cells[b].at[c];
       bound[c] = fmax(bound[c], -at), bound[3 + c] = fmax(bound[3 + c], at);
     }
-  mps_status status = mpsi_domain_max(mpm->partition->domain, function, 6, bound);
+  mps_status status = mpsi_domain_max(partition->domain, function, 6, bound);
   if (status != MPS_OK) return status;
   mpsi_placed corner[2] = {{.particles = 1}, {.particles = 1}};
   for (int c = 0; c < 3; c++)
     corner[0].at[c] = (int32_t)-bound[c], corner[1].at[c] = (int32_t)bound[3 + c];
-  if (!mpsi_mpm_choose_orientation(mpm->context, mpm->grid.dim, 1, 2, corner,
-                                   &mpm->partition->orientation))
-    status = mpsi_fail_memory(mpm->context, function, sizeof corner);
-  return mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (!mpsi_mpm_choose_orientation(context, grid->dim, 1, 2, corner, &partition->orientation))
+    status = mpsi_fail_memory(context, function, sizeof corner);
+  return mpsi_domain_agree(partition->domain, function, status);
 }
 
 static mps_status find_blocks(mps_mpm *mpm, const char *function) {
-  mpsi_mpm_bind(mpm);
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
   mpm->p.laws.ids = mpsi_particles_integers(mpm->p.set, "id"); /* there is no law yet */
   mpm->grid.worker_count = mps_context_threads(mpm->context);
-  const mps_status status = mpsi_mpm_check_start(mpm, function);
+  const mps_status status =
+      mpsi_mpm_check_start(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function);
   if (status != MPS_OK) return status;
   if (!mpsi_mpm_make_room(mpm, mpm->p.count))
     return mpsi_fail_memory(mpm->context, function,
@@ -113,7 +115,7 @@ static mps_status find_blocks(mps_mpm *mpm, const char *function) {
 /* The solver's fields get the room that the caller's have: no more than needed. */
 static mps_status fit(mps_mpm *mpm, const char *function) {
   const mps_status status = mpsi_particles_fit(mpm->p.set, function);
-  mpsi_mpm_bind(mpm);
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
   if (status != MPS_OK || mpsi_mpm_shrink_room(mpm, mpm->p.count)) return status;
   return mpsi_fail_memory(mpm->context, function,
                           (size_t)mpm->p.count * 2 * sizeof *mpm->grid.radix);
@@ -129,7 +131,9 @@ mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status st
   blocks = mpm->grid.cell_count;
   status = mpsi_domain_sum(mpm->partition->domain, function, 1, &blocks);
   if (status == MPS_OK)
-    status = blocks <= MOST_BLOCKS ? place_by_list(mpm, function) : place_by_bounds(mpm, function);
+    status = blocks <= MOST_BLOCKS
+                 ? place_by_list(mpm->context, &mpm->grid, mpm->partition, function)
+                 : place_by_bounds(mpm->context, &mpm->grid, mpm->partition, function);
   if (status == MPS_OK) status = mpsi_mpm_partition_migrate(mpm, function, status, &moved);
   return status == MPS_OK ? mpsi_domain_agree(mpm->partition->domain, function, fit(mpm, function))
                           : status;

@@ -18,13 +18,13 @@
 
 /* ---- the curve ------------------------------------------------------------------------------- */
 
-static int64_t key_of(const mps_mpm *mpm, const int32_t *at) {
-  return mpsi_mpm_curve_key(mpm->grid.dim, &mpm->partition->orientation, at);
+static int64_t key_of(const mpsi_grid *grid, mpsi_partition *partition, const int32_t *at) {
+  return mpsi_mpm_curve_key(grid->dim, &partition->orientation, at);
 }
 
-int32_t mpsi_mpm_block_owner(const mps_mpm *mpm, const int32_t *at) {
-  return mpsi_curve_owner(mps_domain_size(mpm->partition->domain), mpm->partition->first,
-                          key_of(mpm, at));
+int32_t mpsi_mpm_block_owner(const mpsi_grid *grid, mpsi_partition *partition, const int32_t *at) {
+  return mpsi_curve_owner(mps_domain_size(partition->domain), partition->first,
+                          key_of(grid, partition, at));
 }
 
 typedef struct weighed {
@@ -37,37 +37,38 @@ static int compare(const void *left, const void *right) {
 }
 
 /* The way that the curve lies over the blocks, all of which are here; false: memory refused. */
-static bool place_curve(mps_mpm *mpm, int32_t ranks) {
-  const int64_t blocks = mpm->grid.cell_count;
-  mpsi_placed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
+static bool place_curve(mps_context *context, const mpsi_grid *grid, mpsi_partition *partition,
+                        int32_t ranks) {
+  const int64_t blocks = grid->cell_count;
+  mpsi_placed *list = mpsi_alloc(context, blocks, sizeof *list);
   for (int64_t b = 0; list && b < blocks; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    const mpsi_cell_block *cells = &grid->cells[b];
     list[b].particles = cells->end - cells->begin;
     memcpy(list[b].at, cells->at, sizeof list[b].at);
   }
-  const bool good = list && mpsi_mpm_choose_orientation(mpm->context, mpm->grid.dim, ranks, blocks,
-                                                        list, &mpm->partition->orientation);
-  mpsi_free(mpm->context, list);
+  const bool good = list && mpsi_mpm_choose_orientation(context, grid->dim, ranks, blocks, list,
+                                                        &partition->orientation);
+  mpsi_free(context, list);
   return good;
 }
 
-mps_status mpsi_mpm_partition_cut(mps_mpm *mpm, const char *function, bool whole) {
-  mpsi_partition *partition = mpm->partition;
+mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
+                                  mpsi_partition *partition, const char *function, bool whole) {
   const int32_t ranks = mps_domain_size(partition->domain);
-  const int64_t all = mpm->grid.cell_count,
+  const int64_t all = grid->cell_count,
                 blocks = whole && mps_domain_rank(partition->domain) > 0 ? 0 : all;
-  const bool placed = !whole || place_curve(mpm, ranks);
-  weighed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
-  int64_t *key = mpsi_alloc(mpm->context, 2 * blocks, sizeof *key);
+  const bool placed = !whole || place_curve(context, grid, partition, ranks);
+  weighed *list = mpsi_alloc(context, blocks, sizeof *list);
+  int64_t *key = mpsi_alloc(context, 2 * blocks, sizeof *key);
   if (!partition->first)
-    partition->first = mpsi_alloc(mpm->context, ranks + 1, sizeof *partition->first);
+    partition->first = mpsi_alloc(context, ranks + 1, sizeof *partition->first);
   mps_status status = MPS_OK;
   if (!placed || !list || !key || !partition->first)
-    status = mpsi_fail_memory(mpm->context, function, (size_t)(blocks + ranks) * sizeof *list);
+    status = mpsi_fail_memory(context, function, (size_t)(blocks + ranks) * sizeof *list);
   status = mpsi_domain_agree(partition->domain, function, status);
   for (int64_t b = 0; status == MPS_OK && b < blocks; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    list[b] = (weighed){key_of(mpm, cells->at), cells->end - cells->begin};
+    const mpsi_cell_block *cells = &grid->cells[b];
+    list[b] = (weighed){key_of(grid, partition, cells->at), cells->end - cells->begin};
   }
   if (status == MPS_OK) {
     qsort(list, (size_t)blocks, sizeof *list, compare);
@@ -75,8 +76,8 @@ mps_status mpsi_mpm_partition_cut(mps_mpm *mpm, const char *function, bool whole
     status =
         mpsi_curve_cut(partition->domain, function, blocks, key, key + blocks, partition->first);
   }
-  mpsi_free(mpm->context, list);
-  mpsi_free(mpm->context, key);
+  mpsi_free(context, list);
+  mpsi_free(context, key);
   return status;
 }
 
@@ -125,7 +126,7 @@ static mps_status list_leaving(departure *d, const char *function) {
   memset(d->gone, 0, (size_t)count);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    const int32_t owner = mpsi_mpm_block_owner(mpm, cells->at);
+    const int32_t owner = mpsi_mpm_block_owner(&mpm->grid, mpm->partition, cells->at);
     for (int64_t k = cells->begin; owner != rank && k < cells->end; k++) {
       d->gone[k] = 1;
       d->row[d->count] = k;
@@ -148,14 +149,14 @@ static mps_status take_in(departure *d, const char *function, const mpsi_mailbox
   if (status == MPS_OK && !mpsi_mpm_make_room(mpm, count))
     status = mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
   if (status == MPS_OK) status = mpsi_particles_hold_room(mpm->p.set, function, count);
-  mpsi_mpm_bind(mpm); /* columns may have moved */
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water); /* columns may have moved */
   status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_particles_make_way(mpm->p.set, d->gone);
   (void)list_columns(d);
   mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(mpm->p.set));
   mpsi_particles_admit(mpm->p.set, arriving);
-  mpsi_mpm_bind(mpm);
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
   return MPS_OK;
 }
 
@@ -189,21 +190,21 @@ static mps_status send(departure *d, const char *function, mps_status status, bo
 }
 
 /* Again where a rank has more than any had. */
-static mps_status rebalance(mps_mpm *mpm, const char *function, mps_status status) {
-  mpsi_partition *partition = mpm->partition;
-  double most = (double)mpm->p.count;
+static mps_status rebalance(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                            mpsi_partition *partition, const char *function, mps_status status) {
+  double most = (double)p->count;
   status = mpsi_domain_agree_max(partition->domain, function, status, 1, &most);
   if (status != MPS_OK || (partition->heaviest > 0.0 && most <= GROWTH * partition->heaviest))
     return status;
   partition->heaviest = 0.0;
-  return mpsi_mpm_partition_cut(mpm, function, false);
+  return mpsi_mpm_partition_cut(context, grid, partition, function, false);
 }
 
 mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_status status,
                                       bool *moved) {
   mpsi_partition *partition = mpm->partition;
   departure d = {.mpm = mpm};
-  status = rebalance(mpm, function, status);
+  status = rebalance(mpm->context, &mpm->grid, &mpm->p, mpm->partition, function, status);
   if (status == MPS_OK) status = send(&d, function, status, moved);
   if (status == MPS_OK && partition->heaviest == 0.0) {
     partition->heaviest = (double)mpm->p.count;
@@ -218,26 +219,28 @@ mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_st
 
 /* ---- particles that the caller adds ---------------------------------------------------------- */
 
-static bool is_own(const mps_mpm *mpm, int64_t k) {
+static bool is_own(const mpsi_grid *grid, const mpsi_columns *p, mpsi_partition *partition,
+                   int64_t k) {
   int32_t block[3] = {0};
-  for (int c = 0; c < mpm->grid.dim; c++)
-    block[c] = (int32_t)mpsi_block_of(
-        (int64_t)mpsi_base(mpm->grid.spline, mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k])));
-  return mpsi_mpm_block_owner(mpm, block) == mps_domain_rank(mpm->partition->domain);
+  for (int c = 0; c < grid->dim; c++)
+    block[c] =
+        (int32_t)mpsi_block_of((int64_t)mpsi_base(grid->spline, mpsi_grid_at(grid, c, p->x[c][k])));
+  return mpsi_mpm_block_owner(grid, partition, block) == mps_domain_rank(partition->domain);
 }
 
-mps_status mpsi_mpm_keep_own_inserted(mps_mpm *mpm, const char *function, mps_status status,
-                                      int64_t first) {
+mps_status mpsi_mpm_keep_own_inserted(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                                      mpsi_water *water, mpsi_partition *partition,
+                                      const char *function, mps_status status, int64_t first) {
   uint8_t *gone = NULL;
-  if (status == MPS_OK && !(gone = mpsi_alloc(mpm->context, mpm->p.count, 1)))
-    status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (status == MPS_OK && !(gone = mpsi_alloc(context, p->count, 1)))
+    status = mpsi_fail_memory(context, function, (size_t)p->count);
+  status = mpsi_domain_agree(partition->domain, function, status);
   if (status == MPS_OK) {
     memset(gone, 0, (size_t)first);
-    for (int64_t k = first; k < mpm->p.count; k++) gone[k] = !is_own(mpm, k);
-    mpsi_particles_make_way(mpm->p.set, gone);
-    mpsi_mpm_bind(mpm);
+    for (int64_t k = first; k < p->count; k++) gone[k] = !is_own(grid, p, partition, k);
+    mpsi_particles_make_way(p->set, gone);
+    mpsi_mpm_bind(grid, p, water);
   }
-  mpsi_free(mpm->context, gone);
+  mpsi_free(context, gone);
   return status;
 }

@@ -16,17 +16,17 @@ int32_t mpsi_mpm_parcel_bytes(const mpsi_partition *partition, bool apart, bool 
   return (int32_t)(doubles * (int64_t)sizeof(double));
 }
 
-mps_status mpsi_mpm_reserve_parcels(mps_mpm *mpm, const char *function) {
-  mpsi_partition *partition = mpm->partition;
+mps_status mpsi_mpm_reserve_parcels(mps_context *context, const mpsi_contacts *contacts,
+                                    mpsi_partition *partition, const char *function) {
   const int64_t parcel =
-      mpsi_mpm_parcel_bytes(partition, true, mpm->contact.thin != 0, mpm->contact.penalty_bodies);
+      mpsi_mpm_parcel_bytes(partition, true, contacts->thin != 0, contacts->penalty_bodies);
   const bool good =
-      mpsi_room_ensure(mpm->context, &partition->out_room, partition->borders * parcel, 1) &&
-      mpsi_room_ensure(mpm->context, &partition->in_room, partition->ghosts * parcel, 1);
+      mpsi_room_ensure(context, &partition->out_room, partition->borders * parcel, 1) &&
+      mpsi_room_ensure(context, &partition->in_room, partition->ghosts * parcel, 1);
   partition->out = partition->out_room.item;
   partition->in = partition->in_room.item;
   return good ? MPS_OK
-              : mpsi_fail_memory(mpm->context, function,
+              : mpsi_fail_memory(context, function,
                                  (size_t)((partition->borders + partition->ghosts) * parcel));
 }
 

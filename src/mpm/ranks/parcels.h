@@ -13,7 +13,8 @@
 int32_t mpsi_mpm_parcel_bytes(const mpsi_partition *partition, bool apart, bool thin,
                               int32_t penalty_bodies);
 /* Room for parcels, whatever the step. */
-mps_status mpsi_mpm_reserve_parcels(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_reserve_parcels(mps_context *context, const mpsi_contacts *contacts,
+                                    mpsi_partition *partition, const char *function);
 /* The one that comes for a ghost or goes for a block at the border. */
 double *mpsi_mpm_parcel(const mpsi_partition *partition, bool ghost, int64_t number);
 /* The part of a tile in use, nodes of `size` bytes, to or from a parcel; returns its place behind

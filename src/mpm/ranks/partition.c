@@ -195,7 +195,7 @@ static bool put_lists(search *s) {
   const int64_t all = s->count + s->ghosts;
   int64_t *order = mpsi_alloc(mpm->context, 2 * s->ghosts, sizeof *order);
   int32_t *place = mpsi_alloc(mpm->context, s->count, sizeof *place);
-  bool good = order && place && mpsi_mpm_ensure_cells(mpm, all) &&
+  bool good = order && place && mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, all) &&
               mpsi_room_ensure(mpm->context, &partition->border_room, s->count,
                                sizeof *partition->border) &&
               mpsi_room_ensure(mpm->context, &partition->rank_room, s->ghosts, sizeof *s->rank);
@@ -207,7 +207,7 @@ static bool put_lists(search *s) {
     merge(s, order, place);
     for (int64_t k = 0; k < s->count; k++) partition->border[k] = place[k];
     partition->ghosts = s->ghosts;
-    good = mpsi_mpm_build_nodes(mpm, all);
+    good = mpsi_mpm_build_nodes(mpm->context, &mpm->grid, all);
   }
   mpsi_free(mpm->context, order);
   mpsi_free(mpm->context, place);
@@ -216,18 +216,17 @@ static bool put_lists(search *s) {
 
 /* Blocks that no ghost goes before, directly or not, and nodes to which only such blocks give, need
  * not wait for messages. */
-static void mark_blocks(mps_mpm *mpm) {
-  mpsi_grid *grid = &mpm->grid;
+static void mark_blocks(const mpsi_grid *grid) {
   for (int64_t b = 0; b < grid->cell_count; b++) grid->cells[b].late = grid->cells[b].ghost;
   for (int64_t k = 0; k < grid->cell_count; k++) {
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[k]];
-    for (int q = 0; cells->late && q < 1 << mpm->grid.dim; q++) {
+    for (int q = 0; cells->late && q < 1 << grid->dim; q++) {
       grid->nodes[cells->to[q]].late = true;
       if (cells->next[q] >= 0) grid->cells[cells->next[q]].late = true;
     }
   }
   for (int64_t g = 0; g < grid->node_count; g++)
-    grid->nodes[g].foreign = !mpsi_mpm_node_block_complete(mpm, g);
+    grid->nodes[g].foreign = !mpsi_mpm_node_block_complete(grid, g);
 }
 
 /* Own blocks requested by other ranks; memory for parcels. */
@@ -240,7 +239,7 @@ static mps_status find_border(mps_mpm *mpm, const char *function) {
     partition->border[k] = partition->border[item[k]];
     mpm->grid.cells[partition->border[k]].parcel = k;
   }
-  return mpsi_mpm_reserve_parcels(mpm, function);
+  return mpsi_mpm_reserve_parcels(mpm->context, &mpm->contact, mpm->partition, function);
 }
 
 static double widest(const search *s) {
@@ -264,7 +263,7 @@ static mps_status join(search *s) {
   status = mpsi_domain_agree_max(partition->domain, s->function, status, 1, &most);
   if (status != MPS_OK) return status;
   partition->most = (int32_t)most;
-  mark_blocks(mpm);
+  mark_blocks(&mpm->grid);
   mpsi_halo_destroy(mpm->context, &partition->halo);
   const mpsi_halo_def def = {.guests = s->ghosts, .rank = s->rank, .index = s->index};
   status = mpsi_halo_create(partition->domain, s->function, &def, &partition->halo);
@@ -308,37 +307,37 @@ mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function) {
 /* ---- the first cut --------------------------------------------------------------------------- */
 
 /* The rows of own blocks, which come to lie one behind the other. */
-static int64_t take_blocks(mps_mpm *mpm, int64_t *rows) {
-  mpsi_cell_block *cells = mpm->grid.cells;
-  const int32_t rank = mps_domain_rank(mpm->partition->domain);
+static int64_t take_blocks(mpsi_grid *grid, mpsi_partition *partition, int64_t *rows) {
+  mpsi_cell_block *cells = grid->cells;
+  const int32_t rank = mps_domain_rank(partition->domain);
   int64_t blocks = 0, count = 0;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    if (mpsi_mpm_block_owner(mpm, cells[b].at) != rank) continue;
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    if (mpsi_mpm_block_owner(grid, partition, cells[b].at) != rank) continue;
     const int64_t begin = count;
     for (int64_t k = cells[b].begin; k < cells[b].end; k++) rows[count++] = k;
     cells[blocks] = cells[b];
     cells[blocks].begin = begin;
     cells[blocks++].end = count;
   }
-  mpm->grid.cell_count = blocks;
+  grid->cell_count = blocks;
   return count;
 }
 
 static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **former) {
   int64_t *rows = mpsi_alloc(mpm->context, mpm->p.count, sizeof *rows);
   if (!rows) return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof *rows);
-  const int64_t count = take_blocks(mpm, rows);
+  const int64_t count = take_blocks(&mpm->grid, mpm->partition, rows);
   const mps_status status = mpsi_particles_keep(mpm->p.set, function, count, rows, count, former);
   mpsi_free(mpm->context, rows);
   if (status != MPS_OK) return status;
-  mpsi_mpm_bind(mpm);
+  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
   if (mpsi_mpm_shrink_room(mpm, count)) return MPS_OK;
   return mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
 }
 
 /* Are all ranks given the same? */
-static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status) {
-  const mps_mpm_def *d = &mpm->def;
+static mps_status compare_ranks(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *d,
+                                const char *function, mps_status status) {
   mpsi_given given;
   mpsi_given_begin(&given);
   MPSI_GIVE(&given, d, geometry);
@@ -354,14 +353,14 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   MPSI_GIVE(&given, d, dt);
   MPSI_GIVE(&given, d, courant);
   mpsi_give(&given, "having a kernel", d->kernel != NULL);
-  MPSI_GIVE_VECTOR(&given, d, origin, mpm->grid.dim);
-  MPSI_GIVE_VECTOR(&given, d, gravity, mpm->grid.dim);
-  MPSI_GIVE_VECTOR(&given, d, lower, mpm->grid.dim);
-  MPSI_GIVE_VECTOR(&given, d, upper, mpm->grid.dim);
-  if (status == MPS_OK) mpsi_material_give(&given, mpm->p.laws.law[0].material);
+  MPSI_GIVE_VECTOR(&given, d, origin, grid->dim);
+  MPSI_GIVE_VECTOR(&given, d, gravity, grid->dim);
+  MPSI_GIVE_VECTOR(&given, d, lower, grid->dim);
+  MPSI_GIVE_VECTOR(&given, d, upper, grid->dim);
+  if (status == MPS_OK) mpsi_material_give(&given, p->laws.law[0].material);
   status = mpsi_domain_agree_given(d->domain, function, status, &given);
-  if (status != MPS_OK || mpsi_particles_deal(mpm->p.set)) return status;
-  return mpsi_domain_agree_particles(d->domain, function, status, mpm->p.set);
+  if (status != MPS_OK || mpsi_particles_deal(p->set)) return status;
+  return mpsi_domain_agree_particles(d->domain, function, status, p->set);
 }
 
 mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
@@ -383,15 +382,16 @@ mps_status mpsi_mpm_partition_create(mps_mpm *mpm, const char *function, mps_sta
                                      mpsi_storage **former) {
   mps_domain *domain = mpm->def.domain;
   status = mpsi_mpm_share_begin(mpm, function, status);
-  if (status == MPS_OK) status = compare_ranks(mpm, function, status);
-  if (status == MPS_OK) status = mpsi_mpm_partition_cut(mpm, function, true);
+  if (status == MPS_OK) status = compare_ranks(&mpm->grid, &mpm->p, &mpm->def, function, status);
+  if (status == MPS_OK)
+    status = mpsi_mpm_partition_cut(mpm->context, &mpm->grid, mpm->partition, function, true);
   if (status == MPS_OK)
     status = mpsi_domain_agree(domain, function, keep_own(mpm, function, former));
   return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
 }
 
 mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status) {
-  status = compare_ranks(mpm, function, status);
+  status = compare_ranks(&mpm->grid, &mpm->p, &mpm->def, function, status);
   return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
 }
 

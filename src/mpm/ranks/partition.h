@@ -58,8 +58,9 @@ mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_stat
 void mpsi_mpm_partition_free(mps_mpm *mpm);
 /* owners.c: cuts the curve again for blocks in grid.cells, which all ranks or (`whole`) each has
  * all of; the owner of a block (not collective). */
-mps_status mpsi_mpm_partition_cut(mps_mpm *mpm, const char *function, bool whole);
-int32_t mpsi_mpm_block_owner(const mps_mpm *mpm, const int32_t *at);
+mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
+                                  mpsi_partition *partition, const char *function, bool whole);
+int32_t mpsi_mpm_block_owner(const mpsi_grid *grid, mpsi_partition *partition, const int32_t *at);
 /* owners.c: particles of blocks of cells that are not this rank's go to their owners; `moved` where
  * particles were sent or received. */
 mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_status status,
@@ -68,22 +69,24 @@ mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_st
 mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function);
 /* collective_status.c: the worst status of all ranks. */
-mps_status mpsi_mpm_agree(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_agree(mpsi_partition *partition, const char *function, mps_status status);
 /* collective_status.c: the same, and whether all have the same time and bodies; with the greatest
  * of `count` values. In a step also whether signals have given all the same. */
-mps_status mpsi_mpm_agree_alike(mps_mpm *mpm, const char *function, mps_status status,
-                                int32_t count, double *values);
+mps_status mpsi_mpm_agree_alike(const mpsi_contacts *contacts, mpsi_partition *partition,
+                                const mpsi_run *run, const mps_mpm_def *def, const char *function,
+                                mps_status status, int32_t count, double *values);
 mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
                                   int32_t count, double *values);
 /* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank;
  * first all agree on `status`, that of this rank. */
-mps_status mpsi_mpm_check_ids(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
-                              const int64_t *ids);
+mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
+                              mpsi_partition *partition, const char *function, mps_status status,
+                              int64_t count, const int64_t *ids);
 /* collective_status.c: whether a sum over blocks of nodes counts g here. Not collective. */
-bool mpsi_mpm_counts_node_block(const mps_mpm *mpm, int64_t g);
+bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g);
 /* collective_status.c: whether all that reaches g is known here, its own or as a ghost. Not
  * collective. */
-bool mpsi_mpm_node_block_complete(const mps_mpm *mpm, int64_t g);
+bool mpsi_mpm_node_block_complete(const mpsi_grid *grid, int64_t g);
 
 /* row_order.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank;
  * before particles leave the set, on one rank too, the blocks follow. Not collective. */
@@ -96,14 +99,17 @@ mps_status mpsi_mpm_find_removed(void *mpm, const char *function, mps_status sta
                                  const int64_t *ids, int64_t known, int64_t *all);
 /* owners.c: of the particles from `first` on, which all ranks have, those stay that are this
  * rank's. */
-mps_status mpsi_mpm_keep_own_inserted(mps_mpm *mpm, const char *function, mps_status status,
-                                      int64_t first);
+mps_status mpsi_mpm_keep_own_inserted(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                                      mpsi_water *water, mpsi_partition *partition,
+                                      const char *function, mps_status status, int64_t first);
 
 /* partition.c: before the blocks are used: sorted or not, ghosts are those of the present ones. */
 mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status);
 /* collective_status.c: whether some rank has it. */
-mps_status mpsi_mpm_any_rank(mps_mpm *mpm, const char *function, bool *any);
+mps_status mpsi_mpm_any_rank(mpsi_partition *partition, const char *function, bool *any);
 /* collective_status.c: what the callers of all ranks have edited. */
-mps_status mpsi_mpm_compare_edits(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition *partition,
+                                  mpsi_run *run, const mps_mpm_def *def, const char *function,
+                                  mps_status status);
 
 #endif

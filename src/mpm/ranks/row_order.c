@@ -6,12 +6,12 @@
 
 /* Rows that no block has are behind the others, by their ids: particles that the caller has added.
  */
-static int64_t list_added(const mps_mpm *mpm, int64_t first, mpsi_row_run *out) {
-  const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
-  for (int64_t k = first; out && k < mpm->p.count; k++)
+static int64_t list_added(const mpsi_columns *p, int64_t first, mpsi_row_run *out) {
+  const int64_t *id = mpsi_particles_integers(p->set, "id");
+  for (int64_t k = first; out && k < p->count; k++)
     out[k - first] = (mpsi_row_run){
         .at = {(int32_t)(id[k] & INT32_MAX), (int32_t)(id[k] >> 31), INT32_MAX}, .rows = 1};
-  return mpm->p.count - first;
+  return p->count - first;
 }
 
 int64_t mpsi_mpm_row_runs(const void *self, mpsi_row_run *out) {
@@ -27,7 +27,7 @@ int64_t mpsi_mpm_row_runs(const void *self, mpsi_row_run *out) {
     rows += cells->end - cells->begin;
     count++;
   }
-  return count + list_added(mpm, rows, out ? out + count : NULL);
+  return count + list_added(&mpm->p, rows, out ? out + count : NULL);
 }
 
 void mpsi_mpm_thin_out(void *self, const uint8_t *gone) {

@@ -33,7 +33,7 @@ static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
 
 /* The sums, after what the caller has edited. `status`: status of the call so far here. */
 static mps_status find_sums(mps_mpm *mpm, const char *function, mps_status status) {
-  status = mpsi_mpm_agree(mpm, function, status);
+  status = mpsi_mpm_agree(mpm->partition, function, status);
   if (status == MPS_OK) status = mpsi_mpm_apply_edits(mpm, function);
   if (status == MPS_OK && mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
@@ -55,9 +55,9 @@ static mps_status find_sums(mps_mpm *mpm, const char *function, mps_status statu
 /* Sums of mass, momentum and force at the nodes; one that fails leaves the edits unread.
  * Collective. */
 static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status status) {
-  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
+  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
   status = find_sums(mpm, function, status);
-  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
   return status;
 }
 
@@ -66,24 +66,25 @@ typedef struct node {
 } node;
 
 /* Node k of the block g; false where no particle reaches it. */
-static bool read_node(const mps_mpm *mpm, int64_t g, int k, node *out) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+static bool read_node(const mpsi_grid *grid, const mpsi_contacts *contacts, int64_t g, int k,
+                      node *out) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
   if (nodes->side < 0) return false; /* the tile's part over it is not in use */
-  const double *sum = mpm->grid.node[mpsi_first_node(mpm, g) + k];
-  const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + k];
+  const double *sum = grid->node[mpsi_first_node(grid, g) + k];
+  const double *side = grid->side[mpsi_first_node(grid, nodes->side) + k];
   const double weight = sum[MPSI_MASS] + side[MPSI_EXCESS];
   if (!(weight > 0.0)) return false;
-  const double carried = mpm->grid.by_weight ? weight : mpsi_carried_mass(sum[MPSI_MASS], weight);
-  mpsi_node_place(mpm, nodes->at, k, out->x);
+  const double carried = grid->by_weight ? weight : mpsi_carried_mass(sum[MPSI_MASS], weight);
+  mpsi_node_place(grid, nodes->at, k, out->x);
   out->mass = sum[MPSI_MASS];
   for (int c = 0; c < 3; c++) {
-    out->v[c] = c < mpm->grid.dim ? sum[MPSI_VECTOR + c] / carried : 0.0;
-    out->f[c] = c < mpm->grid.dim ? side[MPSI_VECTOR + c] : 0.0;
+    out->v[c] = c < grid->dim ? sum[MPSI_VECTOR + c] / carried : 0.0;
+    out->f[c] = c < grid->dim ? side[MPSI_VECTOR + c] : 0.0;
   }
-  const int32_t pairs = mpm->contact.penalty_bodies > 0 ? nodes->pairs : 0;
+  const int32_t pairs = contacts->penalty_bodies > 0 ? nodes->pairs : 0;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
-    const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
-    for (int c = 0; c < mpm->grid.dim && at->mass != 0.0; c++) out->f[c] += at->force[c];
+    const mpsi_contact_node *at = &contacts->node[(int64_t)t * grid->block_nodes + k];
+    for (int c = 0; c < grid->dim && at->mass != 0.0; c++) out->f[c] += at->force[c];
   }
   return true;
 }
@@ -106,9 +107,9 @@ mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity, int64_t *c
   int64_t n = 0;
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++)
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
-      if (mpm->partition && !mpsi_mpm_counts_node_block(mpm, g)) break;
+      if (mpm->partition && !mpsi_mpm_counts_node_block(&mpm->grid, g)) break;
       node at;
-      if (!read_node(mpm, g, k, &at)) continue;
+      if (!read_node(&mpm->grid, &mpm->contact, g, k, &at)) continue;
       if (n < capacity) {
         put(position, n, at.x);
         put(velocity, n, at.v);
@@ -133,20 +134,20 @@ static mps_status check_set(const mps_mpm *mpm, const char *function, mps_partic
 }
 
 /* As many particles as nodes. */
-static mps_status resize(const mps_mpm *mpm, const char *function, mps_particles *set,
-                         int64_t count, const double *x) {
+static mps_status resize(mps_context *context, const mpsi_grid *grid, const char *function,
+                         mps_particles *set, int64_t count, const double *x) {
   const int64_t have = mps_particles_count(set);
   if (count < have) {
     const int64_t *id = mpsi_particles_integers(set, "id");
-    return mpsi_as(mpm->context, function, mps_particles_remove(set, have - count, id + count));
+    return mpsi_as(context, function, mps_particles_remove(set, have - count, id + count));
   }
-  double *places = mpsi_alloc(mpm->context, (count - have) * mpm->grid.dim, sizeof *places);
-  if (!places) return mpsi_fail_memory(mpm->context, function, (size_t)(count - have) * 24);
+  double *places = mpsi_alloc(context, (count - have) * grid->dim, sizeof *places);
+  if (!places) return mpsi_fail_memory(context, function, (size_t)(count - have) * 24);
   for (int64_t k = have; k < count; k++)
-    for (int c = 0; c < mpm->grid.dim; c++) places[(k - have) * mpm->grid.dim + c] = x[3 * k + c];
+    for (int c = 0; c < grid->dim; c++) places[(k - have) * grid->dim + c] = x[3 * k + c];
   const mps_status status =
-      mpsi_as(mpm->context, function, mps_particles_append(set, count - have, places));
-  mpsi_free(mpm->context, places);
+      mpsi_as(context, function, mps_particles_append(set, count - have, places));
+  mpsi_free(context, places);
   return status;
 }
 
@@ -172,7 +173,7 @@ static mps_status fill(mps_grid *grid, const char *function, mps_particles *set,
     status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "velocity", 0));
   if (status == MPS_OK)
     status = mpsi_as(mpm->context, function, mps_particles_add_field(set, "force", mpm->grid.dim));
-  if (status == MPS_OK) status = resize(mpm, function, set, count, x);
+  if (status == MPS_OK) status = resize(mpm->context, &mpm->grid, function, set, count, x);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(set, fields);
     return status;
@@ -187,19 +188,19 @@ static mps_status fill(mps_grid *grid, const char *function, mps_particles *set,
 mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   mps_mpm *mpm = grid->mpm;
-  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
+  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
   int64_t count = 0;
-  mps_status status = mpsi_mpm_agree(mpm, __func__, check_set(mpm, __func__, set));
+  mps_status status = mpsi_mpm_agree(mpm->partition, __func__, check_set(mpm, __func__, set));
   if (status == MPS_OK)
     status = mpsi_as(mpm->context, __func__,
                      mps_grid_get_nodes(grid, 0, &count, NULL, NULL, NULL, NULL));
   if (status != MPS_OK) return status;
   double *memory = mpsi_alloc(mpm->context, count * 10, sizeof *memory);
   if (!memory) status = mpsi_fail_memory(mpm->context, __func__, (size_t)count * 80);
-  status = mpsi_mpm_agree(mpm, __func__, status);
+  status = mpsi_mpm_agree(mpm->partition, __func__, status);
   if (status == MPS_OK)
-    status = mpsi_mpm_agree(mpm, __func__, fill(grid, __func__, set, count, memory));
-  if (status != MPS_OK) mpsi_mpm_restore_edit_state(mpm, &before);
+    status = mpsi_mpm_agree(mpm->partition, __func__, fill(grid, __func__, set, count, memory));
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
   mpsi_free(mpm->context, memory);
   return status;
 }

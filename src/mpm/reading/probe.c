@@ -134,7 +134,7 @@ static mps_status list_near(near *list, const char *function, int64_t count, con
   list->item = mpsi_alloc(context, list->count, sizeof *list->item);
   if (!list->item)
     status = mpsi_fail_memory(context, function, (size_t)list->count * sizeof *list->item);
-  status = mpsi_mpm_agree(list->mpm, function, status);
+  status = mpsi_mpm_agree(list->mpm->partition, function, status);
   for (int64_t k = 0; status == MPS_OK && k < list->count; k++) {
     list->item[k] = list->row[k].at;
     list->item[k].index = k;
@@ -307,20 +307,20 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
 }
 
 /* Do all ranks ask for the same? Each adds the particles that it has to every point. */
-static mps_status agree_on_points(mps_mpm *mpm, const char *function, mps_status status,
-                                  const char *field, int32_t component, int64_t count,
-                                  const double *points) {
+static mps_status agree_on_points(const mpsi_grid *grid, mpsi_partition *partition,
+                                  const char *function, mps_status status, const char *field,
+                                  int32_t component, int64_t count, const double *points) {
   mpsi_given given;
-  if (!mpm->partition) return status;
+  if (!partition) return status;
   mpsi_given_begin(&given);
   if (status == MPS_OK) {
     mpsi_give_text(&given, "a hash of field", field);
     mpsi_give(&given, "component", component);
     mpsi_give(&given, "count", (double)count);
     for (int64_t i = 0; i < count; i++) /* in the plane the third coordinate is not read */
-      mpsi_give_vector(&given, "points", mpm->grid.dim, points + 3 * i);
+      mpsi_give_vector(&given, "points", grid->dim, points + 3 * i);
   }
-  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
+  return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
 mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t component,
@@ -330,7 +330,8 @@ mps_status mps_grid_evaluate(const mps_grid *grid, const char *field, int32_t co
   near list = {.mpm = mpm};
   int32_t components = 0;
   mps_status status = check(mpm, __func__, field, component, count, points, values, &components);
-  status = agree_on_points(mpm, __func__, status, field, component, count, points);
+  status = agree_on_points(&mpm->grid, mpm->partition, __func__, status, field, component, count,
+                           points);
   if (status != MPS_OK || count == 0) return status;
   const int32_t first = component < 0 ? 0 : component, width = component < 0 ? components : 1;
   list.columns = width;

@@ -36,7 +36,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
                sizeof *mpm->boundaries.held},
               {mpm->boundaries.dashpot_room.capacity + mpm->boundaries.old_dashpot_room.capacity,
                sizeof *mpm->boundaries.dashpot},
-              {mpm->grid.worker_count, mpsi_worker_bytes(mpm)},
+              {mpm->grid.worker_count, mpsi_worker_bytes(&mpm->grid)},
               {mpm->energy.cells_room.capacity, sizeof *mpm->energy.cells},
               {mpm->energy.nodes_room.capacity, sizeof *mpm->energy.nodes},
               {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->grid.dim * sizeof(double)},
@@ -50,11 +50,11 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
 }
 
 /* Volume, momenta and kinetic energy of particles [begin, end). */
-static void sum_particles(const mps_mpm *mpm, int64_t begin, int64_t end, mps_totals *t) {
-  const mpsi_columns *p = &mpm->p;
-  const int dim = mpm->grid.dim;
-  const double h = mpm->grid.cell, full = h * h / (mpm->grid.spline == 3 ? 3.0 : 4.0);
-  const double moment = mpm->grid.standard ? 0.0 : full; /* particles without L carry no spin */
+static void sum_particles(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end,
+                          mps_totals *t) {
+  const int dim = grid->dim;
+  const double h = grid->cell, full = h * h / (grid->spline == 3 ? 3.0 : 4.0);
+  const double moment = grid->standard ? 0.0 : full; /* particles without L carry no spin */
   for (int64_t k = begin; k < end; k++) {
     const double m = p->m[k];
     double x[3] = {0}, v[3] = {0}, L[3][3] = {{0}};
@@ -85,30 +85,32 @@ static void add_part(mpsi_exact *sum, const mps_totals *t) {
 
 /* Within blocks in their order, and exactly over blocks; where the caller has written or removed
  * particles since, exactly over these. */
-static void sum_share(const mps_mpm *mpm, mpsi_exact *sum) {
-  for (int64_t b = 0; !mpm->run.edited && b < mpm->grid.cell_count; b++) {
+static void sum_share(const mpsi_grid *grid, const mpsi_columns *p,
+                      const mpsi_boundaries *boundaries, const mpsi_run *run, mpsi_exact *sum) {
+  for (int64_t b = 0; !run->edited && b < grid->cell_count; b++) {
     mps_totals part = {0};
-    if (mpm->grid.cells[b].ghost) continue;
-    sum_particles(mpm, mpm->grid.cells[b].begin, mpm->grid.cells[b].end, &part);
+    if (grid->cells[b].ghost) continue;
+    sum_particles(grid, p, grid->cells[b].begin, grid->cells[b].end, &part);
     add_part(sum, &part);
   }
-  for (int64_t k = 0; mpm->run.edited && k < mpm->p.count; k++) {
+  for (int64_t k = 0; run->edited && k < p->count; k++) {
     mps_totals part = {0};
-    sum_particles(mpm, k, k + 1, &part);
+    sum_particles(grid, p, k, k + 1, &part);
     add_part(sum, &part);
   }
-  for (int64_t k = 0; k < mpm->p.count; k++) /* whatever the blocks: it must not change */
-    mpsi_exact_add(&sum[MASS], mpm->p.m[k]);
-  mpsi_mpm_boundary_add_works(mpm, &sum[WORK]);
+  for (int64_t k = 0; k < p->count; k++) /* whatever the blocks: it must not change */
+    mpsi_exact_add(&sum[MASS], p->m[k]);
+  mpsi_mpm_boundary_add_works(boundaries, &sum[WORK]);
 }
 
 /* Of all ranks. */
-static mps_status sum_energies(mps_mpm *mpm, const char *function, double *out) {
+static mps_status sum_energies(mpsi_partition *partition, const mpsi_energy *energy,
+                               const char *function, double *out) {
   mpsi_exact sum[MPSI_ENERGY_SUMS];
   mps_status status = MPS_OK;
-  memcpy(sum, mpm->energy.sum, sizeof sum);
-  if (mpm->partition && mpm->energy.counts)
-    status = mpsi_domain_sum_exact(mpm->partition->domain, function, MPSI_ENERGY_SUMS, sum);
+  memcpy(sum, energy->sum, sizeof sum);
+  if (partition && energy->counts)
+    status = mpsi_domain_sum_exact(partition->domain, function, MPSI_ENERGY_SUMS, sum);
   for (int k = 0; k < MPSI_ENERGY_SUMS; k++) out[k] = mpsi_exact_value(&sum[k]);
   return status;
 }
@@ -120,11 +122,13 @@ mps_status mps_mpm_get_totals_sized(const mps_mpm *handle, mps_totals *out, size
   mpsi_exact sum[SUMS] = {{{0}}};
   double e[MPSI_ENERGY_SUMS];
   mps_status status = MPS_OK;
-  if (mpm->partition) status = mpsi_mpm_compare_edits(mpm, function, status);
+  if (mpm->partition)
+    status = mpsi_mpm_compare_edits(&mpm->contact, mpm->partition, &mpm->run, &mpm->def, function,
+                                    status);
   if (status != MPS_OK) return status;
-  sum_share(mpm, sum);
+  sum_share(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->run, sum);
   if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, SUMS, sum);
-  if (status == MPS_OK) status = sum_energies(mpm, function, e);
+  if (status == MPS_OK) status = sum_energies(mpm->partition, &mpm->energy, function, e);
   if (status != MPS_OK) return status;
   mps_totals t = {.mass = mpsi_exact_value(&sum[MASS]),
                   .volume = mpsi_exact_value(&sum[VOLUME]),
@@ -152,8 +156,8 @@ mps_status mps_mpm_get_losses_sized(const mps_mpm *handle, mps_mpm_losses *out, 
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "budget is 0 in the solver's definition: the losses are not known");
   double e[MPSI_ENERGY_SUMS];
-  mps_status status = mpsi_mpm_agree(mpm, function, MPS_OK);
-  if (status == MPS_OK) status = sum_energies(mpm, function, e);
+  mps_status status = mpsi_mpm_agree(mpm->partition, function, MPS_OK);
+  if (status == MPS_OK) status = sum_energies(mpm->partition, &mpm->energy, function, e);
   if (status != MPS_OK) return status;
   mps_mpm_losses l = {.laws = e[MPSI_ENERGY_SPENT],
                       .boundaries = e[MPSI_ENERGY_BOUNDARY_LOSS],

@@ -7,19 +7,20 @@
 #include "core/particles/particles_internal.h"
 
 /* The particle that ends the step, of which the message says what is wrong with it. */
-static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k, const char *what) {
-  const mpsi_columns *p = &mpm->p;
-  const long long id = (long long)mpsi_particles_integers(mpm->p.set, "id")[k];
-  const bool space = mpm->grid.dim == 3;
+static mps_status report_bad(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                             const mpsi_run *run, const char *function, int64_t k,
+                             const char *what) {
+  const long long id = (long long)mpsi_particles_integers(p->set, "id")[k];
+  const bool space = grid->dim == 3;
   const double z = space ? p->x[2][k] : 0.0, vz = space ? p->v[2][k] : 0.0;
   const mps_status status = mpsi_fail(
-      mpm->context, function, MPS_ERROR_DIVERGED,
+      context, function, MPS_ERROR_DIVERGED,
       "step %lld, t = %.6g s: particle %lld at (%.6g, %.6g, %.6g) m with velocity (%.4g, %.4g, "
       "%.4g) m/s and volume %.4g m3 %s; dt was %.4g s, %.3g of the Courant limit: check dt, the "
       "contact stiffness and the initial stress",
-      (long long)mpm->run.steps, mpm->run.time, id, p->x[0][k], p->x[1][k], z, p->v[0][k],
-      p->v[1][k], vz, p->V[k], what, mpm->run.dt, mpm->run.dt * mpm->run.speed * mpm->grid.inverse);
-  mpsi_fail_where(mpm->context, mpm->run.steps, id);
+      (long long)run->steps, run->time, id, p->x[0][k], p->x[1][k], z, p->v[0][k], p->v[1][k], vz,
+      p->V[k], what, run->dt, run->dt * run->speed * grid->inverse);
+  mpsi_fail_where(context, run->steps, id);
   return status;
 }
 
@@ -29,13 +30,16 @@ static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed
   mpsi_partition *partition = mpm->partition;
   enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FOUND };
   double most[MPSI_SWEEP_SUMS];
-  mpsi_mpm_sweep_sums(mpm, most);
+  mpsi_mpm_sweep_sums(&mpm->contact, most);
   mps_status own = MPS_OK, status = partition->lost;
   if (bad >= 0)
-    own = report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
+    own = report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, bad,
+                     "is not finite, is beyond 1e100 m/s or has no volume");
   else if (lost >= 0)
-    own = report_bad(mpm, function, lost, "has left the domain");
-  if (bad < 0) mpsi_mpm_remove_leaving(mpm);
+    own = report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, lost,
+                     "has left the domain");
+  if (bad < 0)
+    mpsi_mpm_remove_leaving(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, &mpm->rooms);
   double found[FOUND] = {speed,
                          mpm->run.stale,
                          bad >= 0,
@@ -72,9 +76,11 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   if (mpm->partition) return collect_ranks(mpm, function, speed, bad, lost);
   mpm->run.broken = bad >= 0;
   if (bad >= 0)
-    return report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
+    return report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, bad,
+                      "is not finite, is beyond 1e100 m/s or has no volume");
   mpm->run.speed = speed;
   if (lost < 0) return MPS_OK;
   mpm->run.lost = mpm->run.stale = true;
-  return report_bad(mpm, function, lost, "has left the domain");
+  return report_bad(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function, lost,
+                    "has left the domain");
 }

@@ -34,11 +34,11 @@ static box box_under(const mpsi_cell_block *cells, int q, const int32_t *low, co
 }
 
 /* Where the stencils that have a node in a body may have nodes; empty where none has. */
-static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
-  const int reach = mpm->grid.spline;
+static box near_bodies(const mpsi_grid *grid, const mpsi_cell_block *cells) {
+  const int reach = grid->spline;
   box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+  for (int q = 0; q < 1 << grid->dim; q++) {
+    const mpsi_node_block *nodes = &grid->nodes[cells->to[q]];
     if (!nodes->inside) continue;
     const box in = box_under(cells, q, nodes->low, nodes->high);
     for (int c = 0; c < 3 && !is_empty(&in); c++) {
@@ -50,48 +50,54 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 }
 
 /* Whether the stencils may have nodes beside a thin body. */
-static bool near_thin(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+static bool near_thin(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                      const mpsi_cell_block *cells) {
   bool any = false;
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) any = any || mpm->grid.nodes[cells->to[q]].thin;
-  return any && mpm->contact.thin;
+  for (int q = 0; q < 1 << grid->dim; q++) any = any || grid->nodes[cells->to[q]].thin;
+  return any && contacts->thin;
 }
 
 /* Forces are needed apart from the momenta at all nodes. */
-static bool all_apart(const mps_mpm *mpm) { return mpsi_forces_apart(mpm) || mpm->grid.apart; }
+static bool all_apart(const mpsi_grid *grid, const mpsi_energy *energy,
+                      const mpsi_settling *settling, const mps_mpm_def *def) {
+  return mpsi_forces_apart(energy, settling, def) || grid->apart;
+}
 
 /* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
-static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
+static void mark_cut(mpsi_grid *grid, const mpsi_contacts *contacts, const mpsi_energy *energy,
+                     const mpsi_settling *settling, const mps_mpm_def *def,
+                     const mpsi_cell_block *cells, const box *near, bool finds) {
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
-  const bool all =
-      all_apart(mpm) || mpm->grid.by_weight || mpm->grid.flip > 0.0 || (finds && cells->edge);
+  const bool all = all_apart(grid, energy, settling, def) || grid->by_weight || grid->flip > 0.0 ||
+                   (finds && cells->edge);
   bool rough = false;
   for (int32_t k = 0; cells->inside && k < cells->pairs; k++) {
-    const int32_t body = mpm->contact.cell_pair[cells->first_pair + k].body;
-    const mps_contact *contact = mpm->contact.handle[body];
+    const int32_t body = contacts->cell_pair[cells->first_pair + k].body;
+    const mps_contact *contact = contacts->handle[body];
     rough = rough || (contact->def.friction > 0.0 && !mpsi_by_impulses(contact));
   }
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
-    mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+  for (int q = 0; q < 1 << grid->dim; q++) {
+    mpsi_node_block *nodes = &grid->nodes[cells->to[q]];
     box under = box_under(cells, q, low, high);
     under = common(&under, near);
     const bool in_contact = !is_empty(&under);
-    if (!in_contact && !cells->edge && !mpm->grid.standard && !all_apart(mpm)) continue;
-    if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
+    if (!in_contact && !cells->edge && !grid->standard && !all_apart(grid, energy, settling, def))
+      continue;
+    if (nodes->side < 0) nodes->side = (int32_t)grid->side_count++;
     nodes->split = nodes->split || all || (in_contact && (rough || cells->pairs > 1));
   }
 }
 
 /* Which blocks keep the fits of their particles; false: memory refused. */
-static bool list_fits(mps_mpm *mpm) {
-  mpsi_grid *grid = &mpm->grid;
+static bool list_fits(mps_context *context, mpsi_grid *grid) {
   int64_t count = 0;
   for (int64_t b = 0; b < grid->cell_count; b++) {
     mpsi_cell_block *cells = &grid->cells[b];
     cells->first_fit = cells->inside ? count : -1;
     if (cells->inside) count += cells->end - cells->begin;
   }
-  if (!mpsi_room_ensure(mpm->context, &grid->fit_room, count, sizeof *grid->fit) ||
-      !mpsi_room_ensure(mpm->context, &grid->fitted_room, count, sizeof *grid->fitted))
+  if (!mpsi_room_ensure(context, &grid->fit_room, count, sizeof *grid->fit) ||
+      !mpsi_room_ensure(context, &grid->fitted_room, count, sizeof *grid->fitted))
     return false;
   grid->fit = grid->fit_room.item;
   grid->fitted = grid->fitted_room.item;
@@ -113,11 +119,14 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
   mpm->grid.side_count = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
-    const box near = near_bodies(mpm, cells);
+    const box near = near_bodies(&mpm->grid, cells);
     cells->inside = !is_empty(&near);
-    cells->thin = cells->ghost ? cells->thin && mpm->contact.thin : near_thin(mpm, cells);
+    cells->thin = cells->ghost ? cells->thin && mpm->contact.thin
+                               : near_thin(&mpm->grid, &mpm->contact, cells);
     cells->cut = cells->edge || cells->inside || cells->thin || mpm->grid.standard;
-    if (cells->cut || all_apart(mpm)) mark_cut(mpm, cells, &near, finds);
+    if (cells->cut || all_apart(&mpm->grid, &mpm->energy, &mpm->settling, &mpm->def))
+      mark_cut(&mpm->grid, &mpm->contact, &mpm->energy, &mpm->settling, &mpm->def, cells, &near,
+               finds);
   }
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
@@ -126,7 +135,8 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
       cells->split = cells->split || mpm->grid.nodes[cells->to[q]].split;
     cells->apart = cells->split || cells->cut;
   }
-  if (!mpsi_mpm_list_across(mpm) || !list_fits(mpm) ||
+  if (!mpsi_mpm_list_across(mpm->context, &mpm->grid, &mpm->mirrors, &mpm->contact) ||
+      !list_fits(mpm->context, &mpm->grid) ||
       !mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
                         mpm->grid.side_count * mpm->grid.block_nodes, sizeof *mpm->grid.side))
     return mpsi_fail_memory(mpm->context, function,
@@ -141,15 +151,17 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
   static const mpsi_pass pass = {
       .update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached, .ghosts = true};
   if (mpm->contact.bodies > 0) {
-    if (status == MPS_OK) status = mpsi_mpm_list_pairs(mpm, function);
-    if (status == MPS_OK && !mpsi_mpm_begin_across(mpm))
+    if (status == MPS_OK)
+      status = mpsi_mpm_list_pairs(mpm->context, &mpm->grid, &mpm->contact, function);
+    if (status == MPS_OK &&
+        !mpsi_mpm_begin_across(mpm->context, &mpm->grid, &mpm->p, &mpm->contact))
       status = mpsi_fail_memory(mpm->context, function,
                                 (size_t)(mpm->contact.node_pair_count * mpm->grid.block_nodes) *
                                     sizeof *mpm->contact.sight);
     if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
     if (mpm->partition) { /* all ranks, whatever this one's status */
       for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
-        mpm->grid.cells[b].thin = near_thin(mpm, &mpm->grid.cells[b]);
+        mpm->grid.cells[b].thin = near_thin(&mpm->grid, &mpm->contact, &mpm->grid.cells[b]);
       const mps_status lost = mpsi_mpm_exchange_corners(mpm, function, status == MPS_OK);
       if (lost != MPS_OK) status = lost;
     }

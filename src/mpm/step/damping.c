@@ -6,17 +6,17 @@
 
 #include <string.h>
 
-void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
+void mpsi_mpm_damp_nodes(const mpsi_grid *grid, const mps_mpm_def *def, double dt, int64_t g,
+                         const uint8_t *fixed) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
+  mpsi_node *node = grid->node + mpsi_first_node(grid, g);
   const mpsi_node *side =
-      nodes->side < 0 ? NULL
-                      : (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
-  const double local = mpm->def.local_damping;
-  const double keeps = 1.0 / (1.0 + mpm->def.viscous_damping * mpm->run.dt);
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+      nodes->side < 0 ? NULL : (const mpsi_node *)(grid->side + mpsi_first_node(grid, nodes->side));
+  const double local = def->local_damping;
+  const double keeps = 1.0 / (1.0 + def->viscous_damping * dt);
+  for (int k = 0; k < grid->block_nodes; k++) {
     if (!(node[k][MPSI_MASS] > 0.0)) continue;
-    for (int c = 0; c < mpm->grid.dim; c++) {
+    for (int c = 0; c < grid->dim; c++) {
       double *v = &node[k][MPSI_VECTOR + c];
       if (fixed[k] >> c & 1) continue;
       if (local > 0.0) { /* at most to a stop */
@@ -31,13 +31,13 @@ void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed) {
 /* ---- distance from equilibrium --------------------------------------------------------------- */
 
 /* N, the sum of the sizes of gravity and loads on the particles of a block. */
-static double applied_to_particles(const mps_mpm *mpm, const mpsi_cell_block *cells) {
-  const mpsi_columns *p = &mpm->p;
+static double applied_to_particles(const mpsi_grid *grid, const mpsi_columns *p,
+                                   const mps_mpm_def *def, const mpsi_cell_block *cells) {
   double sum = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k++) {
     double square = 0.0;
-    for (int c = 0; c < mpm->grid.dim; c++) {
-      const double f = p->m[k] * mpm->def.gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
+    for (int c = 0; c < grid->dim; c++) {
+      const double f = p->m[k] * def->gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
       square += f * f;
     }
     sum += sqrt(square);
@@ -45,54 +45,56 @@ static double applied_to_particles(const mps_mpm *mpm, const mpsi_cell_block *ce
   return sum;
 }
 
-mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function) {
-  mpsi_settling *s = &mpm->settling;
+mps_status mpsi_mpm_begin_balance(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_columns *p, mpsi_settling *s, const mps_mpm_def *def,
+                                  const char *function) {
   if (!s->on) return MPS_OK;
-  if (!mpsi_room_ensure(mpm->context, &s->nodes_room, mpsi_all_nodes(&mpm->grid), sizeof *s->nodes))
-    return mpsi_fail_memory(mpm->context, function,
-                            (size_t)mpsi_all_nodes(&mpm->grid) * sizeof *s->nodes);
+  if (!mpsi_room_ensure(context, &s->nodes_room, mpsi_all_nodes(grid), sizeof *s->nodes))
+    return mpsi_fail_memory(context, function, (size_t)mpsi_all_nodes(grid) * sizeof *s->nodes);
   s->nodes = s->nodes_room.item;
   memset(&s->applied, 0, sizeof s->applied);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    if (!mpm->grid.cells[b].ghost)
-      mpsi_exact_add(&s->applied, applied_to_particles(mpm, &mpm->grid.cells[b]));
+  for (int64_t b = 0; b < grid->cell_count; b++)
+    if (!grid->cells[b].ghost)
+      mpsi_exact_add(&s->applied, applied_to_particles(grid, p, def, &grid->cells[b]));
   return MPS_OK;
 }
 
 static double size_of(const double *v) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 /* Of the forces of bodies on node k. */
-static double contact_force(const mps_mpm *mpm, const mpsi_node_block *nodes, int k) {
+static double contact_force(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                            const mpsi_node_block *nodes, int k) {
   double sum = 0.0;
-  const int32_t pairs = mpm->contact.penalty_bodies > 0 ? nodes->pairs : 0;
+  const int32_t pairs = contacts->penalty_bodies > 0 ? nodes->pairs : 0;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
-    const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
-    const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
+    const mpsi_node_pair *pair = &contacts->node_pair[t];
+    const mpsi_contact_node *at = &contacts->node[(int64_t)t * grid->block_nodes + k];
     sum += size_of(at->force);
-    if (mpm->contact.handle[pair->body]->def.friction > 0.0 && pair->mass != 0.0)
+    if (contacts->handle[pair->body]->def.friction > 0.0 && pair->mass != 0.0)
       sum += fabs(at->mass) * size_of(at->slip);
   }
   return sum;
 }
 
-void mpsi_mpm_measure_balance(mps_mpm *mpm, int64_t g, const uint8_t *fixed,
-                              const mpsi_node *held) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
-  const mpsi_node *side = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+void mpsi_mpm_measure_balance(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                              const mpsi_settling *settling, double dt, int64_t g,
+                              const uint8_t *fixed, const mpsi_node *held) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
+  const mpsi_node *node = (const mpsi_node *)(grid->node + mpsi_first_node(grid, g));
+  const mpsi_node *side = (const mpsi_node *)(grid->side + mpsi_first_node(grid, nodes->side));
   mpsi_node_balance sum = {0};
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+  for (int k = 0; k < grid->block_nodes; k++) {
     const double m = node[k][MPSI_MASS];
     double free[3] = {0.0}, by_boundary[3] = {0.0};
     if (!(m > 0.0)) continue;
-    for (int c = 0; c < mpm->grid.dim; c++) {
+    for (int c = 0; c < grid->dim; c++) {
       const double v = node[k][MPSI_VECTOR + c];
       by_boundary[c] = v - held[k][MPSI_VECTOR + c];
       if (!(fixed[k] >> c & 1)) free[c] = v - side[k][MPSI_VECTOR + c];
       sum.kinetic += 0.5 * m * v * v;
     }
-    sum.unbalanced += m * size_of(free) / mpm->run.dt;
-    sum.applied += m * size_of(by_boundary) / mpm->run.dt + contact_force(mpm, nodes, k);
+    sum.unbalanced += m * size_of(free) / dt;
+    sum.applied += m * size_of(by_boundary) / dt + contact_force(grid, contacts, nodes, k);
   }
-  mpm->settling.nodes[g] = sum;
+  settling->nodes[g] = sum;
 }

@@ -27,10 +27,15 @@ typedef struct mpsi_settling {
 
 /* Before a step, where settling: room, and what is applied to the particles, of which some may
  * leave in the step. */
-mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_begin_balance(mps_context *context, const mpsi_grid *grid,
+                                  const mpsi_columns *p, mpsi_settling *s, const mps_mpm_def *def,
+                                  const char *function);
 /* Block g, bit c of `fixed`: component c is prescribed. `held` has the velocities before the
  * boundaries. */
-void mpsi_mpm_measure_balance(mps_mpm *mpm, int64_t g, const uint8_t *fixed, const mpsi_node *held);
-void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed);
+void mpsi_mpm_measure_balance(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                              const mpsi_settling *settling, double dt, int64_t g,
+                              const uint8_t *fixed, const mpsi_node *held);
+void mpsi_mpm_damp_nodes(const mpsi_grid *grid, const mps_mpm_def *def, double dt, int64_t g,
+                         const uint8_t *fixed);
 
 #endif

@@ -32,46 +32,48 @@
 #define BETA 0.06
 #define EVERY 8 /* steps */
 
-bool mpsi_mpm_filters(const mps_mpm *mpm) {
-  return mpm->p.laws.some_filtered && mpm->run.steps % EVERY == 0;
+bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run) {
+  return p->laws.some_filtered && run->steps % EVERY == 0;
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static bool is_filtered(const mps_mpm *mpm, int64_t k) { return mpsi_law_of(mpm, k)->filtered; }
+static bool is_filtered(const mpsi_columns *p, int64_t k) { return mpsi_law_of(p, k)->filtered; }
 
-static double mean_stress(const mps_mpm *mpm, int64_t k) {
-  return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) * (1.0 / 3.0);
+static double mean_stress(const mpsi_columns *p, int64_t k) {
+  return (p->s[0][k] + p->s[1][k] + p->s[2][k]) * (1.0 / 3.0);
 }
 
 static double *gap_of(const mpsi_law_use *law, int64_t k) { return law->history[law->gap] + k; }
 
 /* K, Pa. */
-static double bulk_of(const mps_mpm *mpm, int64_t k) {
-  return mpsi_law_of(mpm, k)->bulk * mpsi_mpm_stiffness(mpm, k);
+static double bulk_of(const mpsi_columns *p, int64_t k) {
+  return mpsi_law_of(p, k)->bulk * mpsi_mpm_stiffness(p, k);
 }
 
 /* e, Pa, and its slope (per cell along each axis) in ground at rest, compressed by its weight
  * without lateral strain; none where it is open. */
-static double closed_stress(const mps_mpm *mpm, int64_t k, double *slope) {
-  const mpsi_law_use *law = mpsi_law_of(mpm, k);
-  const double gap = *gap_of(law, k), density = mpm->p.m[k] / mpm->p.V[k];
-  const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * mpm->grid.cell;
-  for (int c = 0; c < 3; c++) slope[c] = c < mpm->grid.dim ? -weight * mpm->def.gravity[c] : 0.0;
-  return mean_stress(mpm, k) + bulk_of(mpm, k) * gap;
+static double closed_stress(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *def,
+                            int64_t k, double *slope) {
+  const mpsi_law_use *law = mpsi_law_of(p, k);
+  const double gap = *gap_of(law, k), density = p->m[k] / p->V[k];
+  const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * grid->cell;
+  for (int c = 0; c < 3; c++) slope[c] = c < grid->dim ? -weight * def->gravity[c] : 0.0;
+  return mean_stress(p, k) + bulk_of(p, k) * gap;
 }
 
 /* K dg, Pa: the mean stress that the plastic strain of this step can have made. */
-static double made_stress(const mps_mpm *mpm, int64_t k) {
-  const mpsi_law_use *law = mpsi_law_of(mpm, k);
-  return bulk_of(mpm, k) * fmax(0.0, law->history[law->strain][k] - mpm->p.rough[k]);
+static double made_stress(const mpsi_columns *p, int64_t k) {
+  const mpsi_law_use *law = mpsi_law_of(p, k);
+  return bulk_of(p, k) * fmax(0.0, law->history[law->strain][k] - p->rough[k]);
 }
 
 /* r: of the difference `off` from the nodes' mean; `made`, the nodes' mean of K dg. */
-static double find_rough_part(const mps_mpm *mpm, int64_t k, double off, double made) {
-  const double modulus = mpsi_law_of(mpm, k)->modulus * mpsi_mpm_stiffness(mpm, k);
-  const double wave = sqrt(modulus * mpm->p.V[k] / mpm->p.m[k]);
-  const double decay = fmin(1.0, EVERY * BETA * wave * mpm->grid.inverse * mpm->run.dt);
+static double find_rough_part(const mpsi_grid *grid, const mpsi_columns *p, double dt, int64_t k,
+                              double off, double made) {
+  const double modulus = mpsi_law_of(p, k)->modulus * mpsi_mpm_stiffness(p, k);
+  const double wave = sqrt(modulus * p->V[k] / p->m[k]);
+  const double decay = fmin(1.0, EVERY * BETA * wave * grid->inverse * dt);
   return copysign(fmin(decay * fabs(off), EVERY * made), off);
 }
 
@@ -84,10 +86,10 @@ typedef struct axes {
   int offset[3][MPSI_TILE_SIDE];
 } axes;
 
-static void find_axes(const mps_mpm *mpm, const mpsi_cell_block *cells, axes *out) {
+static void find_axes(const mpsi_grid *grid, const mpsi_cell_block *cells, axes *out) {
   for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_TILE_SIDE)
     for (int i = 0; i < MPSI_TILE_SIDE; i++) {
-      const int partner = c < mpm->grid.dim ? mpsi_mpm_mirror_partner(mpm, cells, c, i) : i;
+      const int partner = c < grid->dim ? mpsi_mpm_mirror_partner(grid, cells, c, i) : i;
       out->place[c][i] = partner;
       out->offset[c][i] = stride * partner;
     }
@@ -116,8 +118,8 @@ MPSI_INLINE void find_support(const mps_mpm *mpm, const mpsi_cell_block *cells, 
   out->across = 0;
   if (!thin) return;
   double x[3];
-  mpsi_former_place(mpm, k, x);
-  out->across = mpsi_mpm_find_parted(mpm, cells, base, x).across;
+  mpsi_former_place(&mpm->grid, &mpm->p, mpm->run.dt, k, x);
+  out->across = mpsi_mpm_find_parted(&mpm->grid, &mpm->contact, cells, base, x).across;
 }
 
 /* The tile that a node of a support has its value in. */
@@ -170,15 +172,15 @@ MPSI_INLINE double take(const mpsi_worker *worker, int dim, int spline, bool thi
 }
 
 /* The means of the nodes under a block, to the tile of the worker. */
-static void gather_means(const mps_mpm *mpm, const mpsi_cell_block *cells,
+static void gather_means(const mpsi_grid *grid, const mpsi_cell_block *cells,
                          const mpsi_worker *worker) {
   for (int across = 0; across < (cells->thin ? 2 : 1); across++)
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
         for (int i = cells->low[0]; i < cells->high[0]; i++) {
-          const double *from = mpsi_sums_at(mpm, cells, NULL, across != 0, i, j, k);
+          const double *from = mpsi_sums_at(grid, cells, NULL, across != 0, i, j, k);
           const double volume = from[MPSI_SUM_VOLUME];
-          double *to = mpsi_sums_at(mpm, cells, worker, across != 0, i, j, k);
+          double *to = mpsi_sums_at(grid, cells, worker, across != 0, i, j, k);
           for (int c = MPSI_SUM_VALUE; c < MPSI_SUMS; c++)
             to[c] = volume > 0.0 ? from[c] / volume : 0.0;
         }
@@ -199,18 +201,19 @@ MPSI_INLINE void run_loop(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
   double slope[3];
   axes all;
   support s;
-  find_axes(mpm, cells, &all);
+  find_axes(&mpm->grid, cells, &all);
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (!is_filtered(mpm, k)) continue;
+    if (!is_filtered(&mpm->p, k)) continue;
     find_support(mpm, cells, &all, dim, spline, thin, k, &s);
-    const double closed =
-        which == SUM_STRESS || which == FIND_ROUGH ? closed_stress(mpm, k, slope) : 0.0;
+    const double closed = which == SUM_STRESS || which == FIND_ROUGH
+                              ? closed_stress(&mpm->grid, &mpm->p, &mpm->def, k, slope)
+                              : 0.0;
     if (which == SUM_STRESS)
-      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope, made_stress(mpm, k));
+      give(worker, dim, spline, thin, &s, mpm->p.V[k], closed, slope, made_stress(&mpm->p, k));
     else if (which == SUM_ROUGH)
       give(worker, dim, spline, thin, &s, mpm->p.V[k], rough[k], NULL, 0.0);
     else if (which == FIND_ROUGH)
-      rough[k] = find_rough_part(mpm, k,
+      rough[k] = find_rough_part(&mpm->grid, &mpm->p, mpm->run.dt, k,
                                  closed + rise(dim, spline, &s, slope) -
                                      take(worker, dim, spline, thin, &s, MPSI_SUM_VALUE),
                                  take(worker, dim, spline, thin, &s, MPSI_SUM_FLOW));
@@ -236,12 +239,12 @@ MPSI_INLINE void choose_loop(mps_mpm *mpm, int64_t b, int32_t number, loop which
 }
 
 static void sum_stress(mps_mpm *mpm, int64_t b, int32_t number) {
-  mpsi_clear_sums(mpm, b, number);
+  mpsi_clear_sums(&mpm->grid, b, number);
   choose_loop(mpm, b, number, SUM_STRESS);
 }
 
 static void sum_rough(mps_mpm *mpm, int64_t b, int32_t number) {
-  mpsi_clear_sums(mpm, b, number);
+  mpsi_clear_sums(&mpm->grid, b, number);
   choose_loop(mpm, b, number, SUM_ROUGH);
 }
 
@@ -254,7 +257,7 @@ static void add_rough(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 static void find_rough(mps_mpm *mpm, int64_t b, int32_t number) {
-  gather_means(mpm, &mpm->grid.cells[b], &mpm->grid.workers[number]);
+  gather_means(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number]);
   choose_loop(mpm, b, number, FIND_ROUGH);
 }
 
@@ -266,11 +269,10 @@ static double grown(double V, double strain) {
 }
 
 /* e' = e - (r - S r), in p and the gap. */
-static void change_stress(const mps_mpm *mpm, int64_t k) {
-  const mpsi_columns *p = &mpm->p;
-  const mpsi_law_use *law = mpsi_law_of(mpm, k);
+static void change_stress(const mpsi_columns *p, int64_t k) {
+  const mpsi_law_use *law = mpsi_law_of(p, k);
   double *gap = gap_of(law, k);
-  const double bulk = bulk_of(mpm, k), was = mean_stress(mpm, k);
+  const double bulk = bulk_of(p, k), was = mean_stress(p, k);
   const double closed = was + bulk * *gap - p->rough[k];
   const double now =
       *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
@@ -282,16 +284,17 @@ static void change_stress(const mps_mpm *mpm, int64_t k) {
 
 static void filter_stress(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  gather_means(mpm, cells, &mpm->grid.workers[number]);
+  gather_means(&mpm->grid, cells, &mpm->grid.workers[number]);
   choose_loop(mpm, b, number, FIND_SMOOTH);
   for (int64_t begin = cells->begin, end; begin < cells->end; begin = end) {
     end = begin + MPSI_CHUNK < cells->end ? begin + MPSI_CHUNK : cells->end;
     mpsi_before_law before;
-    if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
+    if (mpm->energy.counts) mpsi_mpm_energy_keep(&mpm->grid, &mpm->p, begin, end, &before);
     for (int64_t k = begin; k < end; k++)
-      if (is_filtered(mpm, k)) change_stress(mpm, k);
-    mpsi_mpm_return_stress(mpm, cells, begin, end);
-    if (mpm->energy.counts) mpsi_mpm_energy_smoothed(mpm, cells, &before, begin, end);
+      if (is_filtered(&mpm->p, k)) change_stress(&mpm->p, k);
+    mpsi_mpm_return_stress(&mpm->grid, &mpm->p, &mpm->run, cells, begin, end);
+    if (mpm->energy.counts)
+      mpsi_mpm_energy_smoothed(&mpm->grid, &mpm->p, &mpm->energy, cells, &before, begin, end);
   }
   mpm->kernels->speed(mpm, b, number);
 }

@@ -7,24 +7,24 @@
 
 #include <string.h>
 
-void mpsi_clear_sums(mps_mpm *mpm, int64_t b, int32_t number) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_worker *worker = &mpm->grid.workers[number];
+void mpsi_clear_sums(const mpsi_grid *grid, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &grid->cells[b];
+  const mpsi_worker *worker = &grid->workers[number];
   const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
   for (int across = 0; across < (cells->thin ? 2 : 1); across++)
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
-        memset(mpsi_sums_at(mpm, cells, worker, across != 0, cells->low[0], j, k), 0, bytes);
+        memset(mpsi_sums_at(grid, cells, worker, across != 0, cells->low[0], j, k), 0, bytes);
 }
 
-static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+static void add_tile(const mpsi_grid *grid, const mpsi_cell_block *cells, const mpsi_worker *worker,
                      bool across) {
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++)
       for (int i = cells->low[0]; i < cells->high[0]; i++) {
-        const double *from = mpsi_sums_at(mpm, cells, worker, across, i, j, k);
+        const double *from = mpsi_sums_at(grid, cells, worker, across, i, j, k);
         if (from[MPSI_SUM_VOLUME] == 0.0) continue;
-        double *to = mpsi_sums_at(mpm, cells, NULL, across, i, j, k);
+        double *to = mpsi_sums_at(grid, cells, NULL, across, i, j, k);
         for (int c = 0; c < MPSI_SUMS; c++) to[c] += from[c];
       }
 }
@@ -36,7 +36,7 @@ void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
   else if (!mpsi_mpm_receive_sums(mpm, b, number, sum))
     return;
   for (int across = 0; across < (cells->thin ? 2 : 1); across++)
-    add_tile(mpm, cells, &mpm->grid.workers[number], across != 0);
+    add_tile(&mpm->grid, cells, &mpm->grid.workers[number], across != 0);
 }
 
 void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather) {
@@ -48,17 +48,19 @@ void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_
   mpsi_mpm_run_pass(mpm, &pass);
 }
 
-static bool on_any_rank(mps_mpm *mpm, bool failed) {
-  if (!mpm->partition || mpm->partition->lost != MPS_OK) return failed;
-  mpm->partition->lost = mpsi_mpm_any_rank(mpm, "mps_mpm_step", &failed);
-  return failed || mpm->partition->lost != MPS_OK;
+static bool on_any_rank(mpsi_partition *partition, bool failed) {
+  if (!partition || partition->lost != MPS_OK) return failed;
+  partition->lost = mpsi_mpm_any_rank(partition, "mps_mpm_step", &failed);
+  return failed || partition->lost != MPS_OK;
 }
 
-bool mpsi_any_failed(mps_mpm *mpm) {
+bool mpsi_any_failed(const mpsi_grid *grid, mpsi_partition *partition) {
   bool failed = false;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    failed = failed || (mpm->grid.cells[b].bad >= 0 && !mpm->grid.cells[b].lost);
-  return on_any_rank(mpm, failed);
+  for (int64_t b = 0; b < grid->cell_count; b++)
+    failed = failed || (grid->cells[b].bad >= 0 && !grid->cells[b].lost);
+  return on_any_rank(partition, failed);
 }
 
-bool mpsi_any_refused(mps_mpm *mpm) { return on_any_rank(mpm, mpm->p.laws.refusal.cells != NULL); }
+bool mpsi_any_refused(const mpsi_columns *p, mpsi_partition *partition) {
+  return on_any_rank(partition, p->laws.refusal.cells != NULL);
+}

@@ -9,22 +9,22 @@
 enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1, MPSI_SUM_FLOW = 2, MPSI_SUMS = 3 };
 
 /* Place (m) of a particle when G2P found its stencil: it has moved by dt v since. */
-static inline void mpsi_former_place(const mps_mpm *mpm, int64_t k, double *x) {
-  for (int c = 0; c < 3; c++)
-    x[c] = c < mpm->grid.dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
+static inline void mpsi_former_place(const mpsi_grid *grid, const mpsi_columns *p, double dt,
+                                     int64_t k, double *x) {
+  for (int c = 0; c < 3; c++) x[c] = c < grid->dim ? p->x[c][k] - dt * p->v[c][k] : 0.0;
 }
 
 /* The sums of tile node (i, j, k): those of a block, in the tile of a worker, or (NULL) those of
  * all blocks, at the node; `across`: of what thin bodies part (thin_bodies.h). */
-static inline double *mpsi_sums_at(const mps_mpm *mpm, const mpsi_cell_block *cells,
+static inline double *mpsi_sums_at(const mpsi_grid *grid, const mpsi_cell_block *cells,
                                    const mpsi_worker *worker, bool across, int i, int j, int k) {
   if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];
-  return mpm->grid
-      .node[across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k)];
+  return grid->node[across ? mpsi_node_across(grid, cells, i, j, k)
+                           : mpsi_node_under(grid, cells, i, j, k)];
 }
 
 /* Empties the part of the worker's tiles that the block uses. */
-void mpsi_clear_sums(mps_mpm *mpm, int64_t b, int32_t worker);
+void mpsi_clear_sums(const mpsi_grid *grid, int64_t b, int32_t worker);
 /* In the scatter of a pass: what `sum` puts into a worker's tile, here or on the block's own rank,
  * to the nodes. */
 void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t worker, mpsi_mpm_task sum);
@@ -32,11 +32,11 @@ void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t worker, mpsi_mpm_task sum);
 void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather);
 /* Whether the step has failed on some rank, or the only one: places may be no places, or a law has
  * refused. Collective. */
-bool mpsi_any_failed(mps_mpm *mpm);
-bool mpsi_any_refused(mps_mpm *mpm);
+bool mpsi_any_failed(const mpsi_grid *grid, mpsi_partition *partition);
+bool mpsi_any_refused(const mpsi_columns *p, mpsi_partition *partition);
 
 /* filter.c: of a step whose number the interval divides, the mean stresses of frictional laws. */
-bool mpsi_mpm_filters(const mps_mpm *mpm);
+bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run);
 void mpsi_mpm_filter(mps_mpm *mpm);
 
 #endif

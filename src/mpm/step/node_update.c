@@ -9,14 +9,14 @@ enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE }; /* nodes of a block */
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *mpm->grid.node;
-  memset(mpm->grid.node + mpsi_first_node(mpm, g), 0, bytes);
-  if (nodes->side >= 0) memset(mpm->grid.side + mpsi_first_node(mpm, nodes->side), 0, bytes);
+  memset(mpm->grid.node + mpsi_first_node(&mpm->grid, g), 0, bytes);
+  if (nodes->side >= 0) memset(mpm->grid.side + mpsi_first_node(&mpm->grid, nodes->side), 0, bytes);
   if (nodes->across >= 0) mpsi_mpm_clear_nodes(mpm, nodes->across, worker);
 }
 
 /* Nodes that only particles with full supports reach: the force is in the momentum. */
-static void update_free(mps_mpm *mpm, mpsi_node *node) {
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+static void update_free(const mpsi_grid *grid, mpsi_node *node) {
+  for (int k = 0; k < grid->block_nodes; k++) {
     if (node[k][MPSI_MASS] == 0.0) continue; /* no particle near, as most nodes of an edge block */
     const double inverse = 1.0 / node[k][MPSI_MASS];
     for (int c = MPSI_VECTOR; c < 4; c++) node[k][c] *= inverse;
@@ -24,9 +24,10 @@ static void update_free(mps_mpm *mpm, mpsi_node *node) {
 }
 
 /* Returns whether the own mass of some node is less than the one that forces see. */
-static bool update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *side) {
+static bool update_cut(const mpsi_grid *grid, double dt, bool split, mpsi_node *node,
+                       mpsi_node *side) {
   bool light = false;
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+  for (int k = 0; k < grid->block_nodes; k++) {
     const double weight = node[k][MPSI_MASS] + side[k][MPSI_EXCESS];
     if (!(weight > 0.0)) {
       memset(node[k], 0, sizeof node[k]);
@@ -34,47 +35,45 @@ static bool update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
       continue;
     }
     const double own = node[k][MPSI_MASS], m = mpsi_node_mass(own, weight);
-    const double carried = mpm->grid.by_weight ? weight
-                           : split             ? mpsi_carried_mass(own, weight)
-                                               : m;
+    const double carried = grid->by_weight ? weight : split ? mpsi_carried_mass(own, weight) : m;
     node[k][MPSI_MASS] = m;
     light = light || own < m;
     for (int c = MPSI_VECTOR; c < 4; c++) {
       const double before = node[k][c] / carried;
       node[k][c] = before;
-      if (split) node[k][c] += mpm->run.dt * (side[k][c] / m);
+      if (split) node[k][c] += dt * (side[k][c] / m);
       side[k][c] = before;
     }
   }
-  return light && !mpm->grid.by_weight && !mpm->grid.standard;
+  return light && !grid->by_weight && !grid->standard;
 }
 
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
+  mpsi_node *node = mpm->grid.node + mpsi_first_node(&mpm->grid, g);
   nodes->light = false;
   if (nodes->side < 0)
-    update_free(mpm, node);
+    update_free(&mpm->grid, node);
   else
-    nodes->light =
-        update_cut(mpm, nodes->split, node, mpm->grid.side + mpsi_first_node(mpm, nodes->side));
-  if (nodes->pairs > 0) mpsi_mpm_apply_contact(mpm, g);
+    nodes->light = update_cut(&mpm->grid, mpm->run.dt, nodes->split, node,
+                              mpm->grid.side + mpsi_first_node(&mpm->grid, nodes->side));
+  if (nodes->pairs > 0) mpsi_mpm_apply_contact(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   if (nodes->across >= 0) mpsi_mpm_update_nodes(mpm, nodes->across, worker);
 }
 
 /* Friction with bodies, mirrors having acted. `held` receives the velocities that the nodes would
  * have without boundaries. */
 static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
-  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
+  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
   memcpy(held, node, bytes);
   if (mpm->grid.nodes[g].pairs == 0 || mpm->grid.nodes[g].side < 0) return;
   mpsi_node before[MOST], old[MOST];
-  mpsi_node *side = mpm->grid.side + mpsi_first_node(mpm, mpm->grid.nodes[g].side);
+  mpsi_node *side = mpm->grid.side + mpsi_first_node(&mpm->grid, mpm->grid.nodes[g].side);
   memcpy(old, side, bytes);
   mpsi_mpm_prescribe_mirrors(mpm, g);
   memcpy(before, node, bytes);
-  mpsi_mpm_apply_friction(mpm, g);
+  mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   memcpy(side, old, bytes);
   for (int k = 0; k < mpm->grid.block_nodes; k++)
     for (int c = MPSI_VECTOR; c < 4; c++) held[k][c] += node[k][c] - before[k][c];
@@ -85,26 +84,30 @@ static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
 static void finish_and_damp(mps_mpm *mpm, int64_t g) {
   mpsi_node held[MOST], damped[MOST];
   uint8_t fixed[MOST] = {0};
-  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
+  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
   apply_body_friction(mpm, g, held);
   mpsi_mpm_prescribe_nodes(mpm, g, fixed);
   memcpy(damped, node, bytes);
-  if (mpm->settling.on) mpsi_mpm_measure_balance(mpm, g, fixed, (const mpsi_node *)held);
-  mpsi_mpm_damp_nodes(mpm, g, fixed);
+  if (mpm->settling.on)
+    mpsi_mpm_measure_balance(&mpm->grid, &mpm->contact, &mpm->settling, mpm->run.dt, g, fixed,
+                             (const mpsi_node *)held);
+  mpsi_mpm_damp_nodes(&mpm->grid, &mpm->def, mpm->run.dt, g, fixed);
   if (mpm->energy.counts)
-    mpsi_mpm_energy_nodes(mpm, g, (const mpsi_node *)held, (const mpsi_node *)damped);
+    mpsi_mpm_energy_nodes(&mpm->grid, &mpm->contact, &mpm->energy, mpm->run.dt, g,
+                          (const mpsi_node *)held, (const mpsi_node *)damped);
 }
 
 static void finish(mps_mpm *mpm, int64_t g) {
   uint8_t fixed[MOST];
-  if (mpsi_forces_apart(mpm) || mpm->def.viscous_damping > 0.0) {
+  if (mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) ||
+      mpm->def.viscous_damping > 0.0) {
     finish_and_damp(mpm, g);
     return;
   }
   if (mpm->grid.nodes[g].pairs > 0) {
     mpsi_mpm_prescribe_mirrors(mpm, g);
-    mpsi_mpm_apply_friction(mpm, g);
+    mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   }
   mpsi_mpm_prescribe_nodes(mpm, g, fixed);
 }
@@ -112,7 +115,7 @@ static void finish(mps_mpm *mpm, int64_t g) {
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   const int32_t across = mpm->grid.nodes[g].across;
-  mpsi_mpm_begin_held(mpm, g);
+  mpsi_mpm_begin_held(&mpm->grid, &mpm->boundaries, g);
   finish(mpm, g);
   if (across >= 0) finish(mpm, across);
 }

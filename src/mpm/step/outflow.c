@@ -5,36 +5,38 @@
 
 #include <string.h>
 
-mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function) {
-  mpsi_boundaries *b = &mpm->boundaries;
+mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p, mpsi_boundaries *b,
+                                    const mpsi_contacts *contacts, mpsi_rooms *rooms,
+                                    const char *function) {
   b->open = 0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (b->hold[k].kind == MPS_BOUNDARY_OPEN) b->open |= 1u << k;
-  const bool any = b->open != 0 || mpsi_mpm_some_take_away(&mpm->contact);
-  if (!any || mpsi_room_ensure(mpm->context, &mpm->rooms.gone, mpm->p.count, 1)) return MPS_OK;
-  return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
+  const bool any = b->open != 0 || mpsi_mpm_some_take_away(contacts);
+  if (!any || mpsi_room_ensure(context, &rooms->gone, p->count, 1)) return MPS_OK;
+  return mpsi_fail_memory(context, function, (size_t)p->count);
 }
 
 /* The open side that the particle has passed, or -1. */
-static int32_t passed(const mps_mpm *mpm, int64_t k) {
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k]);
-    if (mpm->boundaries.open >> (2 * c) & 1 && X < (double)mpm->grid.low[c]) return 2 * c;
-    if (mpm->boundaries.open >> (2 * c + 1) & 1 && X > (double)mpm->grid.high[c]) return 2 * c + 1;
+static int32_t passed(const mpsi_grid *grid, const mpsi_columns *p,
+                      const mpsi_boundaries *boundaries, int64_t k) {
+  for (int c = 0; c < grid->dim; c++) {
+    const double X = mpsi_grid_at(grid, c, p->x[c][k]);
+    if (boundaries->open >> (2 * c) & 1 && X < (double)grid->low[c]) return 2 * c;
+    if (boundaries->open >> (2 * c + 1) & 1 && X > (double)grid->high[c]) return 2 * c + 1;
   }
   return -1;
 }
 
 /* The momentum of a removed particle is subtracted from the total, as by an impulse. */
-static void carry_out(mps_mpm *mpm, int64_t k, mpsi_boundary *hold) {
-  const mpsi_columns *p = &mpm->p;
-  const double m = p->m[k], h = mpm->grid.cell;
-  const double second = mpm->grid.standard ? 0.0 : h * h / (mpm->grid.spline == 3 ? 3.0 : 4.0);
+static void carry_out(const mpsi_grid *grid, const mpsi_columns *p, mpsi_energy *energy, int64_t k,
+                      mpsi_boundary *hold) {
+  const double m = p->m[k], h = grid->cell;
+  const double second = grid->standard ? 0.0 : h * h / (grid->spline == 3 ? 3.0 : 4.0);
   double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}}, kinetic = 0.0;
   double impulse[3], moment[3];
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) {
     x[c] = p->x[c][k], v[c] = p->v[c][k];
-    for (int d = 0; d < mpm->grid.dim; d++) L[c][d] = p->L[mpm->grid.dim * c + d][k];
+    for (int d = 0; d < grid->dim; d++) L[c][d] = p->L[grid->dim * c + d][k];
   }
   for (int c = 0; c < 3; c++) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
@@ -44,21 +46,23 @@ static void carry_out(mps_mpm *mpm, int64_t k, mpsi_boundary *hold) {
     kinetic += 0.5 * m * v[c] * v[c];
   }
   mpsi_mpm_boundary_add_impulse(hold, impulse, moment, -kinetic, 1);
-  mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_BOUNDARIES, -kinetic);
-  mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_KINETIC, -kinetic);
+  mpsi_mpm_energy_add_at_once(energy, MPSI_ENERGY_BOUNDARIES, -kinetic);
+  mpsi_mpm_energy_add_at_once(energy, MPSI_ENERGY_KINETIC, -kinetic);
 }
 
-static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
+static int64_t through_sides(const mpsi_grid *grid, const mpsi_columns *p,
+                             const mpsi_boundaries *boundaries, mpsi_energy *energy,
+                             uint8_t *gone) {
   int64_t count = 0;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
     for (int64_t k = cells->begin; k < cells->end && cells->gone; k++) {
-      const int32_t side = passed(mpm, k);
+      const int32_t side = passed(grid, p, boundaries, k);
       if (side < 0) continue;
-      mpsi_boundary *hold = &mpm->boundaries.hold[side];
-      carry_out(mpm, k, hold);
+      mpsi_boundary *hold = &boundaries->hold[side];
+      carry_out(grid, p, energy, k, hold);
       hold->removed++;
-      mpsi_exact_add(&hold->sums->all[MPSI_BOUNDARY_MASS], mpm->p.m[k]);
+      mpsi_exact_add(&hold->sums->all[MPSI_BOUNDARY_MASS], p->m[k]);
       gone[k] = 1;
       count++;
     }
@@ -66,12 +70,14 @@ static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
   return count;
 }
 
-void mpsi_mpm_remove_leaving(mps_mpm *mpm) {
+void mpsi_mpm_remove_leaving(const mpsi_grid *grid, const mpsi_columns *p,
+                             const mpsi_boundaries *boundaries, mpsi_energy *energy,
+                             const mpsi_rooms *rooms) {
   bool any = false;
-  for (int64_t b = 0; b < mpm->grid.cell_count && mpm->boundaries.open && !any; b++)
-    any = mpm->grid.cells[b].gone;
+  for (int64_t b = 0; b < grid->cell_count && boundaries->open && !any; b++)
+    any = grid->cells[b].gone;
   if (!any) return;
-  if (mpm->p.count > 0) memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
-  if (through_sides(mpm, mpm->rooms.gone.item) > 0)
-    mpsi_particles_take_out(mpm->p.set, mpm->rooms.gone.item);
+  if (p->count > 0) memset(rooms->gone.item, 0, (size_t)p->count);
+  if (through_sides(grid, p, boundaries, energy, rooms->gone.item) > 0)
+    mpsi_particles_take_out(p->set, rooms->gone.item);
 }

@@ -17,15 +17,19 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_mpm_check_whole(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
-  if (mpm->partition) status = mpsi_mpm_compare_edits(mpm, function, status);
+  mps_status status = mpsi_mpm_check_whole(mpm->context, &mpm->p, &mpm->run, function);
+  if (status == MPS_OK)
+    status = mpsi_mpm_check_lost(mpm->context, &mpm->grid, &mpm->p, &mpm->run, &mpm->def, function);
+  if (mpm->partition)
+    status = mpsi_mpm_compare_edits(&mpm->contact, mpm->partition, &mpm->run, &mpm->def, function,
+                                    status);
   if (status != MPS_OK) return status;
   if (mpm->run.lost) mpm->run.lost = false, mpm->run.edited = true; /* on no rank any more */
   if (!mpm->run.edited) return status;
-  status = mpsi_mpm_check_masses(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_check_deformations(mpm, function);
-  if (status == MPS_OK) status = mpsi_pore_check(mpm, function);
+  status = mpsi_mpm_check_masses(mpm->context, &mpm->p, function);
+  if (status == MPS_OK)
+    status = mpsi_mpm_check_deformations(mpm->context, &mpm->grid, &mpm->p, function);
+  if (status == MPS_OK) status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, function);
   if (mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
   status = mpsi_mpm_list_boundaries(mpm, function, status);
@@ -36,18 +40,18 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 
-mpsi_edit_state mpsi_mpm_edit_state(const mps_mpm *mpm) {
-  return (mpsi_edit_state){mpm->run.speed, mpm->run.edited};
+mpsi_edit_state mpsi_mpm_edit_state(const mpsi_run *run) {
+  return (mpsi_edit_state){run->speed, run->edited};
 }
 
-void mpsi_mpm_restore_edit_state(mps_mpm *mpm, const mpsi_edit_state *before) {
+void mpsi_mpm_restore_edit_state(mpsi_run *run, const mpsi_edit_state *before) {
   if (!before->edited) return;
-  mpm->run.speed = before->speed;
-  mpm->run.edited = true;
+  run->speed = before->speed;
+  run->edited = true;
 }
 
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+  const mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
   return status == MPS_OK ? mpsi_mpm_apply_edits(mpm, function) : status;
 }
 

@@ -22,24 +22,25 @@ mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
 
 /* ---- bodies stand still ---------------------------------------------------------------------- */
 
-static mps_status check_still(mps_mpm *mpm, const char *function) {
-  if (mpm->water && mpm->water->flows)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
+static mps_status check_still(mps_context *context, const mpsi_contacts *contacts,
+                              mpsi_water *water, const char *function) {
+  if (water && water->flows)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the solver has pore water that flows, and no time passes while the particles "
                      "settle: use mps_mpm_run");
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    if (mpm->contact.body[b]->def.motion == MPS_BODY_MOTION_FREE)
-      return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    if (contacts->body[b]->def.motion == MPS_BODY_MOTION_FREE)
+      return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                        "body %d moves freely: only what is held or driven stands still while the "
                        "particles settle",
                        b);
   return MPS_OK;
 }
 
-static void stop_bodies(mps_mpm *mpm) {
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    mpsi_pose *pose = &mpm->contact.body[b]->pose;
-    mpsi_contact_state *state = &mpm->contact.state[b];
+static void stop_bodies(const mpsi_contacts *contacts) {
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    mpsi_pose *pose = &contacts->body[b]->pose;
+    mpsi_contact_state *state = &contacts->state[b];
     memcpy(state->v, pose->v, sizeof pose->v);
     memcpy(state->spin, pose->spin, sizeof pose->spin);
     memset(pose->v, 0, sizeof pose->v);
@@ -47,10 +48,10 @@ static void stop_bodies(mps_mpm *mpm) {
   }
 }
 
-static void let_bodies_go(mps_mpm *mpm) {
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    mpsi_pose *pose = &mpm->contact.body[b]->pose;
-    const mpsi_contact_state *state = &mpm->contact.state[b];
+static void let_bodies_go(const mpsi_contacts *contacts) {
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    mpsi_pose *pose = &contacts->body[b]->pose;
+    const mpsi_contact_state *state = &contacts->state[b];
     memcpy(pose->v, state->v, sizeof pose->v);
     memcpy(pose->spin, state->spin, sizeof pose->spin);
   }
@@ -73,8 +74,8 @@ static void stop_particles(mps_mpm *mpm) {
   for (int64_t k = 0; mpm->energy.counts && k < p->count; k++)
     for (int c = 0; c < mpm->grid.dim; c++) {
       const double kinetic = 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
-      mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_KINETIC, -kinetic);
-      mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_DAMPING_LOSS, kinetic);
+      mpsi_mpm_energy_add_at_once(&mpm->energy, MPSI_ENERGY_KINETIC, -kinetic);
+      mpsi_mpm_energy_add_at_once(&mpm->energy, MPSI_ENERGY_DAMPING_LOSS, kinetic);
     }
   mpsi_mpm_for_cells(mpm, stop_block);
 }
@@ -90,30 +91,30 @@ static void leave_settling(mps_mpm *mpm) {
 
 /* What stopping changes, for a first step that cannot be made: ids, velocities and slopes in the
  * order of the particles. NULL: no memory. */
-static double *keep_motion(mps_mpm *mpm, const char *function) {
-  const int64_t n = mpm->p.count;
-  double *warm = mpsi_alloc(mpm->context, 13 * n, sizeof *warm);
+static double *keep_motion(mps_context *context, const mpsi_columns *p, const char *function) {
+  const int64_t n = p->count;
+  double *warm = mpsi_alloc(context, 13 * n, sizeof *warm);
   if (!warm) {
-    (void)mpsi_fail_memory(mpm->context, function, (size_t)n * 13 * sizeof *warm);
+    (void)mpsi_fail_memory(context, function, (size_t)n * 13 * sizeof *warm);
     return NULL;
   }
   const size_t bytes = (size_t)n * sizeof *warm;
-  memcpy(warm, mpsi_particles_integers(mpm->p.set, "id"), bytes);
+  memcpy(warm, mpsi_particles_integers(p->set, "id"), bytes);
   for (int c = 0; c < 12; c++) {
-    const double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
+    const double *column = c < 3 ? p->v[c] : p->L[c - 3];
     if (column) memcpy(warm + (c + 1) * n, column, bytes);
   }
   return warm;
 }
 
-static void put_motion_back(mps_mpm *mpm, const double *warm) {
-  const int64_t n = mpm->p.count;
+static void put_motion_back(const mpsi_columns *p, const double *warm) {
+  const int64_t n = p->count;
   for (int64_t k = 0; k < n; k++) {
     int64_t id;
     memcpy(&id, &warm[k], sizeof id);
-    const int64_t at = mps_particles_index(mpm->p.set, id); /* the step may have sorted */
+    const int64_t at = mps_particles_index(p->set, id); /* the step may have sorted */
     for (int c = 0; c < 12 && at >= 0; c++) {
-      double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
+      double *column = c < 3 ? p->v[c] : p->L[c - 3];
       if (column) column[at] = warm[(c + 1) * n + k];
     }
   }
@@ -124,11 +125,12 @@ mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, doubl
   const int64_t steps = mpm->run.steps;
   const mpsi_energy energy = mpm->energy;
   double *motion = NULL;
-  if (!mpm->partition && !(motion = keep_motion(mpm, function))) return MPS_ERROR_MEMORY;
+  if (!mpm->partition && !(motion = keep_motion(mpm->context, &mpm->p, function)))
+    return MPS_ERROR_MEMORY;
   leave_settling(mpm);
   const mps_status status = mpsi_mpm_take_step(mpm, function, dt);
   if (motion && status != MPS_OK && mpm->run.steps == steps && !mpm->run.broken) {
-    put_motion_back(mpm, motion);
+    put_motion_back(&mpm->p, motion);
     memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
     mpm->settling.cut = true;
   }
@@ -139,8 +141,8 @@ mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, doubl
 enum { UNBALANCED, APPLIED, KINETIC, SUMS };
 
 /* The sizes of the forces that bodies give by impulses to the particles here (N). */
-static void add_impulses(const mps_mpm *mpm, mpsi_exact *sum) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
+static void add_impulses(const mpsi_contacts *contacts, double dt, mpsi_exact *sum) {
+  const mpsi_impulses *all = &contacts->impulses;
   for (int64_t n = 0; n < all->constraint_count; n++) {
     const mpsi_impulse *c = &all->constraint[n].impulse;
     if (!(c->normal_impulse > 0.0) || all->constraint[n].pair < 0) continue;
@@ -149,25 +151,27 @@ static void add_impulses(const mps_mpm *mpm, mpsi_exact *sum) {
       const double by = c->normal_impulse * c->normal[a] + c->tangent_impulse[a];
       square += by * by;
     }
-    mpsi_exact_add(sum, sqrt(square) / mpm->run.dt);
+    mpsi_exact_add(sum, sqrt(square) / dt);
   }
 }
 
 /* Of all blocks, on all ranks: exact, independent of the partition. */
-static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) {
+static mps_status sum_balance(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                              mpsi_partition *partition, const mpsi_settling *settling, double dt,
+                              const char *function, double *sums) {
   mpsi_exact sum[SUMS];
   mps_status status = MPS_OK;
   memset(sum, 0, sizeof sum);
-  sum[APPLIED] = mpm->settling.applied;
-  add_impulses(mpm, &sum[APPLIED]);
-  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
-    const mpsi_node_balance *n = &mpm->settling.nodes[g];
-    if (mpm->partition && !mpsi_mpm_counts_node_block(mpm, g)) continue;
+  sum[APPLIED] = settling->applied;
+  add_impulses(contacts, dt, &sum[APPLIED]);
+  for (int64_t g = 0; g < mpsi_all_nodes(grid); g++) {
+    const mpsi_node_balance *n = &settling->nodes[g];
+    if (partition && !mpsi_mpm_counts_node_block(grid, g)) continue;
     mpsi_exact_add(&sum[UNBALANCED], n->unbalanced);
     mpsi_exact_add(&sum[APPLIED], n->applied);
     mpsi_exact_add(&sum[KINETIC], n->kinetic);
   }
-  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, SUMS, sum);
+  if (partition) status = mpsi_domain_sum_exact(partition->domain, function, SUMS, sum);
   for (int k = 0; k < SUMS; k++) sums[k] = mpsi_exact_value(&sum[k]);
   return status;
 }
@@ -179,7 +183,9 @@ static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now
   if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
   mpm->run.time = time;
   double sums[SUMS];
-  if (status == MPS_OK) status = sum_balance(mpm, function, sums);
+  if (status == MPS_OK)
+    status = sum_balance(&mpm->grid, &mpm->contact, mpm->partition, &mpm->settling, mpm->run.dt,
+                         function, sums);
   if (status != MPS_OK) return status;
   now->kinetic = sums[KINETIC];
   now->applied = sums[APPLIED];
@@ -217,20 +223,20 @@ static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_
                    (long long)now->steps, now->unbalanced, now->applied, def->tolerance);
 }
 
-static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_settle_def *user,
-                           mps_mpm_settle_def *def) {
+static mps_status read_def(mps_context *context, const char *function,
+                           const mps_mpm_settle_def *user, mps_mpm_settle_def *def) {
   *def = settle_defaults;
   mps_status status = MPS_OK;
-  if (user) status = MPSI_DEF_READ(mpm->context, function, mps_mpm_settle_def, user, def);
+  if (user) status = MPSI_DEF_READ(context, function, mps_mpm_settle_def, user, def);
   if (status != MPS_OK) return status;
   if (isnan(def->tolerance)) def->tolerance = TOLERANCE;
   if (!(def->tolerance > 0.0 && def->tolerance < 1.0))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "tolerance is %g, must be in (0, 1), or NaN for %g", def->tolerance,
                      TOLERANCE);
   if (def->max_steps < 1)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "max_steps is %lld, must be at least 1", (long long)def->max_steps);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "max_steps is %lld, must be at least 1",
+                     (long long)def->max_steps);
   return MPS_OK;
 }
 
@@ -240,12 +246,12 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_settle_def def = settle_defaults;
   mps_mpm_settled now = {0};
-  const mpsi_edit_state before = mpsi_mpm_edit_state(mpm);
+  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
   if (out && (size == 0 || size > MPSI_STRUCT_MOST)) /* refused before anything moves */
     return mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
   mps_status status = mpsi_mpm_ready(mpm, function);
-  if (status == MPS_OK) status = read_def(mpm, function, user, &def);
-  if (status == MPS_OK) status = check_still(mpm, function);
+  if (status == MPS_OK) status = read_def(mpm->context, function, user, &def);
+  if (status == MPS_OK) status = check_still(mpm->context, &mpm->contact, mpm->water, function);
   if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
   if (mpm->partition) {
     mpsi_given given;
@@ -254,18 +260,18 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
     MPSI_GIVE(&given, &def, max_steps);
     status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   }
-  double *motion = status == MPS_OK ? keep_motion(mpm, function) : NULL;
+  double *motion = status == MPS_OK ? keep_motion(mpm->context, &mpm->p, function) : NULL;
   if (status == MPS_OK && !motion) status = MPS_ERROR_MEMORY;
-  status = mpsi_mpm_agree(mpm, function, status);
+  status = mpsi_mpm_agree(mpm->partition, function, status);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, motion);
-    mpsi_mpm_restore_edit_state(mpm, &before);
+    mpsi_mpm_restore_edit_state(&mpm->run, &before);
     return status;
   }
   mpsi_settling *settling = &mpm->settling;
   const mpsi_settling former = *settling;
   const mpsi_energy energy = mpm->energy;
-  stop_bodies(mpm);
+  stop_bodies(&mpm->contact);
   if (!settling->cut) { /* else continues from the state of the cancellation */
     stop_particles(mpm);
     settling->from_rest = true;
@@ -279,16 +285,16 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   status = relax_until(mpm, function, &def, &now);
   mpsi_guard_end(&mpm->run.guard);
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
-  let_bodies_go(mpm);
+  let_bodies_go(&mpm->contact);
   settling->on = false;
   if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->partition &&
       !mpm->run.broken) { /* no step was made */
-    put_motion_back(mpm, motion);
+    put_motion_back(&mpm->p, motion);
     memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
     settling->cut = former.cut, settling->from_rest = former.from_rest;
     settling->before = former.before;
     settling->steps = former.steps, settling->peaks = former.peaks;
-    mpsi_mpm_restore_edit_state(mpm, &before);
+    mpsi_mpm_restore_edit_state(&mpm->run, &before);
   }
   mpsi_free(mpm->context, motion);
   if (!out) return status;

@@ -6,14 +6,16 @@
 
 #include "signal/signal_internal.h"
 
-static mps_status evaluate_loads(mps_mpm *mpm, const char *function) {
-  for (int32_t k = 0; k < mpm->loads.count; k++) {
-    mpsi_traction *load = &mpm->loads.traction[k];
-    for (int c = 0; load->count > 0 && c < mpm->grid.dim; c++) {
-      const mpsi_signal_use use = {mpm->context, function, "load", k, c};
+static mps_status evaluate_loads(mps_context *context, const mpsi_grid *grid,
+                                 const mpsi_loads *loads, const mpsi_run *run,
+                                 const char *function) {
+  for (int32_t k = 0; k < loads->count; k++) {
+    mpsi_traction *load = &loads->traction[k];
+    for (int c = 0; load->count > 0 && c < grid->dim; c++) {
+      const mpsi_signal_use use = {context, function, "load", k, c};
       mpsi_signal_motion m = {.u = 1.0};
       const mps_status status =
-          load->signal[c] ? mpsi_signal_evaluate(load->signal[c], use, mpm->run.time, &m) : MPS_OK;
+          load->signal[c] ? mpsi_signal_evaluate(load->signal[c], use, run->time, &m) : MPS_OK;
       if (status != MPS_OK) return status;
       load->now[c] = m.u;
     }
@@ -21,16 +23,19 @@ static mps_status evaluate_loads(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-static mps_status evaluate_boundaries(mps_mpm *mpm, const char *function, double dt) {
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
-    mpsi_boundary *hold = &mpm->boundaries.hold[k];
-    for (int c = 0; c < mpm->grid.dim; c++) {
-      const mpsi_signal_use use = {mpm->context, function, "boundary", k, c};
+static mps_status evaluate_boundaries(mps_context *context, const mpsi_grid *grid,
+                                      const mpsi_boundaries *boundaries,
+                                      const mpsi_settling *settling, const mpsi_run *run,
+                                      const char *function, double dt) {
+  for (int32_t k = 0; k < boundaries->holds; k++) {
+    mpsi_boundary *hold = &boundaries->hold[k];
+    for (int c = 0; c < grid->dim; c++) {
+      const mpsi_signal_use use = {context, function, "boundary", k, c};
       mpsi_signal_motion m = {0};
       hold->v[c] = 0.0;
-      if (!hold->signal[c] || mpm->settling.on) continue;
+      if (!hold->signal[c] || settling->on) continue;
       const mps_status status =
-          mpsi_signal_evaluate(hold->signal[c], use, mpm->run.time + 0.5 * dt, &m);
+          mpsi_signal_evaluate(hold->signal[c], use, run->time + 0.5 * dt, &m);
       if (status != MPS_OK) return status;
       hold->v[c] = hold->factor[c] * m.v;
     }
@@ -38,10 +43,11 @@ static mps_status evaluate_boundaries(mps_mpm *mpm, const char *function, double
   return MPS_OK;
 }
 
-static mps_status evaluate_bodies(mps_mpm *mpm, const char *function, double dt) {
-  for (int32_t b = 0; b < mpm->contact.bodies && !mpm->settling.on; b++) {
-    if (!mpm->contact.handle[b]->source.moves) continue;
-    const mps_status status = mpsi_body_look_ahead(mpm->contact.body[b], function, b, dt);
+static mps_status evaluate_bodies(const mpsi_contacts *contacts, const mpsi_settling *settling,
+                                  const char *function, double dt) {
+  for (int32_t b = 0; b < contacts->bodies && !settling->on; b++) {
+    if (!contacts->handle[b]->source.moves) continue;
+    const mps_status status = mpsi_body_look_ahead(contacts->body[b], function, b, dt);
     if (status != MPS_OK) return status;
   }
   return MPS_OK;
@@ -50,20 +56,24 @@ static mps_status evaluate_bodies(mps_mpm *mpm, const char *function, double dt)
 mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double dt, bool moves) {
   const mpsi_guard outer =
       mpsi_guard_close(&mpm->run.guard, mpm->context, "a signal of the solver");
-  mps_status status = evaluate_loads(mpm, function);
-  if (status == MPS_OK) status = evaluate_boundaries(mpm, function, dt);
-  if (status == MPS_OK && moves) status = evaluate_bodies(mpm, function, dt);
+  mps_status status = evaluate_loads(mpm->context, &mpm->grid, &mpm->loads, &mpm->run, function);
+  if (status == MPS_OK)
+    status = evaluate_boundaries(mpm->context, &mpm->grid, &mpm->boundaries, &mpm->settling,
+                                 &mpm->run, function, dt);
+  if (status == MPS_OK && moves)
+    status = evaluate_bodies(&mpm->contact, &mpm->settling, function, dt);
   mpm->run.guard = outer;
   return status;
 }
 
-bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm) {
+bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
+                                 const mpsi_boundaries *boundaries) {
   bool may = false;
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    for (int32_t k = 0; k < mpm->loads.count; k++)
-      may = may || mpsi_signal_may_fail(mpm->loads.traction[k].signal[c]);
-    for (int32_t k = 0; k < mpm->boundaries.holds; k++)
-      may = may || mpsi_signal_may_fail(mpm->boundaries.hold[k].signal[c]);
+  for (int c = 0; c < grid->dim; c++) {
+    for (int32_t k = 0; k < loads->count; k++)
+      may = may || mpsi_signal_may_fail(loads->traction[k].signal[c]);
+    for (int32_t k = 0; k < boundaries->holds; k++)
+      may = may || mpsi_signal_may_fail(boundaries->hold[k].signal[c]);
   }
   return may;
 }

@@ -9,7 +9,9 @@
 mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_find_forces(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_energy_begin(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_begin_balance(mpm, function);
+  if (status == MPS_OK)
+    status = mpsi_mpm_begin_balance(mpm->context, &mpm->grid, &mpm->p, &mpm->settling, &mpm->def,
+                                    function);
   return status;
 }
 
@@ -23,20 +25,20 @@ static void warn_about_courant(mps_mpm *mpm, double dt) {
            (long long)mpm->run.steps, dt, dt / limit, courant);
 }
 
-static void warn_about_chatter(mps_mpm *mpm, double dt) {
+static void warn_about_chatter(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               const mpsi_contacts *contacts, const mps_mpm_def *def, double dt) {
   double stiffest = 0.0;
-  for (int32_t k = 0; k < mpm->p.laws.count; k++)
-    stiffest = fmax(stiffest, mpm->p.laws.law[k].modulus);
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    const mps_contact *contact = mpm->contact.handle[b];
+  for (int32_t k = 0; k < p->laws.count; k++) stiffest = fmax(stiffest, p->laws.law[k].modulus);
+  for (int32_t b = 0; b < contacts->bodies; b++) {
+    const mps_contact *contact = contacts->handle[b];
     if (mpsi_by_impulses(contact)) continue;
-    const double k = mpm->grid.measure * mpsi_contact_penalty(contact, stiffest,
-                                                              mps_particles_spacing(mpm->p.set),
-                                                              mpm->grid.cell, mpm->def.courant);
-    const double ratio = k * dt * dt / mpm->contact.least_mass;
-    if (!(ratio > CHATTER) || mpm->contact.state[b].warned) continue;
-    mpm->contact.state[b].warned = true;
-    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+    const double k =
+        grid->measure * mpsi_contact_penalty(contact, stiffest, mps_particles_spacing(p->set),
+                                             grid->cell, def->courant);
+    const double ratio = k * dt * dt / contacts->least_mass;
+    if (!(ratio > CHATTER) || contacts->state[b].warned) continue;
+    contacts->state[b].warned = true;
+    mpsi_log(context, MPS_CONTEXT_LOG_WARNING,
              "contact with body %d will chatter: k dt^2/m = %.3g, above %g; use a penalty k of at "
              "most %.4g or a dt of at most %.4g s",
              b, ratio, CHATTER, k * CHATTER / ratio, dt * sqrt(CHATTER / ratio));
@@ -46,46 +48,50 @@ static void warn_about_chatter(mps_mpm *mpm, double dt) {
 void mpsi_step_begin(mps_mpm *mpm, double dt) {
   mpm->run.dt = dt;
   warn_about_courant(mpm, dt);
-  warn_about_chatter(mpm, dt);
+  warn_about_chatter(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->def, dt);
 }
 
-static mpsi_mpm_task g2p(const mps_mpm *mpm) {
-  return mpm->kernels->g2p[mpm->grid.geometry][mpm->grid.spline - 2];
+static mpsi_mpm_task g2p(const mpsi_grid *grid, const mpsi_kernels *kernels) {
+  return kernels->g2p[grid->geometry][grid->spline - 2];
 }
 
 static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_mpm_keep_block(mpm, b);
-  g2p(mpm)(mpm, b, worker);
+  mpsi_mpm_keep_block(&mpm->grid, &mpm->p, &mpm->undo, b);
+  g2p(&mpm->grid, mpm->kernels)(mpm, b, worker);
 }
 
-mpsi_pass mpsi_step_scatter_pass(const mps_mpm *mpm) {
-  const mpsi_mpm_task p2g = mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2];
+mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                 const mpsi_kernels *kernels) {
+  const mpsi_mpm_task p2g = kernels->p2g[grid->geometry][grid->spline - 2];
   return (mpsi_pass){.clear = mpsi_mpm_clear_nodes,
-                     .scatter = mpm->contact.penalty_bodies > 0 ? mpsi_mpm_scatter_penalty : p2g,
+                     .scatter = contacts->penalty_bodies > 0 ? mpsi_mpm_scatter_penalty : p2g,
                      .update = mpsi_mpm_update_nodes};
 }
 
-void mpsi_step_gather_pass(const mps_mpm *mpm, mpsi_pass *pass) {
+void mpsi_step_gather_pass(const mpsi_grid *grid, const mpsi_undo *undo,
+                           const mpsi_kernels *kernels, mpsi_pass *pass) {
   pass->finish = mpsi_mpm_finish_nodes;
-  pass->gather = mpm->undo.on ? keep_and_gather : g2p(mpm);
+  pass->gather = undo->on ? keep_and_gather : g2p(grid, kernels);
 }
 
-void mpsi_step_without_contact(mps_mpm *mpm, double dt) {
-  mpm->contact.impulses.warm_count = mpm->contact.impulses.sweeps = 0;
-  mpm->contact.impulses.left = 0.0;
-  mpsi_mpm_begin_boundaries(mpm, dt);
+void mpsi_step_without_contact(const mpsi_boundaries *boundaries, mpsi_contacts *contacts,
+                               double dt) {
+  contacts->impulses.warm_count = contacts->impulses.sweeps = 0;
+  contacts->impulses.left = 0.0;
+  mpsi_mpm_begin_boundaries(boundaries, dt);
 }
 
 void mpsi_step_after_gather(mps_mpm *mpm) {
-  mpsi_mpm_sum_boundaries(mpm);
-  mpsi_mpm_drive_particles(mpm);
-  mpsi_mpm_find_impulse_loss(mpm); /* before means take the nodes' places */
+  mpsi_mpm_sum_boundaries(&mpm->grid, &mpm->boundaries, &mpm->mirrors, &mpm->energy, mpm->run.dt);
+  mpsi_mpm_drive_particles(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, mpm->run.dt);
+  mpsi_mpm_find_impulse_loss(&mpm->grid, &mpm->contact, &mpm->energy,
+                             mpm->kernels); /* before means take the nodes' places */
   if (!mpm->p.laws.at_once || mpm->p.laws.some_filtered) mpsi_mpm_apply_laws_by_cell(mpm);
 }
 
 mps_status mpsi_step_refuse(mps_mpm *mpm, const char *function) {
   mpsi_refusal *r = &mpm->p.laws.refusal;
-  mpsi_mpm_undo(mpm);
+  mpsi_mpm_undo(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->contact, &mpm->undo);
   if (!r->cells) return MPS_OK;
   r->cells = NULL;
   return mpsi_material_refused(mpm->context, function, r->material, r->status, r->message,

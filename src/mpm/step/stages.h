@@ -21,11 +21,14 @@ mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function);
  * or for a penalty contact. */
 void mpsi_step_begin(mps_mpm *mpm, double dt);
 /* Particles to nodes in one process: clear, scatter, update. */
-mpsi_pass mpsi_step_scatter_pass(const mps_mpm *mpm);
+mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                 const mpsi_kernels *kernels);
 /* Nodes to particles: adds finish and gather to the pass. */
-void mpsi_step_gather_pass(const mps_mpm *mpm, mpsi_pass *pass);
+void mpsi_step_gather_pass(const mpsi_grid *grid, const mpsi_undo *undo,
+                           const mpsi_kernels *kernels, mpsi_pass *pass);
 /* In a step without contact: no impulses to start the next one from. Then the boundaries begin. */
-void mpsi_step_without_contact(mps_mpm *mpm, double dt);
+void mpsi_step_without_contact(const mpsi_boundaries *boundaries, mpsi_contacts *contacts,
+                               double dt);
 /* All particles have moved: reactions of boundaries, particles with a prescribed velocity, energy
  * lost in contacts, laws by means of the change of volume. */
 void mpsi_step_after_gather(mps_mpm *mpm);

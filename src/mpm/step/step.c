@@ -28,7 +28,9 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
       status = mpsi_mpm_sort(mpm, function);
       mpm->boundaries.outdated = true;
     }
-    if (status == MPS_OK) status = mpsi_mpm_prepare_outflow(mpm, function);
+    if (status == MPS_OK)
+      status = mpsi_mpm_prepare_outflow(mpm->context, &mpm->p, &mpm->boundaries, &mpm->contact,
+                                        &mpm->rooms, function);
     if (status == MPS_OK) status = mpsi_mpm_update_boundaries(mpm, function, status);
     if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function, status);
     if (status == MPS_OK) status = mpsi_mpm_clear_bodies(mpm, function, status, &removed);
@@ -39,7 +41,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
 
 static bool find_masses(mps_mpm *mpm, void *data) {
   (void)data;
-  mpsi_mpm_find_contact_mass(mpm);
+  mpsi_mpm_find_contact_mass(&mpm->grid, &mpm->contact, mpm->partition);
   return true;
 }
 
@@ -47,48 +49,49 @@ static bool find_masses(mps_mpm *mpm, void *data) {
 static bool solve_contacts(mps_mpm *mpm, void *data) {
   mpsi_step *step = data;
   mpsi_mpm_fit_constraints(mpm);
-  step->status = mpsi_mpm_check_depth(mpm, step->function);
+  step->status =
+      mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, step->function);
   if (step->status != MPS_OK) return false;
   mpsi_mpm_apply_impulses(mpm);
-  mpsi_mpm_begin_boundaries(mpm, step->dt);
+  mpsi_mpm_begin_boundaries(&mpm->boundaries, step->dt);
   return true;
 }
 
 /* One thread can scatter the blocks near bodies first, solve the contacts, and then go over all
  * others in one wave. Penalty contact and contact areas need nodes anywhere near a body. */
-static bool can_solve_in_one_wave(const mps_mpm *mpm) {
-  bool can = mpsi_mpm_passes_alone(mpm) && mpm->contact.penalty_bodies == 0;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    can = can && mpsi_by_impulses(mpm->contact.handle[b]) &&
-          !mpsi_has_strength(mpm->contact.handle[b]);
+static bool can_solve_in_one_wave(const mpsi_grid *grid, const mpsi_columns *p,
+                                  const mpsi_contacts *contacts) {
+  bool can = mpsi_mpm_passes_alone(grid, p) && contacts->penalty_bodies == 0;
+  for (int32_t b = 0; b < contacts->bodies; b++)
+    can = can && mpsi_by_impulses(contacts->handle[b]) && !mpsi_has_strength(contacts->handle[b]);
   return can;
 }
 
 /* The nodes of all constraints are updated before the contacts are solved. */
-static void wait_for_constraints(mps_mpm *mpm) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
+static void wait_for_constraints(const mpsi_grid *grid, const mpsi_contacts *contacts) {
+  const mpsi_impulses *all = &contacts->impulses;
   for (int64_t k = 0; k < all->block_count; k++)
-    for (int q = 0; q < 1 << mpm->grid.dim; q++)
-      mpm->grid.nodes[mpm->grid.cells[all->block[k].cells].to[q]].waits = true;
+    for (int q = 0; q < 1 << grid->dim; q++)
+      grid->nodes[grid->cells[all->block[k].cells].to[q]].waits = true;
 }
 
 /* Particles --> nodes --> particles (grid/pass.h). */
 static mps_status transfer(mps_mpm *mpm, const char *function, double dt) {
   mpsi_step step = {function, dt, MPS_OK};
-  mpsi_pass pass = mpsi_step_scatter_pass(mpm);
+  mpsi_pass pass = mpsi_step_scatter_pass(&mpm->grid, &mpm->contact, mpm->kernels);
   pass.between = mpm->contact.bodies > 0 ? find_masses : NULL;
   pass.data = &step;
   if (mpm->contact.cell_pair_count == 0) {
-    mpsi_step_without_contact(mpm, dt);
-  } else if (can_solve_in_one_wave(mpm)) {
-    wait_for_constraints(mpm);
+    mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
+  } else if (can_solve_in_one_wave(&mpm->grid, &mpm->p, &mpm->contact)) {
+    wait_for_constraints(&mpm->grid, &mpm->contact);
     pass.between = solve_contacts;
   } else {
     mpsi_mpm_run_pass(mpm, &pass);
     if (!solve_contacts(mpm, &step)) return step.status;
     pass = (mpsi_pass){.clear = NULL};
   }
-  mpsi_step_gather_pass(mpm, &pass);
+  mpsi_step_gather_pass(&mpm->grid, &mpm->undo, mpm->kernels, &pass);
   mpsi_mpm_run_pass(mpm, &pass);
   return step.status;
 }
@@ -109,6 +112,6 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   status = mpsi_mpm_collect_block_results(mpm, function);
   if (mpm->run.broken) return status;
   mpsi_pore_update(mpm);
-  mpsi_mpm_remove_leaving(mpm);
+  mpsi_mpm_remove_leaving(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, &mpm->rooms);
   return status;
 }

@@ -27,7 +27,9 @@ static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status)
       mpm->boundaries.outdated = true;
     }
     if (status != MPS_OK && renewed) return status; /* on all ranks */
-    if (status == MPS_OK) status = mpsi_mpm_prepare_outflow(mpm, function);
+    if (status == MPS_OK)
+      status = mpsi_mpm_prepare_outflow(mpm->context, &mpm->p, &mpm->boundaries, &mpm->contact,
+                                        &mpm->rooms, function);
     const bool dashpots = mpm->boundaries.dashpot_count > 0, well = status == MPS_OK;
     status = mpsi_mpm_update_boundaries(mpm, function, status);
     if (well && status != MPS_OK) mpm->run.broken = dashpots;
@@ -42,20 +44,21 @@ static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status)
 /* Constraints of partner ranks are exchanged with the statuses of all; no particle moves before all
  * depths are known. */
 static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, mps_status status) {
-  mpsi_mpm_find_contact_mass(mpm); /* of all ranks */
+  mpsi_mpm_find_contact_mass(&mpm->grid, &mpm->contact, mpm->partition); /* of all ranks */
   mpsi_mpm_fit_constraints(mpm);
-  if (status == MPS_OK) status = mpsi_mpm_check_depth(mpm, function);
+  if (status == MPS_OK)
+    status = mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, function);
   status = mpsi_mpm_exchange_contacts(mpm, function, status);
   if (status != MPS_OK) return status;
   mpsi_mpm_apply_impulses(mpm);
-  mpsi_mpm_end_contact_exchange(mpm);
-  mpsi_mpm_begin_boundaries(mpm, dt);
+  mpsi_mpm_end_contact_exchange(&mpm->contact);
+  mpsi_mpm_begin_boundaries(&mpm->boundaries, dt);
   return MPS_OK;
 }
 
 /* `status`: of the search for constraints on this rank, which goes out with these. */
 static mps_status transfer(mps_mpm *mpm, const char *function, double dt, mps_status status) {
-  mpsi_pass pass = mpsi_step_scatter_pass(mpm);
+  mpsi_pass pass = mpsi_step_scatter_pass(&mpm->grid, &mpm->contact, mpm->kernels);
   const mps_status sent = mpsi_mpm_send_tiles(mpm, function);
   if (sent != MPS_OK) return sent;
   pass.scatter = mpsi_mpm_scatter_tile;
@@ -66,17 +69,18 @@ static mps_status transfer(mps_mpm *mpm, const char *function, double dt, mps_st
     if (status != MPS_OK) return status;
     pass = (mpsi_pass){.clear = NULL};
   } else {
-    mpsi_step_without_contact(mpm, dt);
+    mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
   }
-  mpsi_step_gather_pass(mpm, &pass);
+  mpsi_step_gather_pass(&mpm->grid, &mpm->undo, mpm->kernels, &pass);
   mpsi_mpm_run_pass(mpm, &pass);
   return status;
 }
 
 static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
-  const bool unchanged = mpsi_mpm_partition_unchanged(mpm);
+  const bool unchanged = mpsi_mpm_partition_unchanged(&mpm->boundaries, &mpm->contact,
+                                                      mpm->partition, &mpm->settling, &mpm->run);
   mps_status status = mpsi_mpm_evaluate_signals(mpm, function, dt, true);
-  if (mpsi_mpm_signals_may_refuse(mpm))
+  if (mpsi_mpm_signals_may_refuse(&mpm->grid, &mpm->loads, &mpm->boundaries))
     status = mpsi_mpm_agree_in_step(mpm, function, status, 0, NULL);
   if (status != MPS_OK && mpm->contact.bodies == 0) return status;
   status = prepare(mpm, function, status); /* where ranks agree on the signals of bodies */
@@ -90,7 +94,7 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (status != MPS_OK) return status;
   mpsi_step_after_gather(mpm);
   bool refused = mpm->p.laws.refusal.cells != NULL;
-  if (mpm->undo.on) status = mpsi_mpm_any_rank(mpm, function, &refused);
+  if (mpm->undo.on) status = mpsi_mpm_any_rank(mpm->partition, function, &refused);
   if (status != MPS_OK) return status;
   if (refused)
     return mpsi_domain_agree(mpm->partition->domain, function, mpsi_step_refuse(mpm, function));

@@ -12,24 +12,27 @@
 #include "mpm/ranks/parcels.h"
 
 /* What a tile has follows from bodies, boundaries and blocks, and so does the room of a step. */
-bool mpsi_mpm_partition_unchanged(const mps_mpm *mpm) {
-  return mpm->partition->ready && !mpm->run.stale && !mpm->run.edited &&
-         !mpm->partition->outdated && !mpm->boundaries.outdated && mpm->contact.bodies == 0 &&
-         !mpm->settling.on && !mpsi_mpm_absorbs(mpm);
+bool mpsi_mpm_partition_unchanged(const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
+                                  mpsi_partition *partition, const mpsi_settling *settling,
+                                  const mpsi_run *run) {
+  return partition->ready && !run->stale && !run->edited && !partition->outdated &&
+         !boundaries->outdated && contacts->bodies == 0 && !settling->on &&
+         !mpsi_mpm_absorbs(boundaries);
 }
 
 mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_partition *partition = mpm->partition;
   enum { APART, THIN, SPRINGS, FOUND };
   double found[FOUND] = {0.0};
-  if (status == MPS_OK) status = mpsi_mpm_reserve_parcels(mpm, function);
+  if (status == MPS_OK)
+    status = mpsi_mpm_reserve_parcels(mpm->context, &mpm->contact, mpm->partition, function);
   for (int64_t k = 0; status == MPS_OK && k < partition->borders; k++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[partition->border[k]];
     if (cells->apart) found[APART] = 1.0;
     if (cells->thin) found[THIN] = 1.0;
     double penalty_bodies = 0.0;
     for (int32_t q = 0; q < cells->pairs; q++)
-      penalty_bodies += mpsi_mpm_has_penalty(mpm, cells, q);
+      penalty_bodies += mpsi_mpm_has_penalty(&mpm->contact, cells, q);
     found[SPRINGS] = fmax(found[SPRINGS], penalty_bodies);
   }
   status = mpsi_mpm_agree_in_step(mpm, function, status, FOUND, found);
@@ -57,11 +60,12 @@ static double *copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worke
   return parcel;
 }
 
-static void copy_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                         const mpsi_worker *worker, double *parcel, bool pack) {
+static void copy_springs(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                         const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
+                         bool pack) {
   for (int32_t q = 0; q < cells->pairs; q++)
-    if (mpsi_mpm_has_penalty(mpm, cells, q))
-      parcel = mpsi_mpm_copy_nodes(cells, mpsi_mpm_penalty_tile(mpm, worker, q),
+    if (mpsi_mpm_has_penalty(contacts, cells, q))
+      parcel = mpsi_mpm_copy_nodes(cells, mpsi_mpm_penalty_tile(grid, worker, q),
                                    sizeof(mpsi_penalty_node), parcel, pack);
 }
 
@@ -71,14 +75,14 @@ static void pack(void *data, int64_t k, int32_t number) {
   mpsi_worker *worker = &mpm->grid.workers[number];
   const mpsi_cell_block *cells = &mpm->grid.cells[partition->border[k]];
   double *parcel = mpsi_mpm_parcel(partition, false, k);
-  mpsi_mpm_clear_penalty(mpm, cells, worker);
+  mpsi_mpm_clear_penalty(&mpm->grid, &mpm->contact, cells, worker);
   mpm->kernels->tile[mpm->grid.geometry][mpm->grid.spline - 2](mpm, partition->border[k], number);
   parcel[0] = cells->apart;
   parcel[1] = cells->split;
   parcel[2] = cells->thin;
   parcel[3] = cells->in_contact;
   parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, true);
-  copy_springs(mpm, cells, worker, parcel, true);
+  copy_springs(&mpm->grid, &mpm->contact, cells, worker, parcel, true);
 }
 
 mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function) {
@@ -108,7 +112,7 @@ void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t number) {
   cells->thin = parcel[2] != 0.0;
   cells->in_contact = parcel[3] != 0.0;
   parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, false);
-  copy_springs(mpm, cells, worker, parcel, false);
+  copy_springs(&mpm->grid, &mpm->contact, cells, worker, parcel, false);
   mpm->kernels->flush(mpm, b, number);
-  mpsi_mpm_add_penalty(mpm, cells, worker);
+  mpsi_mpm_add_penalty(&mpm->grid, &mpm->contact, cells, worker);
 }

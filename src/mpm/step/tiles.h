@@ -10,7 +10,9 @@
 
 /* Whether the step to be made needs what the last one needed, so that nothing of it can fail: then
  * the ranks need no reduction. Not collective: all know the same. */
-bool mpsi_mpm_partition_unchanged(const mps_mpm *mpm);
+bool mpsi_mpm_partition_unchanged(const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
+                                  mpsi_partition *partition, const mpsi_settling *settling,
+                                  const mpsi_run *run);
 /* Before a step, all that can fail has been done: the worst of all ranks. Collective. */
 mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status);
 /* Sums the border into tiles and sends them; mpsi_mpm_receive_parcels has what comes. Collective.

@@ -6,9 +6,9 @@
 
 #include <string.h>
 
-static bool some_law_may_refuse(const mps_mpm *mpm) {
-  for (int32_t k = 0; k < mpm->p.laws.count; k++)
-    if (mpsi_material_may_refuse(mpm->p.laws.law[k].material)) return true;
+static bool some_law_may_refuse(const mpsi_columns *p) {
+  for (int32_t k = 0; k < p->laws.count; k++)
+    if (mpsi_material_may_refuse(p->laws.law[k].material)) return true;
   return false;
 }
 
@@ -16,16 +16,14 @@ static void add(mpsi_undo *u, double *column) {
   if (column) u->column[u->columns++] = column;
 }
 
-static void list_columns(mps_mpm *mpm) {
-  const mpsi_columns *p = &mpm->p;
-  mpsi_undo *u = &mpm->undo;
+static void list_columns(const mpsi_grid *grid, const mpsi_columns *p, mpsi_undo *u) {
   u->columns = 0;
-  for (int c = 0; c < mpm->grid.dim; c++) add(u, p->x[c]), add(u, p->v[c]);
-  for (int c = 0; c < 2 * mpm->grid.dim; c++) add(u, p->s[c]);
+  for (int c = 0; c < grid->dim; c++) add(u, p->x[c]), add(u, p->v[c]);
+  for (int c = 0; c < 2 * grid->dim; c++) add(u, p->s[c]);
   for (int c = 0; c < 9; c++) add(u, p->L[c]), add(u, p->F[c]);
   add(u, p->V), add(u, p->J);
-  for (int32_t k = 0; k < mpm->p.laws.count; k++)
-    for (int32_t h = 0; h < mpm->p.laws.law[k].columns; h++) add(u, mpm->p.laws.law[k].history[h]);
+  for (int32_t k = 0; k < p->laws.count; k++)
+    for (int32_t h = 0; h < p->laws.law[k].columns; h++) add(u, p->laws.law[k].history[h]);
 }
 
 static double *warm(const mpsi_undo *u, int32_t c, int64_t count) {
@@ -33,30 +31,30 @@ static double *warm(const mpsi_undo *u, int32_t c, int64_t count) {
 }
 
 /* A step exchanges the memory of the impulses of contacts with that of the step before. */
-static void keep_impulses(mps_mpm *mpm) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
-  mpm->undo.kept_impulses = all->warm_room.item;
-  mpm->undo.warm_count = all->warm_count;
-  mpm->undo.warm_dt = all->warm_dt;
+static void keep_impulses(const mpsi_contacts *contacts, mpsi_undo *undo) {
+  const mpsi_impulses *all = &contacts->impulses;
+  undo->kept_impulses = all->warm_room.item;
+  undo->warm_count = all->warm_count;
+  undo->warm_dt = all->warm_dt;
 }
 
-static void put_impulses_back(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
-  if (all->warm_room.item != mpm->undo.kept_impulses) {
+static void put_impulses_back(mpsi_contacts *contacts, const mpsi_undo *undo) {
+  mpsi_impulses *all = &contacts->impulses;
+  if (all->warm_room.item != undo->kept_impulses) {
     const mpsi_room next = all->warm_room;
     all->warm_room = all->next_room;
     all->next_room = next;
   }
   all->warm = all->warm_room.item;
-  all->warm_count = mpm->undo.warm_count;
-  all->warm_dt = mpm->undo.warm_dt;
+  all->warm_count = undo->warm_count;
+  all->warm_dt = undo->warm_dt;
 }
 
 /* The sums of boundaries, to their copies or back. */
-static void copy_sums(mps_mpm *mpm, bool back) {
-  mpsi_boundary_sums *warm = mpm->undo.sums_room.item;
-  for (int32_t k = 0; k < mpm->boundaries.holds; k++) {
-    mpsi_boundary_sums *sums = mpm->boundaries.hold[k].sums;
+static void copy_sums(const mpsi_boundaries *boundaries, const mpsi_undo *undo, bool back) {
+  mpsi_boundary_sums *warm = undo->sums_room.item;
+  for (int32_t k = 0; k < boundaries->holds; k++) {
+    mpsi_boundary_sums *sums = boundaries->hold[k].sums;
     if (!sums) continue;
     if (back)
       *sums = *warm++;
@@ -68,7 +66,7 @@ static void copy_sums(mps_mpm *mpm, bool back) {
 mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   mpsi_undo *u = &mpm->undo;
   const mpsi_boundaries *b = &mpm->boundaries;
-  u->on = some_law_may_refuse(mpm);
+  u->on = some_law_may_refuse(&mpm->p);
   if (!u->on) return MPS_OK;
   int64_t most = MPSI_UNDO_COLUMNS, holds = 0;
   for (int32_t k = 0; k < b->holds; k++) holds += b->hold[k].sums != NULL;
@@ -79,7 +77,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
       mpsi_room_ensure(mpm->context, &u->sums_room, holds, sizeof(mpsi_boundary_sums)) &&
       mpsi_room_ensure(mpm->context, &u->dashpot_room, b->dashpot_count, sizeof *b->dashpot);
   u->column = u->list_room.item;
-  if (good) list_columns(mpm);
+  if (good) list_columns(&mpm->grid, &mpm->p, &mpm->undo);
   good =
       good && mpsi_room_ensure(mpm->context, &u->room, u->columns * mpm->p.count, sizeof(double));
   if (!good)
@@ -87,34 +85,33 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
                             (size_t)(u->columns * mpm->p.count) * sizeof(double));
   memcpy(u->hold_room.item, b->hold, (size_t)b->holds * sizeof *b->hold);
   u->holds_dt = b->dt;
-  copy_sums(mpm, false);
-  keep_impulses(mpm);
+  copy_sums(&mpm->boundaries, &mpm->undo, false);
+  keep_impulses(&mpm->contact, &mpm->undo);
   if (b->dashpot_count > 0)
     memcpy(u->dashpot_room.item, b->dashpot, (size_t)b->dashpot_count * sizeof *b->dashpot);
   return MPS_OK;
 }
 
-void mpsi_mpm_keep_block(mps_mpm *mpm, int64_t block) {
-  const mpsi_undo *u = &mpm->undo;
-  const mpsi_cell_block *cells = &mpm->grid.cells[block];
+void mpsi_mpm_keep_block(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_undo *u,
+                         int64_t block) {
+  const mpsi_cell_block *cells = &grid->cells[block];
   const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
   for (int32_t c = 0; c < u->columns; c++)
-    memcpy(warm(u, c, mpm->p.count) + cells->begin, u->column[c] + cells->begin, bytes);
+    memcpy(warm(u, c, p->count) + cells->begin, u->column[c] + cells->begin, bytes);
 }
 
-void mpsi_mpm_undo(mps_mpm *mpm) {
-  const mpsi_undo *u = &mpm->undo;
-  mpsi_boundaries *b = &mpm->boundaries;
+void mpsi_mpm_undo(const mpsi_grid *grid, const mpsi_columns *p, mpsi_boundaries *b,
+                   mpsi_contacts *contacts, const mpsi_undo *u) {
   for (int32_t c = 0; c < u->columns; c++)
-    memcpy(u->column[c], warm(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
+    memcpy(u->column[c], warm(u, c, p->count), (size_t)p->count * sizeof(double));
   memcpy(b->hold, u->hold_room.item, (size_t)b->holds * sizeof *b->hold);
   b->dt = u->holds_dt;
-  copy_sums(mpm, true);
-  put_impulses_back(mpm);
+  copy_sums(b, u, true);
+  put_impulses_back(contacts, u);
   if (b->dashpot_count > 0)
     memcpy(b->dashpot, u->dashpot_room.item, (size_t)b->dashpot_count * sizeof *b->dashpot);
-  for (int64_t c = 0; c < mpm->grid.cell_count; c++) { /* no particle has moved */
-    mpm->grid.cells[c].left = mpm->grid.cells[c].gone = mpm->grid.cells[c].lost = false;
-    mpm->grid.cells[c].bad = -1;
+  for (int64_t c = 0; c < grid->cell_count; c++) { /* no particle has moved */
+    grid->cells[c].left = grid->cells[c].gone = grid->cells[c].lost = false;
+    grid->cells[c].bad = -1;
   }
 }

@@ -24,8 +24,10 @@ typedef struct mpsi_undo {
 /* Before a step: room, and what belongs to no particle. MPS_ERROR_MEMORY. */
 mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function);
 /* Keeps the particles of a block of cells, before G2P writes them. */
-void mpsi_mpm_keep_block(mps_mpm *mpm, int64_t b);
+void mpsi_mpm_keep_block(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_undo *u,
+                         int64_t b);
 /* Restores the state before the step. */
-void mpsi_mpm_undo(mps_mpm *mpm);
+void mpsi_mpm_undo(const mpsi_grid *grid, const mpsi_columns *p, mpsi_boundaries *b,
+                   mpsi_contacts *contacts, const mpsi_undo *u);
 
 #endif

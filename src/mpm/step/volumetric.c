@@ -31,44 +31,42 @@
 #define BETA 0.03 /* larger ones spread pressure at free surfaces */
 
 /* A particle whose law takes its own tr(d). */
-static bool keeps_own(const mps_mpm *mpm, int64_t k) {
-  return mpm->p.laws.some_own && mpsi_law_of(mpm, k)->own_volume;
+static bool keeps_own(const mpsi_columns *p, int64_t k) {
+  return p->laws.some_own && mpsi_law_of(p, k)->own_volume;
 }
 
 /* Columns of the velocity gradient's diagonal; that of zz is NULL in plane strain. */
-static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
-  const mpsi_columns *p = &mpm->p;
-  const bool space = mpm->grid.dim == 3;
+static void find_diagonal(const mpsi_grid *grid, const mpsi_columns *p, const double **diagonal) {
+  const bool space = grid->dim == 3;
   diagonal[0] = p->D[0];
   diagonal[1] = p->D[space ? 4 : 3];
-  diagonal[2] = space                                                 ? p->D[8]
-                : mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->L[4]
-                                                                      : NULL;
+  diagonal[2] = space ? p->D[8] : grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->L[4] : NULL;
 }
 
 /* Those of a cell that a thin body parts (thin_bodies.h) are two cells. */
-static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+static double *sums_of(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
+                       double dt, const mpsi_cell_block *cells, const mpsi_worker *worker,
                        int64_t particle) {
   bool across = false;
   int at[3];
-  mpsi_unravel(mpm->p.stencil[particle], MPSI_TILE_SIDE, at);
+  mpsi_unravel(p->stencil[particle], MPSI_TILE_SIDE, at);
   if (cells->thin) {
     double x[3];
-    mpsi_former_place(mpm, particle, x);
-    across = mpsi_mpm_find_parted(mpm, cells, at, x).across & 1;
+    mpsi_former_place(grid, p, dt, particle, x);
+    across = mpsi_mpm_find_parted(grid, contacts, cells, at, x).across & 1;
   }
-  return mpsi_sums_at(mpm, cells, worker, across, at[0], at[1], at[2]);
+  return mpsi_sums_at(grid, cells, worker, across, at[0], at[1], at[2]);
 }
 
 static const double level[3] = {0.0, 0.0, 0.0}; /* no slope */
 
 /* ---- by node --------------------------------------------------------------------------------- */
 
-static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES; }
+static bool by_nodes(const mps_mpm_def *def) { return def->volumetric == MPS_MPM_VOLUMETRIC_NODES; }
 
 /* A particle whose mean stress is filtered, not smoothed (filter.c). */
-static bool is_filtered(const mps_mpm *mpm, int64_t k) {
-  return mpm->p.laws.some_filtered && mpsi_law_of(mpm, k)->filtered;
+static bool is_filtered(const mpsi_columns *p, int64_t k) {
+  return p->laws.some_filtered && mpsi_law_of(p, k)->filtered;
 }
 
 /* Nodes of a tile along each axis, ghosts of mirrors by their partners, and weights. */
@@ -80,21 +78,23 @@ typedef struct support {
 } support;
 
 /* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
-static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
-  const double least = mpm->grid.spline == 3 ? 1.0 : 0.5;
+static support support_of(const mpsi_grid *grid, const mpsi_columns *p,
+                          const mpsi_contacts *contacts, double dt, const mpsi_cell_block *cells,
+                          int64_t k) {
+  const double least = grid->spline == 3 ? 1.0 : 0.5;
   support out = {.w = {{1.0}, {1.0}, {1.0}}};
   int base[3];
   double x[3];
-  mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
-  mpsi_former_place(mpm, k, x);
-  if (cells->thin) out.across = mpsi_mpm_find_parted(mpm, cells, base, x).across;
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  mpsi_unravel(p->stencil[k], MPSI_TILE_SIDE, base);
+  mpsi_former_place(grid, p, dt, k, x);
+  if (cells->thin) out.across = mpsi_mpm_find_parted(grid, contacts, cells, base, x).across;
+  for (int c = 0; c < grid->dim; c++) {
     const double t =
-        mpsi_grid_at(&mpm->grid, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
+        mpsi_grid_at(grid, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
     out.x[c] = (double)base[c] + t;
-    mpsi_weights(mpm->grid.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
-    for (int i = 0; i <= mpm->grid.spline; i++)
-      out.at[c][i] = mpsi_mpm_mirror_partner(mpm, cells, c, base[c] + i);
+    mpsi_weights(grid->spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
+    for (int i = 0; i <= grid->spline; i++)
+      out.at[c][i] = mpsi_mpm_mirror_partner(grid, cells, c, base[c] + i);
   }
   return out;
 }
@@ -107,35 +107,35 @@ static double further(const support *s, const double *slope, int i, int j, int k
 }
 
 /* The sums of node (i, j, k) of a support. */
-static double *node_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                       const support *s, int i, int j, int k) {
+static double *node_of(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                       const mpsi_worker *worker, const support *s, int i, int j, int k) {
   const bool across = s->across >> (16 * k + 4 * j + i) & 1;
-  return mpsi_sums_at(mpm, cells, worker, across, s->at[0][i], s->at[1][j], s->at[2][k]);
+  return mpsi_sums_at(grid, cells, worker, across, s->at[0][i], s->at[1][j], s->at[2][k]);
 }
 
 /* Adds {V, V value} by the weights; or the mean of the nodes' means. */
-static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+static void give(const mpsi_grid *grid, const mpsi_cell_block *cells, const mpsi_worker *worker,
                  const support *s, double V, double value, const double *slope) {
-  const int n = mpm->grid.spline, depth = mpm->grid.dim == 3 ? n : 0;
+  const int n = grid->spline, depth = grid->dim == 3 ? n : 0;
   for (int k = 0; k <= depth; k++)
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k] * V;
-        double *to = node_of(mpm, cells, worker, s, i, j, k);
+        double *to = node_of(grid, cells, worker, s, i, j, k);
         to[MPSI_SUM_VOLUME] += w;
         to[MPSI_SUM_VALUE] += w * (value + further(s, slope, i, j, k));
       }
 }
 
-static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s,
+static double take(const mpsi_grid *grid, const mpsi_cell_block *cells, const support *s,
                    const double *slope) {
-  const int n = mpm->grid.spline, depth = mpm->grid.dim == 3 ? n : 0;
+  const int n = grid->spline, depth = grid->dim == 3 ? n : 0;
   double sum = 0.0, weight = 0.0;
   for (int k = 0; k <= depth; k++)
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k];
-        const double *from = node_of(mpm, cells, NULL, s, i, j, k);
+        const double *from = node_of(grid, cells, NULL, s, i, j, k);
         if (!(from[MPSI_SUM_VOLUME] > 0.0) || w == 0.0) continue;
         sum += w * (from[MPSI_SUM_VALUE] / from[MPSI_SUM_VOLUME] - further(s, slope, i, j, k));
         weight += w;
@@ -143,28 +143,29 @@ static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const suppo
   return sum / weight;
 }
 
-static double mean_stress(const mps_mpm *mpm, int64_t k) {
-  return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) / 3.0;
+static double mean_stress(const mpsi_columns *p, int64_t k) {
+  return (p->s[0][k] + p->s[1][k] + p->s[2][k]) / 3.0;
 }
 
 /* How the mean stress of a fluid at rest grows along each axis, in a cell: means over the nodes
  * near then leave it as it is, at walls and surfaces too, where the nodes lie on one side. */
-static void slope_at_rest(const mps_mpm *mpm, int64_t k, double *slope) {
-  const bool fluid = mpsi_material_kept(mpsi_law_of(mpm, k)->material) == MPSI_KEPT_PRESSURE;
-  const double weight = fluid ? mpm->p.m[k] / (mpm->p.V[k] * mpm->grid.inverse) : 0.0;
-  for (int c = 0; c < 3; c++) slope[c] = c < mpm->grid.dim ? -weight * mpm->def.gravity[c] : 0.0;
+static void slope_at_rest(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *def,
+                          int64_t k, double *slope) {
+  const bool fluid = mpsi_material_kept(mpsi_law_of(p, k)->material) == MPSI_KEPT_PRESSURE;
+  const double weight = fluid ? p->m[k] / (p->V[k] * grid->inverse) : 0.0;
+  for (int c = 0; c < 3; c++) slope[c] = c < grid->dim ? -weight * def->gravity[c] : 0.0;
 }
 
 static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
-  mpsi_clear_sums(mpm, b, number);
+  mpsi_clear_sums(&mpm->grid, b, number);
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (is_filtered(mpm, k)) continue;
-    const support s = support_of(mpm, cells, k);
+    if (is_filtered(&mpm->p, k)) continue;
+    const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
     double slope[3];
-    slope_at_rest(mpm, k, slope);
-    give(mpm, cells, worker, &s, mpm->p.V[k], mean_stress(mpm, k), slope);
+    slope_at_rest(&mpm->grid, &mpm->p, &mpm->def, k, slope);
+    give(&mpm->grid, cells, worker, &s, mpm->p.V[k], mean_stress(&mpm->p, k), slope);
   }
 }
 
@@ -172,15 +173,15 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    if (is_filtered(mpm, k)) continue;
-    const support s = support_of(mpm, cells, k);
+    if (is_filtered(&mpm->p, k)) continue;
+    const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
     double fraction = 1.0, wave, shear, slope[3];
-    slope_at_rest(mpm, k, slope);
-    if (mpsi_material_kept(mpsi_law_of(mpm, k)->material) != MPSI_KEPT_PRESSURE) {
-      mpsi_mpm_elastic(mpm, k, &wave, &shear);
+    slope_at_rest(&mpm->grid, &mpm->p, &mpm->def, k, slope);
+    if (mpsi_material_kept(mpsi_law_of(&mpm->p, k)->material) != MPSI_KEPT_PRESSURE) {
+      mpsi_mpm_elastic(&mpm->p, k, &wave, &shear);
       fraction = fmin(1.0, BETA * sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse);
     }
-    const double change = fraction * (take(mpm, cells, &s, slope) - mean_stress(mpm, k));
+    const double change = fraction * (take(&mpm->grid, cells, &s, slope) - mean_stress(&mpm->p, k));
     for (int c = 0; c < 3; c++) p->s[c][k] += change;
   }
   mpm->kernels->speed(mpm, b, worker);
@@ -192,36 +193,38 @@ static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
   const double *L[3], *V = mpm->p.V;
-  mpsi_clear_sums(mpm, b, number);
-  find_diagonal(mpm, L);
+  mpsi_clear_sums(&mpm->grid, b, number);
+  find_diagonal(&mpm->grid, &mpm->p, L);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
-    if (keeps_own(mpm, k)) continue;
-    if (by_nodes(mpm)) {
-      const support s = support_of(mpm, cells, k);
-      give(mpm, cells, worker, &s, V[k], trace, level);
+    if (keeps_own(&mpm->p, k)) continue;
+    if (by_nodes(&mpm->def)) {
+      const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
+      give(&mpm->grid, cells, worker, &s, V[k], trace, level);
       continue;
     }
-    double *sums = sums_of(mpm, cells, worker, k);
+    double *sums = sums_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, worker, k);
     sums[MPSI_SUM_VOLUME] += V[k];
     sums[MPSI_SUM_VALUE] += V[k] * trace;
   }
 }
 
-static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
-                           int64_t end, double (*diagonal)[MPSI_CHUNK]) {
+static void mean_diagonals(const mpsi_grid *grid, const mpsi_columns *p,
+                           const mpsi_contacts *contacts, const mps_mpm_def *def, double dt,
+                           const mpsi_cell_block *cells, int64_t begin, int64_t end,
+                           double (*diagonal)[MPSI_CHUNK]) {
   const double *L[3];
-  find_diagonal(mpm, L);
+  find_diagonal(grid, p, L);
   for (int64_t k = begin; k < end; k++) {
     const double own = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
     double mean;
-    if (keeps_own(mpm, k)) {
+    if (keeps_own(p, k)) {
       mean = own;
-    } else if (by_nodes(mpm)) {
-      const support s = support_of(mpm, cells, k);
-      mean = take(mpm, cells, &s, level);
+    } else if (by_nodes(def)) {
+      const support s = support_of(grid, p, contacts, dt, cells, k);
+      mean = take(grid, cells, &s, level);
     } else {
-      const double *sums = sums_of(mpm, cells, NULL, k);
+      const double *sums = sums_of(grid, p, contacts, dt, cells, NULL, k);
       mean = sums[MPSI_SUM_VALUE] / sums[MPSI_SUM_VOLUME];
     }
     const double change = (mean - own) / 3.0;
@@ -237,10 +240,10 @@ static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
     const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
     double *D[9], mean[3][MPSI_CHUNK];
     for (int c = 0; c < mpm->grid.dim * mpm->grid.dim; c++) D[c] = mpm->p.D[c] + k;
-    mean_diagonals(mpm, cells, k, end, mean);
+    mean_diagonals(&mpm->grid, &mpm->p, &mpm->contact, &mpm->def, mpm->run.dt, cells, k, end, mean);
     mpsi_mpm_apply_law(mpm, cells, k, end, D, mean, &law);
   }
-  if (!by_nodes(mpm)) mpm->kernels->speed(mpm, b, worker);
+  if (!by_nodes(&mpm->def)) mpm->kernels->speed(mpm, b, worker);
 }
 
 static void add_rates(mps_mpm *mpm, int64_t b, int32_t worker) {
@@ -252,10 +255,11 @@ static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
-  const bool means = !mpm->p.laws.at_once, filters = mpsi_mpm_filters(mpm);
-  if (!(means || filters) || mpsi_any_failed(mpm)) return;
+  const bool means = !mpm->p.laws.at_once, filters = mpsi_mpm_filters(&mpm->p, &mpm->run);
+  if (!(means || filters) || mpsi_any_failed(&mpm->grid, mpm->partition)) return;
   if (means) mpsi_run_sums(mpm, sum_rates, add_rates, apply_laws);
-  if (!(by_nodes(mpm) || filters) || mpsi_any_refused(mpm)) return;
-  if (means && by_nodes(mpm)) mpsi_run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
+  if (!(by_nodes(&mpm->def) || filters) || mpsi_any_refused(&mpm->p, mpm->partition)) return;
+  if (means && by_nodes(&mpm->def))
+    mpsi_run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
   if (filters) mpsi_mpm_filter(mpm);
 }

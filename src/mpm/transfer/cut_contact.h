@@ -7,10 +7,11 @@
 #include "least_squares.h"
 
 /* The node `local` of the block g, in contact with body b. */
-static mpsi_contact_node *contact_node_of(const mps_mpm *mpm, int32_t g, int local, int32_t b) {
-  int32_t t = mpm->grid.nodes[g].first_pair;
-  while (mpm->contact.node_pair[t].body != b) t++;
-  return &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local];
+static mpsi_contact_node *contact_node_of(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                          int32_t g, int local, int32_t b) {
+  int32_t t = grid->nodes[g].first_pair;
+  while (contacts->node_pair[t].body != b) t++;
+  return &contacts->node[(int64_t)t * grid->block_nodes + local];
 }
 
 /* The node of the tile whose sums a node of the stencil takes part in. */
@@ -23,18 +24,18 @@ static int tile_node_of(const mpsi_support *s, int i, int j, int k) {
 
 /* Whether the body of the block's pair `number` holds a node of the stencil, in the domain or not.
  */
-static bool mpsi_holds_some(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+static bool mpsi_holds_some(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                            const mpsi_cell_block *cells, int dim, int spline,
                             const mpsi_support *s, int32_t number) {
-  const int32_t body = mpm->contact.cell_pair[cells->first_pair + number].body;
+  const int32_t body = contacts->cell_pair[cells->first_pair + number].body;
   bool any = false;
-  if (mpsi_by_impulses(mpm->contact.handle[body])) return false;
+  if (mpsi_by_impulses(contacts->handle[body])) return false;
   MPSI_FOR_NODES(dim, spline) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[mpsi_support_block(cells, s, i, j, k)];
+    const mpsi_node_block *nodes = &grid->nodes[mpsi_support_block(cells, s, i, j, k)];
     if (!nodes->inside) continue;
     int32_t t = nodes->first_pair;
-    while (mpm->contact.node_pair[t].body != body) t++;
-    any = any ||
-          mpm->contact.held[(int64_t)t * mpm->grid.block_nodes + mpsi_support_local(s, i, j, k)];
+    while (contacts->node_pair[t].body != body) t++;
+    any = any || contacts->held[(int64_t)t * grid->block_nodes + mpsi_support_local(s, i, j, k)];
     (void)n;
   }
   return any;
@@ -49,7 +50,8 @@ MPSI_INLINE void mpsi_scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
   if (mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
-      !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
+      !mpsi_find_contact(&mpm->grid, &mpm->p, &mpm->def, mpm->contact.handle[pair->body], dim, p,
+                         &c))
     return;
   pair->in_contact = true;
   mpsi_pair_load *load = &mpm->contact.load[pair->first_load + c.part];
@@ -60,7 +62,8 @@ MPSI_INLINE void mpsi_scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells
   mpsi_contact_add_load(&load->by, arm, reaction);
   MPSI_FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    mpsi_penalty_node *to = mpsi_mpm_penalty_tile(mpm, worker, number) + tile_node_of(at, i, j, k);
+    mpsi_penalty_node *to =
+        mpsi_mpm_penalty_tile(&mpm->grid, worker, number) + tile_node_of(at, i, j, k);
     const double mass = mpm->p.m[p] * f->phi[n];
     double slip[3] = {0.0}, force[3] = {0.0};
     for (int a = 0; a < dim; a++) slip[a] = mass * c.slip[a], force[a] = f->phi[n] * c.force[a];
@@ -83,12 +86,14 @@ MPSI_INLINE void mpsi_share_friction(mps_mpm *mpm, const mpsi_cell_block *cells,
   mpsi_contact_particle c;
   if (!pair->in_contact || mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
       mpm->contact.handle[pair->body]->def.friction == 0.0 ||
-      !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
+      !mpsi_find_contact(&mpm->grid, &mpm->p, &mpm->def, mpm->contact.handle[pair->body], dim, p,
+                         &c))
     return;
   MPSI_FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    const mpsi_contact_node *from = contact_node_of(mpm, mpsi_support_block(cells, at, i, j, k),
-                                                    mpsi_support_local(at, i, j, k), pair->body);
+    const mpsi_contact_node *from =
+        contact_node_of(&mpm->grid, &mpm->contact, mpsi_support_block(cells, at, i, j, k),
+                        mpsi_support_local(at, i, j, k), pair->body);
     const double local[3] = {b->at[0] + i, b->at[1] + j, b->at[2] + k};
     const double mass = mpm->p.m[p] * f->phi[n];
     double arm[3], reaction[3], slip[3] = {from->slip[0], from->slip[1], from->slip[2]};
@@ -97,7 +102,7 @@ MPSI_INLINE void mpsi_share_friction(mps_mpm *mpm, const mpsi_cell_block *cells,
       double given[3] = {slip[0], slip[1], slip[2]};
       mpsi_reflect_at(mpm, cells, b, i, j, k, given, mpm->run.dt * mass);
     }
-    mpsi_node_position(mpm, cells->at, local, arm);
+    mpsi_node_position(&mpm->grid, cells->at, local, arm);
     for (int a = 0; a < 3; a++) arm[a] -= body->pose.x[a], reaction[a] = -mass * slip[a];
     mpsi_contact_add_load(&mpm->contact.load[pair->first_load + c.part].by, arm, reaction);
   }

@@ -59,7 +59,7 @@ MPSI_INLINE const mpsi_node *row_of(const mpsi_cut *b, mpsi_node *tile, int j, i
   return (const mpsi_node *)tile + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
 }
 
-MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+MPSI_INLINE void gather(const mpsi_grid *grid, const mpsi_worker *worker, int dim, int spline,
                         bool thin, const mpsi_cut *b, mpsi_gathered *out, int at) {
   node_sums sum = {.v = {{0.0}}};
   mpsi_quad L[3][3];
@@ -73,8 +73,8 @@ MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_worker *worker, int dim, 
       for (int c = 1; c <= dim; c++) L[a][d] += b->q[1 + d][c] * sum.by[a][c];
       mpsi_put(out->derivative[dim * a + d] + at, L[a][d]);
     }
-  const mpsi_mask keeps = mpsi_keeps_spin(mpm, b);
-  if (mpsi_some(keeps)) mpsi_take_spin(dim, spline, mpm->grid.inverse, keeps, sum.moment, L);
+  const mpsi_mask keeps = mpsi_keeps_spin(grid, b);
+  if (mpsi_some(keeps)) mpsi_take_spin(dim, spline, grid->inverse, keeps, sum.moment, L);
   for (int a = 0; a < dim; a++) {
     mpsi_put(out->v[a] + at, sum.v[a]);
     for (int d = 0; d < dim; d++) mpsi_put(out->slope[dim * a + d] + at, L[a][d]);
@@ -84,14 +84,14 @@ MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_worker *worker, int dim, 
 /* ---- derivatives along full axes ------------------------------------------------------------- */
 
 /* dw/w at the nodes of one axis, 1/m. */
-MPSI_INLINE void find_ratios(const mps_mpm *mpm, int spline, const mpsi_cut *b, int axis,
+MPSI_INLINE void find_ratios(const mpsi_grid *grid, int spline, const mpsi_cut *b, int axis,
                              mpsi_quad *ratio) {
   for (int l = 0; l < 4; l++) {
     double slope[4];
     mpsi_slopes(spline, -b->s[axis][0][l], slope);
     for (int i = 0; i <= spline; i++) {
       const double w = b->along[axis][i][l];
-      ratio[i][l] = w > 0.0 ? mpm->grid.inverse * slope[i] / w : 0.0;
+      ratio[i][l] = w > 0.0 ? grid->inverse * slope[i] / w : 0.0;
     }
   }
 }
@@ -100,15 +100,15 @@ MPSI_INLINE void find_ratios(const mps_mpm *mpm, int spline, const mpsi_cut *b, 
  * sides of the domain cuts the support: there the fit falls apart into one along each axis
  * (wall_support.h), so that phi/w along such an axis is constant and d phi = phi dw/w. Along the
  * other axes, and near bodies, the slopes serve. */
-MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
+MPSI_INLINE void find_strain(const mpsi_grid *grid, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int dim, int spline, bool thin,
                              const mpsi_cut *b, mpsi_gathered *out, int at) {
   const mpsi_mask beside = b->parted != 0;
   for (int d = 0; d < dim; d++) {
     const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + b->at[d];
-    if (low < mpm->grid.use_low[d] || low + spline > mpm->grid.use_high[d]) continue;
+    if (low < grid->use_low[d] || low + spline > grid->use_high[d]) continue;
     mpsi_quad ratio[4], sum[3] = {{0.0}};
-    find_ratios(mpm, spline, b, d, ratio);
+    find_ratios(grid, spline, b, d, ratio);
     MPSI_FOR_NODES(dim, spline) {
       const mpsi_quad by = ratio[d == 0 ? i : d == 1 ? j : k] * mpsi_phi(dim, b, n, i, j, k);
       const mpsi_node *across = thin ? row_of(b, worker->across_tile, j, k) : NULL;
@@ -126,10 +126,10 @@ MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
 
 /* Momentum that a node has and its particles would not get: all is done with a mass m that is never
  * less than MPSI_LEAST_MASS of that by weights, and they take with their own, M. */
-static void find_kept(const mps_mpm *mpm, const mpsi_node_block *nodes, int32_t g, int local,
+static void find_kept(const mpsi_grid *grid, const mpsi_node_block *nodes, int32_t g, int local,
                       double *weight, double *warm) {
-  const double *node = mpm->grid.node[mpsi_first_node(mpm, g) + local];
-  const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + local];
+  const double *node = grid->node[mpsi_first_node(grid, g) + local];
+  const double *side = grid->side[mpsi_first_node(grid, nodes->side) + local];
   const double m = node[MPSI_MASS], own = mpsi_own_mass(m, side[MPSI_EXCESS]);
   *weight = own + side[MPSI_EXCESS];
   const bool moves = nodes->split && mpsi_carried_mass(own, *weight) < 0.0; /* as they do */
@@ -142,7 +142,7 @@ static void find_kept(const mps_mpm *mpm, const mpsi_node_block *nodes, int32_t 
 static void give_back(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                       const mpsi_cut *b, int lane, double *v) {
   mpsi_support at;
-  mpsi_make_support(mpm, cells, dim, b->at, &at);
+  mpsi_make_support(&mpm->grid, cells, dim, b->at, &at);
   MPSI_FOR_NODES(dim, spline) {
     const double w = b->w[n][lane];
     int32_t g = mpsi_support_block(cells, &at, i, j, k);
@@ -151,7 +151,7 @@ static void give_back(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int s
     const mpsi_node_block *nodes = &mpm->grid.nodes[g];
     double weight, warm[3];
     if (!nodes->light) continue;
-    find_kept(mpm, nodes, g, mpsi_support_local(&at, i, j, k), &weight, warm);
+    find_kept(&mpm->grid, nodes, g, mpsi_support_local(&at, i, j, k), &weight, warm);
     for (int c = 0; c < 3 && weight > 0.0; c++) warm[c] *= w / weight;
     if (mpsi_is_folded(&at, i, j, k))
       mpsi_reflect_at(mpm, cells, b, i, j, k, warm, mpm->p.m[b->first + lane]);
@@ -169,7 +169,9 @@ MPSI_APART void give_all_back(mps_mpm *mpm, const mpsi_cell_block *cells, int di
       out->v[c][at + lane] = v[c];
       before[c] = v[c] - before[c];
     }
-    if (mpm->energy.counts) mpsi_mpm_energy_given_back(mpm, cells, b->first + lane, before);
+    if (mpm->energy.counts)
+      mpsi_mpm_energy_given_back(&mpm->grid, &mpm->p, &mpm->energy, &mpm->def, mpm->run.dt, cells,
+                                 b->first + lane, before);
   }
 }
 
@@ -177,17 +179,16 @@ MPSI_APART void give_all_back(mps_mpm *mpm, const mpsi_cell_block *cells, int di
 
 /* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
  * the forces. */
-MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                          int64_t p, const mpsi_support *at, const mpsi_shape_values *f,
-                          double *own) {
+MPSI_INLINE void keep_own(const mpsi_grid *grid, const mpsi_columns *points,
+                          const mpsi_cell_block *cells, int dim, int spline, int64_t p,
+                          const mpsi_support *at, const mpsi_shape_values *f, double *own) {
   mpsi_quad before = {0.0};
   MPSI_FOR_NODES(dim, spline) {
-    const int32_t side = mpm->grid.nodes[mpsi_support_block(cells, at, i, j, k)].side;
-    const mpsi_node *node = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, side));
+    const int32_t side = grid->nodes[mpsi_support_block(cells, at, i, j, k)].side;
+    const mpsi_node *node = (const mpsi_node *)(grid->side + mpsi_first_node(grid, side));
     before += f->phi[n] * mpsi_get(node[mpsi_support_local(at, i, j, k)]);
   }
-  for (int c = 0; c < dim; c++)
-    own[c] = mpm->grid.flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+  for (int c = 0; c < dim; c++) own[c] = grid->flip * (points->v[c][p] - before[MPSI_VECTOR + c]);
 }
 
 /* One particle by its shape functions. */
@@ -202,7 +203,7 @@ MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
     v += f->phi[n] * node;
     for (int d = 0; d < dim; d++) by[d] += f->gradient[d][n] * node;
   }
-  if (mpm->grid.flip > 0.0) keep_own(mpm, cells, dim, spline, p, at, f, own);
+  if (mpm->grid.flip > 0.0) keep_own(&mpm->grid, &mpm->p, cells, dim, spline, p, at, f, own);
   for (int c = 0; c < dim; c++) {
     out->v[c][to] = v[MPSI_VECTOR + c];
     out->own[c][to] = own[c];
@@ -215,15 +216,15 @@ MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
 MPSI_APART void gather_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                             int dim, int spline, const mpsi_cut *b, mpsi_gathered *out, int to) {
   mpsi_support at;
-  mpsi_make_support(mpm, cells, dim, b->at, &at);
+  mpsi_make_support(&mpm->grid, cells, dim, b->at, &at);
   for (int lane = 0; lane < b->lanes; lane++) {
     const int64_t p = b->first + lane;
     mpsi_shape_values f;
-    mpsi_values_of(mpm, dim, spline, b, lane, &f);
+    mpsi_values_of(&mpm->grid, dim, spline, b, lane, &f);
     if (mpm->grid.standard)
       gather_one(mpm, cells, worker, dim, spline, b, &at, &f, p, out, to + lane);
     for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
-      if (mpsi_holds_some(mpm, cells, dim, spline, &at, q))
+      if (mpsi_holds_some(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
         mpsi_share_friction(mpm, cells, dim, spline, p, b, &at, &f,
                             &mpm->contact.cell_pair[cells->first_pair + q]);
   }
@@ -231,9 +232,9 @@ MPSI_APART void gather_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
 
 /* ---- segments -------------------------------------------------------------------------------- */
 
-MPSI_INLINE bool are_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t chunk,
+MPSI_INLINE bool are_full(const mpsi_grid *grid, const mpsi_cell_block *cells, int64_t chunk,
                           int begin, int end) {
-  const uint8_t *fitted = mpm->grid.fitted + cells->first_fit + (chunk - cells->begin);
+  const uint8_t *fitted = grid->fitted + cells->first_fit + (chunk - cells->begin);
   bool full = true;
   for (int k = begin; k < end; k++) full = full && fitted[k] == MPSI_FITTED_FULL;
   return full;
@@ -243,12 +244,12 @@ MPSI_INLINE void gather_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
                             int dim, int spline, bool thin, mpsi_cut *b, mpsi_gathered *out,
                             int at) {
   if (!mpm->grid.standard) {
-    if (mpsi_has_fits(mpm, cells, b))
-      mpsi_take_fit(mpm, cells, dim, spline, b);
+    if (mpsi_has_fits(&mpm->grid, cells, b))
+      mpsi_take_fit(&mpm->grid, cells, dim, spline, b);
     else
       mpsi_find_fit(mpm, cells, worker, dim, spline, thin, true, b);
-    gather(mpm, worker, dim, spline, thin, b, out, at);
-    if (b->held == 0) find_strain(mpm, cells, worker, dim, spline, thin, b, out, at);
+    gather(&mpm->grid, worker, dim, spline, thin, b, out, at);
+    if (b->held == 0) find_strain(&mpm->grid, cells, worker, dim, spline, thin, b, out, at);
     if (cells->light) give_all_back(mpm, cells, dim, spline, b, out, at);
   }
   if (mpm->grid.standard || b->held & MPSI_PENALTY)
@@ -269,7 +270,7 @@ MPSI_INLINE bool gather_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const m
 MPSI_INLINE bool gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                              int dim, int spline, uint32_t held, const mpsi_places *places,
                              int64_t chunk, int begin, int end, mpsi_gathered *out) {
-  if (cells->first_fit >= 0 && !cells->light && are_full(mpm, cells, chunk, begin, end))
+  if (cells->first_fit >= 0 && !cells->light && are_full(&mpm->grid, cells, chunk, begin, end))
     return false;
   for (int k = begin; k < end; k += 4) {
     mpsi_cut b;
@@ -300,7 +301,7 @@ MPSI_INLINE bool fit_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
     determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, true, false, &b)[0];
   else if (!mpm->grid.standard)
     determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, false, false, &b)[0];
-  mpsi_values_of(mpm, dim, spline, &b, 0, out);
+  mpsi_values_of(&mpm->grid, dim, spline, &b, 0, out);
   out->determinant = determinant;
   return true;
 }
@@ -309,7 +310,7 @@ void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cell
                                  const mpsi_worker *worker, int64_t particle, mpsi_stencil *at,
                                  mpsi_shape_values *out) {
   memset(out, 0, sizeof *out);
-  mpsi_make_stencil(mpm, cells, mpm->grid.dim, mpm->grid.spline, particle, at);
+  mpsi_make_stencil(&mpm->grid, &mpm->p, cells, mpm->grid.dim, mpm->grid.spline, particle, at);
   MPSI_CHOOSE(fit_body, particle, out);
 }
 
@@ -362,7 +363,7 @@ void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cel
     foot_by_fit(mpm, cells, worker, particle, d, out);
     return;
   }
-  mpsi_make_stencil(mpm, cells, mpm->grid.dim, mpm->grid.spline, particle, &at);
+  mpsi_make_stencil(&mpm->grid, &mpm->p, cells, mpm->grid.dim, mpm->grid.spline, particle, &at);
   memcpy(out->at, at.at, sizeof out->at);
   out->active = mpm->grid.fit[slot].active;
   out->across = 0;

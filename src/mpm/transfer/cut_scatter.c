@@ -10,18 +10,18 @@
 
 /* V sigma and the forces by phi of the particles, to what they give by w: grad phi of axis d
  * is w q[1 + d]. */
-MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const mpsi_cut *b, mpsi_source *out) {
+MPSI_INLINE void find_force(const mpsi_grid *grid, const mpsi_columns *from, const mps_mpm_def *def,
+                            int dim, const mpsi_cut *b, mpsi_source *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  const mpsi_columns *from = &mpm->p;
   const int64_t p = b->first;
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
   const mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
   for (int a = 0; a < dim; a++) {
-    mpsi_quad body = out->m * mpm->def.gravity[a];
+    mpsi_quad body = out->m * def->gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
-    if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
+    if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
       body -= V * (mpsi_get_some(from->s[2] + p, n) - u) / mpsi_get_some(from->x[0] + p, n);
     for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
     for (int d = 0; d < dim; d++) {
@@ -33,13 +33,13 @@ MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const mpsi_cut *b, mpsi
 }
 
 /* Lanes without a particle have no mass and no volume. */
-MPSI_INLINE void find_source(const mps_mpm *mpm, int dim, const mpsi_cut *b, mpsi_source *out) {
-  const mpsi_columns *from = &mpm->p;
+MPSI_INLINE void find_source(const mpsi_grid *grid, const mpsi_columns *from,
+                             const mps_mpm_def *def, int dim, const mpsi_cut *b, mpsi_source *out) {
   const int64_t p = b->first;
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   out->m = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->m + p, n) & there);
-  const mpsi_quad mh = out->m * mpm->grid.cell;
+  const mpsi_quad mh = out->m * grid->cell;
   for (int a = 0; a < dim; a++) {
     out->momentum[a][0] = out->m * mpsi_get_some(from->v[a] + p, n);
     for (int d = 0; d < dim; d++) {
@@ -47,7 +47,7 @@ MPSI_INLINE void find_source(const mps_mpm *mpm, int dim, const mpsi_cut *b, mps
       out->turn[a][d] = (mpsi_quad){0.0};
     }
   }
-  find_force(mpm, dim, b, out);
+  find_force(grid, from, def, dim, b, out);
 }
 
 /* The same of one row of nodes along x, by particle: at s_x = 0, and by s_x. */
@@ -119,13 +119,14 @@ MPSI_INLINE void give_parted(const mpsi_worker *worker, int dim, int spline, con
     give_rows(dim, spline, b, s, true, w[1], worker->across_tile, worker->across_force);
 }
 
-MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+MPSI_INLINE void scatter(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_run *run,
+                         const mps_mpm_def *def, const mpsi_worker *worker, int dim, int spline,
                          bool thin, const mpsi_cut *b) {
   mpsi_source s;
-  find_source(mpm, dim, b, &s);
-  const mpsi_mask keeps = mpsi_keeps_spin(mpm, b);
+  find_source(grid, p, def, dim, b, &s);
+  const mpsi_mask keeps = mpsi_keeps_spin(grid, b);
   const bool turns =
-      mpm->run.moments && mpsi_some(keeps) && mpsi_give_spin(mpm, dim, spline, b, keeps, &s);
+      run->moments && mpsi_some(keeps) && mpsi_give_spin(grid, dim, spline, b, keeps, &s);
   if (thin) {
     if (!turns) memset(s.by_weight, 0, sizeof s.by_weight);
     give_parted(worker, dim, spline, b, &s);
@@ -145,21 +146,21 @@ typedef struct one_source {
   mpsi_quad stress[3]; /* 0, -V sigma by the derivative along each axis */
 } one_source;
 
-static one_source source_of(const mps_mpm *mpm, int dim, int64_t p) {
+static one_source source_of(const mpsi_grid *grid, const mpsi_columns *c, const mps_mpm_def *def,
+                            int dim, int64_t p) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  const mpsi_columns *c = &mpm->p;
   const double u = c->u ? c->u[p] : 0.0;
   one_source out = {.v = {1.0}};
   for (int a = 0; a < dim; a++) {
     out.v[1 + a] = c->v[a][p];
-    out.body[1 + a] = c->m[p] * mpm->def.gravity[a];
+    out.body[1 + a] = c->m[p] * def->gravity[a];
     if (c->f[a]) out.body[1 + a] += c->f[a][p];
     for (int d = 0; d < dim; d++) {
-      if (!mpm->grid.standard) out.L[d][1 + a] = mpm->grid.cell * c->L[dim * a + d][p];
+      if (!grid->standard) out.L[d][1 + a] = grid->cell * c->L[dim * a + d][p];
       out.stress[d][1 + a] = -c->V[p] * (c->s[symmetric[a][d]][p] - (a == d ? u : 0.0));
     }
   }
-  if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC)
     out.body[1] -= c->V[p] * (c->s[2][p] - u) / c->x[0][p];
   return out;
 }
@@ -168,7 +169,7 @@ static one_source source_of(const mps_mpm *mpm, int dim, int64_t p) {
 MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
                              int64_t p, const mpsi_cut *b, int lane, const mpsi_shape_values *f) {
   const double m = mpm->p.m[p];
-  const one_source s = source_of(mpm, dim, p);
+  const one_source s = source_of(&mpm->grid, &mpm->p, &mpm->def, dim, p);
   MPSI_FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;
@@ -195,14 +196,14 @@ MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int 
 MPSI_APART void scatter_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                              int dim, int spline, bool variant, const mpsi_cut *b) {
   mpsi_support at;
-  mpsi_make_support(mpm, cells, dim, b->at, &at);
+  mpsi_make_support(&mpm->grid, cells, dim, b->at, &at);
   for (int lane = 0; lane < b->lanes; lane++) {
     const int64_t p = b->first + lane;
     mpsi_shape_values f;
-    mpsi_values_of(mpm, dim, spline, b, lane, &f);
+    mpsi_values_of(&mpm->grid, dim, spline, b, lane, &f);
     if (variant) scatter_one(mpm, worker, dim, spline, p, b, lane, &f);
     for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
-      if (mpsi_holds_some(mpm, cells, dim, spline, &at, q))
+      if (mpsi_holds_some(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
         mpsi_scatter_contact(mpm, cells, worker, dim, spline, p, b, &at, &f, q);
   }
 }
@@ -210,7 +211,7 @@ MPSI_APART void scatter_each(mps_mpm *mpm, const mpsi_cell_block *cells, const m
 /* ---- full supports --------------------------------------------------------------------------- */
 
 /* Keeps the fit of particles p, p + 1, ... with a full support: see shape.h. */
-MPSI_INLINE void keep_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+MPSI_INLINE void keep_full(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim, int spline,
                            int64_t p, int particles) {
   const int64_t slot = cells->first_fit + (p - cells->begin);
   mpsi_kept_fit fit = {.q = {1.0}};
@@ -220,8 +221,8 @@ MPSI_INLINE void keep_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int
       if (r == c && r > 0) fit.q[count] = mpsi_inverse_moment(spline);
   MPSI_FOR_NODES(dim, spline) fit.active |= UINT64_C(1) << n;
   for (int l = 0; l < particles; l++) {
-    mpm->grid.fit[slot + l] = fit;
-    mpm->grid.fitted[slot + l] = MPSI_FITTED_FULL;
+    grid->fit[slot + l] = fit;
+    grid->fitted[slot + l] = MPSI_FITTED_FULL;
   }
 }
 
@@ -235,7 +236,7 @@ MPSI_INLINE bool find_full(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
     mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, 0, &b);
     if (!mpsi_is_full(mpm, cells, worker, dim, spline, &b)) return false;
   }
-  keep_full(mpm, cells, dim, spline, chunk + begin, end - begin);
+  keep_full(&mpm->grid, cells, dim, spline, chunk + begin, end - begin);
   return true;
 }
 
@@ -248,7 +249,7 @@ MPSI_INLINE void scatter_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   for (int l = 0; l < b->lanes && thin; l++) /* for the way back */
     mpm->contact.across[b->first + l] =
         (mpsi_parted){(uint64_t)b->across[l], (uint64_t)b->parted[l]};
-  if (!variant) scatter(mpm, worker, dim, spline, thin, b);
+  if (!variant) scatter(&mpm->grid, &mpm->p, &mpm->run, &mpm->def, worker, dim, spline, thin, b);
   if (variant || b->held & MPSI_PENALTY) scatter_each(mpm, cells, worker, dim, spline, variant, b);
 }
 

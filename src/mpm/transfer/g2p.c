@@ -4,20 +4,20 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wall_support.h"
 
-MPSI_INLINE int64_t find_node(const mps_mpm *mpm, const mpsi_cell_block *cells, bool across, int i,
-                              int j, int k) {
-  return across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k);
+MPSI_INLINE int64_t find_node(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
+                              int i, int j, int k) {
+  return across ? mpsi_node_across(grid, cells, i, j, k) : mpsi_node_under(grid, cells, i, j, k);
 }
 
 /* Copies the nodes under a tile, or those across thin bodies under the second one. */
-MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, bool across,
+MPSI_INLINE void gather_tile(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
                              mpsi_node *tile) {
   const int low = cells->low[0], high = cells->high[0];
   const int middle = high < MPSI_SIDE ? high : low > MPSI_SIDE ? low : MPSI_SIDE;
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++) {
-      mpsi_node *own = mpm->grid.node + find_node(mpm, cells, across, 0, j, k);
-      mpsi_node *next = mpm->grid.node + find_node(mpm, cells, across, MPSI_SIDE, j, k);
+      mpsi_node *own = grid->node + find_node(grid, cells, across, 0, j, k);
+      mpsi_node *next = grid->node + find_node(grid, cells, across, MPSI_SIDE, j, k);
       mpsi_node *to = tile + mpsi_tile_index(0, j, k);
       for (int i = low; i < middle; i++) mpsi_put(to[i], mpsi_get(own[i]));
       for (int i = middle; i < high; i++) mpsi_put(to[i], mpsi_get(next[i - MPSI_SIDE]));
@@ -226,7 +226,7 @@ MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geome
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
     const mpsi_quad v = mpsi_get(from->v[c] + k), x = mpsi_get_some(p->x[c] + at, n);
-    const mpsi_quad to = x + mpm->run.dt * v, X = mpsi_from_block(mpm, cells, c, to);
+    const mpsi_quad to = x + mpm->run.dt * v, X = mpsi_from_block(&mpm->grid, cells, c, to);
     const double corner = (double)cells->at[c] * MPSI_SIDE;
     const mpsi_mask good =
         (X >= (double)mpm->grid.low[c] - corner) & (X <= (double)mpm->grid.high[c] - corner);
@@ -255,9 +255,10 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry,
 }
 
 /* FLIP: what the particles keep of their own velocities. */
-static void add_own(mps_mpm *mpm, int64_t begin, int n, const mpsi_gathered *from) {
-  for (int c = 0; c < mpm->grid.dim; c++)
-    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += from->own[c][k];
+static void add_own(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int n,
+                    const mpsi_gathered *from) {
+  for (int c = 0; c < grid->dim; c++)
+    for (int k = 0; k < n; k++) p->v[c][begin + k] += from->own[c][k];
 }
 
 /* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
@@ -268,27 +269,28 @@ static void add_own(mps_mpm *mpm, int64_t begin, int n, const mpsi_gathered *fro
  * beyond a wall, or not a number; -1 where there is none. Those beyond an open side leave after the
  * step. Nothing is put back on the axis: there
  * the hoop strain has no end. */
-static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
+static int64_t keep_inside(const mpsi_grid *grid, const mpsi_columns *p,
+                           const mpsi_boundaries *boundaries, mpsi_cell_block *cells, int64_t begin,
+                           int64_t end) {
   int64_t bad = -1;
   for (int64_t k = begin; k < end; k++)
-    for (int c = 0; c < mpm->grid.dim; c++) {
-      double *x = &mpm->p.x[c][k];
-      const double X = mpsi_grid_at(&mpm->grid, c, *x);
-      const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
+    for (int c = 0; c < grid->dim; c++) {
+      double *x = &p->x[c][k];
+      const double X = mpsi_grid_at(grid, c, *x);
+      const double low = (double)grid->low[c], high = (double)grid->high[c];
       if (X >= low && X <= high) continue;
-      if (mpsi_mpm_passes(mpm, c, X)) {
+      if (mpsi_mpm_passes(grid, boundaries, c, X)) {
         cells->gone = true;
         continue;
       }
-      const bool axis =
-          mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 && !(*x > 0.0);
+      const bool axis = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0 && !(*x > 0.0);
       if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) {
         if (bad < 0) bad = k;
         break;
       }
       const double wall = X < low ? low : high, inwards = X < low ? INFINITY : -INFINITY;
-      *x = mpm->grid.origin[c] + mpm->grid.cell * wall;
-      while ((mpsi_grid_at(&mpm->grid, c, *x) - wall) * inwards < 0.0) *x = nextafter(*x, inwards);
+      *x = grid->origin[c] + grid->cell * wall;
+      while ((mpsi_grid_at(grid, c, *x) - wall) * inwards < 0.0) *x = nextafter(*x, inwards);
     }
   return bad;
 }
@@ -313,17 +315,16 @@ MPSI_INLINE bool find_largest(int n, double *square, double *out) {
 
 /* c + |v| of particles [begin, begin + n), at most a chunk, as c^2 + v^2 + 2 c |v|: a root less. A
  * NaN, infinity or speed beyond FASTEST, and a negative volume, is a bad particle. */
-MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
-                            int n, const double *moduli) {
-  const mpsi_columns *p = &mpm->p;
+MPSI_INLINE void find_speed(const mpsi_columns *p, const mps_mpm_def *def, mpsi_cell_block *cells,
+                            int dim, int64_t begin, int n, const double *moduli) {
   const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
   const double *V = p->V + begin, *m = p->m + begin;
-  const double moving = mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED ? 1.0 : 0.0;
+  const double moving = def->step_from == MPS_MPM_STEP_FROM_SPEED ? 1.0 : 0.0;
   double square[MPSI_COLUMN] MPSI_LINE, largest;
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double v = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) v += v2[k] * v2[k];
-    const double c = (moduli ? moduli[k] : mpm->p.laws.law[0].modulus) * V[k] / m[k];
+    const double c = (moduli ? moduli[k] : p->laws.law[0].modulus) * V[k] / m[k];
     square[k] =
         ((c < 0.0) | !(v <= FASTEST * FASTEST)) ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
   }
@@ -333,15 +334,16 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
     if (!isfinite(square[k])) cells->bad = begin + k, cells->lost = false;
 }
 
-MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
-                             int n) {
-  if (mpm->p.laws.one_modulus) {
-    find_speed(mpm, cells, dim, begin, n, NULL);
+MPSI_INLINE void speed_chunk(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
+                             const mpsi_run *run, const mps_mpm_def *def, mpsi_cell_block *cells,
+                             int dim, int64_t begin, int n) {
+  if (p->laws.one_modulus) {
+    find_speed(p, def, cells, dim, begin, n, NULL);
     return;
   }
   double moduli[MPSI_CHUNK];
-  mpsi_mpm_find_moduli(mpm, begin, begin + n, moduli);
-  find_speed(mpm, cells, dim, begin, n, moduli);
+  mpsi_mpm_find_moduli(grid, p, water, run, def, begin, begin + n, moduli);
+  find_speed(p, def, cells, dim, begin, n, moduli);
 }
 
 /* What the nodes give to particles [begin, begin + n). Those of a stencil are neighbours. */
@@ -359,7 +361,7 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
     for (end = k + 1; end < n && places.first[end] == first;) end++;
     find_polynomials(dim, spline, first, tile, &rows);
     const uint32_t state = cells->cut ? mpsi_support_state(worker, dim, spline, first) : 0;
-    const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
+    const int axis = state ? mpsi_wall_axis(&mpm->grid, cells, dim, spline, state, first) : -1;
     if (!cells->light && axis >= 0)
       for (int q = k; q < end; q += MPSI_LANES) OF_KIND(gather_at_wall, dim, spline)
     (mpm, cells, &places, axis, q, end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &rows, out);
@@ -383,27 +385,31 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
     D[a] = from.derivative[a];
     if (mpm->p.D[a]) memcpy(mpm->p.D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
   }
-  if (mpm->energy.counts) mpsi_mpm_energy_before(mpm, cells, begin, begin + n);
+  if (mpm->energy.counts)
+    mpsi_mpm_energy_before(&mpm->grid, &mpm->p, &mpm->energy, cells, begin, begin + n);
   const moved m = move(mpm, cells, geometry, spline, begin, n, &from);
-  if (mpm->energy.counts) mpsi_mpm_energy_moved(mpm, cells, begin, begin + n);
-  if (mpm->grid.flip > 0.0) add_own(mpm, begin, n, &from);
+  if (mpm->energy.counts)
+    mpsi_mpm_energy_moved(&mpm->grid, &mpm->p, &mpm->energy, &mpm->def, mpm->run.dt, cells, begin,
+                          begin + n);
+  if (mpm->grid.flip > 0.0) add_own(&mpm->grid, &mpm->p, begin, n, &from);
   if (m.left) cells->left = true;
   if (m.outside) {
-    const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
+    const int64_t bad = keep_inside(&mpm->grid, &mpm->p, &mpm->boundaries, cells, begin, begin + n);
     if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
   }
-  if (mpm->energy.counts) mpsi_mpm_energy_after(mpm, cells, begin, begin + n);
+  if (mpm->energy.counts)
+    mpsi_mpm_energy_after(&mpm->grid, &mpm->p, &mpm->energy, cells, begin, begin + n);
   if (!mpm->p.laws.at_once) return; /* the laws wait for the means */
   mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL, law);
-  speed_chunk(mpm, cells, dim, begin, n);
+  speed_chunk(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, cells, dim, begin, n);
 }
 
 /* Whether some node under the block keeps momentum that its particles are to have: blocks.h. */
-static bool is_light(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+static bool is_light(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   bool any = false;
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
-    any = any || nodes->light || (nodes->across >= 0 && mpm->grid.nodes[nodes->across].light);
+  for (int q = 0; q < 1 << grid->dim; q++) {
+    const mpsi_node_block *nodes = &grid->nodes[cells->to[q]];
+    any = any || nodes->light || (nodes->across >= 0 && grid->nodes[nodes->across].light);
   }
   return any;
 }
@@ -414,11 +420,11 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   mps_material_block law;
   mpsi_mpm_begin_block(&law);
   cells->left = cells->gone = cells->lost = false;
-  cells->light = is_light(mpm, cells);
+  cells->light = is_light(&mpm->grid, cells);
   cells->bad = -1;
   cells->speed = 0.0;
-  gather_tile(mpm, cells, false, worker->tile);
-  if (cells->thin) gather_tile(mpm, cells, true, worker->across_tile);
+  gather_tile(&mpm->grid, cells, false, worker->tile);
+  if (cells->thin) gather_tile(&mpm->grid, cells, true, worker->across_tile);
   if (cells->mirrors) mpsi_mpm_unfold(mpm, cells, worker);
   if (cells->cut || cells->light) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
@@ -445,6 +451,6 @@ void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
   cells->speed = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    speed_chunk(mpm, cells, mpm->grid.dim, k, n);
+    speed_chunk(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, cells, mpm->grid.dim, k, n);
   }
 }

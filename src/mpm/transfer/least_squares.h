@@ -58,17 +58,18 @@ MPSI_INLINE mpsi_quad mpsi_across(int dim, const mpsi_cut *b, const mpsi_quad *q
 }
 
 /* From the inverse of M, whose upper half is that of `upper`. */
-MPSI_INLINE void mpsi_finish_fit(const mps_mpm *mpm, int dim, mpsi_quad upper[4][4], mpsi_cut *b) {
+MPSI_INLINE void mpsi_finish_fit(const mpsi_grid *grid, int dim, mpsi_quad upper[4][4],
+                                 mpsi_cut *b) {
   for (int r = 0; r <= dim; r++)
     for (int c = 0; c <= dim; c++) {
       const mpsi_quad q = r <= c ? upper[r][c] : upper[c][r];
-      b->q[r][c] = r == 0 ? q : q * mpm->grid.inverse;
+      b->q[r][c] = r == 0 ? q : q * grid->inverse;
     }
 }
 
 /* ---- kept from the scatter to the gather ----------------------------------------------------- */
 
-MPSI_INLINE void mpsi_keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+MPSI_INLINE void mpsi_keep_fit(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                int spline, const mpsi_cut *b, mpsi_quad q[4][4]) {
   const int64_t slot = cells->first_fit + (b->first - cells->begin);
   const int n = b->lanes;
@@ -79,7 +80,7 @@ MPSI_INLINE void mpsi_keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
     for (int c = r; c <= dim; c++) all[count++] = q[r][c];
   for (int part = 0; part < count; part += 4) {
     mpsi_transpose(all + part);
-    for (int l = 0; l < n; l++) mpsi_put(mpm->grid.fit[slot + l].q + part, all[part + l]);
+    for (int l = 0; l < n; l++) mpsi_put(grid->fit[slot + l].q + part, all[part + l]);
   }
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++)
@@ -88,13 +89,13 @@ MPSI_INLINE void mpsi_keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
         active |= (b->w[node] != 0.0) & (int64_t)(UINT64_C(1) << node);
       }
   for (int l = 0; l < n; l++) {
-    mpm->grid.fit[slot + l].active = (uint64_t)active[l];
-    mpm->grid.fitted[slot + l] = MPSI_FITTED_CUT;
+    grid->fit[slot + l].active = (uint64_t)active[l];
+    grid->fitted[slot + l] = MPSI_FITTED_CUT;
   }
 }
 
 /* Takes the fits that mpsi_make_fit has kept. */
-MPSI_INLINE void mpsi_take_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+MPSI_INLINE void mpsi_take_fit(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                int spline, mpsi_cut *out) {
   const int n = out->lanes;
   const int64_t slot = cells->first_fit + (out->first - cells->begin);
@@ -103,13 +104,13 @@ MPSI_INLINE void mpsi_take_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
   int count = 0;
   for (int part = 0; part < (dim == 2 ? 8 : 12); part += 4) {
     for (int l = 0; l < 4; l++)
-      all[part + l] = mpsi_get(mpm->grid.fit[slot + (l < n ? l : 0)].q + part);
+      all[part + l] = mpsi_get(grid->fit[slot + (l < n ? l : 0)].q + part);
     mpsi_transpose(all + part);
   }
   for (int r = 0; r <= dim; r++)
     for (int c = r; c <= dim; c++) upper[r][c] = all[count++];
-  mpsi_finish_fit(mpm, dim, upper, out);
-  for (int l = 0; l < 4; l++) active[l] = (int64_t)mpm->grid.fit[slot + (l < n ? l : 0)].active;
+  mpsi_finish_fit(grid, dim, upper, out);
+  for (int l = 0; l < 4; l++) active[l] = (int64_t)grid->fit[slot + (l < n ? l : 0)].active;
   for (int z = 0; z <= (dim == 3 ? spline : 0); z++)
     for (int j = 0; j <= spline; j++) {
       mpsi_quad across = out->along[1][j];
@@ -123,21 +124,21 @@ MPSI_INLINE void mpsi_take_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
 }
 
 /* Whether all have been kept in this step. */
-MPSI_INLINE bool mpsi_has_fits(const mps_mpm *mpm, const mpsi_cell_block *cells,
+MPSI_INLINE bool mpsi_has_fits(const mpsi_grid *grid, const mpsi_cell_block *cells,
                                const mpsi_cut *b) {
   bool kept = cells->first_fit >= 0 && !cells->thin;
   for (int l = 0; l < b->lanes && kept; l++)
-    kept = mpm->grid.fitted[cells->first_fit + (b->first + l - cells->begin)] != 0;
+    kept = grid->fitted[cells->first_fit + (b->first + l - cells->begin)] != 0;
   return kept;
 }
 
 /* The inverse of M in `upper`, then the fit; returns det M / M00^(dim + 1). */
-MPSI_INLINE mpsi_quad mpsi_invert_fit(const mps_mpm *mpm, int dim, int spline,
+MPSI_INLINE mpsi_quad mpsi_invert_fit(const mpsi_grid *grid, int dim, int spline,
                                       mpsi_quad upper[4][4], mpsi_cut *b) {
   mpsi_moments(dim, spline, b, b->w, upper);
   const mpsi_quad mass = upper[0][0];
   const mpsi_quad determinant = mpsi_invert_lanes(dim + 1, upper);
-  mpsi_finish_fit(mpm, dim, upper, b);
+  mpsi_finish_fit(grid, dim, upper, b);
   return determinant / (dim == 3 ? mass * mass * mass * mass : mass * mass * mass);
 }
 
@@ -147,7 +148,7 @@ MPSI_INLINE mpsi_quad mpsi_find_fit(const mps_mpm *mpm, const mpsi_cell_block *c
                                     bool known, mpsi_cut *b) {
   mpsi_quad upper[4][4];
   mpsi_find_active(mpm, cells, worker, dim, spline, thin, known, b);
-  return mpsi_invert_fit(mpm, dim, spline, upper, b);
+  return mpsi_invert_fit(&mpm->grid, dim, spline, upper, b);
 }
 
 /* The fit of the scatter, kept where the block keeps fits. */
@@ -156,8 +157,8 @@ MPSI_INLINE void mpsi_make_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                mpsi_cut *b) {
   mpsi_quad upper[4][4];
   mpsi_find_active(mpm, cells, worker, dim, spline, thin, false, b);
-  mpsi_invert_fit(mpm, dim, spline, upper, b);
-  if (!thin && cells->first_fit >= 0) mpsi_keep_fit(mpm, cells, dim, spline, b, upper);
+  mpsi_invert_fit(&mpm->grid, dim, spline, upper, b);
+  if (!thin && cells->first_fit >= 0) mpsi_keep_fit(&mpm->grid, cells, dim, spline, b, upper);
 }
 
 /* phi of node n, which is (i, j, k). */
@@ -169,7 +170,7 @@ MPSI_INLINE mpsi_quad mpsi_phi(int dim, const mpsi_cut *b, int n, int i, int j, 
 
 /* The standard scheme's shape functions: the spline and its derivatives, whatever lies in the
  * support. */
-MPSI_INLINE void mpsi_take_splines(const mps_mpm *mpm, int dim, int spline, const mpsi_cut *b,
+MPSI_INLINE void mpsi_take_splines(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
                                    int lane, mpsi_shape_values *out) {
   double slope[3][4] = {{0.0}}, w[3][4];
   for (int c = 0; c < dim; c++) mpsi_slopes(spline, -b->s[c][0][lane], slope[c]);
@@ -177,18 +178,18 @@ MPSI_INLINE void mpsi_take_splines(const mps_mpm *mpm, int dim, int spline, cons
     for (int i = 0; i < 4; i++) w[c][i] = c < dim && i <= spline ? b->along[c][i][lane] : i == 0;
   MPSI_FOR_NODES(dim, spline) {
     out->w[n] = out->phi[n] = w[0][i] * w[1][j] * w[2][k];
-    out->gradient[0][n] = mpm->grid.inverse * slope[0][i] * w[1][j] * w[2][k];
-    out->gradient[1][n] = mpm->grid.inverse * w[0][i] * slope[1][j] * w[2][k];
-    if (dim == 3) out->gradient[2][n] = mpm->grid.inverse * w[0][i] * w[1][j] * slope[2][k];
+    out->gradient[0][n] = grid->inverse * slope[0][i] * w[1][j] * w[2][k];
+    out->gradient[1][n] = grid->inverse * w[0][i] * slope[1][j] * w[2][k];
+    if (dim == 3) out->gradient[2][n] = grid->inverse * w[0][i] * w[1][j] * slope[2][k];
   }
 }
 
-MPSI_INLINE void mpsi_values_of(const mps_mpm *mpm, int dim, int spline, const mpsi_cut *b,
+MPSI_INLINE void mpsi_values_of(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
                                 int lane, mpsi_shape_values *out) {
   out->across = (uint64_t)b->across[lane];
   out->determinant = 1.0;
-  if (mpm->grid.standard) {
-    mpsi_take_splines(mpm, dim, spline, b, lane, out);
+  if (grid->standard) {
+    mpsi_take_splines(grid, dim, spline, b, lane, out);
     return;
   }
   MPSI_FOR_NODES(dim, spline) {

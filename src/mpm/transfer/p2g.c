@@ -22,20 +22,20 @@ typedef struct quad_parts {
 
 /* Of the particles from `at` on. Together `sum` has dt times the force with the momentum; else
  * (split) they are apart. */
-MPSI_INLINE void find_quad_parts(const mps_mpm *mpm, int geometry, int spline, bool split,
-                                 int64_t at, quad_parts *out) {
+MPSI_INLINE void find_quad_parts(const mpsi_grid *grid, const mpsi_columns *p,
+                                 const mps_mpm_def *def, double step, int geometry, int spline,
+                                 bool split, int64_t at, quad_parts *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int dim = mpsi_dim_of(geometry);
-  const mpsi_columns *p = &mpm->p;
-  const double h = mpm->grid.cell, stiff = -mpsi_inverse_moment(spline) * mpm->grid.inverse;
-  const double dt = split ? 1.0 : mpm->run.dt;
+  const double h = grid->cell, stiff = -mpsi_inverse_moment(spline) * grid->inverse;
+  const double dt = split ? 1.0 : step;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
   const mpsi_quad mh = m * h, Vs = V * stiff, u = p->u ? mpsi_get(p->u + at) : zero;
   out->sum[0][MPSI_MASS] = m + zero; /* of a mere copy gcc makes a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int to = MPSI_VECTOR + c;
-    mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
+    mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * def->gravity[c]);
     if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
     if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
       force -= V * (mpsi_get(p->s[2] + at) - u) / mpsi_get(p->x[0] + at);
@@ -61,7 +61,8 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
                             int n, parts *out) {
   for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(mpm, geometry, spline, split, begin + k, &part);
+    find_quad_parts(&mpm->grid, &mpm->p, &mpm->def, mpm->run.dt, geometry, spline, split, begin + k,
+                    &part);
     put_columns(mpsi_dim_of(geometry), part.sum, k, out->sum);
     if (split) put_columns(mpsi_dim_of(geometry), part.force, k, out->force);
   }
@@ -218,7 +219,8 @@ MPSI_INLINE void find_full_parts(const mps_mpm *mpm, int spline, bool split,
                                  node_parts *force) {
   for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(mpm, MPS_MPM_GEOMETRY_SPACE, spline, split, begin + k, &part);
+    find_quad_parts(&mpm->grid, &mpm->p, &mpm->def, mpm->run.dt, MPS_MPM_GEOMETRY_SPACE, spline,
+                    split, begin + k, &part);
     shift_parts(places, k, part.sum);
     put_nodes(part.sum, k, sum);
     if (!split) continue;
@@ -431,11 +433,11 @@ MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
 }
 
 /* Adds a tile, and that of forces, to the block of nodes g under its corner q. */
-MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q, int32_t g,
-                       const mpsi_node *tile, const mpsi_node *forces) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
-  mpsi_node *side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
+MPSI_INLINE void flush(const mpsi_grid *grid, double dt, const mpsi_cell_block *cells, int q,
+                       int32_t g, const mpsi_node *tile, const mpsi_node *forces) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
+  mpsi_node *node = grid->node + mpsi_first_node(grid, g);
+  mpsi_node *side = nodes->side >= 0 ? grid->side + mpsi_first_node(grid, nodes->side) : NULL;
   int low[3], high[3];
   for (int c = 0; c < 3; c++) { /* of the tile */
     const int first = q >> c & 1 ? MPSI_SIDE : 0;
@@ -456,7 +458,7 @@ MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q, 
           } else {
             if (side) side[to + i][MPSI_EXCESS] += force[MPSI_EXCESS];
             force[MPSI_EXCESS] = 0.0;
-            sum += mpm->run.dt * force;
+            sum += dt * force;
           }
         }
         mpsi_put(node[to + i], mpsi_get(node[to + i]) + sum);
@@ -519,7 +521,7 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
     const uint32_t state =
         cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
     if (state != 0) {
-      const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
+      const int axis = mpsi_wall_axis(&mpm->grid, cells, dim, spline, state, places.first[k]);
       if (axis >= 0)
         add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
       if (axis >= 0 ||
@@ -544,11 +546,12 @@ MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t en
 
 /* Nodes across thin bodies. Particles whose supports these do not cut write nothing of it, but need
  * it in the transfer back where some node keeps momentum (give_back of cut_gather.c). */
-static void begin_across(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+static void begin_across(const mpsi_contacts *contacts, const mpsi_cell_block *cells,
+                         mpsi_worker *worker) {
   const size_t count = (size_t)(cells->end - cells->begin);
   clear(cells, worker->across_tile);
   clear(cells, worker->across_force);
-  memset(mpm->contact.across + cells->begin, 0, count * sizeof *mpm->contact.across);
+  memset(contacts->across + cells->begin, 0, count * sizeof *contacts->across);
 }
 
 /* What the particles of a block give, into the tile. */
@@ -566,10 +569,10 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   if (cells->first_fit >= 0)
     memset(mpm->grid.fitted + cells->first_fit, 0, (size_t)(cells->end - cells->begin));
-  if (cells->mirrors) mpsi_mpm_begin_mirrors(mpm, cells);
+  if (cells->mirrors) mpsi_mpm_begin_mirrors(&mpm->mirrors, cells);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);
-  if (cells->thin) begin_across(mpm, cells, worker);
+  if (cells->thin) begin_across(&mpm->contact, cells, worker);
   const mpsi_cell_block *next = dim == 2 && b + 2 < mpm->grid.cell_count ? cells + 2 : NULL;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
@@ -583,11 +586,11 @@ MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *from = &mpm->grid.workers[number];
   for (int q = 0; q < 1 << dim; q++)
-    flush(mpm, cells, q, cells->to[q], (const mpsi_node *)from->tile,
+    flush(&mpm->grid, mpm->run.dt, cells, q, cells->to[q], (const mpsi_node *)from->tile,
           (const mpsi_node *)from->force);
   for (int q = 0; q < 1 << dim && cells->thin; q++)
-    flush(mpm, cells, q, mpm->grid.nodes[cells->to[q]].across, (const mpsi_node *)from->across_tile,
-          (const mpsi_node *)from->across_force);
+    flush(&mpm->grid, mpm->run.dt, cells, q, mpm->grid.nodes[cells->to[q]].across,
+          (const mpsi_node *)from->across_tile, (const mpsi_node *)from->across_force);
 }
 
 void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {

@@ -22,9 +22,9 @@
 /* Lanes of particles that keep their moment: those with nodes in bodies in their stencil, or parted
  * from them by thin ones; but not in axisymmetry, where particles are rings, nor with penalty
  * contact, which is as published. */
-MPSI_INLINE mpsi_mask mpsi_keeps_spin(const mps_mpm *mpm, const mpsi_cut *b) {
+MPSI_INLINE mpsi_mask mpsi_keeps_spin(const mpsi_grid *grid, const mpsi_cut *b) {
   const mpsi_mask all = {-1, -1, -1, -1};
-  if (mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || mpm->grid.by_weight) return ~all;
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || grid->by_weight) return ~all;
   return b->held & MPSI_IMPULSE ? all : b->parted != 0;
 }
 
@@ -88,7 +88,7 @@ MPSI_INLINE mpsi_mask mpsi_find_spin(int dim, double full, mpsi_quad K[3][3], co
 /* The rotation by which the particles of `keeps` give their moments; or, where the inertia is too
  * small for that, the momentum s->turn . grad phi besides, which gives nodes the same. Returns
  * whether there are such. */
-MPSI_INLINE bool mpsi_give_spin(const mps_mpm *mpm, int dim, int spline, const mpsi_cut *b,
+MPSI_INLINE bool mpsi_give_spin(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
                                 mpsi_mask keeps, mpsi_source *s) {
   const double full = 1.0 / mpsi_inverse_moment(spline);
   mpsi_quad K[3][3], lack[3] = {{0.0}}, spin[3] = {{0.0}};
@@ -105,8 +105,7 @@ MPSI_INLINE bool mpsi_give_spin(const mps_mpm *mpm, int dim, int spline, const m
     const int o = (a + 1) % 3, axis = (a + 2) % 3;
     if (o >= dim) continue;
     const mpsi_quad more = (mpsi_quad)((mpsi_mask)spin[axis] & turns);
-    const mpsi_quad turn =
-        (mpsi_quad)((mpsi_mask)(0.5 * mpm->grid.cell * lack[axis]) & ~turns & keeps);
+    const mpsi_quad turn = (mpsi_quad)((mpsi_mask)(0.5 * grid->cell * lack[axis]) & ~turns & keeps);
     s->momentum[o][1 + a] += more, s->momentum[a][1 + o] -= more;
     s->turn[o][a] = turn, s->turn[a][o] = -turn;
   }

@@ -42,23 +42,23 @@ typedef struct mpsi_support {
 } mpsi_support;
 
 /* The partner of tile node t along axis c, or -1: t is inside. */
-MPSI_INLINE int mpsi_partner_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int t) {
+MPSI_INLINE int mpsi_partner_of(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int t) {
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-  if (cells->mirrors >> (2 * c) & 1 && t <= mpm->grid.low[c] - first)
-    return 2 * (int)(mpm->grid.low[c] - first) - t;
-  if (cells->mirrors >> (2 * c + 1) & 1 && t >= mpm->grid.high[c] - first)
-    return 2 * (int)(mpm->grid.high[c] - first) - t;
+  if (cells->mirrors >> (2 * c) & 1 && t <= grid->low[c] - first)
+    return 2 * (int)(grid->low[c] - first) - t;
+  if (cells->mirrors >> (2 * c + 1) & 1 && t >= grid->high[c] - first)
+    return 2 * (int)(grid->high[c] - first) - t;
   return -1;
 }
 
 /* Of the stencil whose lowest node in the tile is `at`. */
-MPSI_INLINE void mpsi_make_support(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+MPSI_INLINE void mpsi_make_support(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                    const int *at, mpsi_support *out) {
   out->any_folds = false;
   for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_SIDE)
     for (int i = 0; i < 4; i++) {
       const int node = at[c] + i;
-      const int partner = cells->mirrors && c < dim ? mpsi_partner_of(mpm, cells, c, node) : -1;
+      const int partner = cells->mirrors && c < dim ? mpsi_partner_of(grid, cells, c, node) : -1;
       const int t = partner >= 0 ? partner : node;
       out->ghost[c][i] = t != node;
       out->folds[c][i] = partner >= 0;
@@ -88,17 +88,17 @@ static inline void mpsi_reflect_at(const mps_mpm *mpm, const mpsi_cell_block *ce
                                    const mpsi_cut *b, int i, int j, int k, double *vector,
                                    double impulse) {
   int at[3] = {b->at[0] + i, b->at[1] + j, b->at[2] + k};
-  mpsi_mpm_reflect(mpm, cells, at, vector, impulse);
+  mpsi_mpm_reflect(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, at, vector, impulse);
 }
 
 /* The normal of the next body that holds the node `local` of a block, which is MPSI_REACHED, from
  * its pair *pair on, which begins as nodes->first_pair; NULL behind the last. */
-MPSI_INLINE const double *mpsi_next_normal(const mps_mpm *mpm, const mpsi_node_block *nodes,
-                                           int local, int32_t *pair) {
+MPSI_INLINE const double *mpsi_next_normal(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                           const mpsi_node_block *nodes, int local, int32_t *pair) {
   if (nodes->near < 0) return NULL;
   while (*pair < nodes->first_pair + nodes->pairs) {
-    const int64_t at = (int64_t)(*pair)++ * mpm->grid.block_nodes + local;
-    if (mpm->contact.held[at]) return mpm->contact.normal[at];
+    const int64_t at = (int64_t)(*pair)++ * grid->block_nodes + local;
+    if (contacts->held[at]) return contacts->normal[at];
   }
   return NULL;
 }
@@ -120,11 +120,11 @@ MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_places *places, 
 
 /* Which nodes of each axis are corners of the particles' own cells; on the upper side of the domain
  * those of the last cell. */
-MPSI_INLINE void mpsi_find_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+MPSI_INLINE void mpsi_find_corners(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                    int spline, const mpsi_cut *b, mpsi_mask (*corner)[4]) {
   for (int c = 0; c < dim; c++) {
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE + b->at[c];
-    const double last = (double)(mpm->grid.high[c] - first);
+    const double last = (double)(grid->high[c] - first);
     mpsi_quad t = -b->s[c][0];
     for (int l = 0; l < 4 && last <= 2.0; l++) t[l] = t[l] < last ? t[l] : last - 0.5;
     for (int i = 0; i <= spline; i++) {
@@ -136,22 +136,23 @@ MPSI_INLINE void mpsi_find_corners(const mps_mpm *mpm, const mpsi_cell_block *ce
 
 /* mpsi_contact_same_side for all bodies that hold the node. A ghost beyond a mirror has the normals
  * of its partner, the other way across the mirror. */
-MPSI_INLINE mpsi_mask mpsi_same_side(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                     const mpsi_cut *b, int i, int j, int k) {
+MPSI_INLINE mpsi_mask mpsi_same_side(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                                     const mpsi_cell_block *cells, int dim, const mpsi_cut *b,
+                                     int i, int j, int k) {
   const int place[3] = {i, j, k};
   mpsi_quad s[3];
   int t[3] = {0};
   for (int c = 0; c < dim; c++) {
     const int node = b->at[c] + place[c];
-    const int partner = cells->mirrors ? mpsi_partner_of(mpm, cells, c, node) : -1;
+    const int partner = cells->mirrors ? mpsi_partner_of(grid, cells, c, node) : -1;
     t[c] = partner >= 0 ? partner : node;
     s[c] = t[c] != node ? -b->s[c][place[c]] : b->s[c][place[c]];
   }
-  const mpsi_node_block *nodes = &mpm->grid.nodes[mpsi_block_under(cells, t[0], t[1], t[2])];
+  const mpsi_node_block *nodes = &grid->nodes[mpsi_block_under(cells, t[0], t[1], t[2])];
   const int local = mpsi_local_under(t[0], t[1], t[2]);
   mpsi_mask same = {-1, -1, -1, -1};
   int32_t pair = nodes->first_pair;
-  for (const double *n; (n = mpsi_next_normal(mpm, nodes, local, &pair)) != NULL;) {
+  for (const double *n; (n = mpsi_next_normal(grid, contacts, nodes, local, &pair)) != NULL;) {
     const mpsi_quad across = n[0] * s[0] + n[1] * s[1];
     same &= (dim == 3 ? across + n[2] * s[2] : across) < 0.0;
   }
@@ -166,20 +167,22 @@ MPSI_INLINE mpsi_mask mpsi_is_active(const mps_mpm *mpm, const mpsi_cell_block *
   if (dim == 3) active &= corner[2][k];
   if ((active[0] & active[1] & active[2] & active[3]) != 0 || !(state & MPSI_REACHED))
     return active;
-  return active | mpsi_same_side(mpm, cells, dim, b, i, j, k);
+  return active | mpsi_same_side(&mpm->grid, &mpm->contact, cells, dim, b, i, j, k);
 }
 
 /* Which nodes thin bodies part from each particle, as found in this step (`known`) or now. Those of
  * them that it does not use are never corners of its cell. */
-MPSI_INLINE void mpsi_find_parted(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                  int spline, bool known, mpsi_mask (*corner)[4], mpsi_cut *b) {
+MPSI_INLINE void mpsi_find_parted(const mpsi_grid *grid, const mpsi_columns *points,
+                                  const mpsi_contacts *contacts, const mpsi_cell_block *cells,
+                                  int dim, int spline, bool known, mpsi_mask (*corner)[4],
+                                  mpsi_cut *b) {
   for (int l = 0; l < b->lanes; l++) {
     const int64_t p = b->first + l;
-    mpsi_parted found = mpm->contact.across[p];
+    mpsi_parted found = contacts->across[p];
     if (!known) {
       double x[3] = {0.0};
-      for (int c = 0; c < dim; c++) x[c] = mpm->p.x[c][p];
-      found = mpsi_mpm_find_parted(mpm, cells, b->at, x);
+      for (int c = 0; c < dim; c++) x[c] = points->x[c][p];
+      found = mpsi_mpm_find_parted(grid, contacts, cells, b->at, x);
       MPSI_FOR_NODES(dim, spline) {
         if (corner[0][i][l] & corner[1][j][l] & (dim == 3 ? corner[2][k][l] : -1))
           found.cut &= ~(UINT64_C(1) << n);
@@ -201,8 +204,9 @@ MPSI_INLINE void mpsi_find_active(const mps_mpm *mpm, const mpsi_cell_block *cel
                                   const mpsi_worker *worker, int dim, int spline, bool thin,
                                   bool known, mpsi_cut *b) {
   mpsi_mask corner[3][4];
-  mpsi_find_corners(mpm, cells, dim, spline, b, corner);
-  if (thin) mpsi_find_parted(mpm, cells, dim, spline, known, corner, b);
+  mpsi_find_corners(&mpm->grid, cells, dim, spline, b, corner);
+  if (thin)
+    mpsi_find_parted(&mpm->grid, &mpm->p, &mpm->contact, cells, dim, spline, known, corner, b);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
@@ -246,7 +250,7 @@ MPSI_INLINE bool mpsi_may_be_full(const mpsi_worker *worker, int dim, int spline
 MPSI_INLINE bool mpsi_is_full(const mps_mpm *mpm, const mpsi_cell_block *cells,
                               const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b) {
   mpsi_mask corner[3][4];
-  mpsi_find_corners(mpm, cells, dim, spline, b, corner);
+  mpsi_find_corners(&mpm->grid, cells, dim, spline, b, corner);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);

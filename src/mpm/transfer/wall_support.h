@@ -29,14 +29,14 @@ typedef struct mpsi_wall {
 /* The axis of the wall, where the stencil from tile node `first`, whose nodes have the states
  * `state` together, is cut by nothing but one; else -1. Momentum by weights goes with
  * cut_scatter.c. */
-MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+MPSI_INLINE int mpsi_wall_axis(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                int spline, uint32_t state, int32_t first) {
   int place[3], axis = -1;
-  if (state != MPSI_OUTSIDE || mpm->grid.by_weight) return -1;
+  if (state != MPSI_OUTSIDE || grid->by_weight) return -1;
   mpsi_unravel(first, MPSI_TILE_SIDE, place);
   for (int c = 0; c < dim; c++) {
     const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place[c];
-    if (node >= mpm->grid.use_low[c] && node + spline <= mpm->grid.use_high[c]) continue;
+    if (node >= grid->use_low[c] && node + spline <= grid->use_high[c]) continue;
     if (axis >= 0) return -1;
     axis = c;
   }
@@ -44,23 +44,23 @@ MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cell_block *cells,
 }
 
 /* Whether this particle's node i across the wall is in the domain. */
-MPSI_INLINE bool mpsi_wall_active(const mps_mpm *mpm, const mpsi_cell_block *cells, int c,
+MPSI_INLINE bool mpsi_wall_active(const mpsi_grid *grid, const mpsi_cell_block *cells, int c,
                                   int place, int i) {
   const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place + i;
-  return node >= mpm->grid.use_low[c] && node <= mpm->grid.use_high[c];
+  return node >= grid->use_low[c] && node <= grid->use_high[c];
 }
 
 /* The weights of particle k of the chunk across the wall; returns M0. */
-MPSI_INLINE double mpsi_wall_weights(const mps_mpm *mpm, const mpsi_cell_block *cells, int spline,
-                                     int axis, int32_t first, double t, mpsi_wall_part part,
-                                     double *value, double *slope) {
+MPSI_INLINE double mpsi_wall_weights(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                                     int spline, int axis, int32_t first, double t,
+                                     mpsi_wall_part part, double *value, double *slope) {
   int place[3];
   double M0 = 0.0, M1 = 0.0, M2 = 0.0, w[4];
   mpsi_unravel(first, MPSI_TILE_SIDE, place);
   mpsi_weights(spline, t, w);
   for (int i = 0; i <= spline; i++) {
     const double s = (double)i - t;
-    if (!mpsi_wall_active(mpm, cells, axis, place[axis], i)) w[i] = 0.0;
+    if (!mpsi_wall_active(grid, cells, axis, place[axis], i)) w[i] = 0.0;
     M0 += w[i], M1 += w[i] * s, M2 += w[i] * s * s;
   }
   const double inverse = 1.0 / (M0 * M2 - M1 * M1);
@@ -84,7 +84,7 @@ MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cell_block *cel
     double value[3][4], slope[3][4];
     for (int c = 0; c < dim; c++) {
       if (c == axis) {
-        out->mass[k - begin] = mpsi_wall_weights(mpm, cells, spline, c, from->first[k],
+        out->mass[k - begin] = mpsi_wall_weights(&mpm->grid, cells, spline, c, from->first[k],
                                                  from->t[c][k], part, value[c], slope[c]);
         continue;
       }

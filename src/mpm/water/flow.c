@@ -20,29 +20,28 @@ typedef struct face_flow {
   bool known; /* else there is no condition at the face */
 } face_flow;
 
-static double weight_of_water(const mps_mpm *mpm) {
-  return mpm->water->def.density * MPS_PORE_GRAVITY;
-}
+static double weight_of_water(mpsi_water *water) { return water->def.density * MPS_PORE_GRAVITY; }
 
 /* Area (m2) of a face between the filled parts of a cell and of the one beside it. */
-static double area_of(const mps_mpm *mpm, const mpsi_pore_cell *cell, const mpsi_pore_cell *beside,
-                      int direction, double X) {
-  double area = mpsi_pore_radius(mpm, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
-  for (int c = 0; c < mpm->grid.dim; c++)
+static double area_of(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell,
+                      const mpsi_pore_cell *beside, int direction, double X) {
+  double area = mpsi_pore_radius(grid, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
+  for (int c = 0; c < grid->dim; c++)
     if (c != direction / 2)
-      area *= mpm->grid.cell * (beside ? fmin(mpsi_pore_edge_of(mpm, cell)->fill[c],
-                                              mpsi_pore_edge_of(mpm, beside)->fill[c])
-                                       : mpsi_pore_edge_of(mpm, cell)->fill[c]);
+      area *= grid->cell * (beside ? fmin(mpsi_pore_edge_of(water, cell)->fill[c],
+                                          mpsi_pore_edge_of(water, beside)->fill[c])
+                                   : mpsi_pore_edge_of(water, cell)->fill[c]);
   return area;
 }
 
 /* Pressure (Pa) of a drained face at x[3]. */
-static double given_pressure(const mps_mpm *mpm, int face, const double *x) {
+static double given_pressure(const mpsi_grid *grid, mpsi_water *water,
+                             const mps_mpm_def *definition, int face, const double *x) {
   if (face < 0) return 0.0;
-  const mps_pore_face_def *def = &mpm->water->face[face];
+  const mps_pore_face_def *def = &water->face[face];
   double p = def->pressure;
-  for (int c = 0; c < mpm->grid.dim && def->at_rest; c++)
-    p += mpm->water->def.density * mpm->def.gravity[c] * x[c];
+  for (int c = 0; c < grid->dim && def->at_rest; c++)
+    p += water->def.density * definition->gravity[c] * x[c];
   return p;
 }
 
@@ -53,25 +52,26 @@ static face_flow to_drained(const mps_mpm *mpm, const mpsi_pore_cell *cell, int 
   const double still = mpm->water->def.density * mpm->def.gravity[axis];
   double to[3] = {x[0], x[1], x[2]};
   to[axis] += sign * distance;
-  const double slope = (given_pressure(mpm, face, to) - p) / distance; /* outwards */
+  const double slope =
+      (given_pressure(&mpm->grid, mpm->water, &mpm->def, face, to) - p) / distance; /* outwards */
   return (face_flow){.slope = sign * slope,
                      .distance = 0.5 * distance,
-                     .flux = area * cell->k / weight_of_water(mpm) * (slope - sign * still),
+                     .flux = area * cell->k / weight_of_water(mpm->water) * (slope - sign * still),
                      .known = true};
 }
 
-static face_flow to_cell(const mps_mpm *mpm, const mpsi_pore_cell *cell,
-                         const mpsi_pore_cell *beside, int direction, double p, double p_beside,
-                         double area) {
+static face_flow to_cell(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def,
+                         const mpsi_pore_cell *cell, const mpsi_pore_cell *beside, int direction,
+                         double p, double p_beside, double area) {
   const int axis = direction / 2, sign = direction & 1 ? 1 : -1;
-  const double still = mpm->water->def.density * mpm->def.gravity[axis];
-  const double distance = mpm->grid.cell + sign * (mpsi_pore_edge_of(mpm, beside)->shift[axis] -
-                                                   mpsi_pore_edge_of(mpm, cell)->shift[axis]);
+  const double still = water->def.density * def->gravity[axis];
+  const double distance = grid->cell + sign * (mpsi_pore_edge_of(water, beside)->shift[axis] -
+                                               mpsi_pore_edge_of(water, cell)->shift[axis]);
   const double drive = (p_beside - p) / distance - sign * still; /* outwards */
   const double sum = cell->k + beside->k, own = sum > 0.0 ? 2.0 * beside->k / sum : 1.0;
   return (face_flow){.slope = sign * drive * own + still,
                      .distance = 0.5 * distance,
-                     .flux = area * own * cell->k / weight_of_water(mpm) * drive,
+                     .flux = area * own * cell->k / weight_of_water(water) * drive,
                      .known = true};
 }
 
@@ -89,108 +89,114 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
   const double h = mpm->grid.cell, p = pressure_of(cell, end);
   const face_flow none = {.known = false};
   *behind = NULL;
-  if (!mpm->water->flows && mpsi_pore_edge_of(mpm, cell)->beyond[direction] != MPSI_PORE_CELL)
+  if (!mpm->water->flows &&
+      mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] != MPSI_PORE_CELL)
     return none;
-  if (mpsi_pore_edge_of(mpm, cell)->beyond[direction] == MPSI_PORE_CLOSED)
+  if (mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_CLOSED)
     return (face_flow){.slope = mpm->water->def.density * mpm->def.gravity[axis],
-                       .distance = 0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis],
+                       .distance = 0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis],
                        .known = true};
-  if (mpsi_pore_edge_of(mpm, cell)->beyond[direction] == MPSI_PORE_DRAINED) {
+  if (mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_DRAINED) {
     *behind = cell;
-    return to_drained(mpm, cell, mpsi_pore_edge_of(mpm, cell)->face[direction], direction, x,
-                      0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis], p,
-                      area_of(mpm, cell, NULL, direction, X));
+    return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, cell)->face[direction], direction, x,
+                      0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis], p,
+                      area_of(&mpm->grid, mpm->water, cell, NULL, direction, X));
   }
-  const mpsi_pore_cell *beside = mpsi_pore_beside(mpm, g, k, direction);
-  const double area = area_of(mpm, cell, beside, direction, X);
+  const mpsi_pore_cell *beside = mpsi_pore_beside(&mpm->grid, mpm->water, g, k, direction);
+  const double area = area_of(&mpm->grid, mpm->water, cell, beside, direction, X);
   if (!beside->thin)
-    return to_cell(mpm, cell, beside, direction, p, pressure_of(beside, end), area);
+    return to_cell(&mpm->grid, mpm->water, &mpm->def, cell, beside, direction, p,
+                   pressure_of(beside, end), area);
   if (!(beside->free >> direction & 1) ||
-      mpsi_pore_edge_of(mpm, beside)->beyond[direction] != MPSI_PORE_DRAINED)
+      mpsi_pore_edge_of(mpm->water, beside)->beyond[direction] != MPSI_PORE_DRAINED)
     return none;
   *behind = beside;
-  const double own = 0.5 * h + sign * -mpsi_pore_edge_of(mpm, cell)->shift[axis];
-  return to_drained(mpm, cell, mpsi_pore_edge_of(mpm, beside)->face[direction], direction, x,
-                    own + h * mpsi_pore_edge_of(mpm, beside)->fill[axis], p,
-                    area_of(mpm, cell, NULL, direction, X));
+  const double own = 0.5 * h + sign * -mpsi_pore_edge_of(mpm->water, cell)->shift[axis];
+  return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, beside)->face[direction], direction, x,
+                    own + h * mpsi_pore_edge_of(mpm->water, beside)->fill[axis], p,
+                    area_of(&mpm->grid, mpm->water, cell, NULL, direction, X));
 }
 
 /* Centre of the filled part of cell k of a block of nodes; the coordinate of its box along x. */
-static double centre_of(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell,
-                        double *x) {
+static double centre_of(const mpsi_grid *grid, mpsi_water *water, int64_t g, int k,
+                        const mpsi_pore_cell *cell, double *x) {
   int place[3];
   mpsi_unravel(k, MPSI_SIDE, place);
   const double local[3] = {place[0] + 0.5, place[1] + 0.5, place[2] + 0.5};
-  mpsi_node_position(mpm, mpm->grid.nodes[g].at, local, x);
-  for (int c = 0; c < mpm->grid.dim; c++) x[c] += mpsi_pore_edge_of(mpm, cell)->shift[c];
-  return (double)mpm->grid.nodes[g].at[0] * MPSI_SIDE + place[0];
+  mpsi_node_position(grid, grid->nodes[g].at, local, x);
+  for (int c = 0; c < grid->dim; c++) x[c] += mpsi_pore_edge_of(water, cell)->shift[c];
+  return (double)grid->nodes[g].at[0] * MPSI_SIDE + place[0];
 }
 
 /* ---- cells among whole cells ----------------------------------------------------------------- */
 
 /* The cells on all faces of one that is inside; false where one of them is filled in part. */
-static bool find_whole(const mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell,
-                       const mpsi_pore_cell **beside) {
+static bool find_whole(const mpsi_grid *grid, mpsi_water *water, int64_t g, int k,
+                       const mpsi_pore_cell *cell, const mpsi_pore_cell **beside) {
   if (!cell->inside) return false;
-  for (int d = 0; d < 2 * mpm->grid.dim; d++) {
-    beside[d] = mpsi_pore_beside(mpm, g, k, d);
+  for (int d = 0; d < 2 * grid->dim; d++) {
+    beside[d] = mpsi_pore_beside(grid, water, g, k, d);
     if (beside[d]->free) return false;
   }
   return true;
 }
 
 /* The cell's part of the slope to the one beside it, outwards, without that of water at rest. */
-static double drive_to(const mps_mpm *mpm, const mpsi_pore_cell *cell, const mpsi_pore_cell *beside,
-                       int direction, double difference) {
-  const double still = mpm->water->def.density * mpm->def.gravity[direction / 2];
-  const double drive = difference * mpm->grid.inverse + (direction & 1 ? -still : still);
-  return mpm->water->flows ? 2.0 * beside->k / (cell->k + beside->k) * drive : drive;
+static double drive_to(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def,
+                       const mpsi_pore_cell *cell, const mpsi_pore_cell *beside, int direction,
+                       double difference) {
+  const double still = water->def.density * def->gravity[direction / 2];
+  const double drive = difference * grid->inverse + (direction & 1 ? -still : still);
+  return water->flows ? 2.0 * beside->k / (cell->k + beside->k) * drive : drive;
 }
 
 /* Flux (m3/s) into it, as to_cell has for each face. */
-static double flux_among_whole(const mps_mpm *mpm, const mpsi_pore_cell *cell,
-                               const mpsi_pore_cell *const *beside) {
-  const double h = mpm->grid.cell;
+static double flux_among_whole(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def,
+                               const mpsi_pore_cell *cell, const mpsi_pore_cell *const *beside) {
+  const double h = grid->cell;
   double sum = 0.0;
-  for (int d = 0; d < 2 * mpm->grid.dim; d++)
-    sum += drive_to(mpm, cell, beside[d], d, beside[d]->p - cell->p);
-  return sum * (mpm->grid.dim == 3 ? h * h : h) * cell->k / weight_of_water(mpm);
+  for (int d = 0; d < 2 * grid->dim; d++)
+    sum += drive_to(grid, water, def, cell, beside[d], d, beside[d]->p - cell->p);
+  return sum * (grid->dim == 3 ? h * h : h) * cell->k / weight_of_water(water);
 }
 
-static void slope_among_whole(const mps_mpm *mpm, mpsi_pore_cell *cell,
-                              const mpsi_pore_cell *const *beside) {
-  for (int c = 0; c < mpm->grid.dim; c++) {
+static void slope_among_whole(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def,
+                              mpsi_pore_cell *cell, const mpsi_pore_cell *const *beside) {
+  for (int c = 0; c < grid->dim; c++) {
     const mpsi_pore_cell *below = beside[2 * c], *above = beside[2 * c + 1];
-    cell->g[c] = mpm->water->def.density * mpm->def.gravity[c] +
-                 0.5 * (drive_to(mpm, cell, above, 2 * c + 1, above->now - cell->now) -
-                        drive_to(mpm, cell, below, 2 * c, below->now - cell->now));
+    cell->g[c] = water->def.density * def->gravity[c] +
+                 0.5 * (drive_to(grid, water, def, cell, above, 2 * c + 1, above->now - cell->now) -
+                        drive_to(grid, water, def, cell, below, 2 * c, below->now - cell->now));
   }
 }
 
 /* ---- pressures at the end of the step -------------------------------------------------------- */
 
-static double *outflow_of(const mps_mpm *mpm, int64_t g, int face) {
-  return &mpm->water->outflow[g][face < 0 ? MPS_PORE_MAX_FACES : face];
+static double *outflow_of(mpsi_water *water, int64_t g, int face) {
+  return &water->outflow[g][face < 0 ? MPS_PORE_MAX_FACES : face];
 }
 
 /* What a thin cell loses goes through one of its drained faces. */
-static void squeeze(mps_mpm *mpm, int64_t g, mpsi_pore_cell *cell) {
+static void squeeze(const mpsi_grid *grid, mpsi_water *water, double dt, int64_t g,
+                    mpsi_pore_cell *cell) {
   int d = 0;
-  while (!((cell->free >> d & 1) && mpsi_pore_edge_of(mpm, cell)->beyond[d] == MPSI_PORE_DRAINED))
+  while (!((cell->free >> d & 1) && mpsi_pore_edge_of(water, cell)->beyond[d] == MPSI_PORE_DRAINED))
     d++;
-  cell->gain = cell->change / (mpm->run.dt * mpm->grid.measure);
-  *outflow_of(mpm, g, mpsi_pore_edge_of(mpm, cell)->face[d]) -= cell->gain;
+  cell->gain = cell->change / (dt * grid->measure);
+  *outflow_of(water, g, mpsi_pore_edge_of(water, cell)->face[d]) -= cell->gain;
 }
 
 static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell) {
   const mpsi_pore_cell *beside[6], *behind;
   double x[3], flux = 0.0;
-  if (find_whole(mpm, g, k, cell, beside)) return flux_among_whole(mpm, cell, beside);
-  const double X = centre_of(mpm, g, k, cell, x);
+  if (find_whole(&mpm->grid, mpm->water, g, k, cell, beside))
+    return flux_among_whole(&mpm->grid, mpm->water, &mpm->def, cell, beside);
+  const double X = centre_of(&mpm->grid, mpm->water, g, k, cell, x);
   for (int d = 0; d < 2 * mpm->grid.dim; d++) {
     const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
     if (f.known) flux += f.flux;
-    if (f.known && behind) *outflow_of(mpm, g, mpsi_pore_edge_of(mpm, behind)->face[d]) -= f.flux;
+    if (f.known && behind)
+      *outflow_of(mpm->water, g, mpsi_pore_edge_of(mpm->water, behind)->face[d]) -= f.flux;
   }
   return flux;
 }
@@ -202,22 +208,22 @@ static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   cell->gain = flux_into(mpm, g, k, cell);
   /* a cell less than half full at an impervious surface: else its steps would be short */
   if (!cell->inside) {
-    const mpsi_pore_edge *edge = mpsi_pore_edge_of(mpm, cell);
+    const mpsi_pore_edge *edge = mpsi_pore_edge_of(mpm->water, cell);
     const double filled = edge->fill[0] * edge->fill[1] * edge->fill[2];
     space = fmax(edge->space, 0.5 * edge->space / fmax(1e-3, filled));
   }
   cell->now = cell->p + water->def.bulk / cell->n * (mpm->run.dt * cell->gain / space) +
-              mpsi_pore_squeeze(mpm, cell);
+              mpsi_pore_squeeze(mpm->water, cell);
 }
 
 static void find_pressures(mps_mpm *mpm, int64_t g, int32_t worker) {
-  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
+  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   (void)worker;
   memset(mpm->water->outflow[g], 0, sizeof mpm->water->outflow[g]);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (mpsi_pore_empty(&cell[k])) continue;
     if (cell[k].thin)
-      squeeze(mpm, g, &cell[k]);
+      squeeze(&mpm->grid, mpm->water, mpm->run.dt, g, &cell[k]);
     else
       advance(mpm, g, k, &cell[k]);
   }
@@ -236,11 +242,11 @@ static double between(const face_flow *below, const face_flow *above) {
 static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   const mpsi_pore_cell *beside[6], *behind;
   double x[3];
-  if (find_whole(mpm, g, k, cell, beside)) {
-    slope_among_whole(mpm, cell, beside);
+  if (find_whole(&mpm->grid, mpm->water, g, k, cell, beside)) {
+    slope_among_whole(&mpm->grid, mpm->water, &mpm->def, cell, beside);
     return;
   }
-  const double X = centre_of(mpm, g, k, cell, x);
+  const double X = centre_of(&mpm->grid, mpm->water, g, k, cell, x);
   for (int c = 0; c < mpm->grid.dim; c++) {
     const face_flow below = at_face(mpm, g, k, 2 * c, true, cell, x, X, &behind);
     const face_flow above = at_face(mpm, g, k, 2 * c + 1, true, cell, x, X, &behind);
@@ -249,38 +255,40 @@ static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cel
 }
 
 /* On the line from the neighbours inside to the surface, the mean over the axes that have one. */
-static void interpolate(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
-  const double h = mpm->grid.cell;
+static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def, int64_t g,
+                        int k, mpsi_pore_cell *cell) {
+  const double h = grid->cell;
   double x[3], sum = 0.0;
   int lines = 0;
-  centre_of(mpm, g, k, cell, x);
-  for (int d = 0; d < 2 * mpm->grid.dim; d++) {
+  centre_of(grid, water, g, k, cell, x);
+  for (int d = 0; d < 2 * grid->dim; d++) {
     const int axis = d / 2, sign = d & 1 ? 1 : -1;
-    if (!(cell->free >> d & 1) || mpsi_pore_edge_of(mpm, cell)->beyond[d] != MPSI_PORE_DRAINED)
+    if (!(cell->free >> d & 1) || mpsi_pore_edge_of(water, cell)->beyond[d] != MPSI_PORE_DRAINED)
       continue;
-    const mpsi_pore_cell *inside = mpsi_pore_beside(mpm, g, k, d ^ 1);
+    const mpsi_pore_cell *inside = mpsi_pore_beside(grid, water, g, k, d ^ 1);
     double at[3] = {x[0], x[1], x[2]};
-    at[axis] += sign * 0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis];
-    const double surface = given_pressure(mpm, mpsi_pore_edge_of(mpm, cell)->face[d], at);
+    at[axis] += sign * 0.5 * h * mpsi_pore_edge_of(water, cell)->fill[axis];
+    const double surface =
+        given_pressure(grid, water, def, mpsi_pore_edge_of(water, cell)->face[d], at);
     cell->g[axis] = 0.0;
     if (mpsi_pore_empty(inside) || inside->thin) continue;
-    const double way = 0.5 * h - sign * mpsi_pore_edge_of(mpm, inside)->shift[axis] +
-                       h * mpsi_pore_edge_of(mpm, cell)->fill[axis];
+    const double way = 0.5 * h - sign * mpsi_pore_edge_of(water, inside)->shift[axis] +
+                       h * mpsi_pore_edge_of(water, cell)->fill[axis];
     const double slope = (surface - inside->now) / way; /* outwards */
     cell->g[axis] = sign * slope;
-    sum += surface - slope * 0.5 * h * mpsi_pore_edge_of(mpm, cell)->fill[axis];
+    sum += surface - slope * 0.5 * h * mpsi_pore_edge_of(water, cell)->fill[axis];
     lines++;
   }
   cell->now = lines > 0 ? sum / lines : 0.0;
 }
 
 static void find_slopes(mps_mpm *mpm, int64_t g, int32_t worker) {
-  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(mpm, g);
+  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (mpsi_pore_empty(&cell[k])) continue;
     if (cell[k].thin)
-      interpolate(mpm, g, k, &cell[k]);
+      interpolate(&mpm->grid, mpm->water, &mpm->def, g, k, &cell[k]);
     else
       find_slope(mpm, g, k, &cell[k]);
   }
@@ -296,19 +304,17 @@ static double permeability_after(const mps_pore_water_def *def, double k, double
   return k;
 }
 
-MPSI_INLINE void give_body(mps_mpm *mpm, int64_t b, int dim) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const struct mpsi_water *water = mpm->water;
-  const mpsi_columns *p = &mpm->p;
-  const double weight = weight_of_water(mpm);
+MPSI_INLINE void give_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
+                           const mps_mpm_def *def, double dt, int64_t b, int dim) {
+  const mpsi_cell_block *cells = &grid->cells[b];
+  const double weight = weight_of_water(water);
   for (int64_t k = cells->begin; k < cells->end;) {
     const int at = water->place[k];
     double centre[3];
-    const mpsi_pore_cell *cell = mpsi_pore_cell_at(mpm, cells, at, centre);
-    const double gain = water->flows ? water->def.density * mpm->run.dt * cell->gain *
-                                           mpm->grid.measure / cell->volume
-                                     : 0.0;
-    for (int c = 0; c < dim; c++) centre[c] += mpsi_pore_edge_of(mpm, cell)->shift[c];
+    const mpsi_pore_cell *cell = mpsi_pore_cell_at(grid, water, cells, at, centre);
+    const double gain =
+        water->flows ? water->def.density * dt * cell->gain * grid->measure / cell->volume : 0.0;
+    for (int c = 0; c < dim; c++) centre[c] += mpsi_pore_edge_of(water, cell)->shift[c];
     for (; k < cells->end && water->place[k] == at; k++) {
       double now = cell->now;
       for (int c = 0; c < dim; c++) {
@@ -321,7 +327,7 @@ MPSI_INLINE void give_body(mps_mpm *mpm, int64_t b, int dim) {
         p->m[k] += gain * p->V[k];
         for (int c = 0; c < dim && water->seepage[0]; c++)
           water->seepage[c][k] =
-              -p->k[k] / weight * (cell->g[c] - water->def.density * mpm->def.gravity[c]);
+              -p->k[k] / weight * (cell->g[c] - water->def.density * def->gravity[c]);
       }
       p->n[k] = 1.0 - (1.0 - p->n[k]) * (water->former[k] / p->V[k]);
     }
@@ -331,9 +337,9 @@ MPSI_INLINE void give_body(mps_mpm *mpm, int64_t b, int dim) {
 static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   if (mpm->grid.dim == 2)
-    give_body(mpm, b, 2);
+    give_body(&mpm->grid, &mpm->p, mpm->water, &mpm->def, mpm->run.dt, b, 2);
   else
-    give_body(mpm, b, 3);
+    give_body(&mpm->grid, &mpm->p, mpm->water, &mpm->def, mpm->run.dt, b, 3);
 }
 
 void mpsi_pore_flow(mps_mpm *mpm) {

@@ -2,39 +2,39 @@
  * what snapshots and checkpoints keep besides the fields. SPDX-License-Identifier: BSD-3-Clause */
 #include "water.h"
 
-static mps_status refuse_particle(const mps_mpm *mpm, const char *function, int64_t k,
-                                  const char *field, double value, const char *allowed) {
-  const int64_t id = mpsi_particles_integers(mpm->p.set, "id")[k];
-  (void)mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                  "'%s' of particle %lld is %g, must be %s", field, (long long)id, value, allowed);
-  mpsi_fail_where(mpm->context, -1, id);
+static mps_status refuse_particle(mps_context *context, const mpsi_columns *p, const char *function,
+                                  int64_t k, const char *field, double value, const char *allowed) {
+  const int64_t id = mpsi_particles_integers(p->set, "id")[k];
+  (void)mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "'%s' of particle %lld is %g, must be %s",
+                  field, (long long)id, value, allowed);
+  mpsi_fail_where(context, -1, id);
   return MPS_ERROR_ARGUMENT;
 }
 
-mps_status mpsi_pore_check(const mps_mpm *mpm, const char *function) {
-  const mpsi_columns *p = &mpm->p;
-  const double rho = mpm->water ? mpm->water->def.density : 0.0;
-  for (int64_t k = 0; mpm->water && k < p->count; k++) {
+mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_water *water,
+                           const char *function) {
+  const double rho = water ? water->def.density : 0.0;
+  for (int64_t k = 0; water && k < p->count; k++) {
     const double mixture = p->m[k] / p->V[k];
     if (!(p->n[k] > 0.0 && p->n[k] < 1.0))
-      return refuse_particle(mpm, function, k, "porosity", p->n[k], "in (0, 1)");
+      return refuse_particle(context, p, function, k, "porosity", p->n[k], "in (0, 1)");
     if (!isfinite(p->u[k]))
-      return refuse_particle(mpm, function, k, "pore_pressure", p->u[k], "finite");
+      return refuse_particle(context, p, function, k, "pore_pressure", p->u[k], "finite");
     if (p->k && !(p->k[k] > 0.0 && p->k[k] <= MPSI_PORE_FASTEST))
-      return refuse_particle(mpm, function, k, "permeability", p->k[k], "in (0, 1] m/s");
+      return refuse_particle(context, p, function, k, "permeability", p->k[k], "in (0, 1] m/s");
     if (!(mixture > p->n[k] * rho))
       return refuse_particle(
-          mpm, function, k, "density", mixture,
+          context, p, function, k, "density", mixture,
           "that of grains and water together, above porosity times that of water");
   }
   return MPS_OK;
 }
 
-double mpsi_pore_mass(const mps_mpm *mpm) {
-  const mps_pore_water_def *def = &mpm->water->def;
+double mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water) {
+  const mps_pore_water_def *def = &water->def;
   double sum = 0.0;
-  for (int64_t k = 0; k < mpm->p.count; k++)
-    sum += def->density * mpm->p.n[k] * mpm->p.V[k] * (1.0 + mpm->p.u[k] / def->bulk);
+  for (int64_t k = 0; k < p->count; k++)
+    sum += def->density * p->n[k] * p->V[k] * (1.0 + p->u[k] / def->bulk);
   return sum;
 }
 
@@ -50,14 +50,14 @@ void mpsi_pore_free(mps_mpm *mpm) {
   mpm->water = NULL;
 }
 
-void mpsi_pore_list_state(mpsi_state *state, mps_mpm *mpm) {
-  mpsi_state_agree_integer(state, "pore_water", mpm->water != NULL);
-  if (!mpm->water) return;
+void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water) {
+  mpsi_state_agree_integer(state, "pore_water", water != NULL);
+  if (!water) return;
   mpsi_state_enter(state, "water");
-  mpsi_state_agree_integer(state, "flows", mpm->water->flows);
-  mpsi_state_agree_integer(state, "faces", mpm->water->faces);
-  mpsi_state_f64(state, "start", &mpm->water->start, 1);
-  mpsi_state_f64(state, "drained", mpm->water->drained, MPSI_PORE_FACES);
-  mpsi_state_f64(state, "rate", mpm->water->rate, MPSI_PORE_FACES);
+  mpsi_state_agree_integer(state, "flows", water->flows);
+  mpsi_state_agree_integer(state, "faces", water->faces);
+  mpsi_state_f64(state, "start", &water->start, 1);
+  mpsi_state_f64(state, "drained", water->drained, MPSI_PORE_FACES);
+  mpsi_state_f64(state, "rate", water->rate, MPSI_PORE_FACES);
   mpsi_state_leave(state);
 }

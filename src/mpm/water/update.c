@@ -6,16 +6,15 @@
 
 /* ---- before ---------------------------------------------------------------------------------- */
 
-static mps_status make_room(mps_mpm *mpm, const char *function) {
-  struct mpsi_water *water = mpm->water;
-  mps_context *context = mpm->context;
-  const int64_t blocks = mpm->grid.node_count, nodes = blocks * mpm->grid.block_nodes;
+static mps_status make_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                            mpsi_water *water, const char *function) {
+  const int64_t blocks = grid->node_count, nodes = blocks * grid->block_nodes;
   if (!mpsi_room_ensure(context, &water->cell_room, nodes, sizeof *water->cell) ||
       !mpsi_room_ensure(context, &water->edge_room, nodes, sizeof *water->edge) ||
       !mpsi_room_ensure(context, &water->beside_room, 6 * blocks, sizeof *water->beside) ||
       !mpsi_room_ensure(context, &water->outflow_room, blocks, sizeof *water->outflow) ||
-      !mpsi_room_ensure(context, &water->former_room, mpm->p.count, sizeof *water->former) ||
-      !mpsi_room_ensure(context, &water->place_room, mpm->p.count, sizeof *water->place))
+      !mpsi_room_ensure(context, &water->former_room, p->count, sizeof *water->former) ||
+      !mpsi_room_ensure(context, &water->place_room, p->count, sizeof *water->place))
     return mpsi_fail_memory(context, function, (size_t)nodes * sizeof *water->cell);
   water->cell = water->cell_room.item;
   water->edge = water->edge_room.item;
@@ -40,14 +39,13 @@ static int32_t find_block(const mpsi_grid *grid, const int32_t *at) {
   return found ? (int32_t)low : -1;
 }
 
-static void link_blocks(mps_mpm *mpm) {
-  const mpsi_grid *grid = &mpm->grid;
+static void link_blocks(const mpsi_grid *grid, mpsi_water *water) {
   for (int64_t g = 0; g < grid->node_count; g++)
     for (int d = 0; d < 6; d++) {
       int32_t at[3];
       memcpy(at, grid->nodes[g].at, sizeof at);
       at[d / 2] += d & 1 ? 1 : -1;
-      mpm->water->beside[6 * g + d] = d < 2 * mpm->grid.dim ? find_block(grid, at) : -1;
+      water->beside[6 * g + d] = d < 2 * grid->dim ? find_block(grid, at) : -1;
     }
 }
 
@@ -60,27 +58,26 @@ static void keep_volumes(mps_mpm *mpm, int64_t b, int32_t worker) {
 
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
   if (!mpm->water) return MPS_OK;
-  const mps_status status = make_room(mpm, function);
+  const mps_status status = make_room(mpm->context, &mpm->grid, &mpm->p, mpm->water, function);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
         c < mpm->grid.dim ? mpsi_particles_column(mpm->p.set, "seepage", c) : NULL;
-  if (mpm->run.steps == 0) mpm->water->start = mpsi_pore_mass(mpm);
-  link_blocks(mpm);
+  if (mpm->run.steps == 0) mpm->water->start = mpsi_pore_mass(&mpm->p, mpm->water);
+  link_blocks(&mpm->grid, mpm->water);
   mpsi_mpm_for_cells(mpm, keep_volumes);
   return MPS_OK;
 }
 
 /* ---- after ----------------------------------------------------------------------------------- */
 
-static void sum_outflow(mps_mpm *mpm) {
-  struct mpsi_water *water = mpm->water;
-  const double amount = water->def.density * mpm->grid.measure;
+static void sum_outflow(const mpsi_grid *grid, mpsi_water *water, double dt) {
+  const double amount = water->def.density * grid->measure;
   for (int f = 0; f < MPSI_PORE_FACES; f++) {
     double sum = 0.0; /* m3/s, in the order of the blocks */
-    for (int64_t g = 0; g < mpm->grid.node_count; g++) sum += water->outflow[g][f];
+    for (int64_t g = 0; g < grid->node_count; g++) sum += water->outflow[g][f];
     water->rate[f] = amount * sum;
-    water->drained[f] += water->rate[f] * mpm->run.dt;
+    water->drained[f] += water->rate[f] * dt;
   }
 }
 
@@ -88,5 +85,5 @@ void mpsi_pore_update(mps_mpm *mpm) {
   if (!mpm->water) return;
   mpsi_pore_find_cells(mpm);
   mpsi_pore_flow(mpm);
-  if (mpm->water->flows) sum_outflow(mpm);
+  if (mpm->water->flows) sum_outflow(&mpm->grid, mpm->water, mpm->run.dt);
 }

@@ -60,16 +60,17 @@ struct mpsi_water {
 
 /* The cell at `place` of a block of cells: the block of nodes under its tile, times the
  * nodes of one, and the number in that. Its centre to centre[3] (m). */
-static inline mpsi_pore_cell *mpsi_pore_cell_at(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                                int place, double *centre) {
+static inline mpsi_pore_cell *mpsi_pore_cell_at(const mpsi_grid *grid, mpsi_water *water,
+                                                const mpsi_cell_block *cells, int place,
+                                                double *centre) {
   const int corner = place / MPSI_PORE_BLOCK, local = place % MPSI_PORE_BLOCK;
   int at[3];
   mpsi_unravel(local, MPSI_SIDE, at);
-  for (int c = 0; c < mpm->grid.dim; c++) {
+  for (int c = 0; c < grid->dim; c++) {
     const int64_t cell = ((int64_t)cells->at[c] + (corner >> c & 1)) * MPSI_SIDE + at[c];
-    centre[c] = mpm->grid.origin[c] + mpm->grid.cell * ((double)cell + 0.5);
+    centre[c] = grid->origin[c] + grid->cell * ((double)cell + 0.5);
   }
-  return mpm->water->cell + mpsi_first_node(mpm, cells->to[corner]) + local;
+  return water->cell + mpsi_first_node(grid, cells->to[corner]) + local;
 }
 
 static inline bool mpsi_pore_empty(const mpsi_pore_cell *cell) {
@@ -77,31 +78,31 @@ static inline bool mpsi_pore_empty(const mpsi_pore_cell *cell) {
 }
 /* Radius (m) that volumes and faces are multiplied by at grid coordinate X; 1 but in axisymmetry.
  */
-static inline double mpsi_pore_radius(const mps_mpm *mpm, double X) {
-  if (mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) return 1.0;
-  return mpm->grid.origin[0] + X * mpm->grid.cell;
+static inline double mpsi_pore_radius(const mpsi_grid *grid, double X) {
+  if (grid->geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) return 1.0;
+  return grid->origin[0] + X * grid->cell;
 }
 
 /* Of a cell that is inside: one that is filled, with cells on all faces. */
-static inline const mpsi_pore_edge *mpsi_pore_edge_of(const mps_mpm *mpm,
+static inline const mpsi_pore_edge *mpsi_pore_edge_of(mpsi_water *water,
                                                       const mpsi_pore_cell *cell) {
   static const mpsi_pore_edge whole = {.fill = {1.0, 1.0, 1.0}, .face = {-1, -1, -1, -1, -1, -1}};
-  return cell->inside ? &whole : mpm->water->edge + (cell - mpm->water->cell);
+  return cell->inside ? &whole : water->edge + (cell - water->cell);
 }
 /* The one beside cell k of block g, or NULL. */
-static inline mpsi_pore_cell *mpsi_pore_beside(const mps_mpm *mpm, int64_t g, int k,
-                                               int direction) {
+static inline mpsi_pore_cell *mpsi_pore_beside(const mpsi_grid *grid, mpsi_water *water, int64_t g,
+                                               int k, int direction) {
   const int digit = MPSI_PORE_BITS * (direction / 2), stride = 1 << digit;
   const int place = k >> digit & (MPSI_SIDE - 1), last = direction & 1 ? MPSI_SIDE - 1 : 0;
   const int step = direction & 1 ? stride : -stride;
-  if (place != last) return mpm->water->cell + mpsi_first_node(mpm, g) + k + step;
-  const int32_t block = mpm->water->beside[6 * g + direction];
+  if (place != last) return water->cell + mpsi_first_node(grid, g) + k + step;
+  const int32_t block = water->beside[6 * g + direction];
   if (block < 0) return NULL;
-  return mpm->water->cell + mpsi_first_node(mpm, block) + k - (MPSI_SIDE - 1) * step;
+  return water->cell + mpsi_first_node(grid, block) + k - (MPSI_SIDE - 1) * step;
 }
 /* What the pressure of a cell grows by in the step without flow, Pa. */
-static inline double mpsi_pore_squeeze(const mps_mpm *mpm, const mpsi_pore_cell *cell) {
-  return -mpm->water->def.bulk / cell->n * (cell->change / (cell->volume - cell->change));
+static inline double mpsi_pore_squeeze(mpsi_water *water, const mpsi_pore_cell *cell) {
+  return -water->def.bulk / cell->n * (cell->change / (cell->volume - cell->change));
 }
 /* cells.c: sums of the particles, then faces and the filled part of each cell, and without flow its
  * pressure at the end of the step. */
@@ -114,11 +115,12 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function);
 /* update.c: after a step whose values are numbers. */
 void mpsi_pore_update(mps_mpm *mpm);
 /* state.c: values that the caller has written: MPS_ERROR_ARGUMENT names the particle. */
-mps_status mpsi_pore_check(const mps_mpm *mpm, const char *function);
+mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_water *water,
+                           const char *function);
 /* state.c: of the water in the particles' pores, kg of the measure. */
-double mpsi_pore_mass(const mps_mpm *mpm);
+double mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water);
 /* state.c: the state besides the fields; what is freed with the solver. */
-void mpsi_pore_list_state(mpsi_state *state, mps_mpm *mpm);
+void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water);
 void mpsi_pore_free(mps_mpm *mpm);
 
 #endif
