@@ -315,7 +315,8 @@ MPSI_INLINE void find_pair_parts(const mps_mpm *mpm, int geometry, int spline, b
                                  pair_parts *force) {
   for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(mpm, geometry, spline, split, begin + k, &part);
+    find_quad_parts(&mpm->grid, &mpm->p, &mpm->def, mpm->run.dt, geometry, spline, split, begin + k,
+                    &part);
     put_pairs(places, part.sum, k, sum);
     if (split) put_pairs(places, part.force, k, force);
   }
