@@ -133,6 +133,8 @@ CALL(elastic_remove_load, mps_elastic_remove_load(s->elastic, 0))
 CALL(elastic_update_material, mps_elastic_update_material(s->elastic))
 CALL(fluid_get_levels, mps_fluid_get_levels(s->fluid, 1, high, (double[1]){0.0}))
 CALL(fluid_get_pressure, mps_fluid_get_pressure(s->fluid, 0, 1, high, (double[1]){0.0}))
+CALL(fluid_get_body_pressure,
+     mps_fluid_get_body_pressure(s->fluid, NULL, 1, high, (double[1]){0.0}))
 CALL(fluid_set_boundary, mps_fluid_set_boundary(s->fluid, 0, NULL))
 CALL(fluid_set_load, mps_fluid_set_load(s->fluid, 0, NULL))
 CALL(fluid_remove_load, mps_fluid_remove_load(s->fluid, 0))
@@ -233,6 +235,7 @@ static const struct {
     ROW(elastic_cut),
     ROW(fluid_get_levels),
     ROW(fluid_get_pressure),
+    ROW(fluid_get_body_pressure),
     ROW(fluid_set_boundary),
     ROW(fluid_set_load),
     ROW(fluid_remove_load),

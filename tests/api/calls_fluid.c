@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <mps/experimental.h>
+#include <mps/fluid_rock.h>
 #include <mps/fluid_solver.h>
 #include <mps/mps.h>
 
@@ -15,6 +16,7 @@ API_SOLVER(fluid, API_FLUID)
 API_INIT(fluid_def)
 API_INIT(fluid_boundary_def)
 API_INIT(fluid_load_def)
+API_INIT(fluid_rock_def)
 API_INIT(fluid_contact_def)
 API_INIT(fluid_solver_def)
 
@@ -84,17 +86,32 @@ static void draw_boundary(api *a, mps_fluid_boundary_def *def, int which, double
   }
 }
 
+/* The bed as a polyline that passes the plane walls at right angles, far from its corners. */
+static void draw_corners(api *a, mps_fluid_boundary_def *def, double corners[12]) {
+  const double h = api_near(a, "corner", -0.05, 0.04);
+  const double all[] = {-2.0, -0.01, 0.0, -1.0, -0.01, 0.0, 2.0, -0.01, 0.0, 3.0, h, 0.0};
+  memcpy(corners, all, sizeof all);
+  *def = mps_fluid_boundary_defaults();
+  def->struct_size = api_struct_size(a, sizeof *def);
+  if (!a->latest && api_chance(a, 50)) def->kind = MPS_BOUNDARY_ROLLER;
+  def->corners = corners, def->corner_count = 4;
+  api_say(a, "4 corners, ");
+}
+
 static void fluid_add_boundary(api *a) {
   api_begin(a, "mps_fluid_add_boundary");
   mps_fluid_boundary_def def;
-  double nodes[6];
+  double nodes[6], corners[12];
   int32_t number = -1;
   mps_fluid *fluid = api_any(a, API_FLUID)->handle;
   int which = (int)api_below(a, 3);
   mps_reaction r; /* of a scene: one wall after the other */
   while (a->latest && which > 0 && mps_fluid_get_reaction(fluid, which - 1, &r) != MPS_OK) which--;
   if (a->latest && mps_fluid_get_reaction(fluid, which, &r) == MPS_OK) which = (which + 1) % 3;
-  draw_boundary(a, &def, which, nodes);
+  if (which == 0 && api_chance(a, 20))
+    draw_corners(a, &def, corners);
+  else
+    draw_boundary(a, &def, which, nodes);
   api_arm(a);
   (void)api_end(a, mps_fluid_add_boundary(fluid, api_null(a, "def") ? NULL : &def,
                                           api_chance(a, 80) ? &number : NULL));
@@ -157,6 +174,34 @@ static void fluid_get_pressure(api *a) {
   (void)api_end(a, status);
 }
 
+static void fluid_get_body_pressure(api *a) {
+  api_begin(a, "mps_fluid_get_body_pressure");
+  double x[3] = {0}, pressure[1] = {0};
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  mps_contact *contact = api_any(a, API_CONTACT)->handle;
+  const int64_t count = api_least(a, "count", 0, 1);
+  x[0] = api_near(a, "x", 0.3, 0.3), x[1] = api_near(a, "y", 0.2, 0.2);
+  if (count == 0) a->wrong = !fluid;
+  const mps_status status = mps_fluid_get_body_pressure(fluid, contact, count, x, pressure);
+  if (status == MPS_OK && !isfinite(pressure[0])) api_broken(a, "pressure %g", pressure[0]);
+  a->reads = false; /* readings before a step fill `surface_rise` and others */
+  (void)api_end(a, status);
+}
+
+static void fluid_get_segments(api *a) {
+  api_begin(a, "mps_fluid_get_segments");
+  double force[9], moment[3];
+  int64_t count = -1;
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 3);
+  const int64_t capacity = api_least(a, "capacity", 0, 3);
+  const mps_status status = mps_fluid_get_segments(fluid, number, capacity, &count,
+                                                   api_chance(a, 80) ? force : NULL, moment);
+  for (int64_t k = 0; status == MPS_OK && k < count && k < capacity; k++)
+    if (!isfinite(moment[k])) api_broken(a, "moment %g", moment[k]);
+  (void)api_end(a, status);
+}
+
 static void fluid_get_levels(api *a) {
   api_begin(a, "mps_fluid_get_levels");
   double station[2], level[2] = {0};
@@ -199,7 +244,7 @@ static void fluid_float_body(api *a) {
 static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t *ids) {
   *def = mps_fluid_load_defaults();
   def->struct_size = api_struct_size(a, sizeof *def);
-  def->kind = api_choice(a, "kind", 2);
+  def->kind = api_choice(a, "kind", 3);
   if (api_chance(a, 30)) {
     def->id_count = api_ids(a, mps_fluid_particles(fluid), 4, ids);
     def->ids = def->id_count ? ids : NULL;
@@ -235,6 +280,35 @@ static void fluid_set_load(api *a) {
   const int32_t number = (int32_t)api_least(a, "number", 0, 1);
   draw_load(a, fluid, &def, ids);
   (void)api_end(a, mps_fluid_set_load(fluid, number, &def));
+}
+
+/* ---- rock ------------------------------------------------------------------------------------ */
+
+static void fluid_add_rock(api *a) {
+  api_begin(a, "mps_fluid_add_rock");
+  double corners[12];
+  int32_t number = -1;
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  mps_fluid_rock_def def = mps_fluid_rock_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  const double x = api_near(a, "corner", 0.3, 0.2);
+  const double all[] = {x, 0.0, 0.0, x + 0.2, 0.0, 0.0, x + 0.2, 0.3, 0.0, x, 0.3, 0.0};
+  memcpy(corners, all, sizeof all);
+  def.corners = api_null(a, "corners") ? NULL : corners;
+  def.corner_count = (int32_t)api_least(a, "corner_count", 3, 4);
+  if (def.corner_count > 4 && def.corner_count <= 10000) def.corner_count = 4;
+  def.porosity = api_real(a, "porosity", 0.1, 1.0, 0.5);
+  def.diameter = api_real(a, "diameter", 1e-6, 100.0, 0.02);
+  def.alpha = api_real(a, "alpha", 0.0, 1e6, 1000.0);
+  def.gamma = api_real(a, "gamma", 0.0, 10.0, 0.34);
+  api_arm(a);
+  (void)api_end(a, mps_fluid_add_rock(fluid, api_null(a, "def") ? NULL : &def, &number));
+}
+
+static void fluid_remove_rock(api *a) {
+  api_begin(a, "mps_fluid_remove_rock");
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  (void)api_end(a, mps_fluid_remove_rock(fluid, (int32_t)api_least(a, "number", 0, 2)));
 }
 
 /* ---- a step in parts ------------------------------------------------------------------------- */
@@ -319,6 +393,7 @@ static const api_call calls[] = {
     {"mps_fluid_def_init", 1, API_NOTHING, init_fluid_def},
     {"mps_fluid_boundary_def_init", 1, API_NOTHING, init_fluid_boundary_def},
     {"mps_fluid_load_def_init", 1, API_NOTHING, init_fluid_load_def},
+    {"mps_fluid_rock_def_init", 1, API_NOTHING, init_fluid_rock_def},
     {"mps_fluid_contact_def_init", 1, API_NOTHING, init_fluid_contact_def},
     {"mps_fluid_solver_def_init", 1, API_NOTHING, init_fluid_solver_def},
     {"mps_fluid_create", 5, API_SET, fluid_create},
@@ -327,7 +402,11 @@ static const api_call calls[] = {
     {"mps_fluid_set_wall_motion", 4, API_FLUID, fluid_set_wall_motion},
     {"mps_fluid_get_wall", 1, API_FLUID, fluid_get_wall},
     {"mps_fluid_get_pressure", 2, API_FLUID, fluid_get_pressure},
+    {"mps_fluid_get_body_pressure", 1, API_FLUID, fluid_get_body_pressure},
+    {"mps_fluid_get_segments", 1, API_FLUID, fluid_get_segments},
     {"mps_fluid_get_levels", 1, API_FLUID, fluid_get_levels},
+    {"mps_fluid_add_rock", 1, API_FLUID, fluid_add_rock},
+    {"mps_fluid_remove_rock", 1, API_FLUID, fluid_remove_rock},
     {"mps_fluid_set_material", 2, API_FLUID, fluid_set_material},
     {"mps_fluid_add_contact", 3, API_FLUID, fluid_add_contact},
     {"mps_fluid_float_body", 2, API_FLUID, fluid_float_body},

@@ -221,6 +221,7 @@ static void mpm_add_pore_water(api *a) {
   def.bulk = api_optional(a, "bulk", 5e-324, 1e15, 1e6);
   def.density = api_real(a, "density", 5e-324, 1e6, 1.0);
   def.exponent = api_real(a, "exponent", 0.0, 100.0, 1.0);
+  a->change = API_CHANGES_ORDER;
   (void)api_end(a, mps_mpm_add_pore_water(mpm, &def));
 }
 

@@ -66,7 +66,7 @@ static void wrong_corners_are_refused(void **state) {
   refused(-3, bed, "corner_count of the polyline is -3");
   refused(20000, bed, "corner_count of the polyline is 20000");
   refused(4, NULL, "corners NULL");
-  refused(2, nan_x, "corner 1 of the polyline has the coordinate nan");
+  refused(2, nan_x, "number 1 of the polyline has the coordinate nan");
   refused(2, off_plane, "coordinate 0.1 m");
   refused(2, short_one, "is 0.04 m long");
   refused(2, reverse, "inside the polyline");

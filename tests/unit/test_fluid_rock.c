@@ -76,7 +76,7 @@ static void wrong_rocks_are_refused(void **state) {
   def = stones(), def.corner_count = 2;
   refused(&def, "corner_count of the rock is 2");
   def = stones(), def.corners = off[0], def.corner_count = 3;
-  refused(&def, "corner 1 of the rock has the coordinate nan");
+  refused(&def, "number 1 of the rock has the coordinate nan");
   assert_int_equal(mps_fluid_remove_rock(fluid, 0), MPS_ERROR_ARGUMENT);
 }
 

@@ -68,18 +68,19 @@ static mps_status check_corners(mps_fluid *f, const char *function, int64_t corn
                      (long long)corners, xy ? "given" : "NULL", MOST_CORNERS);
   for (int64_t k = 0; k < 3 * corners; k++)
     if (!(fabs(xy[k]) <= 1e12) || (k % 3 == 2 && xy[k] != 0.0))
-      return mpsi_fail(
-          f->context, function, MPS_ERROR_ARGUMENT,
-          "corner %lld of the polyline has the coordinate %g m: must be within 1e12 m, "
-          "z 0",
-          (long long)(k / 3), xy[k]);
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "corners: that of number %lld of the polyline has the coordinate %g m: must "
+                       "be within 1e12 m, "
+                       "z 0",
+                       (long long)(k / 3), xy[k]);
   for (int64_t k = 0; k + 1 < corners; k++) {
     const double length = hypot(xy[3 * k + 3] - xy[3 * k], xy[3 * k + 4] - xy[3 * k + 1]);
     if (!(length >= f->l0 * (1.0 - 1e-9)))
-      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "segment %lld of the polyline, from (%g, %g) m, is %g m long, must be at "
-                       "least l0 = %g m",
-                       (long long)k, xy[3 * k], xy[3 * k + 1], length, f->l0);
+      return mpsi_fail(
+          f->context, function, MPS_ERROR_ARGUMENT,
+          "corners: segment %lld of the polyline, from (%g, %g) m, is %g m long, must be at "
+          "least l0 = %g m",
+          (long long)k, xy[3 * k], xy[3 * k + 1], length, f->l0);
   }
   return MPS_OK;
 }
@@ -90,10 +91,11 @@ static mps_status check_angles(mps_fluid *f, const char *function,
     const mpsi_fluid_segment *s = &line->segment[k];
     const double angle = s->angle[1] * 180.0 / PI;
     if (angle < LEAST_ANGLE - 1e-6 || angle > 360.0 - LEAST_ANGLE + 1e-6)
-      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "the polyline's corner at (%g, %g) m has %g degrees of fluid, allowed are "
-                       "%g to %g; the fluid is to the left of the way along the corners",
-                       s->end[1][0], s->end[1][1], angle, LEAST_ANGLE, 360.0 - LEAST_ANGLE);
+      return mpsi_fail(
+          f->context, function, MPS_ERROR_ARGUMENT,
+          "corners: that of the polyline at (%g, %g) m has %g degrees of fluid, allowed are "
+          "%g to %g; the fluid is to the left of the way along the corners",
+          s->end[1][0], s->end[1][1], angle, LEAST_ANGLE, 360.0 - LEAST_ANGLE);
   }
   return MPS_OK;
 }
@@ -117,10 +119,11 @@ static mps_status check_crossings(mps_fluid *f, const char *function,
     for (int64_t m = k + 2; m < n; m++) {
       if (line->closed && k == 0 && m == n - 1) continue;
       if (cross_each_other(&line->segment[k], &line->segment[m]))
-        return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                         "segments %lld and %lld of the polyline cross each other; an open one "
-                         "continues beyond its first and last corner",
-                         (long long)k, (long long)m);
+        return mpsi_fail(
+            f->context, function, MPS_ERROR_ARGUMENT,
+            "corners: segments %lld and %lld of the polyline cross each other; an open one "
+            "continues beyond its first and last corner",
+            (long long)k, (long long)m);
     }
   return MPS_OK;
 }
@@ -142,13 +145,15 @@ mps_status mpsi_fluid_check_meeting(mps_fluid *f, const char *function,
     const bool passes = fmin(before, beyond) < 0.0 && fmax(before, beyond) > 0.0;
     if (passes && fabs(turn) > 1e-6)
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "segment %lld of the polyline, from (%g, %g) m, passes boundary %d at %g "
+                       "corners, point and normal: segment %lld of the polyline, from (%g, %g) m, "
+                       "passes boundary %d at %g "
                        "degrees: must be 90, or one polyline of both",
                        (long long)k, s->end[0][0], s->end[0][1], number,
                        90.0 - asin(fmin(fabs(turn), 1.0)) * 180.0 / PI);
     if (fabs(s->angle[1] - PI) > 1e-9 && fabs(d[1]) < f->weight.re)
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "the polyline's corner at (%g, %g) m is %g m from boundary %d: must be at "
+                       "corners, point and normal: the polyline's corner at (%g, %g) m is %g m "
+                       "from boundary %d: must be at "
                        "least re = %g m",
                        s->end[1][0], s->end[1][1], fabs(d[1]), number, f->weight.re);
   }

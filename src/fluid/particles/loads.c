@@ -9,6 +9,7 @@
  *
  * Damping, -r z^2 u, z from 0 to 1 along a zone, makes waves fade without a reflection of its own.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/base/digits.h"
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
 
@@ -46,19 +47,20 @@ static mps_status check_load(mps_fluid *f, const char *function, const mps_fluid
     const double most = c == 2 ? 0.0 : 1e6;
     if (!(fabs(d->acceleration[c]) <= most))
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "acceleration[%d] of the load is %g m/s2, allowed is %g at most", c,
-                       d->acceleration[c], most);
+                       "acceleration[%d] of the load is %s m/s2, allowed is %g at most", c,
+                       mpsi_outside(d->acceleration[c], -most, most).text, most);
     if (!isfinite(d->factor[c]))
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "factor[%d] of the load is %g, must be finite", c, d->factor[c]);
     if (d->lower[c] > d->upper[c])
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "the box of the load is %g to %g m along %c: empty", d->lower[c],
+                       "lower and upper of the load are %g and %g m along %c: empty", d->lower[c],
                        d->upper[c], "xyz"[c]);
   }
   if (!(d->rate >= 0.0 && d->rate <= 1e6))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "rate of the load is %g 1/s, allowed is 0 to 1e6", d->rate);
+                     "rate of the load is %s 1/s, allowed is 0 to 1e6",
+                     mpsi_outside(d->rate, 0.0, 1e6).text);
   if (d->side < -1 || d->side > 1)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "side of the load is %d, allowed are -1, 0 and 1", d->side);

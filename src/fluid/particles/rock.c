@@ -8,6 +8,7 @@
  *
  * over e_i^2, which makes it symmetric. SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/particles/rock.h"
+#include "core/base/digits.h"
 
 #include <string.h>
 
@@ -129,7 +130,8 @@ static mps_status check_number(mps_fluid *f, const char *name, double value, dou
                                double most) {
   if (value >= least && value <= most) return MPS_OK;
   return mpsi_fail(f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
-                   "%s of the rock is %g, must be %g to %g", name, value, least, most);
+                   "%s of the rock is %s, must be %g to %g", name,
+                   mpsi_outside(value, least, most).text, least, most);
 }
 
 static mps_status check(mps_fluid *f, const mps_fluid_rock_def *d) {
@@ -149,7 +151,7 @@ static mps_status check(mps_fluid *f, const mps_fluid_rock_def *d) {
   for (int32_t k = 0; k < 3 * d->corner_count; k++)
     if (!(fabs(d->corners[k]) <= 1e12) || (k % 3 == 2 && d->corners[k] != 0.0))
       return mpsi_fail(f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
-                       "corner %d of the rock has the coordinate %g m: must be within 1e12 m, z 0",
+                       "corners: number %d of the rock has the coordinate %g m: must be within 1e12 m, z 0",
                        k / 3, d->corners[k]);
   return MPS_OK;
 }

@@ -437,9 +437,11 @@ static mps_status find_pressures(mps_fluid *f, const char *function, const place
   return MPS_OK;
 }
 
-static mps_status get_pressures(mps_fluid *f, const char *function, const place_of *of,
-                                int64_t count, const double *x, double *pressure) {
-  mps_status status = check_points(f, function, of, count, x, pressure);
+/* `status`: of this rank's arguments so far, on which all ranks agree first. */
+static mps_status get_pressures(mps_fluid *f, const char *function, mps_status status,
+                                const place_of *of, int64_t count, const double *x,
+                                double *pressure) {
+  if (status == MPS_OK) status = check_points(f, function, of, count, x, pressure);
   status = mpsi_fluid_agree(f, function, status);
   if (status != MPS_OK) return status;
   status = check_pressure(f, function);
@@ -452,8 +454,8 @@ mps_status mps_fluid_get_pressure(const mps_fluid *handle, int32_t number, int64
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return MPS_ERROR_ARGUMENT;
   const mps_status status = check_wall(f, __func__, number);
-  if (status != MPS_OK) return status;
-  return get_pressures(f, __func__, &(place_of){.wall = &f->wall[number]}, count, x, pressure);
+  const place_of of = {.wall = status == MPS_OK ? &f->wall[number] : NULL};
+  return get_pressures(f, __func__, status, &of, count, x, pressure);
 }
 
 mps_status mps_fluid_get_body_pressure(const mps_fluid *handle, const mps_contact *contact,
@@ -461,11 +463,13 @@ mps_status mps_fluid_get_body_pressure(const mps_fluid *handle, const mps_contac
   mps_fluid *f = (mps_fluid *)handle; /* scratch and messages only: the state stays */
   if (!f) return MPS_ERROR_ARGUMENT;
   const int32_t number = mpsi_fluid_body_number(f, contact);
+  const place_of of = {.body = number < 0 ? NULL : &f->body[number]};
+  mps_status status = MPS_OK;
   if (number < 0)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "contact is %s: it must be one of the fluid's",
-                     contact ? "that of another solver, or has ended" : "NULL");
-  return get_pressures(f, __func__, &(place_of){.body = &f->body[number]}, count, x, pressure);
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "contact is %s: it must be one of the fluid's",
+                       contact ? "that of another solver, or has ended" : "NULL");
+  return get_pressures(f, __func__, status, &of, count, x, pressure);
 }
 
 mps_status mps_fluid_get_segments(const mps_fluid *f, int32_t number, int64_t capacity,
