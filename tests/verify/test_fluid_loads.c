@@ -330,7 +330,7 @@ static void what_is_refused(void **state) {
   REFUSED(bad.factor[0] = NAN, "factor[0]");
   REFUSED(bad.id_count = 1, "give both or neither");
   REFUSED(bad.ids = &one, "give both or neither");
-  REFUSED((bad.lower[1] = 1.0, bad.upper[1] = 0.0), "1 to 0 m along y: empty");
+  REFUSED((bad.lower[1] = 1.0, bad.upper[1] = 0.0), "1 and 0 m along y: empty");
   mps_assert_fails(context, mps_fluid_add_load(t.fluid, NULL, NULL), MPS_ERROR_ARGUMENT, "NULL");
   assert_int_equal(number, -1);
   bad = mps_fluid_load_defaults();
