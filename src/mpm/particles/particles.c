@@ -12,11 +12,13 @@
 
 /* ---- columns --------------------------------------------------------------------------------- */
 
-static void bind_water(mps_particles *set, mpsi_columns *p) {
-  p->u = mpsi_particles_column(set, "pore_pressure", 0);
-  p->n = mpsi_particles_column(set, "porosity", 0);
-  p->k = mpsi_particles_column(set, "permeability", 0);
-  for (int c = 0; c < 3; c++) p->g[c] = mpsi_particles_column(set, "pore_pressure_gradient", c);
+/* NULL without water, though the set may have such fields. */
+static void bind_water(mps_particles *set, mpsi_columns *p, bool water) {
+  p->u = water ? mpsi_particles_column(set, "pore_pressure", 0) : NULL;
+  p->n = water ? mpsi_particles_column(set, "porosity", 0) : NULL;
+  p->k = water ? mpsi_particles_column(set, "permeability", 0) : NULL;
+  for (int c = 0; c < 3; c++)
+    p->g[c] = water ? mpsi_particles_column(set, "pore_pressure_gradient", c) : NULL;
 }
 
 void mpsi_mpm_bind(const mpsi_grid *grid, mpsi_columns *p, mpsi_water *water) {
@@ -27,7 +29,7 @@ void mpsi_mpm_bind(const mpsi_grid *grid, mpsi_columns *p, mpsi_water *water) {
     p->v[c] = mpsi_particles_column(set, "velocity", c);
   }
   for (int c = 0; c < 2 * grid->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
-  if (water) bind_water(set, p);
+  bind_water(set, p, water != NULL);
   for (int c = 0; c < 9; c++) /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
   p->V = mpsi_particles_column(set, "volume", 0);
