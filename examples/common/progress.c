@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -18,14 +19,19 @@ static char last_line[PROGRESS_LAST_LINE + 1];
 static char last_part[PROGRESS_PATH], last_whole[PROGRESS_PATH]; /* "": no file */
 static volatile sig_atomic_t last_length;                        /* > 0: leave at once */
 
+/* Whether somebody leaves: presses may come to several threads, or one while another is answered.
+ */
+static atomic_flag leaving = ATOMIC_FLAG_INIT;
+
 static void on_interrupt(int number) {
   interrupted = 1;
   if (number == SIGINT && ++presses > 2) {
+    if (atomic_flag_test_and_set(&leaving)) return;
     const ssize_t sent = write(STDERR_FILENO, third, strlen(third));
     (void)sent;
     _exit(130);
   }
-  if (last_length == 0) return;
+  if (last_length == 0 || atomic_flag_test_and_set(&leaving)) return;
   if (last_part[0] && rename(last_part, last_whole) != 0) last_part[0] = '\0';
   const ssize_t written = write(STDERR_FILENO, last_line, (size_t)last_length);
   (void)written;
