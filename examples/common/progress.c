@@ -19,8 +19,7 @@ static char last_line[PROGRESS_LAST_LINE + 1];
 static char last_part[PROGRESS_PATH], last_whole[PROGRESS_PATH]; /* "": no file */
 static volatile sig_atomic_t last_length;                        /* > 0: leave at once */
 
-/* Whether somebody leaves: presses may come to several threads, or one while another is answered.
- */
+/* Set once the program is ending: signals may reach several threads, or one during another. */
 static atomic_flag leaving = ATOMIC_FLAG_INIT;
 
 static void on_interrupt(int number) {
