@@ -165,35 +165,38 @@ static int run(app *a, flume *m) {
   return m->saves.lost && code == APP_OK ? APP_FAILED : code;
 }
 
+static const flume_settings defaults = {.depth = 0.4,
+                                        .length = NAN,
+                                        .spacing = NAN,
+                                        .tolerance = WAVES_TOLERANCE,
+                                        .height = 0.08,
+                                        .period = 1.4,
+                                        .gamma = 3.3,
+                                        .repeat = NAN,
+                                        .ramp = NAN,
+                                        .focus = {NAN, NAN},
+                                        .stroke = NAN,
+                                        .speed = NAN,
+                                        .zone = 1.0,
+                                        .rate = 10.0,
+                                        .crest = 0.1,
+                                        .cotangent = 2.0,
+                                        .width = 0.2,
+                                        .density = 2300.0,
+                                        .friction = 0.6,
+                                        .duration = NAN,
+                                        .sample = NAN,
+                                        .disturb = 0.05,
+                                        .window = {NAN, NAN},
+                                        .seed = 1,
+                                        .every_checkpoint = 5.0,
+                                        .frames = 60,
+                                        .out = "out/flume"};
+
 int main(int argc, char **argv) {
-  static flume m = {.s = {.depth = 0.4,
-                          .length = NAN,
-                          .spacing = NAN,
-                          .tolerance = WAVES_TOLERANCE,
-                          .height = 0.08,
-                          .period = 1.4,
-                          .gamma = 3.3,
-                          .repeat = NAN,
-                          .ramp = NAN,
-                          .focus = {NAN, NAN},
-                          .stroke = NAN,
-                          .speed = NAN,
-                          .zone = 1.0,
-                          .rate = 10.0,
-                          .crest = 0.1,
-                          .cotangent = 2.0,
-                          .width = 0.2,
-                          .density = 2300.0,
-                          .friction = 0.6,
-                          .duration = NAN,
-                          .sample = NAN,
-                          .disturb = 0.05,
-                          .window = {NAN, NAN},
-                          .seed = 1,
-                          .every_checkpoint = 5.0,
-                          .frames = 60,
-                          .out = "out/flume"}};
+  static flume m;
   flume_settings *s = &m.s;
+  m.s = defaults;
   const char *gauges = NULL, *profile = NULL;
   option table[] = {
       OPTION_HEADING("Waves"),

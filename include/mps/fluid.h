@@ -132,11 +132,12 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
  *  between two walls is 90 degrees or more; of a bed and a slope, add the bed first.
  *
  *  Or a polyline at rest, HELD or ROLLER: segments of at least l0 with 15 to 345 degrees of fluid
- * at each corner, as of bed, slope, berm and crest, of the tip of a wedge, or closed of an island.
- * An open one continues straight beyond its first and last corner without limit. Where it passes a
+ *  at each corner, as of bed, slope, berm and crest, of the tip of a wedge, or closed of an island.
+ *  An open one continues straight beyond its first and last corner without limit. Where it passes a
  *  plane wall (a piston) it does so at a right angle, with corners at least re away. It has one
- *  number: reactions are sums over its segments, pressures those along all of them. Bodies keep 2
- * re away from it. */
+ *  number: reactions are sums over its segments, pressures those along all of them. Bodies keep
+ *  2 re away from it, which is not checked. A step with more than 64 segments within re of a
+ *  particle is MPS_ERROR_UNSUPPORTED. */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
   int32_t kind;       /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */

@@ -95,6 +95,18 @@ static void rocks_are_added_and_removed(void **state) {
   mps_assert_ok(context, mps_fluid_add_rock(fluid, &def, &number[1]));
   assert_int_equal(number[1], 1);
   mps_assert_ok(context, mps_fluid_rollback(fluid, snapshot));
+  for (int k = 0; k < 2; k++) { /* of another resistance, or another shape */
+    double corners[3 * 4];
+    mps_fluid_rock_def other = def;
+    memcpy(corners, def.corners, 3 * (size_t)def.corner_count * sizeof *corners);
+    if (k == 0)
+      other.alpha *= 2.0;
+    else
+      corners[0] -= 0.01, other.corners = corners;
+    mps_assert_ok(context, mps_fluid_remove_rock(fluid, 1));
+    mps_assert_ok(context, mps_fluid_add_rock(fluid, &other, NULL));
+    assert_int_equal(mps_fluid_rollback(fluid, snapshot), MPS_ERROR_STATE);
+  }
   for (int k = 0; k < 3; k++) mps_assert_ok(context, mps_fluid_remove_rock(fluid, k));
   assert_int_equal(mps_fluid_rollback(fluid, snapshot), MPS_ERROR_STATE);
   mps_assert_ok(context, mps_fluid_step(fluid, 3));

@@ -144,18 +144,21 @@ static bool crosses(const mps_fluid *f, const mpsi_fluid_segment *s, const doubl
 /* The segments within re of a particle. */
 typedef struct vicinity {
   int32_t count;
-  int32_t segment[64];
+  int32_t segment[MPSI_FLUID_MOST_NEAR];
 } vicinity;
 
-static void look_about(const mps_fluid *f, const double *x, vicinity *near) {
+/* False: there are more than have room. */
+static bool look_about(const mps_fluid *f, const double *x, vicinity *near) {
   const double re2 = f->weight.re * f->weight.re;
   near->count = 0;
   for (int32_t k = 0; k < (int32_t)f->segments; k++) {
     const mpsi_fluid_segment *s = segment_of(f, k);
     const double d = mpsi_fluid_before_segment(s, x);
-    if (d * d < re2 && mpsi_fluid_from_segment(s, x) < re2 && near->count < 64)
-      near->segment[near->count++] = k;
+    if (!(d * d < re2 && mpsi_fluid_from_segment(s, x) < re2)) continue;
+    if (near->count == MPSI_FLUID_MOST_NEAR) return false;
+    near->segment[near->count++] = k;
   }
+  return true;
 }
 
 /* The first segment that the way from a to b passes; not the one that it comes from. */
@@ -219,7 +222,7 @@ int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32
   const double x[2] = {f->x[0][i], f->x[1][i]};
   vicinity near;
   int64_t kept = 0;
-  look_about(f, x, &near);
+  if (!look_about(f, x, &near)) return -1;
   const bool simple = near.count == 0 || plain(f, &near, x);
   for (int64_t k = 0; k < count; k++) {
     const int64_t j = index[k];

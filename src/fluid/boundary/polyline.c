@@ -243,6 +243,7 @@ mps_status mpsi_fluid_make_polyline(mps_fluid *f, const char *function, int32_t 
 /* Ranks compare the corners: coordinates are numbers that they agree on. */
 void mpsi_fluid_give_corners(mpsi_given *given, const mpsi_fluid_polyline *line) {
   mpsi_give(given, "corner_count", line ? (double)line->count + 1.0 : 0.0);
+  if (line) mpsi_give_vector(given, "the first corner", 2, line->segment[0].end[0]);
   for (int64_t k = 0; line && k < line->count; k++)
     mpsi_give_vector(given, "a corner", 2, line->segment[k].end[1]);
 }

@@ -62,7 +62,9 @@ double mpsi_fluid_from_segment(const mpsi_fluid_segment *segment, const double *
 bool mpsi_fluid_list_segments(mps_fluid *fluid);
 /* Images of the cloud at all segments; false: no room for them. */
 bool mpsi_fluid_mirror_lines(mps_fluid *fluid);
-/* The neighbours of particle i that it sees past the polylines and in them. */
+/* The neighbours of particle i that it sees past the polylines and in them; -1: more segments than
+ * MPSI_FLUID_MOST_NEAR are within re of it. */
+#define MPSI_FLUID_MOST_NEAR 64
 int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
                              double *r2);
 /* Whether a segment, other than `except` (NULL: none), is between a and b. */

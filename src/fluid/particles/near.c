@@ -154,8 +154,8 @@ static void average_weights(const mps_fluid *f, int64_t i, int64_t count, const 
 typedef struct pass {
   mps_fluid *fluid;
   const cells *cells;
-  int64_t per_chunk, pairs; /* room for pairs; the last chunk may have less */
-  atomic_bool full, crowded;
+  int64_t per_chunk, pairs;         /* room for pairs; the last chunk may have less */
+  atomic_bool full, crowded, lined; /* lined: too many segments near a particle */
 } pass;
 
 static bool near_corner(const mps_fluid *f, int64_t i) {
@@ -186,11 +186,14 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     if (index == apart) index = memcpy(f->index + at, apart, (size_t)found * sizeof *index);
     if (f->limited) found = mpsi_fluid_keep_visible(f, i, found, index, r2);
     if (f->segments > 0) found = mpsi_fluid_keep_seen(f, i, found, index, r2);
+    if (found < 0) {
+      atomic_store(&p->lined, true);
+      return;
+    }
     const int32_t company = f->loops->weigh(f, i, found, index, r2, w);
     if (f->bent) average_weights(f, i, found, index, w);
-    f->company[i] =
-        (uint8_t)(company | (near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
-                  (mpsi_fluid_near_wedge(f, i, NULL) ? MPSI_FLUID_NEAR_WEDGE : 0));
+    f->company[i] = (uint8_t)(company | (near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
+                              (mpsi_fluid_near_wedge(f, i, NULL) ? MPSI_FLUID_NEAR_WEDGE : 0));
     f->start[i] = (int32_t)(at / MPSI_FLUID_WIDE);
     f->near[i] = (uint16_t)found;
     at += mpsi_fluid_padded((int32_t)found);
@@ -213,9 +216,14 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
     f->w = f->w_room.item;
     pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk, .pairs = pairs};
     if (status == MPS_OK) mpsi_fluid_units(f, MPSI_FLUID_CHUNK, find_chunk, &p);
-    double full[2] = {atomic_load(&p.full), atomic_load(&p.crowded)};
-    status = mpsi_fluid_agree_max(f, function, status, 2, full);
-    if (status != MPS_OK || (full[0] == 0.0 && full[1] == 0.0)) return status;
+    double full[3] = {atomic_load(&p.full), atomic_load(&p.crowded), atomic_load(&p.lined)};
+    status = mpsi_fluid_agree_max(f, function, status, 3, full);
+    if (status != MPS_OK || (full[0] == 0.0 && full[1] == 0.0 && full[2] == 0.0)) return status;
+    if (full[2] > 0.0)
+      return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED,
+                       "a particle has more than %d segments of polylines within re = %g m: draw "
+                       "them with fewer corners",
+                       MPSI_FLUID_MOST_NEAR, f->weight.re);
     if (full[1] > 0.0)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
                        "a particle has more than %d others near it: the fluid has collapsed",

@@ -150,9 +150,10 @@ static mps_status check(mps_fluid *f, const mps_fluid_rock_def *d) {
                      d->corner_count, d->corners ? "given" : "NULL", MOST_CORNERS);
   for (int32_t k = 0; k < 3 * d->corner_count; k++)
     if (!(fabs(d->corners[k]) <= 1e12) || (k % 3 == 2 && d->corners[k] != 0.0))
-      return mpsi_fail(f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
-                       "corners: number %d of the rock has the coordinate %g m: must be within 1e12 m, z 0",
-                       k / 3, d->corners[k]);
+      return mpsi_fail(
+          f->context, "mps_fluid_add_rock", MPS_ERROR_ARGUMENT,
+          "corners: number %d of the rock has the coordinate %g m: must be within 1e12 m, z 0",
+          k / 3, d->corners[k]);
   return MPS_OK;
 }
 
@@ -264,6 +265,16 @@ void mpsi_fluid_list_rocks(mpsi_state *s, const mps_fluid *f) {
     mpsi_state_enter(s, "rock%d", k);
     mpsi_state_agree_number(s, "porosity", rock->def.porosity);
     mpsi_state_agree_number(s, "diameter", rock->def.diameter);
+    mpsi_state_agree_number(s, "darcy", rock->a);
+    mpsi_state_agree_number(s, "forchheimer", rock->b);
+    mpsi_state_agree_number(s, "added_mass", rock->mass);
+    mpsi_state_agree_integer(s, "corners", rock->count);
+    for (int64_t c = 0; c < rock->count; c++) {
+      mpsi_state_enter(s, "corner%d", (int)c);
+      mpsi_state_agree_number(s, "x", rock->xy[2 * c]);
+      mpsi_state_agree_number(s, "y", rock->xy[2 * c + 1]);
+      mpsi_state_leave(s);
+    }
     mpsi_state_leave(s);
   }
 }

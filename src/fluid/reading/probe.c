@@ -177,8 +177,7 @@ static bool sees_point(const mps_fluid *f, const mpsi_fluid_wall *w, double alon
   double at[2];
   const double x[2] = {f->x[0][i], f->x[1][i]};
   place(f, w, along, at);
-  const bool face = w >= f->wall && w < f->wall + MPSI_FLUID_WALLS;
-  if (f->faces && mpsi_fluid_hidden(f, face ? (int)(w - f->wall) : -1, x, at)) return false;
+  if (f->faces && mpsi_fluid_hidden(f, w->of_line ? -1 : (int)(w - f->wall), x, at)) return false;
   const mpsi_fluid_segment *own = w->of_line ? (const mpsi_fluid_segment *)w : NULL;
   return f->segments == 0 || !mpsi_fluid_behind_line(f, own, x, at);
 }
