@@ -14,6 +14,8 @@ int32_t mps_version_number(void) { return MPS_VERSION_NUMBER; }
 
 int32_t mps_library_has(int32_t feature) {
   switch (feature) {
+  default:
+    return 0;
 #ifdef MPSI_OPENMP
   case MPS_FEATURE_OPENMP:
 #endif
@@ -30,8 +32,6 @@ int32_t mps_library_has(int32_t feature) {
   case MPS_FEATURE_EMBREE:
 #endif
     return 1;
-  default:
-    return 0;
   }
 }
 
