@@ -3,7 +3,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
 
-#include "implicit/elastic_private.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/operator/assemble.h"
+#include "implicit/operator/operator.h"
 
 #include <lapacke.h>
 

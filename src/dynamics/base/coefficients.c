@@ -1,6 +1,7 @@
 /* coefficients.c - coefficients of each particle for forces and steps: moduli, 1/mass, 1/inertia,
  * Rayleigh damping. SPDX-License-Identifier: BSD-3-Clause */
-#include "dynamics/dynamics_private.h"
+#include "coefficients.h"
+#include "dynamics/base/dynamics_solver.h"
 
 /* Sets a coefficient; returns whether it has changed. */
 static bool put(double *at, double value) {

@@ -1,7 +1,8 @@
 /* present.c - access to the present state: time, velocities, masses, fields; arrays of the energy
  * budget. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "present.h"
+#include "dynamics/base/dynamics_solver.h"
 
 mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function) {
   return mpsi_guard_check(&dynamics->guard, dynamics->context, function);

@@ -2,7 +2,8 @@
  * box, or all. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"
-#include "dynamics/dynamics_private.h"
+#include "selection.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "signal/signal_internal.h"
 
 #include <stdlib.h>

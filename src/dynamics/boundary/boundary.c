@@ -3,7 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/boundary_kind.h"
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "boundary.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "signal/signal_internal.h"
 #include "core/base/digits.h"
 

@@ -7,7 +7,8 @@
  * its impulse on the particle, damping, loads and restoring force included, and that times the mean
  * of the velocities before and after the step is its work.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "dynamics/dynamics_private.h"
+#include "constrain.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "signal/signal_internal.h"
 
 #include <string.h>

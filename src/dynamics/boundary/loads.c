@@ -5,7 +5,8 @@
  * kick F/m to the velocity, and what follows to the displacement.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "loads.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "signal/signal_internal.h"
 #include "core/base/digits.h"
 

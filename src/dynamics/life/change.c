@@ -2,7 +2,8 @@
  * particles. Everything that can fail is done beside the present body, which the new one then
  * replaces. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "change.h"
+#include "dynamics/base/dynamics_solver.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,11 @@
 /* dynamics.c - life of the explicit MPS solver: definition, checks, storage.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "dynamics/dynamics_private.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/life/change.h"
+#include "dynamics/life/removal.h"
+#include "dynamics/ranks/partition.h"
+#include "dynamics/step/begin.h"
+#include "dynamics/step/ground.h"
 
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"

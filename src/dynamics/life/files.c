@@ -3,7 +3,8 @@
  * rank reads the whole file and keeps its part, so that a run continues on any number of ranks, or
  * without a domain. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "files.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "io/checkpoint.h"
 #include "domain/moment.h"
 

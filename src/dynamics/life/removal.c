@@ -4,7 +4,10 @@
  * reference position.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "removal.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/life/change.h"
+#include "dynamics/step/ground.h"
 
 /* Marks removed particles: now[i] = -1. */
 static mps_status mark(mps_dynamics *dynamics, const char *function, int64_t count,

@@ -4,7 +4,14 @@
 #include "core/state/state.h"
 
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/life/change.h"
+#include "dynamics/life/files.h"
+#include "dynamics/ranks/partition.h"
+#include "dynamics/step/begin.h"
+#include "dynamics/step/ground.h"
+#include "dynamics/step/run.h"
+#include "dynamics/step/step.h"
 #include "io/checkpoint.h"
 #include "domain/moment.h"
 

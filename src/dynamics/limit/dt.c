@@ -1,6 +1,7 @@
 /* dt.c - the length of the time step: chosen from the linear limit, or given and compared with it.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "dynamics/dynamics_private.h"
+#include "dt.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "core/base/digits.h"
 
 /* Warns of a `dt` above the limit. */

@@ -5,7 +5,8 @@
  * for each wave vector. Its highest eigenvalue over all wave vectors bounds the scheme. For Vp/Vs
  * below about 3.7 it is the spin mode k = 0: w^2 = 24 Vs^2/D^2.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "dynamics/dynamics_private.h"
+#include "lattice.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "core/base/digits.h"
 
 #define WAVES 96 /* wave vectors a direction in [0, pi/D] */

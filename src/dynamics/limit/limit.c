@@ -7,7 +7,9 @@
  * The highest eigenvalue comes from Lanczos iteration on the symmetric tangent.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/limit/lattice.h"
+#include "dynamics/limit/tangent.h"
 
 #include <lapacke.h>
 #include <string.h>

@@ -6,7 +6,8 @@
  * of that for the printed torque). Free-field forces on an edge depend on the column alone: they
  * make the whole matrix block triangular without a change of its eigenvalues, so they are left out.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "dynamics/dynamics_private.h"
+#include "tangent.h"
+#include "dynamics/base/dynamics_solver.h"
 
 typedef struct tangent {
   const mps_dynamics *dynamics;

@@ -2,7 +2,8 @@
  * creation and after a removal of particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "structure.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "batch.h"
 
 #include <float.h>

@@ -15,7 +15,8 @@
  * neighbours in the whole body: no run of pairs crosses a gap.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "deal.h"
+#include "dynamics/base/dynamics_solver.h"
 #include "dynamics/pairs/batch.h"
 
 #include <stdlib.h>

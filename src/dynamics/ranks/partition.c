@@ -10,7 +10,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
 #include "domain/halo.h"
-#include "dynamics/dynamics_private.h"
+#include "partition.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/ranks/deal.h"
 #include "dynamics/pairs/batch.h"
 #include "material/material_internal.h"
 

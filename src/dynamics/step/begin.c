@@ -1,7 +1,9 @@
 /* begin.c - the initial state, at creation and at a restart, and the fields of the present one.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "begin.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/boundary/constrain.h"
 
 #include <float.h>
 #include <string.h>

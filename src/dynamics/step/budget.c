@@ -9,7 +9,10 @@
  * (core/exact.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "budget.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/limit/dt.h"
+#include "dynamics/ranks/partition.h"
 
 #include <string.h>
 

@@ -2,7 +2,10 @@
  * particle; and fields that the caller edits.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "ground.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/ranks/partition.h"
+#include "dynamics/step/begin.h"
 #include "material/material_internal.h"
 #include "signal/signal_internal.h"
 #include "core/base/digits.h"

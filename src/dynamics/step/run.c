@@ -1,7 +1,12 @@
 /* run.c - the public functions step, run and refresh; cancel and progress hooks; callbacks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "run.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/limit/dt.h"
+#include "dynamics/step/begin.h"
+#include "dynamics/step/ground.h"
+#include "dynamics/step/step.h"
 
 #include <float.h>
 #include <string.h>

@@ -6,7 +6,11 @@
  * x + dt v-, v- + dt a). Forces so act for the "kick" (dt_{k-1} + dt_k)/2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles/particles_internal.h"
-#include "dynamics/dynamics_private.h"
+#include "step.h"
+#include "dynamics/base/dynamics_solver.h"
+#include "dynamics/boundary/constrain.h"
+#include "dynamics/ranks/partition.h"
+#include "dynamics/step/begin.h"
 
 #include <float.h>
 #include <string.h>

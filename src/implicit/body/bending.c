@@ -18,7 +18,8 @@
  * One-sided gradients at free surfaces are too stiff, by about as much in thick bodies, so that a
  * body of one material is not corrected by default; the layers of a composite have fewer cells and
  * less surface. SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "bending.h"
+#include "implicit/base/elastic_solver.h"
 
 #include <string.h>
 

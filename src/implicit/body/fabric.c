@@ -1,7 +1,9 @@
 /* fabric.c - hashes of the moduli and fixed directions to which the forces of a motion belong, so
  * that a run after a rollback or from a file is the same as an uninterrupted one.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "fabric.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
 
 #include "core/base/hash.h"
 

@@ -1,6 +1,9 @@
 /* facets.c - the surface: faces of cells that no neighbour shares, found from the lattice.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "facets.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/body/gradient.h"
 
 #include <string.h>
 

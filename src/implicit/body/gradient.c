@@ -1,7 +1,8 @@
 /* gradient.c - the displacement gradient at particles, G_i of operator.c, from the sites of
  * lattice.c and the joints of joints.c; and its transpose, which makes nodal forces of a load's
  * first moment. SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "gradient.h"
+#include "implicit/base/elastic_solver.h"
 
 #include <string.h>
 

@@ -14,7 +14,9 @@
  * equilibrium; layers in any constant traction are exact, and rigid motions free of stress. The
  * correction of the gradients, and its transpose in the forces, keep the operator symmetric.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "joints.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/body/bending.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,8 @@
 /* lattice.c - from reference positions to integer lattice sites, neighbours within the radius of
  * influence, the particle number densities n_i and n0, Chikazawa (6), (7), and the plain
  * displacement gradient (operator.c) on them. SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "lattice.h"
+#include "implicit/base/elastic_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,8 @@
 /* thin.c - warning for bodies of thin parts that are solved without the bending stiffness of their
  * cells (bending.c). A part of n cells lacks 1/n^2 of its stiffness against bending, of which free
  * surfaces make up for a share. SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "thin.h"
+#include "implicit/base/elastic_solver.h"
 
 #define THIN 8        /* cells: the error of a cantilever is .8 % there, with and without */
 #define SLENDER 4     /* times as long as thick, at least */

@@ -1,7 +1,9 @@
 /* window.c - the particles whose neighbours, joints and stiffnesses a rank has: those of its
  * window, or the whole body; volumes and pair stiffnesses there.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "window.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/body/bending.h"
 
 void mpsi_elastic_measure(mps_elastic *e) {
   const int d = e->dim;

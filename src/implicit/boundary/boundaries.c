@@ -2,7 +2,8 @@
  * driven by signals, and sum their reactions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
-#include "implicit/elastic_private.h"
+#include "boundaries.h"
+#include "implicit/base/elastic_solver.h"
 
 #include "core/base/boundary_kind.h"
 #include "core/context/retain.h"

@@ -7,7 +7,9 @@
  * force on a half cell acts at its middle. The published method takes resultants only.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
-#include "implicit/elastic_private.h"
+#include "loads.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/body/gradient.h"
 
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"

@@ -5,7 +5,8 @@
  * is assembled in these local directions, so that it stays symmetric and positive definite for
  * rollers at any angle.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "supports.h"
+#include "implicit/base/elastic_solver.h"
 
 #include <string.h>
 

@@ -1,6 +1,9 @@
 /* body.c - the body of a solver: its material, its cuts, and derived data.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "body.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/body/window.h"
 
 #include "material/material_internal.h"
 

@@ -2,7 +2,10 @@
  * state. Everything that can fail is done beside the present body, which the new one then replaces.
  * No particles can be added: the lattice is found once.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "change.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/life/body.h"
 
 #include <stdio.h>
 #include <stdlib.h>

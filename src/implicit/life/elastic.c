@@ -1,7 +1,10 @@
 /* elastic.c - the solver object: checks of the definition, creation, destruction.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
-#include "implicit/elastic_private.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/life/body.h"
+#include "implicit/life/change.h"
 
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"

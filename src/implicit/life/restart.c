@@ -1,6 +1,8 @@
 /* restart.c - the state of a motion (core/state.h): snapshots, rollback, checkpoints.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/life/change.h"
 
 #include "core/state/state.h"
 #include "io/checkpoint.h"

@@ -7,7 +7,11 @@
  * their boundary. The change of strain energy by a change of moduli is no work: the budget
  * continues from the new value (mpsi_elastic_former_strain, fabric.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "renewal.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/body/fabric.h"
+#include "implicit/operator/operator.h"
 
 #include <string.h>
 

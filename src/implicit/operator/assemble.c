@@ -7,7 +7,9 @@
  * Structural zeros (the offset stencils of a square lattice cancel in many places) are not stored:
  * the pattern depends on shape, supports and joints of materials, not on the moduli.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "assemble.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/body/bending.h"
 
 #include <string.h>
 

@@ -7,7 +7,11 @@
  * solution of a step leaves of its equations, conjugate gradients up to the tolerance, is a force
  * without an owner, whose work is counted too.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "budget.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/body/fabric.h"
+#include "implicit/operator/operator.h"
 
 #include <string.h>
 

@@ -16,7 +16,10 @@
  * layer around them, stresses without joints of two layers, and the gradients of the pairs of
  * these; joints there need one layer more.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "operator.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/body/bending.h"
+#include "implicit/body/gradient.h"
 
 typedef struct operator_task {
   mps_elastic *e;

@@ -8,7 +8,8 @@
  * is
  * not shared has the whole body as its window, in ascending order of ids.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "partition.h"
+#include "implicit/base/elastic_solver.h"
 
 #define MOST_AT_ONCE (1 << 20) /* numbers of one reduction */
 

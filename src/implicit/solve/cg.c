@@ -2,7 +2,8 @@
  * limit. Preconditioner: symmetric Gauss-Seidel, (D + L) D^-1 (D + L^T), which exists for every
  * positive definite matrix and needs no memory but the diagonal.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "cg.h"
+#include "implicit/base/elastic_solver.h"
 
 #include <string.h>
 

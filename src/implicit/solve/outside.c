@@ -2,7 +2,10 @@
  * with all directions of every particle, rigid motions as near null space, and the residual of its
  * solution by the operator. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
-#include "implicit/elastic_private.h"
+#include "outside.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/operator/assemble.h"
+#include "implicit/operator/operator.h"
 
 #include <float.h>
 #include <string.h>

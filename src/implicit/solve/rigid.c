@@ -2,7 +2,8 @@
  * of its supports are written in its rigid motions (translations, and rotations about its centre
  * scaled by its size); the null space of these rows is named.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "rigid.h"
+#include "implicit/base/elastic_solver.h"
 
 #include <lapacke.h>
 

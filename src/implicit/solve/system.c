@@ -5,7 +5,15 @@
  * differences and is the more accurate of the two; the first pass, from the prescribed
  * displacements alone, is the solution itself.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/elastic_private.h"
+#include "system.h"
+#include "implicit/base/elastic_solver.h"
+#include "implicit/base/motion_state.h"
+#include "implicit/body/thin.h"
+#include "implicit/body/window.h"
+#include "implicit/operator/assemble.h"
+#include "implicit/operator/operator.h"
+#include "implicit/solve/cg.h"
+#include "implicit/solve/rigid.h"
 
 #include <string.h>
 #include <time.h>

@@ -1,0 +1,11 @@
+/* dt.h - the length of the time step.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_DYNAMICS_DT_H
+#define MPSI_DYNAMICS_DT_H
+
+#include <mps/dynamics.h>
+
+/* Chooses dt where the definition does not give it, and warns of one above the limit. */
+mps_status mpsi_dynamics_choose_dt(mps_dynamics *dynamics, const char *function);
+
+#endif

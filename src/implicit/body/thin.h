@@ -1,0 +1,11 @@
+/* thin.h - warning about slender parts with few cells.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_ELASTIC_THIN_H
+#define MPSI_ELASTIC_THIN_H
+
+#include <mps/elastic_solver.h>
+
+/* Warns once, before the first solution. */
+mps_status mpsi_elastic_warn_of_thin_parts(mps_elastic *e, const char *function);
+
+#endif

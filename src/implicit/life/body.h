@@ -1,0 +1,21 @@
+/* body.h - material, cuts and derived data of the present body.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_ELASTIC_BODY_H
+#define MPSI_ELASTIC_BODY_H
+
+#include <mps/elastic_solver.h>
+
+#include <stdbool.h>
+
+/* The arrays of e->n particles; their values from ids, positions, cuts and material; and the
+ * release of both. */
+mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function);
+mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known);
+void mpsi_elastic_free_body(mps_elastic *e);
+/* The definition's material to the fields, at creation. */
+mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function);
+/* Moduli of particle i; MPS_ERROR_ARGUMENT naming one that is out of range. */
+mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
+                                   double poisson);
+
+#endif
