@@ -1,17 +1,17 @@
 /* pass.c - see pass.h. Each thread has a lane: its share of the blocks of cells, one after the
  * other in their order, which lie side by side, so that nodes go from one processor's cache to
- * another's only where lanes meet (with one queue for all, in which neighbours went to any thread,
- * the same work took a fourth more time). Blocks that are ready stand in the queue of their lane,
- * from which its thread claims some at a time; the thread that completes a block's last dependency
- * enqueues it. Blocks that became ready precede blocks that were ready from the start: their
- * particles and nodes are still in the cache. A thread whose lane is empty, or waits for long,
- * takes from the others'. One that finds nothing ready spins for some microseconds and then sleeps
- * for a moment; under a caller's executor, which may run the units one after the other, it leaves.
- * All is done when all have left, since the thread that makes a block ready polls the queues after
- * that. One thread alone goes over the blocks in their order and does for each what it depends on.
- * On several ranks the caller's thread, which alone may call the transport, receives the ghosts'
- * tiles when it finds nothing else to do, while the others work on. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * another's only where lanes border (with one queue for all, in which neighbours went to any
+ * thread, the same work took a fourth more time). Blocks that are ready stand in the queue of their
+ * lane, from which its thread claims some at a time; the thread that completes a block's last
+ * dependency enqueues it. Blocks that became ready precede blocks that were ready from the start:
+ * their particles and nodes are still in the cache. A thread whose lane is empty, or waits for
+ * long, takes from the others'. One that finds nothing ready spins for some microseconds and then
+ * sleeps for a moment; under a caller's executor, which may run the units one after the other, it
+ * leaves. All is done when all have left, since the thread that makes a block ready polls the
+ * queues after that. One thread alone goes over the blocks in their order and does for each what it
+ * depends on. On several ranks the caller's thread, which alone may call the transport, receives
+ * the ghosts' tiles when it finds nothing else to do, while the others work on.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <stdatomic.h>
@@ -36,9 +36,9 @@ static bool has_cells(const mpsi_grid *grid, const mpsi_pass *pass, int64_t b) {
 }
 
 /* What one thread is to do: its share of the blocks of cells, one after the other in their order,
- * so that their nodes stay in its cache but where shares meet. Entries of the queue: scatter of b
- * is b, gather of b is cells + b, and 2 cells + g is the update of g where there is no scatter,
- * else its end after `between`. */
+ * so that their nodes stay in its cache but where shares border on each other. Entries of the
+ * queue: scatter of b is b, gather of b is cells + b, and 2 cells + g is the update of g where
+ * there is no scatter, else its end after `between`. */
 typedef struct mpsi_lane {
   _Atomic int32_t *queue;     /* first those ready from the start; EMPTY where there is none yet */
   int64_t starts, entries;    /* ready from the start; that there will be, all in all */
