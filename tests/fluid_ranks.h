@@ -7,13 +7,15 @@
 
 #include <mps/experimental.h>
 #include <mps/fluid.h>
+#include <mps/fluid_rock.h>
 
 /* A column that falls against a wall that does not slip; a tank with a piston, a load and a body
  * afloat, made in parts; water that runs out of an open side, and is added to; all of two to three
  * blocks. PUDDLE is less than one, POND little more, EXACT the same with a closer
- * pressure. CLASSICAL: the column by the classical scheme.
+ * pressure. CLASSICAL: the column by the classical scheme. BREAKWATER: a column beside rock that
+ * has water too, on a polyline, which collapses.
  */
-enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, POND, EXACT, CLASSICAL };
+enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, POND, EXACT, CLASSICAL, BREAKWATER };
 
 typedef struct scene {
   mps_particles *set;
@@ -72,6 +74,33 @@ static inline mps_status add_float(mps_context *own, scene *s) {
   return status;
 }
 
+/* Water of porosity .64, whose particles lie .025 m apart. */
+static inline mps_status fill_breakwater(mps_particles *set) {
+  const double lower[2] = {0.0, 0.0}, upper[2] = {0.9, 1.0};
+  mps_status status = mps_particles_fill_box(set, lower, upper, NULL);
+  for (int n = 0; status == MPS_OK && n < 800; n++) {
+    const double at[2] = {0.9 + 0.025 * (n / 40 + 0.5), 0.025 * (n % 40 + 0.5)};
+    status = mps_particles_append(set, 1, at);
+  }
+  return status;
+}
+
+static inline mps_status add_breakwater(scene *s) {
+  const double bed[4][3] = {{-0.5, 0.0, 0.0}, {2.0, 0.0, 0.0}, {2.5, 0.3, 0.0}, {2.5, 1.5, 0.0}};
+  const double stones[4][3] = {
+      {0.9, -0.1, 0.0}, {1.5, -0.1, 0.0}, {1.4, 1.2, 0.0}, {0.9, 1.2, 0.0}};
+  mps_fluid_boundary_def line = mps_fluid_boundary_defaults();
+  mps_fluid_rock_def rock = mps_fluid_rock_defaults();
+  line.corners = bed[0], line.corner_count = 4;
+  mps_status status = mps_fluid_add_boundary(s->fluid, &line, NULL);
+  TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, NULL));
+  TRY(wall(s, MPS_BOUNDARY_ROLLER, 3.5, 0.0, -1.0, 0.0, NULL));
+  rock.corners = stones[0], rock.corner_count = 4;
+  rock.porosity = 0.64, rock.diameter = 0.02;
+  TRY(mps_fluid_add_rock(s->fluid, &rock, NULL));
+  return status;
+}
+
 static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
@@ -87,6 +116,8 @@ static inline mps_status make_scene(mps_context *own, mps_domain *domain, int wh
         {0.0, 0.0, 4.0, 0.78}, {0.0, 0.78, 1.38, 0.9}, {1.82, 0.78, 4.0, 0.9}};
     for (int k = 0; k < 3; k++)
       TRY(mps_particles_fill_box(s->set, &parts[k][0], &parts[k][2], NULL));
+  } else if (what == BREAKWATER) {
+    status = status == MPS_OK ? fill_breakwater(s->set) : status;
   } else {
     const double *upper = what == PUDDLE ? small : what == POND || what == EXACT ? middle : large;
     TRY(mps_particles_fill_box(s->set, lower, upper, NULL));
@@ -95,6 +126,7 @@ static inline mps_status make_scene(mps_context *own, mps_domain *domain, int wh
   TRY(mps_fluid_create(own, s->set, &def, &s->fluid));
   if (what == CLASSICAL) TRY(mps_experimental_fluid_classical(s->fluid, 0.2));
   if (status != MPS_OK || what == AFLOAT) return status == MPS_OK ? add_float(own, s) : status;
+  if (what == BREAKWATER) return add_breakwater(s);
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 0.0, 1.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_HELD, 0.0, 0.0, 1.0, 0.0, NULL));
   if (what == SPILL) TRY(wall(s, MPS_BOUNDARY_OPEN, 2.02, 0.0, -1.0, 0.0, NULL));

@@ -124,7 +124,7 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
  *           its reaction; the pressure there is that of the air, as where water falls over an edge.
  *           It does not move */
 
-#define MPS_FLUID_MAX_BOUNDARIES 16
+#define MPS_FLUID_MAX_BOUNDARIES 10000 /* of a fluid */
 
 /** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
  *  as prescribed by mps_fluid_set_wall_motion; then it may bend slightly: a displacement along the
@@ -135,9 +135,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
  *  at each corner, as of bed, slope, berm and crest, of the tip of a wedge, or closed of an island.
  *  An open one continues straight beyond its first and last corner without limit. Where it passes a
  *  plane wall (a piston) it does so at a right angle, with corners at least re away. It has one
- *  number: reactions are sums over its segments, pressures those along all of them. Bodies keep
- *  2 re away from it, which is not checked. A step with more than 64 segments within re of a
- *  particle is MPS_ERROR_UNSUPPORTED. */
+ *  number: reactions are sums over its segments, pressures those along all of them. Bodies keep re
+ *  away from it: one that is nearer is refused, and so is a step in which one comes nearer. */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
   int32_t kind;       /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */
@@ -171,7 +170,8 @@ static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
 /** Adds a wall, between steps; `number` (may be NULL) receives the lowest free number.
  *  MPS_ERROR_ARGUMENT: a member of `def` out of range; a particle lies outside or closer than .3 l0
  *  to it; two walls that enclose less than 90 degrees, unless that corner lies more than re behind
- *  a third one; a polyline that crosses itself, or joins a plane wall otherwise than above.
+ *  a third one; a polyline that crosses itself, joins a plane wall otherwise than above, or is
+ *  nearer than re to a body; more than MPS_FLUID_MAX_BOUNDARIES.
  * MPS_ERROR_STATE: a step is open, or a callback of the solver is running. MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
                                                         const mps_fluid_boundary_def *def,
@@ -260,7 +260,7 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
 
 /** Adds a rigid body to the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
- *  together may have 16 edges. Bodies side by side make a face of several parts, with concave
+ *  together may have 50 000 edges. Bodies side by side make a face of several parts, with concave
  * corners between them too. `def` NULL: the defaults. The caller moves it (mps_body_advance,
  *  mps_body_set_motion), or another solver does: its pose and velocity when a step is made, or
  *  solved for in parts, are those of the end of that step. At the end of each step it receives
@@ -277,7 +277,8 @@ static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
  *
  *  MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less than 15 degrees
  *  of fluid between an edge and the boundary that it stands on (a body that rolls there later has a
- *  warning in the log, once); a fifth body. MPS_ERROR_STATE: the fluid has the body already. */
+ *  warning in the log, once); nearer than re to a polyline; too many edges. MPS_ERROR_STATE: the
+ * fluid has the body already. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_contact(mps_fluid *fluid, mps_body *body,
                                                        const mps_fluid_contact_def *def,
                                                        mps_contact **out);
@@ -365,7 +366,7 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_remove_load(mps_fluid *fluid, int32_t
  *  exceeds 1e100 m/s, a boundary or body moves more than 1.5 l0 in the step or a boundary bends to
  *  a slope of more than 1 (a warning is logged above l0/2 and a slope of .1, once), or the
  *  library's step would be too short (see dt); MPS_ERROR_STATE, walls change the volume of fluid
- *  without a free surface; MPS_ERROR_CANCELLED. */
+ *  without a free surface, or a body comes nearer than re to a polyline; MPS_ERROR_CANCELLED. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
 
 /* A step in parts, for two-way coupling of the water and another system:

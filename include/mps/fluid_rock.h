@@ -45,7 +45,7 @@ static inline mps_fluid_rock_def mps_fluid_rock_defaults(void) {
  *  number, from 0. Particles may be in it. Its force on the water is part of impulse_scheme of the
  *  totals, its work of `dissipated`; the totals count U as the velocity of a particle.
  *  MPS_ERROR_ARGUMENT: a member of `def` out of range; MPS_ERROR_STATE: a step is open, or a
- * callback of the solver is running; MPS_ERROR_UNSUPPORTED: several ranks, or the classical scheme;
+ * callback of the solver is running; MPS_ERROR_UNSUPPORTED: the classical scheme;
  *  MPS_ERROR_MEMORY. On an error nothing has changed. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_rock(mps_fluid *fluid, const mps_fluid_rock_def *def,
                                                     int32_t *number);

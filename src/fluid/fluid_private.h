@@ -1,7 +1,9 @@
 /* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
  *
  *   walls.c     positions and motions of walls (wall.c: one); the particles' images (ghosts)
- *   polyline.c  boundaries of several segments; mirrors.c: the images in them
+ *   slots.c     the numbers of boundaries, bodies and their faces
+ *   polyline.c  boundaries of several segments; vicinity.c: which are near a place; mirrors.c: the
+ *               images in them
  *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves floating ones
  *   look.c      copies of the particles, their order and neighbours
  *   near.c      neighbour lists, and the weights w; sight.c: visibility past finite walls
@@ -63,12 +65,12 @@ typedef struct mpsi_fluid_struck {
 typedef struct mpsi_fluid_exchange {
   mpsi_room rows, sums; /* double, mpsi_exact */
   int64_t width;        /* values of a row */
-  int32_t at[32];       /* first value of a wall */
   double gain[2];       /* N s: of the water in the step */
   double loads[2], scheme[2];
 } mpsi_fluid_exchange;
 
 typedef struct mpsi_fluid_polyline mpsi_fluid_polyline; /* polyline.h */
+typedef struct mpsi_fluid_lines mpsi_fluid_lines;
 
 /* A wall: a boundary of the caller, the face of a body, or the segment of a polyline. */
 typedef struct mpsi_fluid_wall {
@@ -79,7 +81,9 @@ typedef struct mpsi_fluid_wall {
   mpsi_fluid_polyline *line; /* of a boundary that is a polyline, and no plane wall; owned */
   double from, to, length;   /* of a face or segment, m along it: its end, or its extension behind a
                                 boundary */
-  uint32_t stands_on[2];     /* boundaries that the ends of a face stand on, bits */
+  double tip[2];             /* m, of a face: its end, where that is `length` */
+  bool limited, stood_on;    /* it ends; a body stands on it: see sight.c */
+  bool bent, sticky;         /* it has several nodes; no slip */
   bool given, placed;        /* next.u, and next.s, are prescribed by the caller */
   int32_t kind;
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
@@ -95,9 +99,11 @@ typedef struct mpsi_fluid_wall {
   double *motion;               /* the memory of all these */
   int64_t first_image, images;  /* ghosts: images of particles here alone, in their order */
   mpsi_fluid_load load, before; /* of the last step or solution; before the step being made */
+  mpsi_fluid_load former;       /* of the solution before the one being made */
   mpsi_fluid_struck struck;     /* of the step being made */
   double impulse[2], moment_impulse, work;
-  int64_t removed; /* particles through an open side */
+  int64_t first_sum; /* of its values in a row of mpsi_fluid_exchange */
+  int64_t removed;   /* particles through an open side */
   double removed_mass;
 } mpsi_fluid_wall;
 
@@ -107,8 +113,10 @@ typedef struct mpsi_fluid_pose {
 } mpsi_fluid_pose;
 
 typedef struct mpsi_fluid_body {
-  struct mps_body *body; /* NULL: none */
-  int first, faces;      /* walls */
+  struct mps_body *body;  /* NULL: none */
+  int first, faces;       /* walls */
+  double low[2], high[2]; /* m: a box that has all its faces; infinite where one extends behind a
+                             boundary */
   mpsi_fluid_pose pose, next;
   struct mps_contact *contact; /* the caller's handle of it */
   mpsi_body_source *source; /* a member of that: by parts, forces of the water and its points, and
@@ -117,16 +125,27 @@ typedef struct mpsi_fluid_body {
   bool leaves; /* its handle was destroyed in the open step: it leaves the water when that ends */
   double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
   double rate_before[3], mass_before[9]; /* before the step being made */
+  double tried[3], missed[3]; /* accelerations of the last trial, and what was out of balance */
+  bool warned;                /* of its angle with a boundary */
 } mpsi_fluid_body;
 
 /* Whether boundary `number` exists. */
 #define MPSI_FLUID_IS_BOUNDARY(f, number)                                                          \
-  ((number) >= 0 && (number) < MPS_FLUID_MAX_BOUNDARIES &&                                         \
+  ((number) >= 0 && (number) < (f)->boundaries &&                                                  \
    ((f)->wall[number].used || (f)->wall[number].open || (f)->wall[number].line))
 
-#define MPSI_FLUID_WALLS 32 /* boundaries, then faces */
-#define MPSI_FLUID_BODIES 4
-#define MPSI_FLUID_WEDGES 16
+#define MPSI_FLUID_MOST_FACES 50000 /* of all bodies; numbers of walls have 16 bits */
+#define MPSI_FLUID_NO_WALL UINT16_MAX
+
+/* The walls that an image is mirrored at, by ascending number, then MPSI_FLUID_NO_WALL. Those of
+ * one image are at right angles: more than two there cannot be. */
+typedef struct mpsi_fluid_flips {
+  uint16_t wall[2];
+} mpsi_fluid_flips;
+
+/* for (k of the walls of `flips`) */
+#define MPSI_FLUID_FLIPS(k, flips)                                                                 \
+  for (int k = 0; k < 2 && (flips).wall[k] != MPSI_FLUID_NO_WALL; k++)
 
 /* The weight (1-z)^4 (1+4z), z = r/re, and its sums over the full lattice. */
 typedef struct mpsi_fluid_weight {
@@ -210,8 +229,7 @@ typedef enum mpsi_fluid_stage {
 typedef enum mpsi_fluid_warning {
   MPSI_FLUID_WARNED_GUARDS = 1, /* act often */
   MPSI_FLUID_WARNED_TRAVEL = 2, /* of a wall in a step */
-  MPSI_FLUID_WARNED_SLOPE = 4,  /* of a bent wall */
-  MPSI_FLUID_WARNED_ANGLE = 8   /* of body 0 with a boundary; of the next ones the bits above */
+  MPSI_FLUID_WARNED_SLOPE = 4   /* of a bent wall */
 } mpsi_fluid_warning;
 
 /* Origin of added or removed particles. */
@@ -246,22 +264,26 @@ struct mps_fluid {
   const mpsi_fluid_loops *loops;
   mpsi_fluid_weight weight;
   double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */
-  mpsi_fluid_wall wall[MPSI_FLUID_WALLS];
-  mpsi_fluid_body body[MPSI_FLUID_BODIES];
+  mpsi_fluid_wall *wall;      /* boundaries by number, from `boundaries` on the faces of bodies */
+  mpsi_fluid_body *body;      /* by number */
+  int32_t boundaries, walls, bodies;
+  mpsi_room wall_room, body_room;
+  mpsi_room wedge_room, clip_room; /* see sight.c and closed.c: for so many walls */
   int64_t count, ghosts, capacity; /* capacity: of the arrays over particles */
   int64_t own[2];                  /* first, end: the particles that this rank computes */
   mpsi_fluid_partition *partition; /* NULL: all */
   /* positions, velocities: particles, then ghosts */
-  double *x[2], *u[2], *q, *offset;   /* offset: of a ghost's q from its parent's, Pa */
-  int32_t *parent;                    /* of a ghost, by index - count */
-  uint32_t *flips;                    /* walls that it is mirrored at, bits */
-  int64_t segments;                   /* of all polylines; 0: there are none */
-  mpsi_room segment_room, path_room;  /* mpsi_fluid_segment *; mpsi_fluid_path of each ghost */
-  uint32_t limited, faces, stood_on;  /* walls that end, those of bodies, boundaries that bodies
-                                         stand on: bits, see sight.c */
-  double wedge[MPSI_FLUID_WEDGES][2]; /* m, edges of acute corners between faces and boundaries */
+  double *x[2], *u[2], *q, *offset;     /* offset: of a ghost's q from its parent's, Pa */
+  int32_t *parent;                      /* of a ghost, by index - count */
+  mpsi_fluid_flips *flips;              /* of a ghost */
+  int64_t segments;                     /* of all polylines; 0: there are none */
+  mpsi_room segment_room, path_room;    /* mpsi_fluid_segment *; mpsi_fluid_path of each ghost */
+  mpsi_room near_line_room;             /* bool of each segment: scratch of mirrors.c */
+  mpsi_fluid_lines *lines;              /* where segments are, see vicinity.c */
+  mpsi_room box_room;                   /* of each chunk's particles: low x, y, high x, y, m */
+  int32_t limited, faces, bent, sticky; /* numbers of such walls, and of used faces of bodies */
+  double (*wedge)[2];                   /* m, edges of acute corners between faces and boundaries */
   int wedges;
-  uint32_t bent, sticky;                  /* walls with several nodes; of no slip: bits */
   int64_t cloud_capacity, ghost_capacity; /* of particles and ghosts together; of ghosts */
   double *u_new[2], *pressure;            /* count; pressure is in the place of system.right */
   uint8_t *state;                         /* MPSI_FLUID_..., count */
@@ -382,7 +404,7 @@ void mpsi_fluid_add_impulses(mps_fluid *fluid);
 /* Room for so many particles and ghosts; false: none. */
 bool mpsi_fluid_grow_cloud(mps_fluid *fluid, int64_t particles, int64_t ghosts);
 mps_status mpsi_fluid_make_ghosts(mps_fluid *fluid, const char *function);
-void mpsi_fluid_mirror_point(const mps_fluid *fluid, uint32_t flips,
+void mpsi_fluid_mirror_point(const mps_fluid *fluid, mpsi_fluid_flips flips,
                              double *x);       /* at these walls */
 void mpsi_fluid_move_ghosts(mps_fluid *fluid); /* their velocities */
 void mpsi_fluid_press_ghosts(
@@ -411,6 +433,15 @@ static inline double mpsi_fluid_distance(const mpsi_fluid_wall *w, const double 
   return across - mpsi_fluid_of_wall(w, s, x, y);
 }
 
+/* slots.c. A boundary of this number, faces of a body (first: that of them), a body of this number;
+ * false, or -1: no memory. */
+bool mpsi_fluid_make_boundary(mps_fluid *fluid, int32_t number);
+int mpsi_fluid_make_faces(mps_fluid *fluid, int faces);
+bool mpsi_fluid_make_body(mps_fluid *fluid, int32_t number);
+/* Boundaries and bodies without members at the end of the lists, and `faces` walls from `first` on,
+ * leave them. */
+void mpsi_fluid_drop_slots(mps_fluid *fluid, int first, int faces);
+
 /* loads.c */
 void mpsi_fluid_drop_loads(mps_fluid *fluid);
 /* push and over as of time t, of the particles in their present order. */
@@ -437,10 +468,15 @@ mps_status mpsi_fluid_check_floats(mps_fluid *fluid, const char *function, const
                                    const mps_contact *contact, int32_t floats);
 void mpsi_fluid_let_float(mps_fluid *fluid, int32_t number, int32_t floats);
 #define MPSI_FLUID_LEAST_ANGLE 15.0 /* degrees of fluid between a face and what it stands on */
+/* Whether the beginning (0) or the end (1) of a face stands on boundary number b. */
+bool mpsi_fluid_stands_on(const mps_fluid *fluid, const mpsi_fluid_wall *face, int end, int b);
 /* Degrees of fluid between a face and boundary number b; 180 where it does not stand there. */
 double mpsi_fluid_angle(const mps_fluid *fluid, const mpsi_fluid_wall *face, int b);
-/* Corner k of a body at the beginning of the step, or at its end (next). */
-void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x);
+/* Whether x is within `reach` of the box of a body. */
+static inline bool mpsi_fluid_beside(const mpsi_fluid_body *body, const double *x, double reach) {
+  return body->body && x[0] > body->low[0] - reach && x[0] < body->high[0] + reach &&
+         x[1] > body->low[1] - reach && x[1] < body->high[1] + reach;
+}
 /* The face nearest to x, in the body's order, and the distance, negative inside. */
 int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool moved,
                        const double *x, double *distance);

@@ -20,6 +20,9 @@ static void test_spill(void **state) {
 static void test_classical(void **state) {
   (void)state, compare_teams(compute, CLASSICAL, steps(12), false);
 }
+static void test_breakwater(void **state) {
+  (void)state, compare_teams(compute, BREAKWATER, steps(12), true);
+}
 static void test_puddle(void **state) { (void)state, compare_teams(compute, PUDDLE, 20, true); }
 
 /* ---- cut in two ------------------------------------------------------------------------------ */
@@ -186,10 +189,11 @@ static void test_troubles(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_classical),      cmocka_unit_test(test_puddle),
-      cmocka_unit_test(test_collapse),       cmocka_unit_test(test_afloat),
-      cmocka_unit_test(test_spill),          cmocka_unit_test(test_checkpoint),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_troubles),
+      cmocka_unit_test(test_classical),  cmocka_unit_test(test_puddle),
+      cmocka_unit_test(test_collapse),   cmocka_unit_test(test_afloat),
+      cmocka_unit_test(test_breakwater), cmocka_unit_test(test_spill),
+      cmocka_unit_test(test_checkpoint), cmocka_unit_test(test_refused_memory),
+      cmocka_unit_test(test_troubles),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -386,7 +386,8 @@ static void a_rollback_repeats_the_steps_bit_for_bit(void **state) {
   assert_memory_equal(first, second, 4 * (size_t)n * sizeof *first);
   assert_memory_equal(&force[0], &force[1], sizeof force[0]);
   mps_assert_ok(context, mps_fluid_remove_boundary(t.fluid, TANK_RIGHT));
-  mps_assert_fails(context, mps_fluid_rollback(t.fluid, snapshot), MPS_ERROR_STATE, "boundary2");
+  mps_assert_fails(context, mps_fluid_rollback(t.fluid, snapshot), MPS_ERROR_STATE,
+                   "boundaries is 3");
   free(first);
   mps_snapshot_destroy(&snapshot);
   tank_free(&t);

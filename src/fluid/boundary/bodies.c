@@ -3,6 +3,8 @@
  * normal is linear between them. The caller moves the body between steps; the fluid keeps its pose
  * at the last step, and uses the present one as that of the end of the next.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/clearance.h"
+#include "fluid/boundary/pose.h"
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"
 
@@ -12,17 +14,6 @@
 
 #define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
 #define FLUSH 0.1      /* l0: distance at which a corner stands on a boundary */
-
-/* Corner k of the body in a pose. */
-static void corner(const mps_body *body, const mpsi_fluid_pose *pose, int64_t k, double *x) {
-  const double *xy = body->xy + 2 * k;
-  for (int c = 0; c < 2; c++)
-    x[c] = pose->x[c] + pose->R[2 * c] * xy[0] + pose->R[2 * c + 1] * xy[1];
-}
-
-void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x) {
-  corner(body->body, next ? &body->next : &body->pose, k, x);
-}
 
 static mpsi_fluid_pose pose_of(const mps_body *body) {
   const mpsi_pose *p = &body->pose;
@@ -40,44 +31,61 @@ static void velocity_at(const mpsi_fluid_pose *pose, const double *x, double *v)
 
 /* ---- places ---------------------------------------------------------------------------------- */
 
-/* The boundaries at which point x stands, bits. */
-static uint32_t standing_on(const mps_fluid *f, const double *x) {
-  uint32_t on = 0;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
-    const mpsi_fluid_wall *w = &f->wall[b];
-    if (w->used && mpsi_fluid_distance(w, w->now.s, x[0], x[1]) < FLUSH * f->l0)
-      on |= UINT32_C(1) << b;
-  }
-  return on;
+bool mpsi_fluid_stands_on(const mps_fluid *f, const mpsi_fluid_wall *face, int end, int b) {
+  const mpsi_fluid_wall *w = &f->wall[b];
+  const double *x = end ? face->tip : face->at;
+  return w->used && mpsi_fluid_distance(w, w->now.s, x[0], x[1]) < FLUSH * f->l0;
 }
 
-/* Places the faces at the pose. Where a corner stands on a boundary the face extends behind it; a
- * face on a boundary is no wall. */
+/* Where an end stands on a boundary the face extends behind it; one that stands there with both
+ * ends is no wall. */
+static void extend(const mps_fluid *f, mpsi_fluid_wall *w) {
+  bool on[2] = {false, false}, flat = false;
+  for (int b = 0; b < f->boundaries; b++) {
+    const bool here[2] = {mpsi_fluid_stands_on(f, w, 0, b), mpsi_fluid_stands_on(f, w, 1, b)};
+    on[0] |= here[0], on[1] |= here[1], flat |= here[0] && here[1];
+  }
+  w->from = on[0] ? -INFINITY : 0.0;
+  w->to = on[1] ? (double)INFINITY : w->length;
+  w->used = !flat;
+}
+
+static void find_box(const mps_fluid *f, mpsi_fluid_body *body) {
+  for (int c = 0; c < 2; c++) body->low[c] = INFINITY, body->high[c] = -INFINITY;
+  for (int k = 0; k < body->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[body->first + k];
+    const bool open = w->from < 0.0 || w->to > w->length;
+    for (int c = 0; c < 2; c++) {
+      body->low[c] = open ? -INFINITY : fmin(body->low[c], w->at[c]);
+      body->high[c] = open ? (double)INFINITY : fmax(body->high[c], w->at[c]);
+    }
+    if (open) return;
+  }
+}
+
+/* Places the faces at the pose. */
 static void place_faces(mps_fluid *f, mpsi_fluid_body *body) {
   for (int k = 0; k < body->faces; k++) {
     mpsi_fluid_wall *w = &f->wall[body->first + k];
     double end[2][2], v[2];
-    corner(body->body, &body->pose, k, end[0]);
-    corner(body->body, &body->pose, k + 1, end[1]);
+    mpsi_fluid_corner_at(body->body, &body->pose, k, end[0]);
+    mpsi_fluid_corner_at(body->body, &body->pose, k + 1, end[1]);
     const double d[2] = {end[1][0] - end[0][0], end[1][1] - end[0][1]}, length = hypot(d[0], d[1]);
     w->normal[0] = d[1] / length, w->normal[1] = -d[0] / length;
     w->node[0] = 0.0, w->node[1] = w->length = length;
-    for (int c = 0; c < 2; c++) w->at[c] = end[0][c];
+    for (int c = 0; c < 2; c++) w->at[c] = end[0][c], w->tip[c] = end[1][c];
     for (int n = 0; n < 2; n++) {
       velocity_at(&body->pose, end[n], v);
       w->now.s[n] = 0.0;
       w->now.u[n] = v[0] * w->normal[0] + v[1] * w->normal[1];
     }
-    const uint32_t on[2] = {standing_on(f, end[0]), standing_on(f, end[1])};
-    w->from = on[0] ? -INFINITY : 0.0;
-    w->to = on[1] ? (double)INFINITY : length;
-    w->used = (on[0] & on[1]) == 0;
-    memcpy(w->stands_on, on, sizeof on);
+    extend(f, w);
   }
+  find_box(f, body);
 }
 
 void mpsi_fluid_place_bodies(mps_fluid *f) {
-  for (int k = 0; k < MPSI_FLUID_BODIES; k++)
+  for (int k = 0; k < f->bodies; k++)
     if (f->body[k].body) place_faces(f, &f->body[k]);
 }
 
@@ -106,7 +114,7 @@ static void drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
 
 /* Motion of the faces in the step being made. */
 void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->bodies; b++) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
     body->next = pose_of(body->body);
@@ -115,8 +123,8 @@ void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
       mpsi_fluid_wall *w = &f->wall[body->first + k];
       for (int n = 0; n < 2; n++) {
         double from[2], to[2], v[2];
-        corner(body->body, &body->pose, k + n, from);
-        corner(body->body, &body->next, k + n, to);
+        mpsi_fluid_corner_at(body->body, &body->pose, k + n, from);
+        mpsi_fluid_corner_at(body->body, &body->next, k + n, to);
         velocity_at(&body->next, to, v);
         w->next.s[n] = (to[0] - from[0]) * w->normal[0] + (to[1] - from[1]) * w->normal[1];
         w->next.u[n] = v[0] * w->normal[0] + v[1] * w->normal[1];
@@ -174,7 +182,7 @@ static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
 }
 
 void mpsi_fluid_end_bodies(mps_fluid *f) {
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->bodies; b++) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
     end_body(f, body);
@@ -199,7 +207,7 @@ int mpsi_fluid_face_of(const mps_fluid *f, const mpsi_fluid_body *body, bool mov
 }
 
 bool mpsi_fluid_inside_body(const mps_fluid *f, int besides, const double *x) {
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->bodies; b++) {
     double d;
     if (!f->body[b].body || b + 1 == besides) continue;
     mpsi_fluid_face_of(f, &f->body[b], f->stage == MPSI_FLUID_MOVED, x, &d);
@@ -220,7 +228,7 @@ mps_status mps_fluid_contact_def_init(mps_fluid_contact_def *def, size_t size) {
 static mps_status check_body(mps_fluid *f, const char *function, const mps_body *body,
                              int32_t kind) {
   if (!body) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "body is NULL");
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+  for (int b = 0; b < f->bodies; b++)
     if (f->body[b].body == body)
       return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                        "the fluid is in contact with the body already");
@@ -246,14 +254,15 @@ static mps_status check_body(mps_fluid *f, const char *function, const mps_body 
 
 double mpsi_fluid_angle(const mps_fluid *f, const mpsi_fluid_wall *face, int b) {
   const double *n = f->wall[b].normal;
-  if (!face->used || !((face->stands_on[0] | face->stands_on[1]) >> b & 1)) return 180.0;
+  if (!face->used || !(mpsi_fluid_stands_on(f, face, 0, b) || mpsi_fluid_stands_on(f, face, 1, b)))
+    return 180.0;
   const double cosine = -(face->normal[0] * n[0] + face->normal[1] * n[1]);
   return acos(fmax(fmin(cosine, 1.0), -1.0)) * (180.0 / 3.141592653589793);
 }
 
 static mps_status check_angles(mps_fluid *f, const char *function, const mpsi_fluid_body *body) {
   for (int k = 0; k < body->faces; k++)
-    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    for (int b = 0; b < f->boundaries; b++) {
       const double angle = mpsi_fluid_angle(f, &f->wall[body->first + k], b);
       if (angle < MPSI_FLUID_LEAST_ANGLE - 1e-6)
         return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
@@ -316,17 +325,9 @@ void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
     mpsi_contact_leave(body->contact);
   }
   mps_body_destroy(&body->body);
+  const int first = body->first, faces = body->faces;
   *body = (mpsi_fluid_body){0};
-}
-
-/* First of consecutive free walls; -1: none. */
-static int free_faces(const mps_fluid *f, int64_t faces) {
-  int run = 0;
-  for (int b = MPS_FLUID_MAX_BOUNDARIES; b < MPSI_FLUID_WALLS; b++) {
-    run = f->wall[b].of_body ? 0 : run + 1;
-    if (run == faces) return b - run + 1;
-  }
-  return -1;
+  mpsi_fluid_drop_slots(f, first, faces);
 }
 
 /* Status of all ranks, and a check that all have the same body (NULL: none) of this number. */
@@ -342,10 +343,13 @@ static mps_status settle(mps_fluid *f, const char *function, mps_status status, 
   return mpsi_domain_agree_given(f->def.domain, function, status, &given);
 }
 
-/* Walls of the faces of body number `b`, from `first` on. */
+/* Body number `b` and the walls of its faces. */
 static mps_status make_faces(mps_fluid *f, const char *function, mps_contact *contact, int32_t kind,
-                             int32_t b, int first) {
+                             int32_t b) {
   mps_body *body = contact->body;
+  const int first = mpsi_fluid_make_body(f, b) ? mpsi_fluid_make_faces(f, (int)body->edges) : -1;
+  if (first < 0)
+    return mpsi_fail_memory(f->context, function, (size_t)body->edges * sizeof *f->wall);
   mpsi_fluid_body *own = &f->body[b];
   mps_status status = MPS_OK;
   body->references++;
@@ -364,13 +368,14 @@ static mps_status make_faces(mps_fluid *f, const char *function, mps_contact *co
   if (status != MPS_OK) return status;
   place_faces(f, own);
   status = check_angles(f, function, own);
+  if (status == MPS_OK) status = mpsi_fluid_check_clearance(f, function, false, b);
   return status == MPS_OK ? check_place(f, function, own) : status;
 }
 
 /* ---- the handle ------------------------------------------------------------------------------ */
 
 int32_t mpsi_fluid_body_number(const mps_fluid *f, const mps_contact *contact) {
-  for (int32_t b = 0; b < MPSI_FLUID_BODIES; b++)
+  for (int32_t b = 0; b < f->bodies; b++)
     if (contact && f->body[b].contact == contact) return b;
   return -1;
 }
@@ -419,7 +424,7 @@ static void end(void *owner, mps_contact *contact) {
 }
 
 void mpsi_fluid_drop_leaving(mps_fluid *f) {
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+  for (int b = f->bodies - 1; b >= 0; b--)
     if (f->body[b].leaves) drop(f, &f->body[b]);
 }
 
@@ -442,18 +447,16 @@ static void reaction(const void *owner, const mps_contact *contact, int32_t part
 
 static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_particles, reaction};
 
-/* Number of the body, and the first wall of its faces. */
+/* Lowest free number of a body, and whether there is room for its edges. */
 static mps_status find_room(mps_fluid *f, const char *function, const mps_body *body,
-                            int32_t *number, int *first) {
+                            int32_t *number) {
+  const int32_t faces = f->walls - f->boundaries;
   *number = 0;
-  while (*number < MPSI_FLUID_BODIES && f->body[*number].body) ++*number;
-  *first = free_faces(f, body->edges);
-  if (*number < MPSI_FLUID_BODIES && *first >= 0) return MPS_OK;
+  while (*number < f->bodies && f->body[*number].body) ++*number;
+  if (faces + body->edges <= MPSI_FLUID_MOST_FACES) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                   "the body has %lld edges: the fluid has room for %d of all bodies together, and "
-                   "for %d bodies",
-                   (long long)body->edges, MPSI_FLUID_WALLS - MPS_FLUID_MAX_BOUNDARIES,
-                   MPSI_FLUID_BODIES);
+                   "body has %lld edges, and the bodies in the fluid %d: allowed are %d together",
+                   (long long)body->edges, faces, MPSI_FLUID_MOST_FACES);
 }
 
 mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_contact_def *user,
@@ -463,28 +466,27 @@ mps_status mps_fluid_add_contact(mps_fluid *f, mps_body *body, const mps_fluid_c
   mps_fluid_contact_def def = contact_defaults;
   mps_contact *contact = NULL;
   int32_t b = 0;
-  int first = 0;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
   if (user) status = MPSI_DEF_READ(f->context, __func__, mps_fluid_contact_def, user, &def);
   if (status == MPS_OK) status = check_body(f, __func__, body, def.kind);
-  if (status == MPS_OK) status = find_room(f, __func__, body, &b, &first);
+  if (status == MPS_OK) status = find_room(f, __func__, body, &b);
   if (status == MPS_OK) status = mpsi_fluid_check_floats(f, __func__, body, NULL, def.floats);
   if (status == MPS_OK)
     status = mpsi_contact_make(f->context, __func__, body, &owner_of_contacts, f, &contact);
-  if (status == MPS_OK) status = make_faces(f, __func__, contact, def.kind, b, first);
+  if (status == MPS_OK) status = make_faces(f, __func__, contact, def.kind, b);
   status = settle(f, __func__, status, b, &def, body);
   if (status != MPS_OK) {
-    if (contact && f->body[b].contact == contact)
+    if (contact && b < f->bodies && f->body[b].contact == contact)
       mpsi_fluid_drop_body(f, &f->body[b]);
     else if (contact)
       mpsi_contact_release(contact);
+    mpsi_fluid_drop_slots(f, 0, 0);
     if (contact) mpsi_contact_release(contact);
     return status;
   }
   mpsi_contact_join(contact);
   mpsi_fluid_let_float(f, b, def.floats);
-  f->warned &= ~((uint32_t)MPSI_FLUID_WARNED_ANGLE << b);
   f->stale = true, f->unknown = 1;
   if (out)
     *out = contact;

@@ -1,6 +1,6 @@
 /* boundaries.c - plane walls: definitions, checks, and how they are added, changed and removed.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/boundary/polyline.h"
+#include "fluid/boundary/clearance.h"
 #include "fluid/ranks/partition.h"
 
 #include "core/base/boundary_kind.h"
@@ -76,7 +76,7 @@ static bool cut_off(const mps_fluid *f, const mpsi_fluid_wall *w, int b, int32_t
   const double q = o->at[0] * o->normal[0] + o->at[1] * o->normal[1] + o->now.s[0];
   const double x = (p * o->normal[1] - q * w->normal[1]) / det;
   const double y = (q * w->normal[0] - p * o->normal[0]) / det;
-  for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
+  for (int k = 0; k < f->boundaries; k++) {
     const mpsi_fluid_wall *other = &f->wall[k];
     if (k != b && k != number && other->used &&
         mpsi_fluid_distance(other, other->now.s, x, y) < -f->weight.re)
@@ -99,12 +99,12 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
                        (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], d,
                        LEAST_WALL, LEAST_WALL * f->l0);
   }
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < f->boundaries; b++) {
     if (b == number || !f->wall[b].line) continue;
     const mps_status status = mpsi_fluid_check_meeting(f, function, w, number, f->wall[b].line);
     if (status != MPS_OK) return status;
   }
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < f->boundaries; b++) {
     const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];
     if (!f->wall[b].used || b == number) continue;
     /* opposite walls are parallel; otherwise the fluid's corner has pi - acos(cosine) */
@@ -137,6 +137,7 @@ static mps_status make_line(mps_fluid *f, const char *function, const mps_fluid_
   mps_status status = mpsi_fluid_make_motion(f, function, &w, 0, NULL);
   if (status == MPS_OK)
     status = mpsi_fluid_make_polyline(f, function, number, def->corner_count, def->corners, &w);
+  if (status == MPS_OK) status = mpsi_fluid_check_bodies(f, function, w.line);
   if (status == MPS_OK)
     *out = w;
   else
@@ -195,6 +196,15 @@ static mps_status make_alike(mps_fluid *f, const char *function, mps_status stat
   return status;
 }
 
+/* After a change of boundaries, or an attempt: bodies may stand on others now. */
+static void have_changed(mps_fluid *f, mps_status status) {
+  mpsi_fluid_drop_slots(f, 0, 0);
+  if (status != MPS_OK) return;
+  mpsi_fluid_place_bodies(f);
+  mpsi_fluid_forget_segments(f);
+  f->stale = true, f->unknown = 1;
+}
+
 mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *def,
                                   int32_t *number) {
   if (!f) return MPS_ERROR_ARGUMENT;
@@ -205,11 +215,13 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *de
   if (b == MPS_FLUID_MAX_BOUNDARIES)
     status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                        "the fluid has %d boundaries, the most there can be", b);
+  else if (!mpsi_fluid_make_boundary(f, b))
+    status = mpsi_fail_memory(f->context, __func__, ((size_t)f->walls + 1) * sizeof *f->wall);
   mpsi_fluid_wall wall;
   status = make_alike(f, __func__, status, def, b, &wall);
+  if (status == MPS_OK) f->wall[b] = wall;
+  have_changed(f, status);
   if (status != MPS_OK) return status;
-  f->wall[b] = wall;
-  f->stale = true, f->unknown = 1;
   if (number) *number = b;
   return MPS_OK;
 }
@@ -239,7 +251,7 @@ mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_
   wall.removed_mass = old->removed_mass;
   mpsi_fluid_drop_wall(f, old);
   *old = wall;
-  f->stale = true, f->unknown = 1;
+  have_changed(f, status);
   return MPS_OK;
 }
 
@@ -251,6 +263,6 @@ mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
                                   "number", number);
   if (status != MPS_OK) return status;
   mpsi_fluid_drop_wall(f, &f->wall[number]);
-  f->stale = true, f->unknown = 1;
+  have_changed(f, status);
   return MPS_OK;
 }

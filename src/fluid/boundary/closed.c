@@ -10,13 +10,13 @@
  * The space is the intersection of the boundaries' half-planes less the bodies: its area follows
  * from the lengths of the boundaries within the others, by the divergence theorem.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/pose.h"
 #include "fluid/ranks/partition.h"
 
 #define ROUNDING 1e-9 /* of the area: largest change in a step that is accepted as none */
 #define STAIRS                                                                                     \
   0.25 /* l0: apparent overlap of the fluid with its walls, as a fill's lattice                    \
           follows slopes by steps */
-#define MOST_CORNERS (2 * MPSI_FLUID_WALLS)
 
 /* ---- space ----------------------------------------------------------------------------------- */
 
@@ -24,7 +24,7 @@
 static bool stretch(const mps_fluid *f, int b, double *low, double *high) {
   const mpsi_fluid_wall *w = &f->wall[b];
   *low = -INFINITY, *high = INFINITY;
-  for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
+  for (int k = 0; k < f->boundaries; k++) {
     const mpsi_fluid_wall *o = &f->wall[k];
     if (k == b || !o->used) continue;
     const double ahead = mpsi_fluid_distance(o, o->now.s, w->at[0] + w->now.s[0] * w->normal[0],
@@ -52,16 +52,29 @@ static double mean_of(const mpsi_fluid_wall *w, const double *s, double low, dou
   return sum;
 }
 
+/* A polygon that is clipped: at most a corner more by each boundary. */
+typedef struct clipped {
+  int most;
+  double (*x)[2], (*out)[2], *d;
+} clipped;
+
+static clipped no_corners(const mps_fluid *f) {
+  double *room = f->clip_room.item;
+  const int64_t most = f->walls;
+  return (clipped){(int)most, (double(*)[2])room, (double(*)[2])(room + 2 * most), room + 4 * most};
+}
+
 /* Clips a convex polygon of n corners by a wall; returns the number of corners. */
-static int cut(const mpsi_fluid_wall *w, int n, double (*x)[2]) {
-  double out[MOST_CORNERS][2], d[MOST_CORNERS];
+static int cut(const mpsi_fluid_wall *w, int n, const clipped *p) {
+  double(*const x)[2] = p->x;
+  double(*const out)[2] = p->out;
+  double *const d = p->d;
   int count = 0;
   for (int k = 0; k < n; k++) d[k] = mpsi_fluid_distance(w, w->now.s, x[k][0], x[k][1]);
   for (int k = 0; k < n; k++) {
     const int next = (k + 1) % n;
-    if (d[k] >= 0.0 && count < MOST_CORNERS)
-      out[count][0] = x[k][0], out[count][1] = x[k][1], count++;
-    if ((d[k] >= 0.0) == (d[next] >= 0.0) || count == MOST_CORNERS) continue;
+    if (d[k] >= 0.0 && count < p->most) out[count][0] = x[k][0], out[count][1] = x[k][1], count++;
+    if ((d[k] >= 0.0) == (d[next] >= 0.0) || count == p->most) continue;
     const double t = d[k] / (d[k] - d[next]);
     for (int c = 0; c < 2; c++) out[count][c] = x[k][c] + t * (x[next][c] - x[k][c]);
     count++;
@@ -73,11 +86,13 @@ static int cut(const mpsi_fluid_wall *w, int n, double (*x)[2]) {
 /* Area of the part of a body in front of all boundaries, at the beginning or the end of the step.
  */
 static double body_area(const mps_fluid *f, const mpsi_fluid_body *body, bool next) {
-  double x[MOST_CORNERS][2], area = 0.0;
+  const clipped polygon = no_corners(f);
+  double(*const x)[2] = polygon.x;
+  double area = 0.0;
   int n = body->faces;
   for (int k = 0; k < n; k++) mpsi_fluid_corner(body, next, k, x[k]);
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES && n > 0; b++)
-    if (f->wall[b].used) n = cut(&f->wall[b], n, x);
+  for (int b = 0; b < f->boundaries && n > 0; b++)
+    if (f->wall[b].used) n = cut(&f->wall[b], n, &polygon);
   for (int k = 1; k + 1 < n; k++)
     area += 0.5 * ((x[k][0] - x[0][0]) * (x[k + 1][1] - x[0][1]) -
                    (x[k][1] - x[0][1]) * (x[k + 1][0] - x[0][0]));
@@ -91,7 +106,7 @@ typedef struct space {
 /* False where the boundaries enclose none. */
 static bool find_space(const mps_fluid *f, space *s) {
   *s = (space){0};
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < f->boundaries; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     double low, high;
     if (!w->used || !stretch(f, b, &low, &high)) continue;
@@ -102,7 +117,7 @@ static bool find_space(const mps_fluid *f, space *s) {
     s->change -= length * (to - is);
     s->around += length;
   }
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->bodies; b++) {
     if (!f->body[b].body) continue;
     const double area = body_area(f, &f->body[b], false);
     s->area -= area;
@@ -112,18 +127,23 @@ static bool find_space(const mps_fluid *f, space *s) {
   return s->area > 0.0;
 }
 
+static bool stands_there(const mps_fluid *f, const mpsi_fluid_body *body, int b) {
+  for (int k = 0; k < body->faces; k++)
+    if (mpsi_fluid_stands_on(f, &f->wall[body->first + k], 0, b)) return true;
+  return false;
+}
+
 /* A moving body that stands on several boundaries, which may divide the fluid into parts of unknown
  * volume. -1: none. */
 static int parting_body(const mps_fluid *f) {
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->bodies; b++) {
     const mpsi_fluid_body *body = &f->body[b];
-    uint32_t on = 0;
-    for (int k = 0; k < body->faces; k++)
-      on |= f->wall[body->first + k].stands_on[0] | f->wall[body->first + k].stands_on[1];
+    int on = 0;
+    for (int k = 0; k < f->boundaries; k++) on += stands_there(f, body, k);
     double moved = 0.0;
     for (int k = 0; k < body->faces; k++)
       for (int n = 0; n < 2; n++) moved = fmax(moved, fabs(f->wall[body->first + k].next.s[n]));
-    if ((on & (on - 1)) != 0 && moved > ROUNDING * f->l0) return b;
+    if (on > 1 && moved > ROUNDING * f->l0) return b;
   }
   return -1;
 }

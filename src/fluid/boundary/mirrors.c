@@ -8,7 +8,7 @@
  * Around a convex corner particles without a line of sight are neighbours at the length of the path
  * around it (sight.c). Images in plane boundaries at right angles to a segment are mirrored in it
  * like particles. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/boundary/polyline.h"
+#include "fluid/boundary/vicinity.h"
 
 #include <string.h>
 
@@ -19,29 +19,9 @@
 #define PI 3.141592653589793
 #define SQUARE 1e-6 /* cosine of the angle of walls at right angles */
 
-bool mpsi_fluid_list_segments(mps_fluid *f) {
-  int64_t count = 0;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
-    if (f->wall[b].line) count += f->wall[b].line->count;
-  f->segments = count;
-  if (count == 0) return true;
-  if (!mpsi_room_ensure(f->context, &f->segment_room, count, sizeof(mpsi_fluid_segment *)))
-    return false;
-  mpsi_fluid_segment **all = f->segment_room.item;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
-    for (int64_t k = 0; f->wall[b].line && k < f->wall[b].line->count; k++) {
-      mpsi_fluid_segment *s = &f->wall[b].line->segment[k];
-      s->all = (int32_t)(f->segments - count--);
-      all[s->all] = s;
-    }
-  return true;
-}
-
-static mpsi_fluid_segment *segment_of(const mps_fluid *f, int64_t k) {
-  return ((mpsi_fluid_segment *const *)f->segment_room.item)[k];
-}
-
 /* ---- images ---------------------------------------------------------------------------------- */
+
+static const mpsi_fluid_flips no_flips = {{MPSI_FLUID_NO_WALL, MPSI_FLUID_NO_WALL}};
 
 /* Appends the image of entry i of the cloud at a segment; false: no room. */
 static bool add_image(mps_fluid *f, int64_t i, const mpsi_fluid_segment *s) {
@@ -53,7 +33,7 @@ static bool add_image(mps_fluid *f, int64_t i, const mpsi_fluid_segment *s) {
   mpsi_fluid_path *paths = f->path_room.item, *path = &paths[g];
   for (int c = 0; c < 2; c++) f->x[c][f->count + g] = x[c] - 2.0 * d * n[c];
   f->parent[g] = before < 0 ? (int32_t)i : f->parent[before];
-  f->flips[g] = before < 0 ? 0 : f->flips[before];
+  f->flips[g] = before < 0 ? no_flips : f->flips[before];
   const mpsi_fluid_path none = {.M = {1.0, 0.0, 0.0, 1.0}},
                         *from = before < 0 ? &none : &paths[before];
   path->count = from->count + 1;
@@ -87,42 +67,70 @@ static bool leads_to(const mps_fluid *f, const mpsi_fluid_segment *s, const mpsi
 
 /* An image in boundaries is mirrored at segments at right angles to all of them. */
 static bool square_to_flips(const mps_fluid *f, int64_t ghost, const mpsi_fluid_segment *s) {
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    if (!(f->flips[ghost] >> b & 1)) continue;
-    const double *n = f->wall[b].normal;
+  MPSI_FLUID_FLIPS(k, f->flips[ghost]) {
+    const double *n = f->wall[f->flips[ghost].wall[k]].normal;
     if (fabs(n[0] * s->wall.normal[0] + n[1] * s->wall.normal[1]) > SQUARE) return false;
+  }
+  return true;
+}
+
+/* Images of the particles, segment by segment. */
+static bool mirror_particles(mps_fluid *f) {
+  for (int64_t k = 0; k < f->segments; k++) {
+    mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, k);
+    const mpsi_fluid_listed chunks = mpsi_fluid_chunks_near(f, k);
+    s->wall.first_image = f->ghosts;
+    for (int64_t c = 0; c < chunks.count; c++) {
+      const int64_t begin = (int64_t)chunks.item[c] * MPSI_FLUID_CHUNK;
+      for (int64_t i = begin; i < begin + MPSI_FLUID_CHUNK && i < f->count; i++)
+        if (in_reach(f, i, s) && !add_image(f, i, s)) return false;
+    }
+    s->wall.images = f->ghosts - s->wall.first_image;
+  }
+  return true;
+}
+
+/* Images of the first `ghosts` ghosts, those of boundaries, segment by segment. */
+static bool mirror_ghosts(mps_fluid *f, int64_t ghosts) {
+  const int64_t entries = f->segments;
+  bool *const near = f->near_line_room.item;
+  memset(near, 0, (size_t)entries * sizeof *near);
+  for (int64_t i = f->count; i < f->count + ghosts; i++) {
+    const mpsi_fluid_listed list = mpsi_fluid_near_place(f, (double[]){f->x[0][i], f->x[1][i]});
+    for (int64_t n = 0; n < list.count; n++)
+      near[list.item[n]] |= in_reach(f, i, mpsi_fluid_segment_of(f, list.item[n]));
+  }
+  for (int64_t k = 0; k < entries; k++) {
+    const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, k);
+    for (int64_t g = 0; near[k] && g < ghosts; g++)
+      if (in_reach(f, f->count + g, s) && square_to_flips(f, g, s) &&
+          !add_image(f, f->count + g, s))
+        return false;
   }
   return true;
 }
 
 bool mpsi_fluid_mirror_lines(mps_fluid *f) {
   const int64_t of_boundaries = f->ghosts;
-  if (!mpsi_room_fit(f->context, &f->path_room, f->ghost_capacity, sizeof(mpsi_fluid_path)))
+  if (!mpsi_room_fit(f->context, &f->path_room, f->ghost_capacity, sizeof(mpsi_fluid_path)) ||
+      !mpsi_room_ensure(f->context, &f->near_line_room, f->segments, sizeof(bool)))
     return false;
   mpsi_fluid_path *path = f->path_room.item;
   for (int64_t g = 0; g < of_boundaries; g++)
     path[g] = (mpsi_fluid_path){.M = {1.0, 0.0, 0.0, 1.0}};
-  for (int64_t k = 0; k < f->segments; k++) {
-    mpsi_fluid_segment *s = segment_of(f, k);
-    s->wall.first_image = f->ghosts;
-    for (int64_t i = 0; i < f->count; i++)
-      if (in_reach(f, i, s) && !add_image(f, i, s)) return false;
-    s->wall.images = f->ghosts - s->wall.first_image;
-  }
+  if (!mirror_particles(f)) return false;
   const int64_t first = f->ghosts;
-  for (int64_t k = 0; k < f->segments; k++)
-    for (int64_t g = 0; g < of_boundaries; g++)
-      if (in_reach(f, f->count + g, segment_of(f, k)) && square_to_flips(f, g, segment_of(f, k)) &&
-          !add_image(f, f->count + g, segment_of(f, k)))
-        return false;
-  for (int64_t g = of_boundaries; g < f->ghosts; g++)
-    for (int64_t k = 0; k < f->segments && path[g].count < MPSI_FLUID_REFLECTIONS; k++) {
-      const mpsi_fluid_segment *s = segment_of(f, k), *p = segment_of(f, path[g].segment[0]);
-      if (g >= first && f->flips[g]) break; /* corners are far from boundaries */
-      if (s != p && in_reach(f, f->count + g, s) && leads_to(f, s, p) &&
-          !add_image(f, f->count + g, s))
-        return false;
+  if (!mirror_ghosts(f, of_boundaries)) return false;
+  for (int64_t g = of_boundaries; g < f->ghosts; g++) {
+    const int64_t i = f->count + g;
+    if (g >= first && f->flips[g].wall[0] != MPSI_FLUID_NO_WALL) continue; /* corners are far */
+    const mpsi_fluid_segment *p = mpsi_fluid_segment_of(f, path[g].segment[0]);
+    const mpsi_fluid_listed near = mpsi_fluid_near_place(f, (double[]){f->x[0][i], f->x[1][i]});
+    for (int64_t n = 0; n < near.count && path[g].count < MPSI_FLUID_REFLECTIONS; n++) {
+      const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, near.item[n]);
+      if (s != p && in_reach(f, i, s) && leads_to(f, s, p) && !add_image(f, i, s)) return false;
     }
+  }
   return true;
 }
 
@@ -141,34 +149,39 @@ static bool crosses(const mps_fluid *f, const mpsi_fluid_segment *s, const doubl
          along < s->wall.to - (s->angle[0] < PI + STRAIGHT ? -edge : edge);
 }
 
-/* The segments within re of a particle. */
+/* The segments within re of a particle, or where those are more than `own` has room for, all that
+ * are listed. */
 typedef struct vicinity {
-  int32_t count;
-  int32_t segment[MPSI_FLUID_MOST_NEAR];
+  int64_t count;
+  const int32_t *segment;
+  int32_t own[32];
 } vicinity;
 
-/* False: there are more than have room. */
-static bool look_about(const mps_fluid *f, const double *x, vicinity *near) {
+static void look_about(const mps_fluid *f, int64_t i, const double *x, vicinity *near) {
+  enum { MOST = sizeof near->own / sizeof *near->own };
+  const mpsi_fluid_listed list = mpsi_fluid_near_chunk(f, i / MPSI_FLUID_CHUNK);
   const double re2 = f->weight.re * f->weight.re;
-  near->count = 0;
-  for (int32_t k = 0; k < (int32_t)f->segments; k++) {
-    const mpsi_fluid_segment *s = segment_of(f, k);
+  near->count = 0, near->segment = near->own;
+  for (int64_t n = 0; n < list.count; n++) {
+    const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, list.item[n]);
     const double d = mpsi_fluid_before_segment(s, x);
     if (!(d * d < re2 && mpsi_fluid_from_segment(s, x) < re2)) continue;
-    if (near->count == MPSI_FLUID_MOST_NEAR) return false;
-    near->segment[near->count++] = k;
+    if (near->count == MOST) {
+      near->count = list.count, near->segment = list.item;
+      return;
+    }
+    near->own[near->count++] = list.item[n];
   }
-  return true;
 }
 
 /* The first segment that the way from a to b passes; not the one that it comes from. */
 static int32_t first_mirror(const mps_fluid *f, const vicinity *near, int32_t from, const double *a,
                             const double *b, double *share) {
   int32_t first = -1;
-  for (int32_t n = 0; n < near->count; n++) {
+  for (int64_t n = 0; n < near->count; n++) {
     double at = 0.0;
     if (near->segment[n] == from) continue;
-    if (!crosses(f, segment_of(f, near->segment[n]), a, b, &at)) continue;
+    if (!crosses(f, mpsi_fluid_segment_of(f, near->segment[n]), a, b, &at)) continue;
     if (first < 0 || at < *share) first = near->segment[n], *share = at;
   }
   return first;
@@ -182,7 +195,7 @@ static bool follows(const mps_fluid *f, const vicinity *near, const double *a, i
   double at[2] = {a[0], a[1]}, to[2] = {f->x[0][j], f->x[1][j]}, share = 0.0;
   int32_t from = -1;
   for (int32_t n = 0; path && n < path->count; n++) {
-    const mpsi_fluid_segment *s = segment_of(f, path->segment[n]);
+    const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, path->segment[n]);
     if (first_mirror(f, near, from, at, to, &share) != path->segment[n]) return false;
     if (f->faces && mpsi_fluid_hidden(f, -1, at, to)) return false;
     for (int c = 0; c < 2; c++) at[c] += share * (to[c] - at[c]);
@@ -197,8 +210,8 @@ static bool follows(const mps_fluid *f, const vicinity *near, const double *a, i
 static double way_around(const mps_fluid *f, const vicinity *near, const double *a,
                          const double *b) {
   double least = INFINITY, share = 0.0;
-  for (int32_t n = 0; n < near->count; n++) {
-    const mpsi_fluid_segment *s = segment_of(f, near->segment[n]);
+  for (int64_t n = 0; n < near->count; n++) {
+    const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, near->segment[n]);
     const double *tip = s->end[1];
     if (s->infinite[1] || !(s->angle[1] > PI + STRAIGHT)) continue;
     const double way = hypot(a[0] - tip[0], a[1] - tip[1]) + hypot(b[0] - tip[0], b[1] - tip[1]);
@@ -212,7 +225,7 @@ static double way_around(const mps_fluid *f, const vicinity *near, const double 
 /* A single segment, whose corners are out of reach. */
 static bool plain(const mps_fluid *f, const vicinity *near, const double *x) {
   if (near->count != 1) return false;
-  const mpsi_fluid_segment *s = segment_of(f, near->segment[0]);
+  const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, near->segment[0]);
   const double along = mpsi_fluid_along(&s->wall, x[0], x[1]), re = f->weight.re;
   return along > s->wall.from + re && along < s->wall.to - re;
 }
@@ -222,7 +235,7 @@ int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32
   const double x[2] = {f->x[0][i], f->x[1][i]};
   vicinity near;
   int64_t kept = 0;
-  if (!look_about(f, x, &near)) return -1;
+  look_about(f, i, x, &near);
   const bool simple = near.count == 0 || plain(f, &near, x);
   for (int64_t k = 0; k < count; k++) {
     const int64_t j = index[k];
@@ -243,11 +256,12 @@ int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32
   return kept;
 }
 
-const mpsi_fluid_segment *mpsi_fluid_crossed(const mps_fluid *f, const mpsi_fluid_segment *except,
-                                             const double *a, const double *b, double *share) {
+const mpsi_fluid_segment *mpsi_fluid_crossed(const mps_fluid *f, const mpsi_fluid_listed *list,
+                                             const mpsi_fluid_segment *except, const double *a,
+                                             const double *b, double *share) {
   const mpsi_fluid_segment *first = NULL;
-  for (int64_t k = 0; k < f->segments; k++) {
-    const mpsi_fluid_segment *s = segment_of(f, k);
+  for (int64_t n = 0; n < list->count; n++) {
+    const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, list->item[n]);
     double at = 0.0;
     if (s == except || !crosses(f, s, a, b, &at)) continue;
     if (!first || at < *share) first = s, *share = at;
@@ -257,14 +271,26 @@ const mpsi_fluid_segment *mpsi_fluid_crossed(const mps_fluid *f, const mpsi_flui
 
 bool mpsi_fluid_behind_line(const mps_fluid *f, const mpsi_fluid_segment *except, const double *a,
                             const double *b) {
+  const mpsi_fluid_listed near = mpsi_fluid_near_place(f, a);
   double share = 0.0;
-  return mpsi_fluid_crossed(f, except, a, b, &share) != NULL;
+  return mpsi_fluid_crossed(f, &near, except, a, b, &share) != NULL;
+}
+
+bool mpsi_fluid_in_solid(const mps_fluid *f, const double *x, double least) {
+  const mpsi_fluid_listed near = mpsi_fluid_near_place(f, x);
+  for (int64_t n = 0; n < near.count;) {
+    const mpsi_fluid_segment *nearest = NULL;
+    const double d = mpsi_fluid_before_listed(f, &near, &n, x, &nearest);
+    if (d < -least && d > -mpsi_fluid_listed_reach(f)) return true;
+  }
+  return false;
 }
 
 bool mpsi_fluid_near_turn(const mps_fluid *f, int64_t i) {
+  const mpsi_fluid_listed near = mpsi_fluid_near_chunk(f, i / MPSI_FLUID_CHUNK);
   const double reach = CORNER * f->l0;
-  for (int64_t k = 0; k < f->segments; k++) {
-    const mpsi_fluid_segment *s = segment_of(f, k);
+  for (int64_t n = 0; n < near.count; n++) {
+    const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, near.item[n]);
     const double dx = f->x[0][i] - s->end[1][0], dy = f->x[1][i] - s->end[1][1];
     if (s->angle[1] > PI + TURN && dx * dx + dy * dy < reach * reach) return true;
   }

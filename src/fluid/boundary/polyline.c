@@ -2,7 +2,7 @@
  * of fluid: how they are made and checked, and the distance from them. An open polyline continues
  * beyond both ends without limit, so that each divides the plane into fluid and solid.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/boundary/polyline.h"
+#include "fluid/boundary/vicinity.h"
 
 #include <string.h>
 
@@ -30,6 +30,19 @@ double mpsi_fluid_from_segment(const mpsi_fluid_segment *s, const double *x) {
   return nearest_point(s, x, &at);
 }
 
+/* Distance of x from a polyline whose nearest segment is s, with the nearest point as by
+ * nearest_point, and the square of the distance to it: negative behind it. */
+static double signed_distance(const mpsi_fluid_polyline *line, const mpsi_fluid_segment *s,
+                              const double *x, int where, double square) {
+  double side = mpsi_fluid_before_segment(s, x);
+  if (where != 0) { /* by the mean normal of the corner */
+    const int64_t k = s->number + where;
+    const mpsi_fluid_segment *other = &line->segment[(k + line->count) % line->count];
+    side += mpsi_fluid_before_segment(other, x);
+  }
+  return side < 0.0 ? -sqrt(square) : sqrt(square);
+}
+
 double mpsi_fluid_before_line(const mpsi_fluid_polyline *line, const double *x,
                               const mpsi_fluid_segment **nearest) {
   double least = INFINITY;
@@ -41,18 +54,29 @@ double mpsi_fluid_before_line(const mpsi_fluid_polyline *line, const double *x,
     if (square < least) least = square, found = &line->segment[k], where = at;
   }
   if (nearest) *nearest = found;
-  double side = mpsi_fluid_before_segment(found, x);
-  if (where != 0) { /* by the mean normal of the corner */
-    const int64_t k = found->number + where;
-    const mpsi_fluid_segment *other = &line->segment[(k + line->count) % line->count];
-    side += mpsi_fluid_before_segment(other, x);
+  return signed_distance(line, found, x, where, least);
+}
+
+double mpsi_fluid_before_listed(const mps_fluid *f, const mpsi_fluid_listed *list, int64_t *next,
+                                const double *x, const mpsi_fluid_segment **nearest) {
+  double least = INFINITY;
+  const mpsi_fluid_segment *found = NULL;
+  int where = 0;
+  const int32_t number = mpsi_fluid_segment_of(f, list->item[*next])->boundary;
+  for (; *next < list->count; ++*next) {
+    const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, list->item[*next]);
+    int at;
+    if (s->boundary != number) break;
+    const double square = nearest_point(s, x, &at);
+    if (square < least) least = square, found = s, where = at;
   }
-  return side < 0.0 ? -sqrt(least) : sqrt(least);
+  *nearest = found;
+  return signed_distance(f->wall[number].line, found, x, where, least);
 }
 
 double mpsi_fluid_before_lines(const mps_fluid *f, const double *x) {
   double least = INFINITY;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+  for (int b = 0; b < f->boundaries; b++)
     if (f->wall[b].line) least = fmin(least, mpsi_fluid_before_line(f->wall[b].line, x, NULL));
   return least;
 }
@@ -234,7 +258,7 @@ mps_status mpsi_fluid_make_polyline(mps_fluid *f, const char *function, int32_t 
     wall->at[c] = xy[c], wall->normal[c] = line->segment[0].wall.normal[c];
   if (status == MPS_OK) status = check_angles(f, function, line);
   if (status == MPS_OK) status = check_crossings(f, function, line);
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES && status == MPS_OK; b++)
+  for (int b = 0; b < f->boundaries && status == MPS_OK; b++)
     if (b != number && f->wall[b].used)
       status = mpsi_fluid_check_meeting(f, function, &f->wall[b], b, line);
   return status == MPS_OK ? check_particles(f, function, line) : status;

@@ -58,25 +58,28 @@ double mpsi_fluid_before_lines(const mps_fluid *fluid, const double *x);
 /* Square of the distance (m) of a segment from x. */
 double mpsi_fluid_from_segment(const mpsi_fluid_segment *segment, const double *x);
 
-/* mirrors.c: fluid->segment, all segments; false: no memory. */
+/* vicinity.c: numbers all segments, where they are not yet; false: no memory. After a change of
+ * boundaries they are to be forgotten. */
 bool mpsi_fluid_list_segments(mps_fluid *fluid);
-/* Images of the cloud at all segments; false: no room for them. */
+void mpsi_fluid_forget_segments(mps_fluid *fluid);
+void mpsi_fluid_drop_lines(mps_fluid *fluid);
+static inline mpsi_fluid_segment *mpsi_fluid_segment_of(const mps_fluid *f, int64_t k) {
+  return ((mpsi_fluid_segment *const *)f->segment_room.item)[k];
+}
+
+/* mirrors.c: images of the cloud at all segments; false: no room for them. */
 bool mpsi_fluid_mirror_lines(mps_fluid *fluid);
-/* The neighbours of particle i that it sees past the polylines and in them; -1: more segments than
- * MPSI_FLUID_MOST_NEAR are within re of it. */
-#define MPSI_FLUID_MOST_NEAR 64
+/* The neighbours of particle i that it sees past the polylines and in them. */
 int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
                              double *r2);
-/* Whether a segment, other than `except` (NULL: none), is between a and b. */
+/* Whether a segment, other than `except` (NULL: none), is between a and b, less than re apart; in
+ * one thread. */
 bool mpsi_fluid_behind_line(const mps_fluid *fluid, const mpsi_fluid_segment *except,
                             const double *a, const double *b);
+/* Whether a point is behind a polyline by more than `least`, within re of it; in one thread. */
+bool mpsi_fluid_in_solid(const mps_fluid *fluid, const double *x, double least);
 /* Whether a corner around which the fluid turns by 30 degrees or more is within 1.5 l0. */
 bool mpsi_fluid_near_turn(const mps_fluid *fluid, int64_t i);
-/* The first of `among` other than `except` that the way from a to b crosses from its front; *share:
- * where on the way. */
-const mpsi_fluid_segment *mpsi_fluid_crossed(const mps_fluid *fluid,
-                                             const mpsi_fluid_segment *except, const double *a,
-                                             const double *b, double *share);
 
 /* The path of a ghost; NULL: it is no image in a polyline. */
 static inline const mpsi_fluid_path *mpsi_fluid_path_of(const mps_fluid *f, int64_t ghost) {

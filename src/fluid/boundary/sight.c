@@ -24,10 +24,11 @@ static bool join_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b)
   return fabs(cosine) > 1e-6 && fabs(cosine) < 1.0 - 1e-9;
 }
 
-static bool makes_wedge(const mps_fluid *f, const mpsi_fluid_wall *face, uint32_t boundaries) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+static bool makes_wedge(const mps_fluid *f, const mpsi_fluid_wall *face, int end) {
+  for (int b = 0; b < f->boundaries; b++) {
     const double *n = f->wall[b].normal;
-    if ((boundaries >> b & 1) && n[0] * face->normal[0] + n[1] * face->normal[1] < -1e-6)
+    if (n[0] * face->normal[0] + n[1] * face->normal[1] < -1e-6 &&
+        mpsi_fluid_stands_on(f, face, end, b))
       return true;
   }
   return false;
@@ -36,10 +37,10 @@ static bool makes_wedge(const mps_fluid *f, const mpsi_fluid_wall *face, uint32_
 /* Acute corners of the water between faces and the boundary on which they stand. */
 static void find_wedges(mps_fluid *f) {
   f->wedges = 0;
-  for (int b = MPS_FLUID_MAX_BOUNDARIES; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = f->boundaries; b < f->walls; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     for (int end = 0; w->used && end < 2; end++) {
-      if (!makes_wedge(f, w, w->stands_on[end]) || f->wedges == MPSI_FLUID_WEDGES) continue;
+      if (!makes_wedge(f, w, end)) continue;
       double *at = f->wedge[f->wedges++];
       const double along = end ? w->length : 0.0;
       at[0] = w->at[0] - along * w->normal[1], at[1] = w->at[1] + along * w->normal[0];
@@ -57,18 +58,31 @@ bool mpsi_fluid_near_wedge(const mps_fluid *f, int64_t i, const double *e) {
   return false;
 }
 
+static bool joins_another(const mps_fluid *f, int b) {
+  for (int k = 0; k < f->boundaries; k++)
+    if (k != b && f->wall[k].used && join_at_an_angle(&f->wall[b], &f->wall[k])) return true;
+  return false;
+}
+
+static bool carries_a_body(const mps_fluid *f, int b) {
+  for (int k = f->boundaries; k < f->walls; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (w->used && (mpsi_fluid_stands_on(f, w, 0, b) || mpsi_fluid_stands_on(f, w, 1, b)))
+      return true;
+  }
+  return false;
+}
+
 /* Finite walls, faces, and the acute corners between these and boundaries. */
 void mpsi_fluid_find_limits(mps_fluid *f) {
-  f->limited = f->faces = f->stood_on = 0;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    const mpsi_fluid_wall *w = &f->wall[b];
-    if (!w->used) continue;
-    if (w->of_body) f->faces |= UINT32_C(1) << b, f->stood_on |= w->stands_on[0] | w->stands_on[1];
-    for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES && !w->of_body; k++)
-      if (k != b && f->wall[k].used && join_at_an_angle(w, &f->wall[k]))
-        f->limited |= UINT32_C(1) << b;
+  f->limited = f->faces = 0;
+  for (int b = 0; b < f->walls; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    w->limited = w->used && (w->of_body || joins_another(f, b));
+    w->stood_on = w->used && !w->of_body && carries_a_body(f, b);
+    f->limited += w->limited;
+    f->faces += w->used && w->of_body;
   }
-  f->limited |= f->faces;
   find_wedges(f);
 }
 
@@ -89,21 +103,40 @@ static bool passes(const mps_fluid *f, const mpsi_fluid_wall *w, const double *a
   return along > w->from + EDGE * f->l0 && along < w->to - EDGE * f->l0;
 }
 
+/* Whether the box of the way from a to b overlaps that of a body. */
+static bool comes_by(const mpsi_fluid_body *body, const double *a, const double *b) {
+  for (int c = 0; c < 2; c++)
+    if ((a[c] < body->low[c] && b[c] < body->low[c]) ||
+        (a[c] > body->high[c] && b[c] > body->high[c]))
+      return false;
+  return body->body != NULL;
+}
+
 /* Whether a face besides those of `except` is between a and b. */
-static bool hidden(const mps_fluid *f, uint32_t except, const double *a, const double *b) {
+static bool hidden(const mps_fluid *f, mpsi_fluid_flips except, const double *a, const double *b) {
   double at[2];
-  for (uint32_t rest = f->faces & ~except, k = MPS_FLUID_MAX_BOUNDARIES; rest >> k && k < 32; k++)
-    if ((rest >> k & 1) && passes(f, &f->wall[k], a, b, at)) return true;
+  for (int n = 0; n < f->bodies; n++) {
+    const mpsi_fluid_body *body = &f->body[n];
+    if (!comes_by(body, a, b)) continue;
+    for (int k = body->first; k < body->first + body->faces; k++)
+      if (f->wall[k].used && k != except.wall[0] && k != except.wall[1] &&
+          passes(f, &f->wall[k], a, b, at))
+        return true;
+  }
   return false;
 }
 
+static const mpsi_fluid_flips none = {{MPSI_FLUID_NO_WALL, MPSI_FLUID_NO_WALL}};
+
 bool mpsi_fluid_hidden(const mps_fluid *f, int wall, const double *a, const double *b) {
-  return hidden(f, wall < 0 ? 0 : UINT32_C(1) << wall, a, b);
+  mpsi_fluid_flips except = none;
+  if (wall >= 0) except.wall[0] = (uint16_t)wall;
+  return hidden(f, except, a, b);
 }
 
 /* Whether the mirror exists at the point of passage: not behind a boundary at an angle to it. */
 static bool mirror_is_there(const mps_fluid *f, int wall, const double *at) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < f->boundaries; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (b != wall && w->used && join_at_an_angle(w, &f->wall[wall]) && ahead(w, at) < -EDGE * f->l0)
       return false;
@@ -111,15 +144,25 @@ static bool mirror_is_there(const mps_fluid *f, int wall, const double *at) {
   return true;
 }
 
+/* Those of the walls that end, or that a body stands on. */
+static mpsi_fluid_flips ending(const mps_fluid *f, mpsi_fluid_flips flips) {
+  mpsi_fluid_flips found = none;
+  int count = 0;
+  MPSI_FLUID_FLIPS(k, flips)
+  if (f->wall[flips.wall[k]].limited || f->wall[flips.wall[k]].stood_on)
+    found.wall[count++] = flips.wall[k];
+  return found;
+}
+
 static bool sees(const mps_fluid *f, int64_t i, int64_t j) {
   const double a[2] = {f->x[0][i], f->x[1][i]}, b[2] = {f->x[0][j], f->x[1][j]};
-  const uint32_t flips = j < f->count ? 0 : f->flips[j - f->count] & (f->limited | f->stood_on);
-  if (!flips) return !hidden(f, 0, a, b);
-  for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
-    const mpsi_fluid_wall *w = &f->wall[k];
+  const mpsi_fluid_flips flips = j < f->count ? none : ending(f, f->flips[j - f->count]);
+  if (flips.wall[0] == MPSI_FLUID_NO_WALL) return !hidden(f, none, a, b);
+  MPSI_FLUID_FLIPS(k, flips) {
+    const mpsi_fluid_wall *w = &f->wall[flips.wall[k]];
     double at[2];
-    if (!(flips >> k & 1)) continue;
-    if (!(ahead(w, a) > 0.0) || !passes(f, w, a, b, at) || !mirror_is_there(f, k, at)) return false;
+    if (!(ahead(w, a) > 0.0) || !passes(f, w, a, b, at) || !mirror_is_there(f, flips.wall[k], at))
+      return false;
     const double d = ahead(w, b),
                  back[2] = {b[0] - 2.0 * d * w->normal[0], b[1] - 2.0 * d * w->normal[1]};
     if (hidden(f, flips, a, at) || hidden(f, flips, at, back)) return false;
@@ -131,21 +174,31 @@ static bool sees(const mps_fluid *f, int64_t i, int64_t j) {
  * a wall that ends. */
 static bool near_limit(const mps_fluid *f, int64_t i) {
   const double x[2] = {f->x[0][i], f->x[1][i]}, reach = 2.0 * f->weight.re;
-  for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
-    const mpsi_fluid_wall *w = &f->wall[k];
-    if (!(f->limited >> k & 1) || !(fabs(ahead(w, x)) < reach)) continue;
-    const double along = mpsi_fluid_along(w, x[0], x[1]);
-    if (!w->of_body || (along > w->from - reach && along < w->to + reach)) return true;
+  for (int k = 0; f->limited > f->faces && k < f->boundaries; k++)
+    if (f->wall[k].limited && fabs(ahead(&f->wall[k], x)) < reach) return true;
+  for (int n = 0; n < f->bodies; n++) {
+    const mpsi_fluid_body *body = &f->body[n];
+    if (!mpsi_fluid_beside(body, x, 2.0 * reach)) continue;
+    for (int k = body->first; k < body->first + body->faces; k++) {
+      const mpsi_fluid_wall *w = &f->wall[k];
+      if (!w->used || !(fabs(ahead(w, x)) < reach)) continue;
+      const double along = mpsi_fluid_along(w, x[0], x[1]);
+      if (along > w->from - reach && along < w->to + reach) return true;
+    }
   }
   return false;
 }
 
 bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
-  const double reach = CORNER * f->l0;
-  for (uint32_t k = MPS_FLUID_MAX_BOUNDARIES; f->faces >> k && k < MPSI_FLUID_WALLS; k++) {
-    const mpsi_fluid_wall *w = &f->wall[k];
-    const double dx = f->x[0][i] - w->at[0], dy = f->x[1][i] - w->at[1];
-    if ((f->faces >> k & 1) && w->from == 0.0 && dx * dx + dy * dy < reach * reach) return true;
+  const double x[2] = {f->x[0][i], f->x[1][i]}, reach = CORNER * f->l0;
+  for (int n = 0; n < f->bodies; n++) {
+    const mpsi_fluid_body *body = &f->body[n];
+    if (!mpsi_fluid_beside(body, x, 2.0 * reach)) continue;
+    for (int k = body->first; k < body->first + body->faces; k++) {
+      const mpsi_fluid_wall *w = &f->wall[k];
+      const double dx = x[0] - w->at[0], dy = x[1] - w->at[1];
+      if (w->used && w->from == 0.0 && dx * dx + dy * dy < reach * reach) return true;
+    }
   }
   return false;
 }
@@ -153,13 +206,18 @@ bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
 /* Length of the path from a to b around the nearest corner of a body, m; INFINITY without one. */
 static double way_around(const mps_fluid *f, const double *a, const double *b) {
   double least = INFINITY;
-  for (uint32_t k = MPS_FLUID_MAX_BOUNDARIES; k < MPSI_FLUID_WALLS; k++) {
-    const mpsi_fluid_wall *w = &f->wall[k];
-    if (!(f->faces >> k & 1) || w->from < 0.0) continue; /* that corner stands on a boundary */
-    const double way =
-        hypot(a[0] - w->at[0], a[1] - w->at[1]) + hypot(b[0] - w->at[0], b[1] - w->at[1]);
-    if (way < least && way < f->weight.re && !hidden(f, 0, a, w->at) && !hidden(f, 0, w->at, b))
-      least = way;
+  for (int n = 0; n < f->bodies; n++) {
+    const mpsi_fluid_body *body = &f->body[n];
+    if (!mpsi_fluid_beside(body, a, 2.0 * f->weight.re)) continue;
+    for (int k = body->first; k < body->first + body->faces; k++) {
+      const mpsi_fluid_wall *w = &f->wall[k];
+      if (!w->used || w->from < 0.0) continue; /* that corner stands on a boundary */
+      const double way =
+          hypot(a[0] - w->at[0], a[1] - w->at[1]) + hypot(b[0] - w->at[0], b[1] - w->at[1]);
+      if (way < least && way < f->weight.re && !hidden(f, none, a, w->at) &&
+          !hidden(f, none, w->at, b))
+        least = way;
+    }
   }
   return least;
 }

@@ -63,11 +63,10 @@ void mpsi_fluid_drop_wall(mps_fluid *f, mpsi_fluid_wall *w) {
   *w = (mpsi_fluid_wall){0};
 }
 
-void mpsi_fluid_mirror_point(const mps_fluid *f, uint32_t flips, double *x) {
+void mpsi_fluid_mirror_point(const mps_fluid *f, mpsi_fluid_flips flips, double *x) {
   const double from[2] = {x[0], x[1]};
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    if (!(flips >> b & 1)) continue;
-    const mpsi_fluid_wall *w = &f->wall[b];
+  MPSI_FLUID_FLIPS(k, flips) {
+    const mpsi_fluid_wall *w = &f->wall[flips.wall[k]];
     const double s = mpsi_fluid_of_wall(w, w->now.s, from[0], from[1]);
     const double d = (x[0] - w->at[0]) * w->normal[0] + (x[1] - w->at[1]) * w->normal[1] - s;
     x[0] -= 2.0 * d * w->normal[0], x[1] -= 2.0 * d * w->normal[1];

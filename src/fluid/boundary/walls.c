@@ -7,7 +7,7 @@
  * step: free slip); its reduced pressure is the parent's less rho (a . N)(distance of the two), N
  * out of the fluid: the one place where the wall's new velocity enters.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/boundary/polyline.h"
+#include "fluid/boundary/vicinity.h"
 #include "signal/signal_internal.h"
 
 #include <string.h>
@@ -21,7 +21,7 @@
 mps_status mpsi_fluid_look_ahead(mps_fluid *f, const char *function, double dt) {
   const mpsi_guard outer = mpsi_guard_close(&f->guard, f->context, "a signal of the solver");
   mps_status status = MPS_OK;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES && status == MPS_OK; b++) {
+  for (int b = 0; b < f->boundaries && status == MPS_OK; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     const mpsi_signal_use use = {f->context, function, "boundary", b, -1};
     mpsi_signal_motion m;
@@ -37,7 +37,7 @@ mps_status mpsi_fluid_look_ahead(mps_fluid *f, const char *function, double dt) 
 
 /* Walls without a new motion continue at their velocity. */
 void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = 0; b < f->walls; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used || w->of_body) continue;
     for (int64_t k = 0; k < w->nodes; k++) {
@@ -58,7 +58,7 @@ void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
 }
 
 void mpsi_fluid_end_walls(mps_fluid *f) {
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = 0; b < f->walls; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used || w->of_body) continue;
     memcpy(w->now.s, w->next.s, 3 * (size_t)w->nodes * sizeof *w->now.s);
@@ -69,7 +69,7 @@ void mpsi_fluid_end_walls(mps_fluid *f) {
 }
 
 void mpsi_fluid_add_impulses(mps_fluid *f) {
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = 0; b < f->walls; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used && !w->line) continue;
     const mpsi_fluid_load *load = &w->load;
@@ -87,10 +87,10 @@ mps_status mps_fluid_set_wall_motion(mps_fluid *f, int32_t number, const double 
   if (!f) return MPS_ERROR_ARGUMENT;
   const mps_status status = mpsi_fluid_free(f, __func__);
   if (status != MPS_OK) return status;
-  if (number >= 0 && number < MPS_FLUID_MAX_BOUNDARIES && f->wall[number].line)
+  if (MPSI_FLUID_IS_BOUNDARY(f, number) && f->wall[number].line)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "number: boundary %d is a polyline, which does not move", number);
-  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used || !velocity)
+  if (!MPSI_FLUID_IS_BOUNDARY(f, number) || !f->wall[number].used || !velocity)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "boundary is %d and velocity %s: must be one of the fluid's, and given",
                      number, velocity ? "given" : "NULL");
@@ -123,11 +123,19 @@ static bool square(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
 }
 
 /* Only images at boundaries at right angles to this wall are mirrored again. */
-static bool mirrors_again(const mps_fluid *f, int wall, uint32_t flips) {
-  for (int b = 0; b < wall; b++)
-    if ((flips >> b & 1) && (f->wall[b].of_body || !square(&f->wall[b], &f->wall[wall])))
-      return false;
-  return true;
+static bool mirrors_again(const mps_fluid *f, int wall, mpsi_fluid_flips flips) {
+  MPSI_FLUID_FLIPS(k, flips) {
+    const mpsi_fluid_wall *w = &f->wall[flips.wall[k]];
+    if (w->of_body || !square(w, &f->wall[wall])) return false;
+  }
+  return flips.wall[1] == MPSI_FLUID_NO_WALL;
+}
+
+static const mpsi_fluid_flips none = {{MPSI_FLUID_NO_WALL, MPSI_FLUID_NO_WALL}};
+
+static mpsi_fluid_flips with(mpsi_fluid_flips flips, int wall) {
+  flips.wall[flips.wall[0] == MPSI_FLUID_NO_WALL ? 0 : 1] = (uint16_t)wall;
+  return flips;
 }
 
 static bool beyond_the_ends(const mps_fluid *f, const mpsi_fluid_wall *w, double x, double y) {
@@ -153,35 +161,44 @@ static bool mirror(mps_fluid *f, int wall, int64_t begin, int64_t end) {
     const int64_t g = f->ghosts++;
     f->x[0][f->count + g] = to[0], f->x[1][f->count + g] = to[1];
     f->parent[g] = (int32_t)own;
-    f->flips[g] = (ghost < 0 ? 0u : f->flips[ghost]) | UINT32_C(1) << wall;
+    f->flips[g] = with(ghost < 0 ? none : f->flips[ghost], wall);
   }
   return true;
 }
 
-/* For each chunk of particles the walls that some are within re of: bits, in sums. */
-static void find_walls(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  uint32_t near = 0;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    const mpsi_fluid_wall *w = &f->wall[b];
-    if (!w->used) continue;
-    const double *s = mpsi_fluid_places(f, w);
-    bool any = false;
-    for (int64_t i = begin; i < end && !any; i++)
-      any = mpsi_fluid_distance(w, s, f->x[0][i], f->x[1][i]) < f->weight.re;
-    near |= (uint32_t)any << b;
+/* The box of each chunk's particles. */
+static void find_box(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  double *box = (double *)f->box_room.item + 4 * chunk;
+  for (int c = 0; c < 2; c++) {
+    double low = f->x[c][begin], high = low;
+    for (int64_t i = begin + 1; i < end; i++) {
+      low = f->x[c][i] < low ? f->x[c][i] : low;
+      high = f->x[c][i] > high ? f->x[c][i] : high;
+    }
+    box[c] = low, box[2 + c] = high;
   }
-  f->system.sums[2 * chunk] = (double)near;
+}
+
+/* Whether a place of the box may be within re of a wall, whose largest displacement is `most`. */
+static bool box_is_near(const mps_fluid *f, const mpsi_fluid_wall *w, double most,
+                        const double *box) {
+  double least = -most;
+  for (int c = 0; c < 2; c++)
+    least += w->normal[c] * (box[w->normal[c] > 0.0 ? c : 2 + c] - w->at[c]);
+  return !(least > f->weight.re * (1.0 + 1e-9));
 }
 
 /* Images of the particles, then of the images so far. */
 static bool mirror_all(mps_fluid *f, int wall) {
   mpsi_fluid_wall *w = &f->wall[wall];
   const int64_t all = f->count + f->ghosts;
+  const double *s = mpsi_fluid_places(f, w), *box = f->box_room.item;
+  double most = s[0];
+  for (int64_t k = 1; k < w->nodes; k++) most = fmax(most, s[k]);
   w->first_image = f->ghosts;
-  for (int64_t begin = 0; begin < f->count; begin += MPSI_FLUID_CHUNK) {
+  for (int64_t begin = 0; begin < f->count; begin += MPSI_FLUID_CHUNK, box += 4) {
     const int64_t end = begin + MPSI_FLUID_CHUNK < f->count ? begin + MPSI_FLUID_CHUNK : f->count;
-    const uint32_t near = (uint32_t)f->system.sums[2 * (begin / MPSI_FLUID_CHUNK)];
-    if ((near >> wall & 1) && !mirror(f, wall, begin, end)) return false;
+    if (box_is_near(f, w, most, box) && !mirror(f, wall, begin, end)) return false;
   }
   w->images = f->ghosts - w->first_image;
   return mirror(f, wall, f->count, all);
@@ -201,33 +218,45 @@ bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t particles, int64_t ghosts) {
   f->system.x = f->q;
   f->offset = block + COLUMNS * padded;
   f->parent = (int32_t *)(f->offset + ghosts);
-  f->flips = (uint32_t *)(f->parent + ghosts);
+  f->flips = (mpsi_fluid_flips *)(f->parent + ghosts);
   mpsi_free(f->context, f->cloud);
   f->cloud = block;
   f->cloud_capacity = particles + ghosts, f->ghost_capacity = ghosts;
   return true;
 }
 
+/* Walls that bend, and those of no slip. */
+static void find_kinds(mps_fluid *f) {
+  f->bent = f->sticky = 0;
+  for (int b = 0; b < f->walls; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    w->bent = w->used && !w->of_body && w->nodes > 1;
+    w->sticky = w->used && (w->kind == MPS_BOUNDARY_HELD || w->kind == MPS_BOUNDARY_DRIVEN);
+    f->bent += w->bent, f->sticky += w->sticky;
+  }
+}
+
+/* False: no room for all images. */
+static bool mirror_cloud(mps_fluid *f) {
+  f->ghosts = 0;
+  for (int b = 0; b < f->walls; b++)
+    if (f->wall[b].used && !mirror_all(f, b)) return false;
+  return f->segments == 0 || mpsi_fluid_mirror_lines(f);
+}
+
 mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
-  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, find_walls);
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  if (!mpsi_room_ensure(f->context, &f->box_room, 4 * chunks, sizeof(double)))
+    return mpsi_fail_memory(f->context, function, 4 * (size_t)chunks * sizeof(double));
+  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, find_box);
   f->travel = 0.0;
-  if (!mpsi_fluid_list_segments(f))
+  if (!mpsi_fluid_list_segments(f) || (f->segments > 0 && !mpsi_fluid_find_vicinities(f)))
     return mpsi_fail_memory(f->context, function, (size_t)f->segments * sizeof(void *));
-  for (bool room = false; !room;) {
-    f->ghosts = 0;
-    f->bent = f->sticky = 0;
-    mpsi_fluid_find_limits(f);
-    room = true;
-    for (int b = 0; b < MPSI_FLUID_WALLS; b++)
-      f->bent |= (uint32_t)(f->wall[b].used && !f->wall[b].of_body && f->wall[b].nodes > 1) << b,
-          f->sticky |= (uint32_t)(f->wall[b].used && (f->wall[b].kind == MPS_BOUNDARY_HELD ||
-                                                      f->wall[b].kind == MPS_BOUNDARY_DRIVEN))
-                       << b;
-    for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
-      if (f->wall[b].used) room = mirror_all(f, b);
-    if (room && f->segments > 0) room = mpsi_fluid_mirror_lines(f);
+  find_kinds(f);
+  mpsi_fluid_find_limits(f);
+  while (!mirror_cloud(f)) {
     const int64_t ghosts = f->ghost_capacity + f->ghost_capacity / 4 + 256;
-    if (!room && !mpsi_fluid_grow_cloud(f, f->capacity, ghosts))
+    if (!mpsi_fluid_grow_cloud(f, f->capacity, ghosts))
       return mpsi_fail_memory(f->context, function,
                               (size_t)(f->capacity + ghosts) * 7 * sizeof(double));
   }
@@ -245,9 +274,8 @@ static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       if (f->driven) kick[c] = f->dt * f->push[c][own];
       v[c] = f->u[c][own] - kick[c];
     }
-    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-      if (!(f->flips[g] >> b & 1)) continue;
-      const mpsi_fluid_wall *w = &f->wall[b];
+    MPSI_FLUID_FLIPS(k, f->flips[g]) {
+      const mpsi_fluid_wall *w = &f->wall[f->flips[g].wall[k]];
       const double u = mpsi_fluid_of_wall(w, w->now.u, f->x[0][own], f->x[1][own]);
       const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
       v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
@@ -281,9 +309,8 @@ static void press_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk
     const double rho = (1.0 - late_share(f, own)) * f->def.density;
     f->offset[g] =
         f->push[0] ? rho * (f->push[0][own] * apart[0] + f->push[1][own] * apart[1]) : 0.0;
-    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-      if (!(f->flips[g] >> b & 1)) continue;
-      const mpsi_fluid_wall *w = &f->wall[b];
+    MPSI_FLUID_FLIPS(k, f->flips[g]) {
+      const mpsi_fluid_wall *w = &f->wall[f->flips[g].wall[k]];
       const double a = mpsi_fluid_of_wall(w, w->next.a, f->x[0][own], f->x[1][own]);
       f->offset[g] -= rho * a * (apart[0] * w->normal[0] + apart[1] * w->normal[1]);
     }

@@ -1,5 +1,6 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, queries.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"
 #include "fluid/pressure/coarse.h"
 #include "fluid/base/loops.h"
@@ -142,10 +143,17 @@ static void release(mps_fluid *f) {
                          f->lower_room.item,
                          f->near_wall_room.item,
                          f->segment_room.item,
-                         f->path_room.item};
+                         f->path_room.item,
+                         f->box_room.item,
+                         f->near_line_room.item,
+                         f->wedge_room.item,
+                         f->clip_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) mpsi_fluid_drop_body(f, &f->body[b]);
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
+  for (int b = f->bodies - 1; b >= 0; b--) mpsi_fluid_drop_body(f, &f->body[b]);
+  for (int b = 0; b < f->walls; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
+  mpsi_free(context, f->wall_room.item);
+  mpsi_free(context, f->body_room.item);
+  mpsi_fluid_drop_lines(f);
   mpsi_fluid_drop_rocks(f);
   mpsi_state_forget(&f->identity);
   mps_domain_destroy(&f->def.domain);

@@ -64,15 +64,22 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_i64(s, "collisions", &f->report.collisions, 1);
   mpsi_state_i64(s, "limited", &f->report.limited, 1);
   mpsi_state_i64(s, "pushed", &f->report.pushed, 1);
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  mpsi_state_agree_integer(s, "boundaries", f->boundaries);
+  mpsi_state_agree_integer(s, "bodies", f->bodies);
+  for (int b = 0; b < f->boundaries; b++) {
     mpsi_state_enter(s, "boundary%d", b);
     list_wall(s, &f->wall[b]);
     mpsi_state_leave(s);
   }
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->bodies; b++) {
     mpsi_fluid_pose *pose = &f->body[b].pose;
     mpsi_state_enter(s, "body%d", b);
     mpsi_state_agree_integer(s, "faces", f->body[b].faces);
+    for (int k = 0; k < f->body[b].faces; k++) {
+      mpsi_state_enter(s, "face%d", k);
+      list_wall(s, &f->wall[f->body[b].first + k]);
+      mpsi_state_leave(s);
+    }
     mpsi_state_f64(s, "position", pose->x, 2);
     mpsi_state_f64(s, "orientation", pose->R, 4);
     mpsi_state_f64(s, "velocity", pose->v, 2);
@@ -130,7 +137,7 @@ static void after(void *solver) {
   f->count = mps_particles_count(f->particles);
   f->ghosts = 0; /* of other particles: computed again */
   mpsi_fluid_place_bodies(f);
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
+  for (int b = 0; b < f->walls; b++) f->wall[b].given = f->wall[b].placed = false;
 }
 
 static mps_status settle(void *fluid, const char *function, mps_status status) {

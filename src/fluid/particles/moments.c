@@ -99,12 +99,15 @@ static void mark_zone(mps_fluid *f, int64_t i) {
 }
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
+  const bool near_rock = mpsi_fluid_near_rock(f, chunk);
   for (int64_t i = begin; i < end; i++) {
     mpsi_fluid_sums s;
     f->loops->add_up(f, i, &s);
     const double n0 = mpsi_fluid_full(f, i), plain[2] = {s.m[0], s.m[1]};
-    if (f->rocks) mpsi_fluid_sum_pores(f, i, &s);
+    if (near_rock)
+      mpsi_fluid_sum_pores(f, i, &s);
+    else if (f->rocks)
+      mpsi_fluid_pore_of(f, i)->fill = s.n;
     mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = (float)(0.25 * s.r2)};
     const double fill = f->rocks ? mpsi_fluid_fill(f, i) : s.n;
     f->state[i] = MPSI_FLUID_APART;
@@ -135,9 +138,9 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
 static void mirrored_moment(const mps_fluid *f, int64_t ghost, double *m) {
   const mpsi_fluid_local *local = &f->local[f->parent[ghost]];
   m[0] = local->m[0], m[1] = local->m[1];
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    if (!(f->flips[ghost] >> b & 1)) continue;
-    const double *N = f->wall[b].normal, across = m[0] * N[0] + m[1] * N[1];
+  MPSI_FLUID_FLIPS(k, f->flips[ghost]) {
+    const double *N = f->wall[f->flips[ghost].wall[k]].normal;
+    const double across = m[0] * N[0] + m[1] * N[1];
     m[0] -= 2.0 * across * N[0], m[1] -= 2.0 * across * N[1];
   }
   const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);

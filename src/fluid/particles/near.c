@@ -135,13 +135,19 @@ static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t roo
   return found;
 }
 
+static bool mirrored_bent(const mps_fluid *f, int64_t ghost) {
+  MPSI_FLUID_FLIPS(k, f->flips[ghost])
+  if (f->wall[f->flips[ghost].wall[k]].bent) return true;
+  return false;
+}
+
 /* At a bent wall particle i may be at another distance from the image of j than j from that of i:
  * the mean of both weights keeps the matrix symmetric. */
 static void average_weights(const mps_fluid *f, int64_t i, int64_t count, const int32_t *index,
                             float *w) {
   for (int64_t k = 0; k < count; k++) {
     const int64_t ghost = index[k] - f->count;
-    if (ghost < 0 || !(f->flips[ghost] & f->bent)) continue;
+    if (ghost < 0 || !mirrored_bent(f, ghost)) continue;
     const int64_t own = f->parent[ghost];
     double x[2] = {f->x[0][i], f->x[1][i]};
     mpsi_fluid_mirror_point(f, f->flips[ghost], x);
@@ -154,12 +160,16 @@ static void average_weights(const mps_fluid *f, int64_t i, int64_t count, const 
 typedef struct pass {
   mps_fluid *fluid;
   const cells *cells;
-  int64_t per_chunk, pairs;         /* room for pairs; the last chunk may have less */
-  atomic_bool full, crowded, lined; /* lined: too many segments near a particle */
+  int64_t per_chunk, pairs; /* room for pairs; the last chunk may have less */
+  atomic_bool full, crowded;
 } pass;
 
-static bool near_corner(const mps_fluid *f, int64_t i) {
-  return mpsi_fluid_near_corner(f, i) || (f->segments > 0 && mpsi_fluid_near_turn(f, i));
+/* MPSI_FLUID_NEAR_CORNER and _WEDGE. */
+static int32_t corners_near(const mps_fluid *f, int64_t i) {
+  const bool corner = (f->faces > 0 && mpsi_fluid_near_corner(f, i)) ||
+                      (f->segments > 0 && mpsi_fluid_near_turn(f, i));
+  const bool wedge = f->wedges > 0 && mpsi_fluid_near_wedge(f, i, NULL);
+  return (corner ? MPSI_FLUID_NEAR_CORNER : 0) | (wedge ? MPSI_FLUID_NEAR_WEDGE : 0);
 }
 
 /* The pairs of a chunk of particles, one after the other in the chunk's stretch. */
@@ -169,6 +179,7 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
   mps_fluid *f = p->fluid;
   const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, full = (chunk + 1) * p->per_chunk;
   const int64_t limit = full < p->pairs ? full : p->pairs;
+  const bool cornered = f->faces > 0 || f->segments > 0; /* bodies and polylines have corners */
   int64_t at = chunk * p->per_chunk;
   double r2[CROWD + MPSI_FLUID_WIDE];
   int32_t
@@ -186,14 +197,10 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     if (index == apart) index = memcpy(f->index + at, apart, (size_t)found * sizeof *index);
     if (f->limited) found = mpsi_fluid_keep_visible(f, i, found, index, r2);
     if (f->segments > 0) found = mpsi_fluid_keep_seen(f, i, found, index, r2);
-    if (found < 0) {
-      atomic_store(&p->lined, true);
-      return;
-    }
-    const int32_t company = f->loops->weigh(f, i, found, index, r2, w);
+    int32_t company = f->loops->weigh(f, i, found, index, r2, w);
     if (f->bent) average_weights(f, i, found, index, w);
-    f->company[i] = (uint8_t)(company | (near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
-                              (mpsi_fluid_near_wedge(f, i, NULL) ? MPSI_FLUID_NEAR_WEDGE : 0));
+    if (cornered) company |= corners_near(f, i);
+    f->company[i] = (uint8_t)company;
     f->start[i] = (int32_t)(at / MPSI_FLUID_WIDE);
     f->near[i] = (uint16_t)found;
     at += mpsi_fluid_padded((int32_t)found);
@@ -216,14 +223,9 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
     f->w = f->w_room.item;
     pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk, .pairs = pairs};
     if (status == MPS_OK) mpsi_fluid_units(f, MPSI_FLUID_CHUNK, find_chunk, &p);
-    double full[3] = {atomic_load(&p.full), atomic_load(&p.crowded), atomic_load(&p.lined)};
-    status = mpsi_fluid_agree_max(f, function, status, 3, full);
-    if (status != MPS_OK || (full[0] == 0.0 && full[1] == 0.0 && full[2] == 0.0)) return status;
-    if (full[2] > 0.0)
-      return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED,
-                       "a particle has more than %d segments of polylines within re = %g m: draw "
-                       "them with fewer corners",
-                       MPSI_FLUID_MOST_NEAR, f->weight.re);
+    double full[2] = {atomic_load(&p.full), atomic_load(&p.crowded)};
+    status = mpsi_fluid_agree_max(f, function, status, 2, full);
+    if (status != MPS_OK || (full[0] == 0.0 && full[1] == 0.0)) return status;
     if (full[1] > 0.0)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
                        "a particle has more than %d others near it: the fluid has collapsed",

@@ -63,10 +63,10 @@ static mps_status check_places(mps_fluid *f, const char *function, int64_t first
   for (int64_t i = first; i < end; i++) {
     const double at[2] = {x[i], y[i]};
     double least = mpsi_fluid_before_lines(f, at), d;
-    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+    for (int b = 0; b < f->boundaries; b++)
       if (f->wall[b].used)
         least = fmin(least, mpsi_fluid_distance(&f->wall[b], f->wall[b].now.s, x[i], y[i]));
-    for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    for (int b = 0; b < f->bodies; b++) {
       if (!f->body[b].body) continue;
       mpsi_fluid_face_of(f, &f->body[b], false, at, &d);
       least = fmin(least, d);
@@ -131,11 +131,10 @@ mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, co
 /* ---- open sides ------------------------------------------------------------------------------ */
 
 /* The open side that x has passed, or -1. */
-static int passed(const mps_fluid *f, uint32_t open, double x, double y) {
-  for (int b = 0; open >> b; b++) {
+static int passed(const mps_fluid *f, double x, double y) {
+  for (int b = 0; b < f->boundaries; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
-    if ((open >> b & 1) && (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] < 0.0)
-      return b;
+    if (w->open && (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] < 0.0) return b;
   }
   return -1;
 }
@@ -157,15 +156,15 @@ static void carry_out(const mps_fluid *f, mpsi_fluid_wall *w, const double *x, c
 
 void mpsi_fluid_remove_outflow(mps_fluid *f) {
   uint8_t *const gone = f->company; /* free between steps; computed again when needed */
-  uint32_t open = 0;
+  bool open = false;
   int64_t count = 0;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
-    if (f->wall[b].open) open |= UINT32_C(1) << b, f->wall[b].load = (mpsi_fluid_load){0};
+  for (int b = 0; b < f->boundaries; b++) {
+    if (f->wall[b].open) open = true, f->wall[b].load = (mpsi_fluid_load){0};
   }
   if (!open) return;
   for (int64_t i = 0; i < f->count; i++) {
     const double x[2] = {f->x[0][i], f->x[1][i]}, u[2] = {f->u[0][i], f->u[1][i]};
-    const int b = passed(f, open, x[0], x[1]);
+    const int b = passed(f, x[0], x[1]);
     gone[i] = b >= 0 && count < f->count - 1; /* a fluid needs one */
     if (!gone[i]) continue;
     carry_out(f, &f->wall[b], x, u);

@@ -9,6 +9,7 @@
  * over e_i^2, which makes it symmetric. SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/particles/rock.h"
 #include "core/base/digits.h"
+#include "fluid/ranks/partition.h"
 
 #include <string.h>
 
@@ -32,6 +33,8 @@ mps_status mps_fluid_rock_def_init(mps_fluid_rock_def *def, size_t size) {
 /* By the parity of the edges that the ray along x crosses. */
 static bool contains(const mpsi_fluid_rock *rock, double x, double y) {
   bool inside = false;
+  if (!(x >= rock->low[0] && x <= rock->high[0] && y >= rock->low[1] && y <= rock->high[1]))
+    return false;
   for (int64_t k = 0, last = rock->count - 1; k < rock->count; last = k++) {
     const double *p = rock->xy + 2 * k, *q = rock->xy + 2 * last;
     if ((p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]))
@@ -46,8 +49,28 @@ static const mpsi_fluid_rock *rock_at(const mps_fluid *f, double x, double y) {
   return NULL;
 }
 
+/* Whether all particles of a chunk are farther than re from all rock. */
+static bool is_free(const mps_fluid *f, int64_t begin, int64_t end) {
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  const double reach = f->weight.re * (1.0 + 1e-9);
+  bool apart = true;
+  for (int64_t i = begin; i < end; i++)
+    for (int c = 0; c < 2; c++) {
+      low[c] = f->x[c][i] < low[c] ? f->x[c][i] : low[c];
+      high[c] = f->x[c][i] > high[c] ? f->x[c][i] : high[c];
+    }
+  for (int32_t k = 0; k < f->rocks->room; k++) {
+    const mpsi_fluid_rock *rock = &f->rocks->rock[k];
+    bool near = rock->used;
+    for (int c = 0; c < 2; c++)
+      near = near && low[c] <= rock->high[c] + reach && high[c] >= rock->low[c] - reach;
+    apart = apart && !near;
+  }
+  return apart;
+}
+
 static void find_pores(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
+  ((bool *)f->rocks->free_room.item)[chunk] = is_free(f, begin, end);
   for (int64_t i = begin; i < end; i++) {
     const mpsi_fluid_rock *rock = rock_at(f, f->x[0][i], f->x[1][i]);
     const double e = rock ? rock->def.porosity : 1.0, mass = rock ? rock->mass : 1.0;
@@ -63,7 +86,9 @@ static void find_pores(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 
 mps_status mpsi_fluid_find_pores(mps_fluid *f, const char *function, double dt) {
   if (!f->rocks) return MPS_OK;
-  if (!mpsi_room_ensure(f->context, &f->rocks->part_room, f->count, sizeof(mpsi_fluid_pore)))
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  if (!mpsi_room_ensure(f->context, &f->rocks->part_room, f->count, sizeof(mpsi_fluid_pore)) ||
+      !mpsi_room_ensure(f->context, &f->rocks->free_room, chunks, sizeof(bool)))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof(mpsi_fluid_pore));
   const double step = f->dt;
   f->dt = dt;
@@ -97,8 +122,13 @@ void mpsi_fluid_sum_pores(const mps_fluid *f, int64_t i, mpsi_fluid_sums *s) {
 /* ---- of pairs -------------------------------------------------------------------------------- */
 
 static void weigh_flow(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   float *flow = f->rocks->flow_room.item;
+  if (!mpsi_fluid_near_rock(f, chunk)) { /* w itself */
+    const int64_t first = mpsi_fluid_pairs(f, begin);
+    const int64_t last = mpsi_fluid_pairs(f, end - 1) + mpsi_fluid_padded(f->near[end - 1]);
+    memcpy(flow + first, f->w + first, (size_t)(last - first) * sizeof *flow);
+    return;
+  }
   for (int64_t i = begin; i < end; i++) {
     const int64_t first = mpsi_fluid_pairs(f, i);
     const mpsi_fluid_pore *a = mpsi_fluid_pore_of(f, i);
@@ -181,6 +211,13 @@ static void fill_in(mps_fluid *f, mpsi_fluid_rock *rock, const mps_fluid_rock_de
   const double e = d->porosity, D = d->diameter, solid = 1.0 - e;
   for (int32_t k = 0; k < d->corner_count; k++)
     rock->xy[2 * k] = d->corners[3 * k], rock->xy[2 * k + 1] = d->corners[3 * k + 1];
+  for (int c = 0; c < 2; c++) {
+    rock->low[c] = INFINITY, rock->high[c] = -INFINITY;
+    for (int32_t k = 0; k < d->corner_count; k++) {
+      rock->low[c] = fmin(rock->low[c], rock->xy[2 * k + c]);
+      rock->high[c] = fmax(rock->high[c], rock->xy[2 * k + c]);
+    }
+  }
   rock->count = d->corner_count;
   rock->def = *d;
   rock->def.corners = NULL;
@@ -198,26 +235,56 @@ static void drop_if_none(mps_fluid *f) {
   mpsi_fluid_drop_rocks(f);
 }
 
+/* Status of all ranks, and a check that all have the same rock of this number. */
+static mps_status agree_on_rock(mps_fluid *f, const char *function, mps_status status,
+                                int32_t number, const mps_fluid_rock_def *def) {
+  mpsi_given given;
+  if (!f->partition) return status;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "the number of the rock", number);
+  MPSI_GIVE(&given, def, porosity);
+  MPSI_GIVE(&given, def, diameter);
+  MPSI_GIVE(&given, def, alpha);
+  MPSI_GIVE(&given, def, beta);
+  MPSI_GIVE(&given, def, KC);
+  MPSI_GIVE(&given, def, gamma);
+  MPSI_GIVE(&given, def, viscosity);
+  MPSI_GIVE(&given, def, corner_count);
+  if (status == MPS_OK)
+    mpsi_give_bytes(&given, "a hash of corners", def->corners,
+                    3 * (size_t)def->corner_count * sizeof *def->corners);
+  return mpsi_domain_agree_given(f->def.domain, function, status, &given);
+}
+
+static mps_status read_rock(mps_fluid *f, const char *function, const mps_fluid_rock_def *user,
+                            mps_fluid_rock_def *def) {
+  if (!user) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  const mps_status status = MPSI_DEF_READ(f->context, function, mps_fluid_rock_def, user, def);
+  if (status != MPS_OK) return status;
+  if (f->classical.gamma > 0.0)
+    return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED, "rock with the classical scheme");
+  return check(f, def);
+}
+
 mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int32_t *number) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_fluid_rock_def def = defaults;
+  double *xy = NULL;
+  int32_t k = -1;
   mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status == MPS_OK && !user)
-    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
-  if (status == MPS_OK)
-    status = MPSI_DEF_READ(f->context, __func__, mps_fluid_rock_def, user, &def);
-  if (status == MPS_OK && (f->partition || f->classical.gamma > 0.0))
-    status = mpsi_fail(f->context, __func__, MPS_ERROR_UNSUPPORTED,
-                       f->partition ? "rock in a fluid of several ranks"
-                                    : "rock with the classical scheme");
-  if (status == MPS_OK) status = check(f, &def);
   if (status != MPS_OK) return status;
-  double *xy = mpsi_alloc(f->context, 2 * (int64_t)def.corner_count, sizeof *xy);
-  const int32_t k = xy ? find_room(f) : -1;
-  if (k < 0) {
+  status = read_rock(f, __func__, user, &def);
+  if (status == MPS_OK) {
+    const size_t size = 2 * (size_t)def.corner_count * sizeof *xy;
+    xy = mpsi_alloc(f->context, 2 * (int64_t)def.corner_count, sizeof *xy);
+    k = xy ? find_room(f) : -1;
+    if (k < 0) status = mpsi_fail_memory(f->context, __func__, size);
+  }
+  status = agree_on_rock(f, __func__, status, k, &def);
+  if (status != MPS_OK) {
     mpsi_free(f->context, xy);
     if (f->rocks) drop_if_none(f);
-    return mpsi_fail_memory(f->context, __func__, 2 * (size_t)def.corner_count * sizeof *xy);
+    return status;
   }
   f->rocks->rock[k].xy = xy;
   fill_in(f, &f->rocks->rock[k], &def);
@@ -226,13 +293,20 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
   return MPS_OK;
 }
 
+static mps_status check_rock(mps_fluid *f, const char *function, int32_t number) {
+  if (number < 0 || !f->rocks || number >= f->rocks->room || !f->rocks->rock[number].used)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "the fluid has no rock of number %d",
+                     number);
+  return MPS_OK;
+}
+
 mps_status mps_fluid_remove_rock(mps_fluid *f, int32_t number) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_fluid_ready(f, __func__);
+  mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  if (number < 0 || !f->rocks || number >= f->rocks->room || !f->rocks->rock[number].used)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "the fluid has no rock of number %d",
-                     number);
+  status = mpsi_domain_agree_same(f->def.domain, __func__, check_rock(f, __func__, number),
+                                  "number", number);
+  if (status != MPS_OK) return status;
   mpsi_free(f->context, f->rocks->rock[number].xy);
   f->rocks->rock[number] = (mpsi_fluid_rock){.used = false};
   drop_if_none(f);
@@ -247,6 +321,7 @@ void mpsi_fluid_drop_rocks(mps_fluid *f) {
   mpsi_free(f->context, rocks->rock);
   mpsi_free(f->context, rocks->part_room.item);
   mpsi_free(f->context, rocks->flow_room.item);
+  mpsi_free(f->context, rocks->free_room.item);
   mpsi_free(f->context, rocks);
   f->rocks = NULL;
 }

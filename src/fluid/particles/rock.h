@@ -11,6 +11,7 @@ typedef struct mpsi_fluid_rock {
   bool used;
   int64_t count; /* of corners */
   double *xy;
+  double low[2], high[2]; /* m, a box that has them all */
   mps_fluid_rock_def def;
   double a, b, mass;        /* 1/s, 1/m, 1 + Cm */
   mpsi_fluid_weight weight; /* sums over the lattice of its spacing, l0/e^.5 */
@@ -20,6 +21,7 @@ struct mpsi_fluid_rocks {
   int32_t room;
   mpsi_fluid_rock *rock;
   mpsi_room part_room, flow_room; /* mpsi_fluid_pore of each particle; float of each pair */
+  mpsi_room free_room;            /* bool of each chunk: its particles have no rock within re */
 };
 
 /* Of a particle in the step being made. */
@@ -40,6 +42,10 @@ static inline double mpsi_fluid_full(const mps_fluid *f, int64_t i) {
 }
 static inline double mpsi_fluid_fill(const mps_fluid *f, int64_t i) {
   return f->rocks ? mpsi_fluid_pore_of(f, i)->fill : f->local[i].n;
+}
+/* Whether particles of a chunk have rock within re. */
+static inline bool mpsi_fluid_near_rock(const mps_fluid *f, int64_t chunk) {
+  return f->rocks && !((const bool *)f->rocks->free_room.item)[chunk];
 }
 /* Finds the pores of all particles, and resists their velocities over the step. */
 mps_status mpsi_fluid_find_pores(mps_fluid *fluid, const char *function, double dt);

@@ -43,7 +43,7 @@ static factors factors_of(const mps_fluid *f, int64_t i) {
 
 /* The diagonal, and a start vector by extrapolation of q over the last step. */
 static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
+  const bool by_pairs = f->any_apart || mpsi_fluid_near_rock(f, chunk);
   mpsi_fluid_system *s = &f->system;
   const double *old = mpsi_particles_column(f->particles, "reduced_pressure_old", 0);
   const double ahead = f->last_dt > 0.0 ? f->dt / f->last_dt : 0.0;
@@ -52,7 +52,6 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
     if (f->state[i] == MPSI_FLUID_APART) continue;
     const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
     const float *w = f->w + mpsi_fluid_pairs(f, i);
-    const bool by_pairs = f->any_apart || f->rocks;
     double sum = factors_of(f, i).surface * mpsi_fluid_surface_weight(&f->local[i]) +
                  (by_pairs ? 0.0 : f->local[i].n);
     for (int32_t k = 0; by_pairs && k < f->near[i]; k++) {

@@ -5,6 +5,8 @@
  * messages stays. SPDX-License-Identifier: BSD-3-Clause */
 #include "partition.h"
 
+#include "fluid/particles/rock.h"
+
 #include "body/body_internal.h"
 #include "domain/halo.h"
 
@@ -85,7 +87,7 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
   mpsi_give(list, "the number of particles", (double)f->count);
   mpsi_give(list, "dt", f->dt);
   mpsi_give(list, "time", f->time);
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = 0; b < f->walls; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     mpsi_give_bytes(list, "a hash of a wall's motion in the step", w->next.s,
@@ -93,7 +95,7 @@ static void give_state(const mps_fluid *f, mpsi_given *list) {
     mpsi_give_bytes(list, "a hash of a wall's motion", w->now.s,
                     3 * (size_t)w->nodes * sizeof *w->now.s);
   }
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+  for (int b = 0; b < f->bodies; b++)
     if (f->body[b].body) mpsi_body_give_state(list, f->body[b].body);
   for (int32_t k = 0; k < f->given_room; k++)
     if (f->given[k]) mpsi_give_vector(list, "the present factor on a load", 2, f->given[k]->now);
@@ -419,15 +421,17 @@ void mpsi_fluid_send_local(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s || s->knows_local) return;
   mpsi_fluid_system *y = &f->system; /* free after the pressure */
-  double *const column[] = {y->p, y->q, y->r, y->z};
+  double *const column[] = {y->p, y->q, y->r, y->z, f->u_new[0]};
   for (int64_t i = f->own[0]; i < f->own[1]; i++) {
     const mpsi_fluid_local *l = &f->local[i];
     y->p[i] = l->n, y->q[i] = l->m[0], y->r[i] = l->m[1], y->z[i] = l->h;
+    f->u_new[0][i] = mpsi_fluid_fill(f, i); /* free until velocities are found */
   }
-  mpsi_fluid_send_all(f, 4, column);
+  mpsi_fluid_send_all(f, f->rocks ? 5 : 4, column);
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k];
     f->local[i] = (mpsi_fluid_local){.n = y->p[i], .m = {y->q[i], y->r[i]}, .h = y->z[i]};
+    if (f->rocks) mpsi_fluid_pore_of(f, i)->fill = f->u_new[0][i];
   }
   s->knows_local = s->lost == MPS_OK;
 }

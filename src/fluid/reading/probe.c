@@ -141,12 +141,12 @@ static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *fun
 
 /* Whether a point of a wall lies on its wetted side of the boundaries and outside of bodies. */
 static bool among_walls(const mps_fluid *f, const mpsi_fluid_wall *own, const double *x) {
-  for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
+  for (int32_t k = 0; k < f->boundaries; k++) {
     const mpsi_fluid_wall *w = &f->wall[k];
     if (w != own && w->used && mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x[0], x[1]) < 0.0)
       return false;
   }
-  if (f->segments > 0 && mpsi_fluid_before_lines(f, x) < -ON_LINE * f->l0) return false;
+  if (f->segments > 0 && mpsi_fluid_in_solid(f, x, ON_LINE * f->l0)) return false;
   return !f->faces || !mpsi_fluid_inside_body(f, own->of_body, x);
 }
 
@@ -257,7 +257,7 @@ static mps_status load_line(mps_fluid *f, const char *function, mpsi_fluid_wall 
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
   if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_send_local(f); /* the memory is allocated by then */
-  for (int32_t b = 0; status == MPS_OK && b < MPSI_FLUID_WALLS; b++) {
+  for (int32_t b = 0; status == MPS_OK && b < f->walls; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (w->line) status = load_line(f, function, w);
     if (!w->used) continue;
@@ -269,8 +269,7 @@ mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
 }
 
 static mps_status check_wall(const mps_fluid *f, const char *function, int32_t number) {
-  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES ||
-      !(f->wall[number].used || f->wall[number].line))
+  if (!MPSI_FLUID_IS_BOUNDARY(f, number) || f->wall[number].open)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the fluid has no boundary of number %d", number);
   return MPS_OK;

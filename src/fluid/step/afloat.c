@@ -42,7 +42,7 @@ mps_status mps_fluid_float_body(mps_fluid *f, mps_contact *contact, int32_t floa
 }
 
 bool mpsi_fluid_any_afloat(const mps_fluid *f) {
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+  for (int b = 0; b < f->bodies; b++)
     if (f->body[b].floats) return true;
   return false;
 }
@@ -109,15 +109,11 @@ static void learn(double *E, const double *da, const double *dg) {
   }
 }
 
-typedef struct trial {
-  double rate[3], g[3];
-} trial;
-
 /* Checks the last solution: true where the body's accelerations are in balance with it; else sets
- * the next iterate. `before` is the previous iterate, if any. The body then moves with exactly
- * these accelerations, with which the pressure was solved: the residual of forces is assigned to
- * the water. */
-static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool first) {
+ * the next iterate. `tried` and `missed` of the body are the previous iterate, if any. The body
+ * then moves with exactly these accelerations, with which the pressure was solved: the residual of
+ * forces is assigned to the water. */
+static bool judge(const mps_fluid *f, mpsi_fluid_body *own, bool first) {
   const double length = mpsi_fluid_body_length(own, f);
   double mass[3], g[3], step[3], largest = 0.0, change = 0.0;
   masses(own, length, mass);
@@ -126,7 +122,7 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool 
   if (!(own->mass[0] > 0.0)) first_guess(f, own, mass, length);
   if (!first) {
     double da[3], dg[3];
-    for (int c = 0; c < 3; c++) da[c] = own->rate[c] - before->rate[c], dg[c] = g[c] - before->g[c];
+    for (int c = 0; c < 3; c++) da[c] = own->rate[c] - own->tried[c], dg[c] = g[c] - own->missed[c];
     learn(own->mass, da, dg);
   }
   if (!solve3(own->mass, g, step)) {
@@ -143,8 +139,8 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool 
     own->source->part[0].force.moment[2] -= length * g[2];
     return true;
   }
-  memcpy(before->rate, own->rate, sizeof before->rate);
-  memcpy(before->g, g, sizeof before->g);
+  memcpy(own->tried, own->rate, sizeof own->tried);
+  memcpy(own->missed, g, sizeof own->missed);
   for (int c = 0; c < 3; c++) own->rate[c] += step[c];
   return false;
 }
@@ -152,7 +148,6 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
 mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
-  trial before[MPSI_FLUID_BODIES];
   for (int repeat = 0; repeat < REPEATS; repeat++) {
     mpsi_fluid_drive_bodies(f, f->dt);
     f->stage = MPSI_FLUID_BEGUN;
@@ -161,8 +156,8 @@ mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
     if (status == MPS_OK) status = mpsi_fluid_load_walls(f, function);
     if (status != MPS_OK) return status;
     bool agreed = true;
-    for (int b = 0; b < MPSI_FLUID_BODIES; b++)
-      if (f->body[b].floats) agreed &= judge(f, &f->body[b], &before[b], repeat == 0);
+    for (int b = 0; b < f->bodies; b++)
+      if (f->body[b].floats) agreed &= judge(f, &f->body[b], repeat == 0);
     if (agreed) return MPS_OK;
   }
   return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,

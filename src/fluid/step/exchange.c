@@ -38,8 +38,8 @@ static double mass_of(const mps_fluid *f) {
 mps_status mpsi_fluid_begin_exchange(mps_fluid *f, const char *function) {
   mpsi_fluid_exchange *e = &f->exchange;
   e->width = GAIN;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    e->at[b] = (int32_t)e->width;
+  for (int b = 0; b < f->walls; b++) {
+    f->wall[b].first_sum = e->width;
     if (f->wall[b].used || f->wall[b].line) e->width += OF_WALL;
   }
   const int64_t values = chunks_of(f) * e->width;
@@ -63,7 +63,7 @@ void mpsi_fluid_exchange_wall(const mps_fluid *f, int64_t chunk, int wall, int64
   const mpsi_fluid_wall *w = &f->wall[wall];
   const double x = f->x[0][i], y = f->x[1][i], mass = mass_of(f);
   const double across = dv[0] * w->normal[0] + dv[1] * w->normal[1];
-  double *sum = row_of(f, chunk) + f->exchange.at[wall];
+  double *sum = row_of(f, chunk) + w->first_sum;
   sum[0] += mass * dv[0], sum[1] += mass * dv[1];
   sum[2] += mass * (x * dv[1] - y * dv[0]);
   sum[3] += mass * across * mpsi_fluid_of_wall(w, w->mean, x, y);
@@ -72,44 +72,43 @@ void mpsi_fluid_exchange_wall(const mps_fluid *f, int64_t chunk, int wall, int64
 /* Of a pair of i and the image M j, j gets -M^T dv: both together (1 - M^T) dv. */
 static void exchange_in_line(const mps_fluid *f, const mpsi_fluid_path *path, int64_t chunk,
                              int64_t i, const double *dv) {
-  const mpsi_fluid_segment *const *segment = f->segment_room.item;
   double back[2] = {dv[0], dv[1]};
   mpsi_fluid_reflect_back(path, back);
   for (int c = 0; c < 2; c++) back[c] = 0.5 * (dv[c] - back[c]);
-  mpsi_fluid_exchange_wall(f, chunk, segment[path->segment[0]]->boundary, i, back);
+  mpsi_fluid_exchange_wall(f, chunk, mpsi_fluid_segment_of(f, path->segment[0])->boundary, i, back);
 }
 
 static bool no_slip(const mps_fluid *f, const mpsi_fluid_path *path) {
-  const mpsi_fluid_segment *const *segment = f->segment_room.item;
-  return segment[path->segment[0]]->wall.kind == MPS_BOUNDARY_HELD;
+  return mpsi_fluid_segment_of(f, path->segment[0])->wall.kind == MPS_BOUNDARY_HELD;
 }
 
 void mpsi_fluid_exchange_along_line(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
                                     const double *dv) {
-  const mpsi_fluid_segment *const *segment = f->segment_room.item;
   const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
   if (!path || !no_slip(f, path)) return;
   double along[2] = {dv[0], dv[1]};
   mpsi_fluid_reflect_back(path, along);
   for (int c = 0; c < 2; c++) along[c] = 0.5 * (dv[c] + along[c]);
-  mpsi_fluid_exchange_wall(f, chunk, segment[path->segment[0]]->boundary, i, along);
+  mpsi_fluid_exchange_wall(f, chunk, mpsi_fluid_segment_of(f, path->segment[0])->boundary, i,
+                           along);
 }
 
 void mpsi_fluid_exchange_image(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
                                const double *dv) {
   const mpsi_fluid_path *path = mpsi_fluid_path_of(f, ghost);
   if (path) exchange_in_line(f, path, chunk, i, dv);
-  for (int b = 0; f->flips[ghost] >> b && b < MPSI_FLUID_WALLS; b++) {
-    if (!(f->flips[ghost] >> b & 1)) continue;
+  MPSI_FLUID_FLIPS(k, f->flips[ghost]) {
+    const int b = f->flips[ghost].wall[k];
     const double *N = f->wall[b].normal, across = dv[0] * N[0] + dv[1] * N[1];
     mpsi_fluid_exchange_wall(f, chunk, b, i, (double[]){across * N[0], across * N[1]});
   }
 }
 
 void mpsi_fluid_stick(const mps_fluid *f, int64_t ghost, double *u) {
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    const double *N = f->wall[b].normal;
-    if (!(f->flips[ghost] & f->sticky & UINT32_C(1) << b)) continue;
+  MPSI_FLUID_FLIPS(k, f->flips[ghost]) {
+    const mpsi_fluid_wall *w = &f->wall[f->flips[ghost].wall[k]];
+    const double *N = w->normal;
+    if (!w->sticky) continue;
     const double across = u[0] * N[0] + u[1] * N[1];
     for (int c = 0; c < 2; c++) u[c] = 2.0 * across * N[c] - u[c];
   }
@@ -139,9 +138,9 @@ void mpsi_fluid_end_exchange(mps_fluid *f) {
   }
   mpsi_fluid_reduce_exact(f, (int32_t)e->width, sum);
   for (int c = 0; c < 2; c++) e->gain[c] = mass_of(f) * mpsi_exact_value(&sum[c]);
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = 0; b < f->walls; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
-    const mpsi_exact *of = &sum[e->at[b]];
+    const mpsi_exact *of = &sum[w->first_sum];
     if (!w->used && !w->line) continue;
     w->struck = (mpsi_fluid_struck){{mpsi_exact_value(&of[0]), mpsi_exact_value(&of[1])},
                                     mpsi_exact_value(&of[2]),
@@ -165,11 +164,11 @@ void mpsi_fluid_book_momentum(mps_fluid *f) {
   find_loads(f, loads);
   for (int c = 0; c < 2; c++) {
     rest[c] = e->gain[c] - loads[c];
-    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    for (int b = 0; b < f->boundaries; b++) {
       const mpsi_fluid_wall *w = &f->wall[b];
       if (w->used || w->line) rest[c] -= f->dt * w->load.force[c] + w->struck.impulse[c];
     }
-    for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    for (int b = 0; b < f->bodies; b++) {
       const mpsi_fluid_body *body = &f->body[b];
       for (int32_t part = 0; body->body && part < body->body->parts; part++)
         rest[c] += f->dt * body->source->part[part].force.force[c];

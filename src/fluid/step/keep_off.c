@@ -2,7 +2,7 @@
  * closer than .1 l0, is put back to that distance, in an acute corner to the point that has it from
  * both segments, and loses its velocity into them.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/boundary/polyline.h"
+#include "fluid/boundary/vicinity.h"
 #include "fluid/step/exchange.h"
 
 enum { TIMES = 4 };
@@ -52,23 +52,31 @@ static void stop(const mps_fluid *f, const mpsi_fluid_segment *s, int64_t i, dou
   mpsi_fluid_exchange_wall(f, i / MPSI_FLUID_CHUNK, s->boundary, i, dv);
 }
 
-/* The nearest segment of all polylines that is closer to x than `off`, or in front of x. */
-static const mpsi_fluid_segment *too_near(const mps_fluid *f, double off, const double *x) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+/* The nearest segment of the first polyline that is closer to x than `off`, or in front of x. The
+ * list has all segments within `reach`. */
+static const mpsi_fluid_segment *too_near(const mps_fluid *f, const mpsi_fluid_listed *list,
+                                          double reach, double off, const double *x) {
+  for (int64_t n = 0; n < list->count;) {
     const mpsi_fluid_segment *nearest = NULL;
-    if (f->wall[b].line && mpsi_fluid_before_line(f->wall[b].line, x, &nearest) < off)
-      return nearest;
+    const double d = mpsi_fluid_before_listed(f, list, &n, x, &nearest);
+    if (d < off && d > -reach) return nearest;
   }
   return NULL;
 }
 
 bool mpsi_fluid_keep_off_lines(const mps_fluid *f, int64_t i, double *x, double *u) {
   const double from[2] = {f->x[0][i], f->x[1][i]}, off = MPSI_FLUID_OFF_WALL * f->l0;
+  const double way = hypot(x[0] - from[0], x[1] - from[1]);
+  const double left = mpsi_fluid_listed_reach(f) - way;
+  const bool far = !(left > 2.0 * off); /* in a step that fails, or by a caller's dt */
+  const mpsi_fluid_listed list =
+      far ? mpsi_fluid_all_segments(f) : mpsi_fluid_near_chunk(f, i / MPSI_FLUID_CHUNK);
+  const double reach = far ? (double)INFINITY : left;
   double share = 0.0;
   bool moved = false;
   for (int k = 0; k < TIMES; k++) {
-    const mpsi_fluid_segment *s = mpsi_fluid_crossed(f, NULL, from, x, &share);
-    if (!s) s = too_near(f, off * (1.0 - 1e-9), x);
+    const mpsi_fluid_segment *s = mpsi_fluid_crossed(f, &list, NULL, from, x, &share);
+    if (!s) s = too_near(f, &list, reach, off * (1.0 - 1e-9), x);
     if (!s) return moved;
     put_back(f, s, off, x);
     stop(f, s, i, u);
@@ -76,7 +84,7 @@ bool mpsi_fluid_keep_off_lines(const mps_fluid *f, int64_t i, double *x, double 
   }
   /* among several segments at once: it stays where it was */
   for (int c = 0; c < 2; c++) x[c] = from[c];
-  const mpsi_fluid_segment *s = too_near(f, 2.0 * off, x);
+  const mpsi_fluid_segment *s = too_near(f, &list, reach, 2.0 * off, x);
   if (s) stop(f, s, i, u);
   return true;
 }

@@ -91,9 +91,8 @@ static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
   const int64_t own = f->parent[ghost];
   v[0] = f->u_new[0][own], v[1] = f->u_new[1][own];
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    if (!(f->flips[ghost] >> b & 1)) continue;
-    const mpsi_fluid_wall *w = &f->wall[b];
+  MPSI_FLUID_FLIPS(k, f->flips[ghost]) {
+    const mpsi_fluid_wall *w = &f->wall[f->flips[ghost].wall[k]];
     const double u = mpsi_fluid_of_wall(w, w->next.u, f->x[0][own], f->x[1][own]);
     const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
     v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
@@ -210,13 +209,13 @@ static bool keep_off(const mps_fluid *f, int wall, int64_t i, double *x, double 
 
 static int64_t keep_off_walls(const mps_fluid *f, int64_t i, double *x, double *u) {
   int64_t pushed = f->segments > 0 ? mpsi_fluid_keep_off_lines(f, i, x, u) : 0;
-  for (int b = 0; f->faces && b < MPSI_FLUID_BODIES; b++) {
-    double d;
-    if (!f->body[b].body) continue;
+  for (int b = 0; b < f->bodies; b++) {
+    double d; /* in front of an acute corner less than the distance from the body */
+    if (!mpsi_fluid_beside(&f->body[b], x, 2.0 * f->weight.re)) continue;
     const int face = mpsi_fluid_face_of(f, &f->body[b], true, x, &d);
     if (d < MPSI_FLUID_OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, face, i, x, u);
   }
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+  for (int b = 0; b < f->boundaries; b++)
     if (f->wall[b].used) pushed += keep_off(f, b, i, x, u);
   return pushed;
 }
@@ -264,7 +263,7 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 /* m: largest displacement of a wall in the step. */
 static double wall_travel(const mps_fluid *f) {
   double most = 0.0;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = 0; b < f->walls; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     for (int64_t k = 0; w->used && k < w->nodes; k++)
       most = fmax(most, fabs(w->next.s[k] - w->now.s[k]));

@@ -129,9 +129,8 @@ static void mirror_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
     const int64_t j = f->count + g, own = f->parent[g];
     double G[4];
     for (int k = 0; k < 4; k++) G[k] = f->flux[1 + k][own];
-    for (int b = 0; f->flips[g] >> b && b < MPSI_FLUID_WALLS; b++) {
-      if (!(f->flips[g] >> b & 1)) continue;
-      const double *N = f->wall[b].normal;
+    MPSI_FLUID_FLIPS(n, f->flips[g]) {
+      const double *N = f->wall[f->flips[g].wall[n]].normal;
       for (int c = 0; c < 2; c++) { /* columns, then rows */
         const double across = G[c] * N[0] + G[2 + c] * N[1];
         G[c] -= 2.0 * across * N[0], G[2 + c] -= 2.0 * across * N[1];
@@ -164,6 +163,13 @@ void mpsi_fluid_prepare_smoothing(mps_fluid *f) {
 
 /* ---- of a particle --------------------------------------------------------------------------- */
 
+/* The first wall of no slip that an image is mirrored at; -1: none. */
+static int first_sticky(const mps_fluid *f, int64_t ghost) {
+  MPSI_FLUID_FLIPS(k, f->flips[ghost])
+  if (f->wall[f->flips[ghost].wall[k]].sticky) return f->flips[ghost].wall[k];
+  return -1;
+}
+
 /* v of the velocity field that sticks to the walls of no slip: there an image moves with the
  * opposite velocity. */
 static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
@@ -173,7 +179,7 @@ static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
   v[0] = local->rest[0], v[1] = local->rest[1];
   for (int32_t k = 0; (f->sticky || f->segments > 0) && k < f->near[i]; k++) {
     const int64_t j = index[k], ghost = j - f->count;
-    if (ghost < 0 || !(f->flips[ghost] & f->sticky || mpsi_fluid_path_of(f, ghost))) continue;
+    if (ghost < 0 || !(first_sticky(f, ghost) >= 0 || mpsi_fluid_path_of(f, ghost))) continue;
     double stuck[2] = {f->u[0][j], f->u[1][j]};
     mpsi_fluid_stick(f, ghost, stuck);
     for (int c = 0; c < 2; c++) v[c] += w[k] * (stuck[c] - f->u[c][j]) / local->n;
@@ -186,15 +192,12 @@ static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
  */
 static void exchange_along(const mps_fluid *f, int64_t chunk, int64_t ghost, int64_t i,
                            const double *dv) {
-  const uint32_t stuck = f->flips[ghost] & f->sticky;
+  const int first = first_sticky(f, ghost);
   double along[2] = {dv[0], dv[1]};
-  int first = 0;
   mpsi_fluid_exchange_along_line(f, chunk, ghost, i, dv);
-  if (!stuck || mpsi_fluid_path_of(f, ghost)) return;
-  while (!(stuck >> first & 1)) first++;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
-    const double *N = f->wall[b].normal;
-    if (!(f->flips[ghost] >> b & 1)) continue;
+  if (first < 0 || mpsi_fluid_path_of(f, ghost)) return;
+  MPSI_FLUID_FLIPS(k, f->flips[ghost]) {
+    const double *N = f->wall[f->flips[ghost].wall[k]].normal;
     const double across = along[0] * N[0] + along[1] * N[1];
     for (int c = 0; c < 2; c++) along[c] -= across * N[c];
   }

@@ -74,8 +74,8 @@ static mps_status add_loads(mps_fluid *f, const char *function) {
 static void note_state(mps_fluid *f) {
   f->before = f->report;
   f->load_time_before = f->load_time;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->walls; b++) f->wall[b].before = f->wall[b].load;
+  for (int b = 0; b < f->bodies; b++) {
     mpsi_fluid_body *body = &f->body[b];
     memcpy(body->rate_before, body->rate, sizeof body->rate);
     memcpy(body->mass_before, body->mass, sizeof body->mass);
@@ -87,8 +87,8 @@ static void abandon(mps_fluid *f) {
   if (f->stage == MPSI_FLUID_BETWEEN) return;
   f->report = f->before;
   f->load_time = f->load_time_before;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].load = f->wall[b].before;
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+  for (int b = 0; b < f->walls; b++) f->wall[b].load = f->wall[b].before;
+  for (int b = 0; b < f->bodies; b++) {
     mpsi_fluid_body *body = &f->body[b];
     memcpy(body->rate, body->rate_before, sizeof body->rate);
     memcpy(body->mass, body->mass_before, sizeof body->mass);
@@ -182,7 +182,7 @@ double mps_fluid_limit(const mps_fluid *f) {
   if (!f) return 0.0;
   double limit = limit_at_rest(f);
   if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 * mpsi_fluid_least_porosity(f) / f->speed);
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int b = 0; b < f->walls; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     double u = fabs(w->rate);
@@ -278,8 +278,7 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
-  mpsi_fluid_load former[MPSI_FLUID_WALLS]; /* of the last solution, where this one fails */
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) former[b] = f->wall[b].load;
+  for (int b = 0; b < f->walls; b++) f->wall[b].former = f->wall[b].load;
   mpsi_guard_enter(&f->guard, f->context, __func__);
   status = mpsi_fluid_agree(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
   if (status == MPS_OK) {
@@ -294,7 +293,7 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
     status = mpsi_fluid_load_walls(f, __func__);
     if (status != MPS_OK) f->stage = MPSI_FLUID_BEGUN;
   }
-  for (int b = 0; b < MPSI_FLUID_WALLS && status != MPS_OK; b++) f->wall[b].load = former[b];
+  for (int b = 0; b < f->walls && status != MPS_OK; b++) f->wall[b].load = f->wall[b].former;
   return status;
 }
 
@@ -315,7 +314,7 @@ mps_status mps_fluid_abandon_step(mps_fluid *f) {
   const mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
   abandon(f);
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
+  for (int b = 0; b < f->walls; b++) f->wall[b].given = f->wall[b].placed = false;
   return MPS_OK;
 }
 

@@ -7,7 +7,7 @@
  * wall mirrors at its local position along the normal that it has when plane: the error grows as
  * the square of the slope.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/fluid_private.h"
+#include "fluid/boundary/clearance.h"
 
 #define WARN_FROM 50      /* steps */
 #define MOST_GUARDED 0.01 /* of the particles, in a step on average */
@@ -38,14 +38,13 @@ void mpsi_fluid_warn_of_guards(mps_fluid *f) {
 
 /* A rolling body may develop acute corners, which mps_fluid_add_contact does not accept. */
 void mpsi_fluid_warn_of_angles(mps_fluid *f) {
-  for (int number = 0; f->faces && number < MPSI_FLUID_BODIES; number++) {
-    const mpsi_fluid_body *body = &f->body[number];
+  for (int number = 0; number < f->bodies; number++) {
+    mpsi_fluid_body *body = &f->body[number];
     for (int k = 0; body->body && k < body->faces; k++)
-      for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+      for (int b = 0; b < f->boundaries; b++) {
         const double angle = mpsi_fluid_angle(f, &f->wall[body->first + k], b);
-        if (angle >= MPSI_FLUID_LEAST_ANGLE ||
-            !first_time(f, (uint32_t)MPSI_FLUID_WARNED_ANGLE << number))
-          continue;
+        if (angle >= MPSI_FLUID_LEAST_ANGLE || body->warned) continue;
+        body->warned = true;
         mpsi_log(f->context, MPS_CONTEXT_LOG_WARNING,
                  "step %lld of the fluid: edge %d of body %d and boundary %d enclose %.3g degrees "
                  "of fluid, below the %g degrees that the fluid resolves: pressures in that corner "
@@ -74,7 +73,12 @@ static double slope_of(const mpsi_fluid_wall *w) {
 static const char *kind_of(const mpsi_fluid_wall *w) { return w->of_body ? "body" : "boundary"; }
 
 mps_status mpsi_fluid_check_walls(mps_fluid *f, const char *function) {
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+  for (int32_t b = 0; f->segments > 0 && b < f->bodies; b++) {
+    const mps_status status =
+        f->body[b].body ? mpsi_fluid_check_clearance(f, function, true, b) : MPS_OK;
+    if (status != MPS_OK) return status;
+  }
+  for (int b = 0; b < f->walls; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     const int number = w->of_body ? w->of_body - 1 : b;
