@@ -88,8 +88,8 @@ void resume_schedule_at(resume_schedule *s, double now);
 bool resume_is_due(const resume_schedule *s, double now);
 void resume_save_when_due(app *a, resume_schedule *s, double now);
 void resume_save_now(app *a, resume_schedule *s);
-/* resume_restore of a fluid; *restarted: the time (s) from which the run goes on, also for what is
- * due. */
+/* resume_restore of a fluid; *restarted: the time (s) from which the run continues, also for what
+ * is due. */
 mps_status resume_go_on(mps_context *context, const resume *r, const char *path, double *restarted,
                         resume_schedule *s);
 /* "To go on: ..." on stdout, after Ctrl-C, where a checkpoint was written. */

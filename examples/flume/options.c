@@ -104,7 +104,7 @@ static option table[] = {
                      "below the caisson"),
     OPTION_CHOICE(
         "end", "open|closed", &model.s.closed,
-        "behind a structure: water leaves there, or the flume goes on to --length with an "
+        "behind a structure: water leaves there, or the flume continues to --length with an "
         "end as without a structure"),
     OPTION_TEXT("rock", "m,...", &model.s.rocks,
                 "X,Y,X,Y,...: corners of a region of rock, from the maker and above the bed"),

@@ -197,8 +197,9 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
     printf("uplift above rest then %.1f N through the bedding, %.1f N as a triangle, Goda %.1f N\n",
            g->uplift_peak, g->uplift_triangle, g->goda.uplift);
   if (wall && !isnan(g->force_peak) && g->has_goda)
-    printf("largest force above rest %.1f N at %.2f s, Goda %.1f N\n",
-           g->force_peak - g->force_still, g->peak_at, g->goda.force);
+    printf("largest force above rest %.1f N at %.2f s, Goda %.1f N (%+.1f %%)\n",
+           g->force_peak - g->force_still, g->peak_at, g->goda.force,
+           100.0 * ((g->force_peak - g->force_still) / g->goda.force - 1.0));
 }
 
 static void summarise_discharge(app *a, output *f, const flume *m, const flume_figures *g,
@@ -214,8 +215,8 @@ static void summarise_discharge(app *a, output *f, const flume *m, const flume_f
   if (body && !isnan(g->discharge))
     printf("discharge %.3g m2/s in %lld events", g->discharge, (long long)events);
   if (g->has_eurotop)
-    printf(", EurOtop %.3g m2/s (%.3g to %.3g)", g->eurotop.discharge, g->eurotop.low,
-           g->eurotop.high);
+    printf(", EurOtop %.3g m2/s (%.3g to %.3g), ratio %.2f", g->eurotop.discharge, g->eurotop.low,
+           g->eurotop.high, g->discharge / g->eurotop.discharge);
   if (body && !isnan(g->discharge)) printf("\n");
   if (g->why[0]) app_warn(a, "no discharge by EurOtop: %s", g->why);
 }
