@@ -10,6 +10,7 @@ set(link_dir ${CMAKE_INSTALL_LIBDIR}/${series})
 # As they lie here, so that the links between them hold.
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES share/paraview_libmps.py DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
+install(DIRECTORY share/models DESTINATION ${CMAKE_INSTALL_DATADIR}/libmps)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN docs/site EXCLUDE)
 install(FILES docs/site/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/site) # README.md links to it
 

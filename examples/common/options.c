@@ -19,6 +19,8 @@ enum { USAGE = 2, HELP_COLUMN = 34, HELP_END = 98, MAX_NAME = 40, MAX_ROWS = 64 
 
 /* Of options_parse, for options_read. A program reads its arguments once. */
 static option rows_read[MAX_ROWS];
+/* Where values are read that are not on the command line: "flume.yaml, line 7". */
+static const char *source;
 
 /* To stderr, from the first of several ranks alone: all have the same options. */
 static void complain(const char *format, ...) APP_PRINTF(1, 2);
@@ -156,6 +158,16 @@ static int close_output(const options_program *program) {
 
 /* ---- unknown options ------------------------------------------------------------------------- */
 
+/* What an error line begins with: the program, and where the value was read, if not on the command
+ * line. Options of a file are written without dashes. */
+static const char *place(const options_program *program) {
+  static char text[600];
+  snprintf(text, sizeof text, "%s%s%s", program->name, source ? ": " : "", source ? source : "");
+  return text;
+}
+
+static const char *dashes(void) { return source ? "" : "--"; }
+
 /* Levenshtein distance of two short words. */
 static int distance(const char *a, const char *b) {
   int row[MAX_NAME + 1];
@@ -183,7 +195,7 @@ static int refuse_unknown(const options_program *program, const char *name) {
   int least = MAX_NAME;
   const standard_former *former = standard_find_former(program->table, name);
   if (former) {
-    complain("%s: --%s is --%s%s", program->name, name, former->now,
+    complain("%s: %s%s is %s%s%s", place(program), dashes(), name, dashes(), former->now,
              former->value ? former->value : "");
     return USAGE;
   }
@@ -196,7 +208,11 @@ static int refuse_unknown(const options_program *program, const char *name) {
     nearest = o->name;
   }
   if (nearest)
-    complain("%s: unknown option --%s, did you mean --%s?", program->name, name, nearest);
+    complain("%s: unknown %s%s, did you mean %s%s?", place(program), source ? "key " : "option --",
+             name, dashes(), nearest);
+  else if (source)
+    complain("%s: unknown key %s: keys are the options of %s --help, and parts of the model",
+             place(program), name, program->name);
   else
     complain("%s: unknown option --%s, see %s --help", program->name, name, program->name);
   return USAGE;
@@ -209,16 +225,16 @@ static int refuse_value(const options_program *program, const option *o, const c
                         const char *allowed) {
   const bool unit = o->number && o->unit && strcmp(o->unit, "1") != 0;
   const bool own = unit && units_written(value);
-  complain("%s: --%s is %s%s%s, must be %s%s%s", program->name, o->name, *value ? value : "empty",
-           unit && !own ? " " : "", unit && !own ? o->unit : "", allowed, own ? " " : "",
-           own ? o->unit : "");
+  complain("%s: %s%s is %s%s%s, must be %s%s%s", place(program), dashes(), o->name,
+           *value ? value : "empty", unit && !own ? " " : "", unit && !own ? o->unit : "", allowed,
+           own ? " " : "", own ? o->unit : "");
   return USAGE;
 }
 
 static int refuse_unit(const options_program *program, const option *o, const char *value) {
   char wanted[160];
   units_wanted(o->unit, wanted, sizeof wanted);
-  complain("%s: --%s is %s: %s%s", program->name, o->name, value, wanted,
+  complain("%s: %s%s is %s: %s%s", place(program), dashes(), o->name, value, wanted,
            strchr(value, ',') ? " with a decimal point" : "");
   return USAGE;
 }
@@ -414,6 +430,21 @@ int options_parse(const options_program *program, int argc, char **argv) {
   }
   const int code = parse(program, argc, argv);
   keep_rows(program);
+  return code;
+}
+
+int options_again(const options_program *program, int argc, char **argv) {
+  const int code = parse(program, argc, argv);
+  keep_rows(program);
+  return code;
+}
+
+int options_set(const options_program *program, const char *where, const char *name,
+                const char *value) {
+  option *o = find(program->table, name);
+  source = where;
+  const int code = !o || o->flag ? refuse_unknown(program, name) : read_value(program, o, value);
+  source = NULL;
   return code;
 }
 

@@ -109,7 +109,13 @@ typedef struct options_program {
 /* Parses the arguments. Returns -1 to continue, or the exit code: 0 after --help and --version, 2
  * after one error line to stderr, 1 when help could not be written. */
 int options_parse(const options_program *program, int argc, char **argv);
-/* True when the option was on the command line. */
+/* One option from a file, `where` "flume.yaml, line 7": checked as on the command line, after
+ * options_parse; `value` is kept by the caller. Then options_again reads the command line once
+ * more, which counts where both give an option. Return as options_parse. */
+int options_set(const options_program *program, const char *where, const char *name,
+                const char *value);
+int options_again(const options_program *program, int argc, char **argv);
+/* True when the option was on the command line or in a file. */
 bool options_given(const option *table, const char *name);
 /* Options of the output and execution of a run, such as --out, which a restarted run may change. */
 bool options_free(const char *name);

@@ -136,6 +136,17 @@ mps_status resume_restore(mps_context *context, const resume *r, const char *pat
   return agree(r, status);
 }
 
+resume resume_of_fluid(const char *key, const option *table, void (*pass)(void *, resume_bytes *),
+                       void *user, mps_fluid *fluid, app *a) {
+  return (resume){.key = key,
+                  .table = table,
+                  .pass = pass,
+                  .user = user,
+                  .fluid = fluid,
+                  .a = a,
+                  .domain = a->domain};
+}
+
 /* ---- on the way ------------------------------------------------------------------------------ */
 
 static bool has_results(const char *directory) {
@@ -214,6 +225,14 @@ void resume_save_now(app *a, resume_schedule *s) {
               error->status == status ? error->message : mps_status_text(status));
   }
   s->lost = lost, s->saved = status == MPS_OK;
+}
+
+mps_status resume_go_on(mps_context *context, const resume *r, const char *path, double *restarted,
+                        resume_schedule *s) {
+  const mps_status status = resume_restore(context, r, path);
+  *restarted = mps_fluid_time(r->fluid);
+  resume_schedule_at(s, *restarted);
+  return status;
 }
 
 bool resume_is_due(const resume_schedule *s, double now) { return due(s, now) > s->count; }

@@ -56,6 +56,10 @@ mps_status resume_load(mps_context *context, const resume *r, const char *path);
 /* After resume_peek, once the model is built: the solver and the history of the run. */
 mps_status resume_restore(mps_context *context, const resume *r, const char *path);
 
+/* Of a program on a fluid, of one process or of the ranks of the app. */
+resume resume_of_fluid(const char *key, const option *table, void (*pass)(void *, resume_bytes *),
+                       void *user, mps_fluid *fluid, app *a);
+
 /* Rows of a program's table of options. */
 #define RESUME_OPTIONS(checkpoint, every, note, restart)                                           \
   COMMON_TEXT("checkpoint", checkpoint, NULL), COMMON_NUMBER("every-checkpoint", every, note),     \
@@ -84,6 +88,10 @@ void resume_schedule_at(resume_schedule *s, double now);
 bool resume_is_due(const resume_schedule *s, double now);
 void resume_save_when_due(app *a, resume_schedule *s, double now);
 void resume_save_now(app *a, resume_schedule *s);
+/* resume_restore of a fluid; *restarted: the time (s) from which the run continues, also for what
+ * is due. */
+mps_status resume_go_on(mps_context *context, const resume *r, const char *path, double *restarted,
+                        resume_schedule *s);
 /* "To go on: ..." on stdout, after Ctrl-C, where a checkpoint was written. */
 void resume_tell(const resume_schedule *s);
 

@@ -32,7 +32,7 @@ static bool find_window(const flume *m, flume_figures *f) {
   const flume_settings *s = &m->s;
   const double first = m->samples ? m->sample[0].t : 0.0;
   const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
-  const double way = 1.5 * s->length / group_velocity(s, m->wave_length);
+  const double way = 1.5 * m->toe / group_velocity(s, m->wave_length);
   f->from = fmax(isnan(s->window[0]) ? s->ramp + way : s->window[0], first);
   f->to = fmin(isnan(s->window[1]) ? last : s->window[1], last);
   if (s->waves == FLUME_REGULAR)
@@ -127,50 +127,87 @@ static void find_loss(const flume *m, flume_figures *f) {
 
 /* ---- loads ----------------------------------------------------------------------------------- */
 
-/* In still water, N/m. */
-static double weight_of(const flume_settings *s) {
-  return WAVES_G * s->width * (s->density * (s->depth + s->crest) - WAVES_DENSITY * s->depth);
+typedef struct safety {
+  double sliding, overturning;
+} safety;
+
+static void keep_least(safety *least, double weight, double arm, double friction, double force,
+                       double moment, double uplift, double uplift_moment) {
+  if (force > 0.0) least->sliding = fmin(least->sliding, friction * (weight - uplift) / force);
+  if (moment > 0.0)
+    least->overturning = fmin(least->overturning, (weight * arm - uplift_moment) / moment);
 }
 
-/* Uplift: a triangle from the wave's pressure at the foot to 0 at the heel. */
-static void find_safeties(const flume *m, const flume_sample *p, flume_figures *f) {
-  const flume_settings *s = &m->s;
-  const double rest = WAVES_DENSITY * WAVES_G * s->depth, W = weight_of(s);
-  const double U = 0.5 * s->width * fmax(p->foot - rest, 0.0);
-  const double force = p->force - 0.5 * rest * s->depth;
-  const double moment = p->moment - rest * s->depth * s->depth / 6.0;
-  if (force > 0.0) f->sliding = fmin(f->sliding, s->friction * (W - U) / force);
-  if (moment > 0.0)
-    f->overturning = fmin(f->overturning, (0.5 * W * s->width - 2.0 / 3.0 * U * s->width) / moment);
+/* Of the base of a caisson, front to heel. */
+static double base_width(const flume *m) {
+  double least = INFINITY;
+  for (int k = 0; k < m->shape.body; k++)
+    if (fabs(m->shape.body_point[k][1] - m->heel[1]) < 1e-9)
+      least = fmin(least, m->shape.body_point[k][0]);
+  return flume_has_body(m) ? m->heel[0] - least : m->s.width;
+}
+
+/* A triangle from the wave's pressure at the foot to 0 at the heel. */
+static double triangle_uplift(const flume *m, const flume_sample *p) {
+  return 0.5 * base_width(m) * fmax(p->foot - m->rest.foot, 0.0);
+}
+
+static void find_safeties(const flume *m, const flume_sample *p, safety *stated, safety *bedding) {
+  const flume_rest *r = &m->rest;
+  const double force = p->force - r->force, moment = p->moment - r->moment;
+  const double U = triangle_uplift(m, p);
+  keep_least(stated, r->weight, r->arm, m->s.friction, force, moment, U,
+             2.0 / 3.0 * U * base_width(m));
+  if (flume_has_body(m))
+    keep_least(bedding, r->weight, r->arm, m->s.friction, force, moment, p->uplift - r->uplift,
+               p->uplift_moment - r->uplift_moment);
 }
 
 static void find_forces(const flume *m, flume_figures *f) {
-  const double rest = WAVES_DENSITY * WAVES_G * m->s.depth;
-  f->force_still = 0.5 * rest * m->s.depth;
-  f->force_peak = -INFINITY, f->force_least = INFINITY, f->foot_peak = NAN, f->peak_at = NAN;
-  f->sliding = f->overturning = INFINITY;
+  safety stated = {INFINITY, INFINITY}, bedding = stated;
+  f->force_peak = -INFINITY, f->force_least = INFINITY;
   for (int64_t k = 0; k < m->samples; k++) {
     const flume_sample *p = &m->sample[k];
     if (!in_window(f, p->t)) continue;
     f->force_least = fmin(f->force_least, p->force);
-    if (p->force > f->force_peak)
-      f->force_peak = p->force, f->peak_at = p->t, f->foot_peak = p->foot - rest;
-    if (m->s.wall == FLUME_CAISSON) find_safeties(m, p, f);
+    if (flume_is_caisson(m)) find_safeties(m, p, &stated, &bedding);
+    if (p->force <= f->force_peak) continue;
+    f->force_peak = p->force, f->peak_at = p->t, f->foot_peak = p->foot - m->rest.foot;
+    f->uplift_peak = p->uplift - m->rest.uplift, f->uplift_triangle = triangle_uplift(m, p);
   }
+  f->sliding = stated.sliding, f->overturning = stated.overturning;
+  f->sliding_bedding = bedding.sliding, f->overturning_bedding = bedding.overturning;
+}
+
+/* Depth over the rock just before a body, at most that of its base. */
+static double berm_depth(const flume *m, double front) {
+  double top = 0.0;
+  for (double y = 0.0; y < m->s.depth; y += 0.25 * m->s.spacing)
+    if (flume_rock_at(m, front - m->s.spacing, y) >= 0) top = y + 0.25 * m->s.spacing;
+  return m->s.depth - fmax(top, m->heel[1]);
 }
 
 /* Height and period of the design wave. */
 static void find_goda(app *a, const flume *m, flume_figures *f) {
   const flume_settings *s = &m->s;
-  const bool regular = s->waves == FLUME_REGULAR;
+  const bool regular = s->waves == FLUME_REGULAR, caisson = flume_is_caisson(m);
   mps_goda_def def = mps_goda_defaults();
-  if (s->wall != FLUME_VERTICAL && s->wall != FLUME_CAISSON) return;
+  f->front = m->heel[0] - base_width(m);
+  if (s->wall != FLUME_VERTICAL && !caisson) return;
   def.height = f->split.incident_height * (regular ? sqrt(0.5) : 1.8);
   def.period = regular ? s->period : f->split.peak_period;
   def.depth = s->depth;
   def.crest = s->wall == FLUME_CAISSON ? s->crest : 10.0 * s->depth;
-  def.width = s->wall == FLUME_CAISSON ? s->width : s->depth;
-  if (s->wall == FLUME_CAISSON) def.weight = weight_of(s);
+  def.width = caisson ? base_width(m) : s->depth;
+  if (caisson) def.weight = m->rest.weight, def.arm = m->rest.arm;
+  if (flume_has_body(m)) {
+    double top = -INFINITY;
+    for (int k = 0; k < m->shape.body; k++) top = fmax(top, m->shape.body_point[k][1]);
+    def.crest = top - s->depth;
+    def.base = s->depth - m->heel[1];
+    def.berm_depth = berm_depth(m, m->heel[0] - def.width);
+  }
+  f->front = m->heel[0] - def.width, f->crest = def.crest;
   def.friction = s->friction, def.density = WAVES_DENSITY, def.gravity = WAVES_G;
   f->has_goda = mps_goda_evaluate(a->context, &def, &f->goda) == MPS_OK;
 }
@@ -185,9 +222,9 @@ static double passed_at(const flume *m, double t) {
 static void find_discharge(app *a, const flume *m, flume_figures *f) {
   const flume_settings *s = &m->s;
   mps_eurotop_def def = mps_eurotop_defaults();
-  if (!flume_has_body(s)) return;
+  if (!flume_is_open(m)) return;
   f->discharge = (passed_at(m, f->to) - passed_at(m, f->from)) / (f->to - f->from);
-  if (s->waves == FLUME_REGULAR || s->wall == FLUME_PROFILE) return;
+  if (s->waves == FLUME_REGULAR || !(s->wall == FLUME_CAISSON || s->wall == FLUME_SLOPE)) return;
   def.wall = s->wall == FLUME_SLOPE ? MPS_EUROTOP_WALL_SLOPE : MPS_EUROTOP_WALL_VERTICAL;
   def.height = f->split.incident_height, def.period = f->split.energy_period;
   def.depth = s->depth, def.crest = s->crest, def.cotangent = s->cotangent;
@@ -203,7 +240,8 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   memset(f, 0, sizeof *f);
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
-  f->force_still = 0.5 * WAVES_DENSITY * WAVES_G * m->s.depth * m->s.depth;
+  f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
+  f->force_still = m->rest.force;
   if (!find_window(m, f)) {
     if (!progress_interrupted()) /* else its own line says enough */
       app_warn(
@@ -214,8 +252,8 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
     return true;
   }
   if (m->gauges >= 2 && !separate(a, m, f)) return false;
-  if (m->s.wall != FLUME_OPEN_END) find_forces(m, f);
-  if (m->s.wall == FLUME_OPEN_END && m->gauges >= 3) find_loss(m, f);
+  if (flume_is_loaded(m)) find_forces(m, f);
+  if (!flume_is_loaded(m) && m->gauges >= 3) find_loss(m, f);
   if (f->separated) find_goda(a, m, f);
   if (f->separated) find_discharge(a, m, f);
   return true;

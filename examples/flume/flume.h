@@ -3,6 +3,7 @@
 #ifndef EXAMPLES_FLUME_H
 #define EXAMPLES_FLUME_H
 
+#include "common/document.h"
 #include "common/output.h"
 #include "common/resume.h"
 #include "common/waves.h"
@@ -15,11 +16,30 @@
 enum { FLUME_REGULAR = 0, FLUME_JONSWAP, FLUME_PM, FLUME_FOCUSED, FLUME_FILE };
 enum { FLUME_OPEN_END = 0, FLUME_VERTICAL, FLUME_CAISSON, FLUME_SLOPE, FLUME_PROFILE };
 enum { FLUME_ACTIVE = 0, FLUME_ZONE, FLUME_NONE };
-enum { FLUME_POINTS = 64 }; /* of a profile */
-enum { FLUME_GAUGES = 16, FLUME_BED = 0, FLUME_MAKER, FLUME_END };
+enum { FLUME_POINTS = 64, FLUME_ROCKS = 8, FLUME_PROBES = 32, FLUME_GAUGES = 16 };
+enum { FLUME_BED = 0, FLUME_MAKER, FLUME_END, FLUME_BODY }; /* boundaries of the fluid */
+
+/* A region of rock, in any convex or concave polygon. */
+typedef struct flume_rock {
+  int32_t corners;
+  double corner[FLUME_POINTS][2];                    /* m */
+  double porosity, diameter, alpha, beta, KC, gamma; /* mps_fluid_rock_def; NaN: its default */
+} flume_rock;
+
+/* What the flume is made of, by options or the model file. */
+typedef struct flume_shapes {
+  int32_t bed, structure, body, rocks, probes; /* counts; bed 0: a plane at height 0 */
+  double bed_point[FLUME_POINTS][2];           /* m, from the foot of the maker, 0,0 */
+  double structure_point[FLUME_POINTS]
+                        [2];          /* m, face from the toe over the crest to its rear edge */
+  double body_point[FLUME_POINTS][2]; /* m, clockwise: a caisson in the water, on rock */
+  flume_rock rock[FLUME_ROCKS];
+  double probe[FLUME_PROBES][2]; /* m, on the faces */
+} flume_shapes;
 
 typedef struct flume_settings {
   int waves, wall, absorb, form, order, random; /* FLUME_..., mps_absorber_form, mps_waves_theory */
+  int closed;                                   /* the far end behind a structure */
   int solver;                                   /* of the pressure: waves_choose_solver */
   double tolerance;                             /* of its residual */
   double depth, length, spacing;                /* m; length: to the toe of the wall, or the end */
@@ -31,35 +51,56 @@ typedef struct flume_settings {
   double density, friction;                     /* kg/m3, 1: of the caisson */
   double duration, sample, disturb;             /* s, s, spacings */
   double gauge[FLUME_GAUGES], window[2];        /* m, s */
-  double profile[FLUME_POINTS][2];              /* m, from the toe, on the bed */
-  int points;
-  int64_t seed, frames, threads;
+  flume_rock rock;                              /* of --rock, and what others have by default */
+  int64_t seed, frames, animation, threads;
   double every_checkpoint; /* s */
-  const char *file, *out, *checkpoint, *restart;
+  const char *file, *out, *checkpoint, *restart, *model, *gauges, *profile, *rocks;
 } flume_settings;
 
 typedef struct flume_sample {
   double t, maker, end;       /* s, m, m: displacements of the pistons */
   double level[FLUME_GAUGES]; /* m above the water at rest */
-  double force, moment; /* N, N m about the heel of a body, the foot of a wall: on the structure */
-  double foot;          /* Pa, on the bed before it */
-  double volume;        /* m2: has passed the crest so far */
+  double force, moment;       /* N, N m about the heel of a structure, the foot of a wall: on it */
+  double uplift, uplift_moment; /* N, N m about the heel: below a body on rock */
+  double foot;                  /* Pa, before it */
+  double volume;                /* m2: has passed the crest so far */
+  double probe[FLUME_PROBES];   /* Pa */
 } flume_sample;
 
-/* The water at the largest force: x, y (m), pressure (Pa) of each particle. */
+/* x, y (m), pressure (Pa) of each particle, and of points along the faces. */
 typedef struct flume_look {
-  double t, force;
-  int64_t count, room;
-  float *value;
+  double t, force; /* s, N */
+  int64_t count, faces, room, face_room;
+  float *value, *face;
 } flume_look;
+
+/* Loads of water at rest on the structure, and what is needed for its safeties. */
+typedef struct flume_rest {
+  double force, moment, foot, uplift; /* N, N m, Pa, N */
+  double uplift_moment;               /* N m about the heel */
+  double weight, arm;                 /* N in still water, m from the heel; of a caisson */
+} flume_rest;
+
+/* Cells of half a spacing that water at rest fills. */
+typedef struct flume_cells {
+  int64_t columns, rows;
+  double lower, pitch; /* m: of the lowest row; of a cell */
+  unsigned char *wet;
+} flume_cells;
 
 typedef struct flume {
   flume_settings s;
   const option *table;
   int gauges;
-  double wave_length, heel, outlet; /* m; x of the rear foot of the body, of the open side */
-  double corner[FLUME_POINTS][2];   /* m: face from the toe to the rear edge of the crest */
-  int corners;
+  double wave_length, toe, outlet; /* m; x of the far end */
+  double heel[2];                  /* m: rear foot of the structure */
+  flume_shapes shape;
+  double ground[2 * FLUME_POINTS + 4][2]; /* m: bed, structure and the bed behind as one polyline */
+  int grounds, first, last; /* corners; segments of the structure, from the first to before last */
+  flume_cells cells;
+  flume_rest rest;
+  int32_t probe_wall[FLUME_PROBES]; /* FLUME_BED, FLUME_END or FLUME_BODY */
+  document *text;                   /* the model file; NULL: none */
   mps_waves *waves;
   mps_absorber *maker, *end;
   mps_particles *water;
@@ -67,7 +108,9 @@ typedef struct flume {
   mps_recorder *series;
   flume_sample *sample;
   int64_t samples, capacity;
-  flume_look look;
+  flume_look look;   /* of the largest force */
+  flume_look *frame; /* of the animation */
+  int64_t frames, frame_room;
   mps_fluid_report report;
   resume_schedule saves;
   double restarted; /* s, NaN: from the start */
@@ -75,7 +118,43 @@ typedef struct flume {
   char why[400];    /* reason against a restart; "": recorded by the library */
 } flume;
 
-static inline bool flume_has_body(const flume_settings *s) { return s->wall >= FLUME_CAISSON; }
+/* A polyline with the bed; a closed body in the water; anything that bears a force. */
+static inline bool flume_has_structure(const flume *m) { return m->shape.structure > 0; }
+static inline bool flume_has_body(const flume *m) { return m->shape.body > 0; }
+static inline bool flume_is_loaded(const flume *m) {
+  return flume_has_structure(m) || flume_has_body(m) || m->s.wall == FLUME_VERTICAL;
+}
+/* Water leaves behind the structure. */
+static inline bool flume_is_open(const flume *m) { return flume_has_structure(m) && !m->s.closed; }
+/* It stands by its weight: it has safeties. */
+static inline bool flume_is_caisson(const flume *m) {
+  return flume_has_body(m) || m->s.wall == FLUME_CAISSON;
+}
+
+/* options.c: the model of the command line and its file; *code: -1 to continue, or the exit code.
+ */
+flume *flume_read(int argc, char **argv, int *code);
+/* file.c. Returns -1, or the exit code after one error line. */
+int flume_read_file(const options_program *program, flume *m);
+/* Reads texts of points X,Y in m separated by commas, at most `most` of them; false when it is
+ * none. */
+bool flume_read_points(const char *text, int most, double (*point)[2], int32_t *count);
+/* check.c: completes the settings and checks them; likewise. */
+int flume_check(const options_program *program, flume *m);
+
+/* shapes.c: the ground as one polyline, solids, rock, water at rest. */
+void flume_make_ground(flume *m);
+bool flume_is_solid(const flume *m, double x, double y);
+/* Number of the first rock at a point, -1: none. */
+int flume_rock_at(const flume *m, double x, double y);
+/* Distance (m) of a point from bed, structure and body. */
+double flume_face_distance(const flume *m, const double *x);
+/* The nearest point of these faces and the far end; *wall: its boundary. Returns the distance. */
+double flume_nearest_face(const flume *m, const double *x, double *on, int32_t *wall);
+bool flume_fill_cells(flume *m);
+bool flume_is_wet(const flume *m, double x, double y);
+/* fill.c: particles of the water at rest, appended. */
+mps_status flume_fill(const flume *m, mps_particles *water);
 
 /* waves.c: the sea, and the pistons that absorb. */
 mps_status flume_make_waves(app *a, flume *m);
@@ -83,7 +162,10 @@ mps_status flume_make_pistons(app *a, flume *m);
 /* model.c: water, walls, structure. */
 mps_status flume_build(app *a, flume *m);
 void flume_free(flume *m);
-double flume_ground(const flume *m, double x);
+/* loads.c: forces, moments, uplift and pressures of the present water; of water at rest. */
+mps_status flume_measure_loads(flume *m, flume_sample *sample);
+mps_status flume_look_at(flume *m, flume_look *look, bool faces);
+void flume_find_rest(flume *m);
 /* run.c: steps to the end, or until Ctrl-C, which leaves a checkpoint. */
 mps_status flume_run(app *a, flume *m);
 /* restart.c. flume_peek compares the options of the file with these before the model is built. */
@@ -100,20 +182,24 @@ typedef struct flume_figures {
   double *frequency, *incident, *reflected, *target; /* Hz, m: amplitudes */
   double target_height; /* m, Hm0 of the linear target at the gauges in the same window */
   double force_still, force_peak, force_least, peak_at, foot_peak; /* N, N, N, s, Pa above rest */
-  double sliding, overturning; /* least safeties of the caisson */
-  double discharge;            /* m2/s */
-  double loss;                 /* of the height, a wave length */
+  double sliding, overturning; /* least safeties of the caisson: uplift a triangle */
+  double sliding_bedding, overturning_bedding; /* uplift as computed in the rock below it */
+  double uplift_peak, uplift_triangle;         /* N, above rest, at the largest force */
+  double discharge;                            /* m2/s */
+  double loss;                                 /* of the height, a wave length */
   mps_goda goda;
   mps_eurotop eurotop;
   bool has_goda, has_eurotop;
-  char why[600]; /* reason why a formula is not valid here */
+  double front, crest; /* m: x of the front edge of a caisson's base; its crest above the water */
+  char why[600];       /* reason why a formula is not valid here */
 } flume_figures;
 
 /* figures.c. False after an error line. */
 bool flume_find_figures(app *a, flume *m, flume_figures *f);
 void flume_free_figures(flume_figures *f);
-/* results.c: tables and summary; pictures.c. */
+/* results.c: tables and summary; pictures.c, and of the water water.c. */
 bool flume_write(app *a, flume *m);
 bool flume_draw(app *a, const flume *m, const flume_figures *f);
+bool flume_draw_water(app *a, const flume *m);
 
 #endif

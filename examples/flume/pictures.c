@@ -1,12 +1,10 @@
-/* pictures.c - pictures of mps-flume: levels with their target, spectra, force, discharge, the
- * water at the largest force. SPDX-License-Identifier: BSD-3-Clause */
+/* pictures.c - pictures of mps-flume: levels with their target, spectra, force, pressures at the
+ * largest force, discharge. SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
-#include "common/area.h"
 #include "common/plot.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { SHOWN = 3 }; /* gauges */
 
@@ -55,7 +53,7 @@ static bool draw_spectrum(app *a, const flume *m, const flume_figures *g) {
 
 static bool draw_force(app *a, const flume *m, const flume_figures *g) {
   output f;
-  if (m->s.wall == FLUME_OPEN_END) return true;
+  if (!flume_is_loaded(m)) return true;
   if (!plot_open(&f, a, m->s.out, "force", 1000, 460)) return false;
   output_text(&f,
               "set title 'Horizontal force of the water on the structure'\nset xlabel 't (s)'\nset "
@@ -76,7 +74,7 @@ static bool draw_force(app *a, const flume *m, const flume_figures *g) {
 
 static bool draw_discharge(app *a, const flume *m, const flume_figures *g) {
   output f;
-  if (!flume_has_body(&m->s)) return true;
+  if (!flume_is_open(m)) return true;
   if (!plot_open(&f, a, m->s.out, "discharge", 1000, 420)) return false;
   output_text(
       &f,
@@ -97,76 +95,67 @@ static bool draw_discharge(app *a, const flume *m, const flume_figures *g) {
   return plot_close(&f, m->s.out, "discharge");
 }
 
-/* ---- the water ------------------------------------------------------------------------------- */
+/* ---- pressures at the largest force ---------------------------------------------------------- */
 
-static bool in_body(const void *user, double x, double y) {
-  const flume *m = user;
-  if (m->s.wall == FLUME_VERTICAL && x > m->s.length) return true;
-  return y < 0.0 || (m->corners > 0 && y < flume_ground(m, x));
+/* Goda's trapezoids: from the base over the still level to eta*, or the crest. */
+static void plot_goda(output *f, const flume *m, const flume_figures *g) {
+  const double d = m->s.depth, base = flume_has_body(m) ? m->heel[1] : 0.0;
+  const double reach = g->goda.reach, crest = m->s.wall == FLUME_VERTICAL ? INFINITY : g->crest;
+  const double top = fmin(reach, crest), p4 = top < reach ? g->goda.p4 : 0.0;
+  output_text(f, "$goda << EOD\n%.6g,%.6g\n%.6g,%.6g\n%.6g,%.6g\nEOD\n", 1e-3 * g->goda.p3, base,
+              1e-3 * g->goda.p1, d, 1e-3 * p4, d + top);
 }
 
-static bool image(app *a, const flume *m, const double *lower, const double *upper, area *out) {
-  const int64_t n = m->look.count;
-  double *row = malloc(3 * (size_t)(n + 1) * sizeof *row);
+/* Left the faces that are no underside, over the height; right the base of a caisson on rock. */
+static bool draw_pressures(app *a, const flume *m, const flume_figures *g) {
+  const bool body = flume_has_body(m);
+  const double base = m->heel[1], half = 0.5 * m->s.spacing;
   output f;
-  if (!row) return app_no_memory(a);
-  for (int64_t i = 0; i < 3 * n; i++) row[i] = (double)m->look.value[i];
-  const area_def def = {.spacing = m->s.spacing,
-                        .slit = AREA_SLIT,
-                        .lower = {lower[0], lower[1]},
-                        .upper = {upper[0], upper[1]},
-                        .side = AREA_SIDE,
-                        .solid = in_body,
-                        .user = m};
-  const bool good = output_open(&f, a, m->s.out, "water.bin");
-  if (good) area_write(&f, &def, n, row, out);
-  free(row);
-  return good && output_close(&f);
-}
-
-/* Two depths and a wave length before the structure, or all of a short flume. */
-static bool draw_water(app *a, const flume *m) {
-  const flume_settings *s = &m->s;
-  const bool body = flume_has_body(s);
-  const double right = (body ? m->outlet : s->length) + 2.0 * s->spacing;
-  const double left = fmax(-0.2 * s->depth, s->length - m->wave_length - 2.0 * s->depth);
-  const double lower[2] = {s->wall == FLUME_OPEN_END ? -0.2 * s->depth : left, -2.0 * s->spacing};
-  const double upper[2] = {right,
-                           fmax(1.6 * s->depth, body ? 1.3 * m->corner[m->corners - 1][1] : 0.0)};
-  const double shape = (upper[1] - lower[1]) / (upper[0] - lower[0]);
-  area picture;
-  output f;
-  double least, most;
-  if (m->look.count == 0) return true;
-  if (!image(a, m, lower, upper, &picture)) return false;
-  area_range(1, &picture, 1e-3, &least, &most);
-  if (!plot_open(&f, a, s->out, "water", 1300, (int)fmax(1080.0 * shape, 90.0) + 170)) return false;
-  output_text(
-      &f,
-      "set size ratio -1\nunset grid\nset xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\nset xlabel "
-      "'x (m)'\nset ylabel 'y (m)'\nset ytics %.6g\nset cblabel 'pressure (kPa)' offset 1.2\nset "
-      "title 't = "
-      "%.2f s%s'\nset palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 "
-      "'#f4d03f')\n",
-      lower[0], upper[0], lower[1], upper[1], plot_tics(upper[1] - lower[1], 4.0), m->look.t,
-      s->wall == FLUME_OPEN_END ? "" : ", at the largest force");
-  if (body) {
-    output_text(&f, "set object 1 polygon from %.6g,0", m->heel);
-    for (int k = 0; k < m->corners; k++)
-      output_text(&f, " to %.6g,%.6g", m->corner[k][0], m->corner[k][1]);
+  if (!flume_is_loaded(m) || m->look.faces == 0) return true;
+  if (!plot_open(&f, a, m->s.out, "pressures", body ? 1200 : 700, 620)) return false;
+  if (g->has_goda) plot_goda(&f, m, g);
+  output_text(&f, "set multiplot layout 1,%d\n", body ? 2 : 1);
+  plot_key_below(&f);
+  output_text(&f,
+              "set title 'Pressure above that of water at rest, t = %.2f s'\nset xlabel "
+              "'pressure (kPa)'\nset ylabel 'y (m)'\nplot ",
+              m->look.t);
+  if (g->has_goda)
+    output_text(&f, "$goda using 1:2 with linespoints linewidth 2 linecolor rgb '#c0392b' title "
+                    "'Goda', ");
+  if (body)
     output_text(
         &f,
-        " to %.6g,0 fillstyle solid 1.0 border linecolor rgb '#444444' fillcolor rgb '#8a8f98'\n",
-        m->heel);
-  }
-  plot_colours(&f, least, most, least, most);
+        "'faces.csv' every ::1 using ($1 < %.9g && $2 > %.9g ? 1e-3*$4 : NaN):2 with points "
+        "pointtype 7 pointsize 0.7 linecolor rgb '#1f4e8c' title 'MPS, front', '' every ::1 "
+        "using ($1 > %.9g && $2 > %.9g ? 1e-3*$4 : NaN):2 with points pointtype 6 pointsize "
+        "0.7 linecolor rgb '#1f4e8c' title 'MPS, rear'\n",
+        m->heel[0] - half, base + 1e-6, m->heel[0] - half, base + 1e-6);
+  else
+    output_text(&f, "'faces.csv' every ::1 using (1e-3*$4):2 with points pointtype 7 pointsize 0.7 "
+                    "linecolor rgb '#1f4e8c' title 'MPS'\n");
+  if (!body) return output_text(&f, "unset multiplot\n"), plot_close(&f, m->s.out, "pressures");
+  output_text(&f, "set title 'Uplift below the caisson'\nset xlabel 'x (m)'\nset ylabel 'pressure "
+                  "(kPa)'\nset yrange [*:*]\n");
+  output_text(&f, "$stated << EOD\n%.9g,%.9g\n%.9g,0\nEOD\n", g->front, 1e-3 * g->foot_peak,
+              m->heel[0]);
+  if (g->has_goda)
+    output_text(&f, "$pu << EOD\n%.9g,%.9g\n%.9g,0\nEOD\n", g->front, 1e-3 * g->goda.pu,
+                m->heel[0]);
   output_text(&f, "plot ");
-  area_plot(&f, "water.bin", &picture, 1.0, 1e-3);
-  output_text(&f, "\n");
-  return plot_close(&f, s->out, "water");
+  if (g->has_goda)
+    output_text(&f, "$pu using 1:2 with lines linewidth 2 linecolor rgb '#c0392b' title 'Goda', ");
+  output_text(
+      &f,
+      "$stated using 1:2 with lines dashtype '--' linecolor rgb '#888888' title 'triangle "
+      "from the foot', 'faces.csv' every ::1 using (abs($2 - %.9g) < 1e-6 && $1 > %.9g ? $1 "
+      ": NaN):(1e-3*$4) with points pointtype 7 pointsize 0.7 linecolor rgb '#1f4e8c' title "
+      "'MPS, in the rock'\nunset multiplot\n",
+      base, g->front - half);
+  return plot_close(&f, m->s.out, "pressures");
 }
 
 bool flume_draw(app *a, const flume *m, const flume_figures *g) {
   return draw_levels(a, m) && draw_spectrum(a, m, g) && draw_force(a, m, g) &&
-         draw_discharge(a, m, g) && draw_water(a, m);
+         draw_pressures(a, m, g) && draw_discharge(a, m, g) && flume_draw_water(a, m);
 }

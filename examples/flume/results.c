@@ -45,14 +45,50 @@ static bool write_gauges(app *a, const flume *m) {
 }
 
 static bool write_force(app *a, const flume *m) {
-  const bool wall = m->s.wall != FLUME_OPEN_END;
+  const bool loaded = flume_is_loaded(m), body = flume_has_body(m);
   output f;
   if (!output_open(&f, a, m->s.out, "force.csv")) return false;
-  csv_header(&f, wall ? "t_s,maker_m,end_m,force_N,moment_N_m,foot_Pa" : "t_s,maker_m,end_m");
+  csv_header(&f, body ? "t_s,maker_m,end_m,force_N,moment_N_m,foot_Pa,uplift_N,uplift_moment_N_m"
+                 : loaded ? "t_s,maker_m,end_m,force_N,moment_N_m,foot_Pa"
+                          : "t_s,maker_m,end_m");
   for (int64_t k = 0; k < m->samples; k++) {
     const flume_sample *p = &m->sample[k];
-    const double row[] = {p->t, p->maker, p->end, p->force, p->moment, p->foot};
-    csv_row(&f, wall ? 6 : 3, row);
+    const double row[] = {p->t,      p->maker, p->end,    p->force,
+                          p->moment, p->foot,  p->uplift, p->uplift_moment};
+    csv_row(&f, body ? 8 : loaded ? 6 : 3, row);
+  }
+  return output_close(&f);
+}
+
+/* Pressures at the probes. */
+static bool write_probes(app *a, const flume *m) {
+  char names[60 * FLUME_PROBES] = "t_s";
+  output f;
+  for (int k = 0; k < m->shape.probes; k++) {
+    const size_t at = strlen(names);
+    snprintf(names + at, sizeof names - at, ",at_%.4g_%.4g_m_Pa", m->shape.probe[k][0],
+             m->shape.probe[k][1]);
+  }
+  if (!output_open(&f, a, m->s.out, "probes.csv")) return false;
+  csv_header(&f, names);
+  for (int64_t k = 0; k < m->samples; k++) {
+    double row[FLUME_PROBES + 1] = {m->sample[k].t};
+    memcpy(row + 1, m->sample[k].probe, sizeof m->sample[k].probe);
+    csv_row(&f, m->shape.probes + 1, row);
+  }
+  return output_close(&f);
+}
+
+/* Pressures along the faces at the largest force, less those of water at rest. */
+static bool write_faces(app *a, const flume *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "faces.csv")) return false;
+  csv_header(&f, "x_m,y_m,pressure_Pa,above_rest_Pa");
+  for (int64_t k = 0; k < m->look.faces; k++) {
+    const double x = (double)m->look.face[3 * k], y = (double)m->look.face[3 * k + 1];
+    const double p = (double)m->look.face[3 * k + 2];
+    const double row[] = {x, y, p, p - WAVES_DENSITY * WAVES_G * fmax(m->s.depth - y, 0.0)};
+    csv_row(&f, 4, row);
   }
   return output_close(&f);
 }
@@ -140,7 +176,7 @@ static void summarise_absorption(output *f, const flume *m) {
 }
 
 static void summarise_force(output *f, const flume *m, const flume_figures *g) {
-  const bool wall = m->s.wall != FLUME_OPEN_END;
+  const bool wall = flume_is_loaded(m), caisson = flume_is_caisson(m), body = flume_has_body(m);
   json_number_if(f, wall, "force_still", g->force_still);
   json_number_if(f, wall, "force_peak", g->force_peak - g->force_still);
   json_number_if(f, wall, "force_least", g->force_least - g->force_still);
@@ -148,17 +184,27 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, wall, "foot_peak", g->foot_peak);
   json_number_if(f, g->has_goda, "force_goda", g->goda.force);
   json_number_if(f, g->has_goda, "foot_goda", g->goda.p3);
-  json_number_if(f, m->s.wall == FLUME_CAISSON, "safety_sliding", g->sliding);
-  json_number_if(f, m->s.wall == FLUME_CAISSON, "safety_overturning", g->overturning);
+  json_number_if(f, body, "uplift_peak", g->uplift_peak);
+  json_number_if(f, caisson, "uplift_triangle", g->uplift_triangle);
+  json_number_if(f, g->has_goda, "uplift_goda", g->goda.uplift);
+  json_number_if(f, caisson, "safety_sliding", g->sliding);
+  json_number_if(f, caisson, "safety_overturning", g->overturning);
+  json_number_if(f, body, "safety_sliding_bedding", g->sliding_bedding);
+  json_number_if(f, body, "safety_overturning_bedding", g->overturning_bedding);
   json_number_if(f, g->has_goda, "safety_sliding_goda", g->goda.sliding);
+  json_number_if(f, g->has_goda, "safety_overturning_goda", g->goda.overturning);
+  if (body && g->has_goda && !isnan(g->uplift_peak))
+    printf("uplift above rest then %.1f N through the bedding, %.1f N as a triangle, Goda %.1f N\n",
+           g->uplift_peak, g->uplift_triangle, g->goda.uplift);
   if (wall && !isnan(g->force_peak) && g->has_goda)
-    printf("largest force above rest %.1f N at %.2f s, Goda %.1f N\n",
-           g->force_peak - g->force_still, g->peak_at, g->goda.force);
+    printf("largest force above rest %.1f N at %.2f s, Goda %.1f N (%+.1f %%)\n",
+           g->force_peak - g->force_still, g->peak_at, g->goda.force,
+           100.0 * ((g->force_peak - g->force_still) / g->goda.force - 1.0));
 }
 
 static void summarise_discharge(app *a, output *f, const flume *m, const flume_figures *g,
                                 int64_t events) {
-  const bool body = flume_has_body(&m->s);
+  const bool body = flume_is_open(m);
   json_number_if(f, body, "q", g->discharge);
   json_number_if(f, body && m->samples > 0, "volume",
                  m->samples ? m->sample[m->samples - 1].volume : NAN);
@@ -169,8 +215,8 @@ static void summarise_discharge(app *a, output *f, const flume *m, const flume_f
   if (body && !isnan(g->discharge))
     printf("discharge %.3g m2/s in %lld events", g->discharge, (long long)events);
   if (g->has_eurotop)
-    printf(", EurOtop %.3g m2/s (%.3g to %.3g)", g->eurotop.discharge, g->eurotop.low,
-           g->eurotop.high);
+    printf(", EurOtop %.3g m2/s (%.3g to %.3g), ratio %.2f", g->eurotop.discharge, g->eurotop.low,
+           g->eurotop.high, g->discharge / g->eurotop.discharge);
   if (body && !isnan(g->discharge)) printf("\n");
   if (g->why[0]) app_warn(a, "no discharge by EurOtop: %s", g->why);
 }
@@ -196,7 +242,9 @@ bool flume_write(app *a, flume *m) {
   flume_figures g;
   int64_t events = 0;
   bool good = flume_find_figures(a, m, &g) && write_gauges(a, m) && write_force(a, m);
-  if (good && flume_has_body(&m->s)) good = write_discharge(a, m) && write_events(a, m, &events);
+  if (good && m->shape.probes > 0) good = write_probes(a, m);
+  if (good && flume_is_loaded(m)) good = write_faces(a, m);
+  if (good && flume_is_open(m)) good = write_discharge(a, m) && write_events(a, m, &events);
   if (good && g.separated) good = write_spectrum(a, m, &g);
   if (good && m->series) good = app_check(a, mps_recorder_close(&m->series));
   good = good && write_summary(a, m, &g, events) && flume_draw(a, m, &g);

@@ -43,7 +43,7 @@ static mps_status make_step(flume *m) {
   double s;
   mps_status status = move_maker(m, dt);
   if (status == MPS_OK && m->end)
-    status = move_piston(m, m->end, FLUME_END, m->s.length - place_of(m->end) - 0.5 * m->s.spacing,
+    status = move_piston(m, m->end, FLUME_END, m->outlet - place_of(m->end) - 0.5 * m->s.spacing,
                          dt, &s);
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
@@ -74,63 +74,36 @@ static mps_status measure_passed(flume *m, flume_sample *sample) {
   mps_status status = mps_fluid_get_reaction(m->fluid, FLUME_END, &side);
   if (status == MPS_OK) status = mps_particles_view(m->water, "position", &x);
   if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < x.shape[0]; i++) behind += *mps_view_f64(&x, i, 0) > m->heel;
+  for (int64_t i = 0; i < x.shape[0]; i++) behind += *mps_view_f64(&x, i, 0) > m->heel[0];
   sample->volume = side.removed_mass / WAVES_DENSITY + (double)behind * m->s.spacing * m->s.spacing;
   return MPS_OK;
-}
-
-/* Towards the lee, and about the heel: a moment that tips it over is positive. The first and the
- * last segment are the bed. */
-static mps_status measure_structure(const flume *m, flume_sample *sample) {
-  enum { MOST = FLUME_POINTS + 3 };
-  double force[3 * MOST], moment[MOST];
-  int64_t count;
-  const mps_status status =
-      mps_fluid_get_segments(m->fluid, FLUME_BED, MOST, &count, force, moment);
-  for (int64_t k = 1; status == MPS_OK && k + 1 < count; k++) { /* on the water */
-    sample->force -= force[3 * k];
-    sample->moment += moment[k] - m->heel * force[3 * k + 1];
-  }
-  return status;
-}
-
-static mps_status measure_force(flume *m, flume_sample *sample) {
-  const double foot[3] = {m->s.length - 0.5 * m->s.spacing, 0.0, 0.0};
-  mps_reaction r;
-  mps_status status = mps_fluid_get_pressure(m->fluid, FLUME_BED, 1, foot, &sample->foot);
-  if (status != MPS_OK || flume_has_body(&m->s))
-    return status == MPS_OK ? measure_structure(m, sample) : status;
-  status = mps_fluid_get_reaction(m->fluid, FLUME_END, &r);
-  if (status == MPS_OK) /* opposite forces on wall and water */
-    sample->force = -r.force[0], sample->moment = r.moment[2];
-  return status;
 }
 
 /* Keeps the water of the largest force once the maker has its amplitude, without a structure that
  * of the last sample. */
 static mps_status take_look(flume *m, const flume_sample *sample) {
-  mps_view x, p;
   const bool most = sample->t >= m->s.ramp && sample->force > m->look.force;
-  if (m->s.wall != FLUME_OPEN_END && m->look.count > 0 && !most) return MPS_OK;
-  mps_status status = mps_particles_view(m->water, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(m->water, "pressure", &p);
-  if (status != MPS_OK) return status;
-  m->look.t = sample->t;
+  if (flume_is_loaded(m) && m->look.count > 0 && !most) return MPS_OK;
   m->look.force = sample->t >= m->s.ramp ? sample->force : -INFINITY;
-  m->look.count = x.shape[0] < m->look.room ? x.shape[0] : m->look.room;
-  for (int64_t i = 0; i < m->look.count; i++) {
-    for (int c = 0; c < 2; c++) m->look.value[3 * i + c] = (float)*mps_view_f64(&x, i, c);
-    m->look.value[3 * i + 2] = (float)*mps_view_f64(&p, i, 0);
-  }
-  return MPS_OK;
+  return flume_look_at(m, &m->look, true);
+}
+
+/* Frames of the animation lie evenly in the last three periods. */
+static mps_status take_frame(flume *m) {
+  const double span = fmin(3.0 * m->s.period, m->s.duration);
+  const int64_t k = m->frames, last = m->frame_room - 1;
+  const double due = m->s.duration - span * (1.0 - (double)k / (double)(last > 0 ? last : 1));
+  if (k > last || mps_fluid_time(m->fluid) < due * (1.0 - 1e-9)) return MPS_OK;
+  m->frames++;
+  return flume_look_at(m, &m->frame[k], false);
 }
 
 static mps_status take_sample(flume *m) {
   flume_sample sample = {.t = mps_fluid_time(m->fluid)};
   mps_status status = mps_fluid_get_levels(m->fluid, m->gauges, m->s.gauge, sample.level);
   for (int k = 0; k < m->gauges; k++) sample.level[k] -= m->s.depth;
-  if (status == MPS_OK && m->s.wall != FLUME_OPEN_END) status = measure_force(m, &sample);
-  if (status == MPS_OK && flume_has_body(&m->s)) status = measure_passed(m, &sample);
+  if (status == MPS_OK) status = flume_measure_loads(m, &sample);
+  if (status == MPS_OK && flume_is_open(m)) status = measure_passed(m, &sample);
   if (status == MPS_OK && !m->maker)
     status = mps_waves_get_piston(m->waves, 1, &sample.t, &sample.maker, NULL, NULL, NULL);
   if (status == MPS_OK) status = mps_fluid_get_report(m->fluid, &m->report);
@@ -138,7 +111,8 @@ static mps_status take_sample(flume *m) {
   if (m->maker) sample.maker = place_of(m->maker);
   sample.end = place_of(m->end);
   m->sample[m->samples++] = sample;
-  return take_look(m, &sample);
+  status = take_frame(m);
+  return status == MPS_OK ? take_look(m, &sample) : status;
 }
 
 /* Frames are spread over the samples; the first is the start. */

@@ -77,7 +77,7 @@ mps_status flume_make_pistons(app *a, flume *m) {
   if (m->s.absorb != FLUME_ACTIVE) return MPS_OK;
   mps_status status = mps_absorber_create(a->context, &def, &m->maker);
   def.waves = NULL;
-  if (status == MPS_OK && m->s.wall == FLUME_OPEN_END)
+  if (status == MPS_OK && m->s.wall == FLUME_OPEN_END && !flume_is_open(m))
     status = mps_absorber_create(a->context, &def, &m->end);
   return app_settle(a, status);
 }

@@ -32,13 +32,7 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(tank_model *m) {
-  return (resume){.key = "mps-tank 3",
-                  .table = m->table,
-                  .pass = pass,
-                  .user = m,
-                  .fluid = m->fluid,
-                  .a = m->a,
-                  .domain = m->a->domain};
+  return resume_of_fluid("mps-tank 3", m->table, pass, m, m->fluid, m->a);
 }
 
 mps_status tank_save(void *user) {
@@ -55,8 +49,6 @@ mps_status tank_peek(mps_context *context, tank_model *m) {
 
 mps_status tank_restore(mps_context *context, tank_model *m) {
   const resume r = parts(m);
-  const mps_status status = resume_restore(context, &r, m->s.restart);
-  m->restarted = mps_fluid_time(m->fluid);
-  resume_schedule_at(&m->saves, m->restarted);
+  const mps_status status = resume_go_on(context, &r, m->s.restart, &m->restarted, &m->saves);
   return status == MPS_OK ? tank_recall(&m->structure) : status;
 }

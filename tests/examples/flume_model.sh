@@ -1,0 +1,105 @@
+#!/bin/sh
+# flume_model.sh DIRECTORY MODELS: mps-flume with model files: those that are installed, still water on a
+# caisson on rock against hydrostatics, waves on it, a restart, and errors with file, line, key and value.
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+flume="$1/mps-flume"
+run="--threads 1 --frames 0"
+
+# The seawall: rest force rho g .35^2/2 by its shapes, tables of probes and faces, pictures, animation.
+"$flume" --model "$2/breakwater.yaml" $run --duration 0.2 --animation 3 --out "$work/wall" >"$work/log" 2>&1
+in_range "$work/wall/summary.json" force_still 600.86 600.87
+has "$work/wall/probes.csv" "at_5.02_0.06_m_Pa,at_5.5_0.3_m_Pa,at_6.12_0.53_m_Pa"
+has "$work/wall/faces.csv" "x_m,y_m,pressure_Pa,above_rest_Pa"
+picture "$work/wall/water.png" 1300x0
+picture "$work/wall/pressures.png" 700x620
+! command -v gnuplot >/dev/null || [ -s "$work/wall/animation.gif" ] || fail "no animation"
+
+# Still water: no force on the caisson, uplift rho g .3 .3 below it.
+caisson="--model $2/caisson.yaml --length 5 --spacing 0.025"
+"$flume" $caisson $run --absorb none --height 1e-5 --animation 0 --duration 1.5 --out "$work/still" >"$work/log" 2>&1
+is "$work/still/force.csv" uplift_N -1 882.9 25
+is "$work/still/force.csv" force_N -1 0 25
+in_range "$work/still/summary.json" force_still 0 0
+
+# Waves: the crest loads it, the uplift is that of the rock beside the triangle.
+waves="$caisson $run --animation 0 --height 0.08 --window 4,7"
+"$flume" $waves --duration 7 --every-checkpoint 4 --out "$work/waves" >"$work/log" 2>&1
+s=$work/waves/summary.json
+in_range "$s" force_peak 100 600
+in_range "$s" uplift_peak 20 250
+in_range "$s" uplift_triangle 20 250
+in_range "$s" uplift_goda 20 250
+in_range "$s" safety_sliding 0.5 20
+in_range "$s" safety_sliding_bedding 0.5 20
+in_range "$s" safety_overturning_bedding 0.5 50
+picture "$work/waves/pressures.png" 1200x620
+
+# On from a checkpoint, and not with other shapes.
+if [ -f "$work/waves/checkpoint.h5" ]; then
+  "$flume" $waves --duration 7 --restart "$work/waves/checkpoint.h5" --out "$work/again" >"$work/log" 2>&1
+  for file in gauges.csv force.csv probes.csv faces.csv summary.json; do
+    cmp "$work/waves/$file" "$work/again/$file" || fail "another $file after a restart"
+  done
+  cp "$2/caisson.yaml" "$work/here.yaml"
+  short="--model $work/here.yaml --length 5 --spacing 0.025 $run --animation 0"
+  "$flume" $short --duration 0.3 --every-checkpoint 0.1 --out "$work/short" >"$work/log" 2>&1
+  sed 's/\[4.4, 0.1\]/[4.5, 0.1]/' "$2/caisson.yaml" >"$work/here.yaml"
+  ! "$flume" $short --duration 0.3 --restart "$work/short/checkpoint.h5" --out "$work/g" 2>"$work/log" ||
+    fail "a restart with other rock"
+  has "$work/log" "other shapes than those of $work/here.yaml"
+fi
+
+# Rock by options: the file's and these agree in the water at rest.
+"$flume" $run --wall slope --spacing 0.04 --length 2 --duration 0.1 --rock 1.8,0,2,0.08,2.16,0.08,2,0 --stone 2cm \
+  --out "$work/rock" >"$work/log" 2>&1
+in_range "$work/rock/summary.json" particles 490 620
+
+# Errors: file, line, key, value, what is allowed.
+refuse() { # TEXT MODEL
+  printf "$2" >"$work/bad.yaml"
+  code=0
+  "$flume" --model "$work/bad.yaml" --out "$work/refused" 2>"$work/log" >&2 || code=$?
+  [ $code -eq 2 ] || fail "exit code $code for $2"
+  has "$work/log" "$1"
+}
+refuse "bad.yaml, line 2: height is -1 m, must be in" 'depth: 0.4\nheight: -1\n'
+refuse "bad.yaml, line 1: unknown key hight, did you mean height?" 'hight: 0.1\n'
+refuse "bad.yaml, line 1: unknown key shape" 'shape: 0.1\n'
+refuse "bad.yaml, line 1: waves is foo, must be one of regular|" 'waves: foo\n'
+refuse "bad.yaml, line 1: period is 5m: a time is wanted" 'period: 5m\n'
+refuse "bad.yaml, line 2: bed: Y is x, must be a length in m" 'depth: 0.4\nbed: [[0, 0], [1, x]]\n'
+refuse "bad.yaml, line 3: bed: X is nan, must be" 'bed:\n- [0, 0]\n- [nan, 0]\n'
+refuse "bad.yaml, line 2: depth is given twice" 'depth: 0.4\ndepth: 3\n'
+refuse "line 1: rock: porosity is 2, must be a number in [0.1, 1]" 'rock: [{corners: [[1,0],[2,0],[2,1]], porosity: 2}]\n'
+refuse "line 1: rock: unknown key poro" 'rock: [{corners: [[1,0],[2,0],[2,1]], poro: 0.2}]\n'
+refuse "line 1: rock 1,0 needs the size of its stones" 'rock: [{corners: [[1,0],[2,0],[2,1]]}]\n'
+refuse "corners must be a list of 3 to 64 points" 'rock: [{corners: [[1,0],[2,0]]}]\n'
+refuse "bad.yaml, line 2: did not find expected" '[1,2\n'
+refuse "out is an option of the command line alone" 'out: x\n'
+refuse "bad.yaml, line 2: an alias" 'a: &b 3\nc: *b\n'
+refuse "bad.yaml is empty" ''
+refuse "a model is a map" 'x\n'
+refuse "gauge must be a value or a list of values" 'gauge: [1, [2]]\n'
+refuse "line 3: structure 5.2,0.2 must be at least 2 times --spacing above --depth" \
+  'structure: [[4, 0],\n [5, 0.2],\n [5.2, 0.2]]\n'
+refuse "line 2: structure 4,0 must be the last corner of the bed" \
+  'bed: [[0, 0], [3, 0]]\nstructure: [[4, 0], [5, 0.6], [5.2, 0.6]]\n'
+refuse "structure 3,0.6 lies before the toe" 'structure: [[4, 0], [5, 0.6], [3, 0.6]]\n'
+refuse "--wall must be none" 'structure: [[4, 0], [5, 0.6], [5.2, 0.6]]\nwall: slope\n'
+refuse "caisson 4,0 must be 3.2 times --spacing above the bed" \
+  'caisson: [[4, 0], [4, 0.6], [4.3, 0.6], [4.3, 0]]\nlength: 8\n'
+refuse "probe 4,0.2 is more than half a --spacing from all faces" 'probe: [[4, 0.2]]\nlength: 8\n'
+refuse "--length is that to the toe" 'structure: [[4, 0], [5, 0.6], [6, 0.6]]\nlength: 8\n'
+
+# Cut off anywhere: an error or a smaller model, no crash.
+bytes=$(wc -c <"$2/caisson.yaml")
+n=400
+while [ $n -lt "$bytes" ]; do
+  head -c $n "$2/caisson.yaml" >"$work/cut.yaml"
+  code=0
+  "$flume" --model "$work/cut.yaml" $run --spacing 0.08 --length 8 --duration 20ms --sample 20ms --out "$work/cut" \
+    >"$work/log" 2>&1 || code=$?
+  [ $code -le 2 ] || fail "exit code $code, cut after $n bytes: $(cat "$work/log")"
+  n=$((n + 37))
+done
