@@ -4,6 +4,7 @@
 #include "material_paths.h"
 #include "pthread_executor.h"
 
+#include "core/context/levels.h"
 #include "material/material_private.h"
 
 #define COUNT 157 /* not a multiple of a vector's length */
@@ -134,7 +135,7 @@ static void plane_and_axisymmetric_are_three_dimensional(void **state) {
 
 static void blocks_and_instruction_sets_change_no_bit(void **state) {
   (void)state;
-  static const int32_t levels[] = {1, 3, 4};
+  static const int32_t levels[] = {MPSI_ALL_LEVELS(MPSI_LEVEL_VALUE, , )};
   for (int which = 0; which < LAWS; which++)
     for (int kind = 0; kind < 3; kind++) {
       mps_material *material = make_law(which);
@@ -143,7 +144,7 @@ static void blocks_and_instruction_sets_change_no_bit(void **state) {
       fill(&whole, kind > 0, kind == 2);
       const mps_material_block block = block_of(&whole, dim, kind > 0, 0, COUNT);
       mps_assert_ok(context, mps_material_update(context, material, &block));
-      for (int level = 0; level < 3; level++) {
+      for (size_t level = 0; level < sizeof levels / sizeof *levels; level++) {
         const mpsi_law_table *table = mpsi_laws_select(levels[level]);
         if (!table) continue;
         fill(&cut, kind > 0, kind == 2);

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 
+#include "core/context/levels.h"
 #include "material/material_private.h"
 
 #include <mps/geostatic.h>
@@ -15,7 +16,7 @@
 static void each_kind_has_its_descriptor(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  static const int32_t levels[] = {1, 3, 4};
+  static const int32_t levels[] = {MPSI_ALL_LEVELS(MPSI_LEVEL_VALUE, , )};
   for (int kind = 0; kind < MPSI_LAW_COUNT; kind++) {
     const mpsi_law_type *type = &mpsi_law_types[kind];
     assert_int_equal((int)type->kind, kind);
@@ -25,7 +26,7 @@ static void each_kind_has_its_descriptor(void **state) {
     assert_true(columns <= 4);
     assert_true(!(type->traits & MPSI_LAW_OPENS) ||
                 (columns == 2 && strcmp(type->columns[1], "opening") == 0));
-    for (int level = 0; level < 3; level++)
+    for (size_t level = 0; level < sizeof levels / sizeof *levels; level++)
       for (int geometry = 0; geometry < MPSI_GEOMETRIES; geometry++) {
         const mpsi_law_table *table = mpsi_laws_select(levels[level]);
         if (table) assert_non_null(table->apply[kind][geometry]);

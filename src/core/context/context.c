@@ -26,6 +26,16 @@ static mps_status refuse(char *text, size_t size, mps_status status, const char 
   return status;
 }
 
+#define LEVEL_NAME(level, a, b) ", " #level
+#define LEVELS MPSI_ALL_LEVELS(LEVEL_NAME, , )
+
+static bool known_level(int32_t level) {
+  static const int32_t known[] = {0, MPSI_ALL_LEVELS(MPSI_LEVEL_VALUE, , )};
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+    if (level == known[k]) return true;
+  return false;
+}
+
 static mps_status check_def(const mps_context_def *def, char *text, size_t size) {
   char why[160];
   if (def->executor < MPS_CONTEXT_EXECUTOR_THREADS || def->executor > MPS_CONTEXT_EXECUTOR_CALLER) {
@@ -46,9 +56,9 @@ static mps_status check_def(const mps_context_def *def, char *text, size_t size)
     return refuse(text, size, MPS_ERROR_ARGUMENT, why);
   }
   const int32_t level = def->instruction_level;
-  if (level != 0 && level != 1 && level != 3 && level != 4) {
+  if (!known_level(level)) {
     snprintf(why, sizeof why,
-             "instruction_level is %d, allowed are 0 (the highest there is), 1, 3 and 4", level);
+             "instruction_level is %d, allowed are 0 (the highest there is)" LEVELS, level);
     return refuse(text, size, MPS_ERROR_ARGUMENT, why);
   }
   if (mpsi_level(level) == 0) {

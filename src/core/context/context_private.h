@@ -14,7 +14,7 @@ struct mps_context {
   atomic_int executor_fault; /* the caller's executor gave a bad worker or index once */
   int64_t failures;          /* number of times `error` was written */
   int32_t threads;
-  int32_t level;         /* 1, 3 or 4: of the instruction set of inner loops */
+  int32_t level;         /* of the instruction set of inner loops (levels.h) */
   atomic_int references; /* the caller's, and one for each existing object */
   mpsi_pool pool;        /* of MPS_CONTEXT_EXECUTOR_THREADS; its members lie behind the context */
 };
