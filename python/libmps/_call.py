@@ -1,5 +1,6 @@
 """Calls of C functions: arguments to C, results and errors back."""
 
+import difflib
 import os
 from pathlib import Path
 from types import SimpleNamespace
@@ -131,6 +132,13 @@ def _numbers(value, dtype):
     return given
 
 
+def unknown(where, name, fields):
+    """TypeError of a member that no struct has: the nearest one, and all."""
+    known = [f for f in fields if f not in ("struct_size", "reserved")]
+    near = difflib.get_close_matches(name, known, 1)
+    return TypeError(f"{where} {name!r}{f' (is it {near[0]!r}?)' if near else ''}: it has {', '.join(known)}")
+
+
 class Call:
     """One call: keeps alive what C sees by pointer, and knows how long arrays are. What callbacks raise
     goes into `raised`, in this call or a later one that asks them."""
@@ -193,8 +201,8 @@ class Call:
                 return held
         return to_python(value)
 
-    def struct(self, kind, members):
-        """A definition: its defaults, then the members given."""
+    def struct(self, kind, members, where=""):
+        """A definition: its defaults, then the members given. `where` begins the error of an unknown one."""
         made = ffi.new(f"{kind.cname} *")
         init = getattr(library, kind.cname + "_init", None)
         if init and len(ffi.typeof(init).args) == 2:
@@ -208,8 +216,7 @@ class Call:
                 setattr(made, name, ffi.sizeof(rows.type.item))
         for name, value in members.items():
             if name not in fields:
-                known = ", ".join(f for f in fields if f not in ("struct_size", "reserved"))
-                raise TypeError(f"{kind.cname} has no member {name!r}: it has {known}")
+                raise unknown(where or f"{kind.cname} has no member", name, fields)
             self.assign(made, name, fields[name].type, value)
             self.measure(kind.cname, name, fields[name].type, value)
         for name, formula in _shapes.STRUCTS.get(kind.cname, {}).items():  # ids alone say how many they are
@@ -281,7 +288,7 @@ class Call:
             if isinstance(value, (list, tuple)) and kind.item.fields:
                 return self.structs(kind.item, value)
             if not isinstance(value, ffi.CData):
-                raise TypeError(f"{value!r} is no {kind.item.cname}")
+                raise TypeError(f"{value!r} is no {class_name(kind.item.cname)}")
             return value
         if kind.kind == "pointer" and not isinstance(value, ffi.CData):
             return self.array(value, kind.item, constant)
@@ -294,8 +301,11 @@ class Call:
             for name, field in kind.fields:  # a real number that is not given is unset
                 if field.type.cname == "double" and name not in row:
                     setattr(made[k], name, float("nan"))
+            fields = dict(kind.fields)
             for name, value in row.items():
-                self.assign(made[k], name, dict(kind.fields)[name].type, value)
+                if name not in fields:
+                    raise unknown(f"row {k} has no member", name, fields)
+                self.assign(made[k], name, fields[name].type, value)
         self.alive.append(made)
         return made
 
@@ -341,9 +351,41 @@ class _Arguments:
         kinds = ffi.typeof(getattr(library, self.full)).args
         for kind, parameter in zip(kinds, _cdef.PARAMETERS[self.full]):
             self.one(kind, parameter.removeprefix("const "), parameter.startswith("const "), given, members)
-        if given or members:
-            extra = "too many arguments" if given else f"no definition that has {', '.join(members)}"
-            raise TypeError(f"{self.name}(): {extra}: its arguments are {signature(self.name)}")
+        if given:
+            self.refuse(f"has too many arguments, {given[0]!r} is one")
+        if members:
+            self.refuse(f"takes no keyword, and was given {', '.join(members)}")
+
+    def refuse(self, why):
+        """Raises TypeError with the call as Python has it."""
+        raise TypeError(f"{self.place()} {why}: {signature(self.name, self.word())}")
+
+    def word(self):
+        """What the function is called in Python."""
+        return self.name.removeprefix(f"{getattr(self.owner, 'kind', None)}_")
+
+    def place(self):
+        kind = getattr(self.owner, "kind", None)
+        return f"{class_name(kind)}.{self.word()}()" if kind else f"{self.word()}()"
+
+    def returns(self, value, kind, word, constant):
+        """Whether C writes a number there, for which `value` is no place: the call returns it."""
+        return (not constant and word not in self.formulas and kind.kind == "pointer" and kind.item.kind == "primitive" and
+                kind.item.cname != "char" and value is not None and not isinstance(value, (numpy.ndarray, ffi.CData)))
+
+    def convert(self, value, kind, word, constant):
+        """An argument for C; what is wrong with it names it."""
+        try:
+            return self.state.to_c(value, kind, constant)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise type(error)(f"{self.place()}: {word!r} is {value!r}: {error}") from error
+
+    def number(self, value, kind, word):
+        """Refuses what is no number where C wants one, which cffi would say without the argument's name."""
+        try:
+            ffi.new(f"{kind.cname} *", [] if value is None else value)  # None would be no initial value
+        except (TypeError, OverflowError) as error:
+            raise type(error)(f"{self.place()}: {word!r} is {value!r}: {error}") from error
 
     def one(self, kind, word, constant, given, members):
         state = self.state
@@ -352,14 +394,16 @@ class _Arguments:
         elif word == "size" and self.full.endswith("_sized"):
             self.values.append(ffi.sizeof(self.outputs[-1]))
         elif constant and _is_struct(kind) and word == "def" and not (given and isinstance(given[0], dict)):
-            self.values.append(state.struct(kind.item, dict(members)))
+            self.values.append(state.struct(kind.item, dict(members), f"{self.place()} has no keyword"))
             members.clear()
         elif word == "count" and kind.cname == "int64_t *" and ("capacity" in state.lengths):
             self.count = len(self.values)  # how many there are stands before the arrays
             self.output(_output(kind))
-        elif given:
+        elif given and not self.returns(given[0], kind, word, constant):
             value = given.pop(0)
-            self.values.append(state.to_c(value, kind, constant))
+            self.values.append(self.convert(value, kind, word, constant))
+            if kind.kind == "primitive":
+                self.number(value, kind, word)
             state.measure(f"mps_{self.name}", word, kind, value)
             state.lengths[word] = value
         elif word == "capacity":
@@ -374,7 +418,7 @@ class _Arguments:
         else:
             made = None if constant else _output(kind)
             if made is None:
-                raise TypeError(f"{self.name}() lacks {word!r}: its arguments are {signature(self.name)}")
+                self.refuse(f"lacks {word!r}")
             self.output(made)
 
     def output(self, made):
@@ -466,14 +510,14 @@ class _Words:
         return lambda number: self.owner.lengths.get(number, 1)
 
 
-def signature(name):
-    """The arguments of mps_`name` as the C header has them."""
-    full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
-    kinds = ffi.typeof(getattr(library, full)).args
-    pairs = zip(kinds, _cdef.PARAMETERS[full])
-    return "(" + ", ".join(("const " if p.startswith("const ") else "") +
-                           f"{k.cname} {p.removeprefix('const ')}"
-                           for k, p in pairs if p != "size") + ")"
+def signature(name, word):
+    """The arguments of mps_`name` as a call of Python has them, with their types; `word` is what it is called there."""
+    _, arguments, optional, keywords, _ = _docs.FUNCTIONS[name]
+    shown = [f"{argument}: {kind}{' = None' if k >= len(arguments) - optional else ''}"
+             for k, (argument, kind) in enumerate(arguments)]
+    if keywords:
+        shown.append("**definition")
+    return f"{word}({', '.join(shown)})"
 
 
 def returns_status(name):
@@ -489,7 +533,15 @@ def function_or_constant(name):
             continue
         if not callable(found):
             return found
-        return lambda *values: to_python(found(*values))
+
+        def called(*values):
+            kinds = ffi.typeof(found).args
+            if len(values) != len(kinds):
+                raise TypeError(f"{name}() takes {len(kinds)} arguments, and was given {len(values)}: "
+                                f"{signature(name, name)}")
+            return to_python(found(*values))
+
+        return called
     raise AttributeError(f"libmps has no {name!r}")
 
 

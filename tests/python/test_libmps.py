@@ -161,14 +161,25 @@ class Errors(unittest.TestCase):
     def test_wrong_words(self):
         context = mps.Context()
         sand = block(context)
-        with self.assertRaisesRegex(TypeError, "mps_mpm_def has no member 'cel': it has geometry"):
-            falling(context, sand, cel=0.2)
-        with self.assertRaisesRegex(TypeError, "lacks 'material'"):
-            context.mpm_create(sand)
-        with self.assertRaisesRegex(TypeError, r"\[1\] is no mps_material"):
-            context.mpm_create(sand, [1], cell=0.2)
-        with self.assertRaisesRegex(TypeError, "too many arguments"):
-            sand.set("density", 0, 1.0, 2.0)
+        def refused(start, function, *values, **members):
+            with self.assertRaisesRegex(TypeError, "^" + re.escape(start)):
+                function(*values, **members)
+
+        call = "Context.mpm_create()"
+        refused(call + " has no keyword 'cel' (is it 'cell'?): it has geometry, ", falling, context, sand, cel=0.2)
+        refused(call + " lacks 'material': mpm_create(particles: Particles | None, material: Material | None, **definition)",
+                context.mpm_create, sand)
+        refused(call + ": 'material' is [1]: [1] is no Material", context.mpm_create, sand, [1], cell=0.2)
+        refused("Particles.set() has too many arguments, 2.0 is one: set(name: ", sand.set, "density", 0, 1.0, 2.0)
+        refused("Particles.fill_box() has too many arguments, 3 is one: fill_box(lo: ArrayLike, hi: ArrayLike)",
+                sand.fill_box, [0, 0], [1, 1], 3)
+        refused("Particles.set(): 'value' is 'x': ", sand.set, "density", 0, "x")
+        refused("Particles.set(): 'value' is None: ", sand.set, "density", 0, None)
+        refused("Particles.remove(): 'count' is [1]: ", sand.remove, [1])
+        refused("Particles.count() takes no keyword, and was given only: count()", sand.count, only=1)
+        refused("'layers' is [{'thicknes': 2}]: row 0 has no member 'thicknes' (is it 'thickness'?): it has thickness, ",
+                sand.set_geostatic, layers=[{"thicknes": 2}])
+        refused("status_text() takes 1 arguments, and was given 0: status_text(status: int)", mps.status_text)
         with self.assertRaisesRegex(AttributeError, "mpm of libmps has no 'stepp'"):
             falling(context, sand).stepp
         with self.assertRaises(AttributeError):
@@ -563,9 +574,8 @@ class Whole(unittest.TestCase):
             function = getattr(mps.library, name)
             self.assertEqual(len(ffi.typeof(function).args), len(_cdef.PARAMETERS[name]), name)
         self.assertGreater(len(_cdef.PARAMETERS), 200)
-        self.assertEqual(signature("particles_set_geostatic"),
-                         "(mps_particles * particles, const mps_geostatic_def * def)")
-        self.assertEqual(signature("mpm_step"), "(mps_mpm * mpm, int64_t count)")
+        self.assertEqual(signature("particles_set_geostatic", "set_geostatic"), "set_geostatic(**definition)")
+        self.assertEqual(signature("mpm_step", "step"), "step(count: int)")
 
     def test_every_array_has_a_length(self):
         """Pointers to numbers in the headers: one result, or an array whose length is known."""

@@ -3,6 +3,7 @@
  * signal; a body whose mass is in the other code moves as a free body; repeated windows leave no
  * trace, bit for bit. SPDX-License-Identifier: BSD-3-Clause */
 #include "mock.h"
+#include "precice/block.h"
 #include "precice/rigid.h"
 #include "precice/wall.h"
 #include "test_common.h"
@@ -169,9 +170,8 @@ enum { FALL = 600 }; /* most windows */
 
 static double step_of_soil = 5e-4; /* s, and of the window */
 static int falls = 300;            /* windows */
-static const double mass = 480.0, inertia = 480.0 * 0.13 / 12.0;
-static const double start[2] = {0.8, 0.6}; /* m: its right third has no ground below */
-static const double corner[8] = {0.65, 0.5, 0.95, 0.5, 0.95, 0.7, 0.65, 0.7};
+static const double mass = BLOCK_BOX_MASS, inertia = BLOCK_BOX_INERTIA;
+static const double start[2] = {BLOCK_BOX_X, BLOCK_BOX_Y};
 
 /* Its motion in the other code, and the force that it has received. */
 typedef struct faller {
@@ -183,7 +183,7 @@ typedef struct faller {
 } faller;
 
 static void corner_now(const faller *f, int k, double *x) {
-  const double p = corner[2 * k] - start[0], q = corner[2 * k + 1] - start[1];
+  const double p = block_corner[2 * k] - start[0], q = block_corner[2 * k + 1] - start[1];
   x[0] = start[0] + f->d[0] + cos(f->angle) * p - sin(f->angle) * q;
   x[1] = start[1] + f->d[1] + sin(f->angle) * p + cos(f->angle) * q;
 }
@@ -232,45 +232,22 @@ static bool note_body(void *user, mps_mpm *mpm) {
   return true;
 }
 
-/* A body of 480 kg falls onto the edge of an elastic block and tilts; free, or by a coupling. */
+/* The box falls onto the edge of the block and tilts; free, or by a coupling. */
 static faller run_fall(int repetitions) {
-  static const double lo[2] = {0.0, 0.0}, hi[2] = {0.85, 0.5};
   app a;
-  mps_particles *set = NULL;
-  mps_material *law = NULL;
-  mps_mpm *mpm = NULL;
-  mps_particles_def particles = mps_particles_defaults();
-  mps_mpm_def def = mps_mpm_defaults();
-  mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
-  mps_body_def body = mps_body_defaults();
-  mps_contact_def contact = mps_contact_defaults();
+  block b;
   participant_result result;
   assert_true(app_start(&a, "test", 1));
   faller f = {.a = &a};
-  particles.spacing = 0.025;
-  def.cell = 0.05, def.dt = step_of_soil, def.gravity[1] = -9.81;
-  def.lower[0] = def.lower[1] = 0.0;
-  mps_assert_ok(a.context, mps_particles_create(a.context, &particles, &set));
-  mps_assert_ok(a.context, mps_particles_fill_box(set, lo, hi, NULL));
-  mps_assert_ok(a.context, mps_particles_set(set, "density", 0, 1600.0));
-  mps_assert_ok(a.context, mps_material_create_linear_elastic(a.context, 1e6, 0.3, &law));
-  mps_assert_ok(a.context, mps_mpm_create(a.context, set, law, &def, &mpm));
-  mps_assert_ok(a.context, mps_mpm_set_boundary(mpm, 2, &side)); /* the floor is held */
-  if (repetitions == 0) {
-    body.motion = MPS_BODY_MOTION_FREE;
-    body.mass = mass, body.inertia[2] = inertia, body.gravity[1] = -9.81;
-  }
-  for (int c = 0; c < 2; c++) body.position[c] = start[c];
-  contact.friction = 0.3;
-  mps_assert_ok(a.context, mps_body_create_box(a.context, &body, 0.3, 0.2, &f.body));
-  mps_assert_ok(a.context, mps_mpm_add_contact(mpm, f.body, &contact, NULL));
+  assert_true(block_make(&a, step_of_soil, repetitions == 0, &b));
+  f.body = b.box;
   const rigid_def coupling = {.config = PRECICE_CONFIG,
                               .name = "Solid",
                               .mesh = "Solid-Mesh",
                               .displacement = "Displacement",
                               .force = "Force",
                               .count = 4,
-                              .x = corner,
+                              .x = block_corner,
                               .dt = 1.0,
                               .each = note_body,
                               .user = &f};
@@ -281,19 +258,16 @@ static faller run_fall(int repetitions) {
                     .take = receive,
                     .user = &f};
   if (repetitions > 0) {
-    assert_true(rigid_run(&a, mpm, f.body, &coupling, &result));
+    assert_true(rigid_run(&a, b.soil, b.box, &coupling, &result));
     if (mock_was.wrong) fail_msg("preCICE refuses: %s", mock_was.wrong);
     assert_int_equal(result.windows, falls);
     assert_int_equal(result.repeats, falls * (repetitions - 1));
   } else
     for (int k = 0; k < falls; k++) {
-      mps_assert_ok(a.context, mps_mpm_step(mpm, 1));
-      assert_true(note_body(&f, mpm));
+      mps_assert_ok(a.context, mps_mpm_step(b.soil, 1));
+      assert_true(note_body(&f, b.soil));
     }
-  mps_mpm_destroy(&mpm);
-  mps_body_destroy(&f.body);
-  mps_material_destroy(&law);
-  mps_particles_destroy(&set);
+  block_free(&b);
   mps_context_destroy(&a.context);
   return f;
 }
@@ -361,7 +335,7 @@ static void deformed_bodies_are_refused(void **state) {
                         .displacement = "Displacement",
                         .force = "Force",
                         .count = 4,
-                        .x = corner,
+                        .x = block_corner,
                         .dt = 1.0};
   mock = (mock_def){.window = step_of_soil,
                     .windows = 3,

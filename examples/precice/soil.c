@@ -1,0 +1,114 @@
+/* soil.c - soil under a rigid box whose mass is in another code, as a participant of a preCICE
+ * coupling (rigid.h). With --free the box has its mass here and nothing is coupled: what the
+ * coupling is compared with. SPDX-License-Identifier: BSD-3-Clause */
+#include "common/options.h"
+#include "common/output.h"
+#include "precice/block.h"
+#include "precice/rigid.h"
+
+#include <stdio.h>
+
+typedef struct settings {
+  rigid_def coupling;
+  bool free;
+  double step, duration; /* s: of the soil; of --free */
+  int64_t threads;
+  const char *out;
+} settings;
+
+typedef struct records {
+  app *a;
+  mps_body *box;
+  output table;
+  double last[3]; /* m, m, rad: displacement and angle */
+} records;
+
+static const char purpose[] =
+    "An elastic block of soil under a rigid box as a participant of a preCICE coupling (version "
+    "3): another code has\n"
+    "the mass of the box, gives the displacements of its corners and receives the forces of the "
+    "soil on them.";
+
+static int parse(settings *s, int argc, char **argv) {
+  *s = (settings){.coupling = {.config = "soil-config.xml",
+                               .name = "Soil",
+                               .mesh = "Soil-Mesh",
+                               .displacement = "Displacement",
+                               .force = "Force",
+                               .count = 4,
+                               .x = block_corner,
+                               .dt = 1.0},
+                  .step = 5e-4,
+                  .duration = 0.15,
+                  .out = "out/precice-soil"};
+  option table[] = {
+      OPTION_HEADING("Soil"),
+      OPTION_NUMBER("step", "s", OPTION_ABOVE_TO(0.0, 1e-3), &s->step, "time step of the soil"),
+      OPTION_FLAG("free", &s->free, "the box falls by itself, without a coupling"),
+      OPTION_NUMBER("duration", "s", OPTION_ABOVE_TO(0.0, 10.0), &s->duration, "of --free"),
+      OPTION_HEADING("Coupling"),
+      OPTION_TEXT("config", "FILE", &s->coupling.config, "preCICE's configuration"),
+      OPTION_TEXT("participant", "NAME", &s->coupling.name, "name of this participant in it;"),
+      OPTION_TEXT("mesh", "NAME", &s->coupling.mesh, "name of its mesh;"),
+      OPTION_TEXT("displacement", "NAME", &s->coupling.displacement,
+                  "name of the displacements that are read;"),
+      OPTION_TEXT("force", "NAME", &s->coupling.force, "name of the forces that are written;"),
+      OPTION_HEADING("Running"),
+      OPTION_THREADS(&s->threads),
+      OPTION_OUT(&s->out),
+      {0}};
+  const options_program program = {"precice-soil", purpose, table};
+  return options_parse(&program, argc, argv);
+}
+
+static bool each(void *user, mps_mpm *soil) {
+  records *r = user;
+  mps_body_state state;
+  if (!app_check(r->a, mps_body_get_state(r->box, &state))) return false;
+  r->last[0] = state.position[0] - BLOCK_BOX_X, r->last[1] = state.position[1] - BLOCK_BOX_Y;
+  r->last[2] = state.rotation[2];
+  const double row[4] = {mps_mpm_time(soil), r->last[0], r->last[1], r->last[2]};
+  csv_row(&r->table, 4, row);
+  return true;
+}
+
+/* The box with its own mass, a row a step. */
+static bool fall(app *a, const settings *s, records *r, mps_mpm *soil) {
+  bool good = true;
+  while (good && mps_mpm_time(soil) < s->duration - 0.5 * s->step)
+    good = app_check(a, mps_mpm_step(soil, 1)) && each(r, soil);
+  return good;
+}
+
+static bool run(app *a, settings *s) {
+  block b = {0};
+  records r = {.a = a};
+  participant_result result = {0};
+  bool good = output_directory(a, s->out) && block_make(a, s->step, s->free, &b) &&
+              output_open(&r.table, a, s->out, "box.csv");
+  if (good) {
+    r.box = b.box;
+    csv_header(&r.table, "t_s,x_m,y_m,angle_rad");
+    s->coupling.each = each, s->coupling.user = &r;
+    good = s->free ? fall(a, s, &r, b.soil) : rigid_run(a, b.soil, b.box, &s->coupling, &result);
+    good = output_close(&r.table) && good;
+  }
+  if (good) {
+    app_tell_results(a, s->out);
+    printf("%lld time windows, %lld steps, %lld of them repeated; the box at the end: %.6g m, "
+           "%.6g m, %.6g rad\n",
+           (long long)result.windows, (long long)result.steps, (long long)result.repeats, r.last[0],
+           r.last[1], r.last[2]);
+  }
+  block_free(&b);
+  return good;
+}
+
+int main(int argc, char **argv) {
+  settings s;
+  app a;
+  const int code = parse(&s, argc, argv);
+  if (code >= 0) return code;
+  if (!app_start(&a, "precice-soil", s.threads)) return app_finish(&a, APP_FAILED);
+  return app_finish(&a, run(&a, &s) ? APP_OK : APP_FAILED);
+}
