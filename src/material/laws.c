@@ -8,6 +8,7 @@
  * products with their reciprocals: in a vector a division is as dear as ten products.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/symmetric.h"
+#include "small_strain/layers.h"
 #include "tensor.h"
 
 #define CONCAT_(a, b) a##b
