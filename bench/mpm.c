@@ -8,6 +8,7 @@
 
 #include <mps/mpm.h>
 #include <mps/pore_water.h>
+#include <mps/soil.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -99,10 +100,13 @@ typedef enum kind {
   DRUCKER_PRAGER,
   UNDRAINED,
   SEEPAGE,
+  CAM_CLAY,
+  SMALL_STRAIN,
   KINDS
 } kind;
-static const char *const kind_name[KINDS] = {"elastic",        "two",       "mixed",  "body",
-                                             "drucker-prager", "undrained", "seepage"};
+static const char *const kind_name[KINDS] = {"elastic",   "two",     "mixed",    "body",
+                                             "drucker-prager", "undrained", "seepage",
+                                             "cam-clay",  "small-strain"};
 
 /* In the plane the body is that of MIXED. */
 static int is_there(const options *o, int dim, kind k) {
@@ -118,12 +122,23 @@ typedef struct contender {
   double best;  /* s a particle-step */
 } contender;
 
-/* Drucker-Prager of the waves' order of stress, so that particles yield in part. */
+#define CONFINED 100e3 /* Pa: first pressure of Cam-Clay, which is as stiff as YOUNG then */
+
+/* Strengths of the waves' order of stress, so that particles yield in part. */
 static mps_material *make_material(mps_context *context, kind k) {
   mps_material *material = NULL;
   mps_material_drucker_prager_def cone = mps_material_drucker_prager_defaults();
   cone.young = YOUNG, cone.poisson = POISSON, cone.friction = 0.5, cone.cohesion = 500.0;
-  if (k == DRUCKER_PRAGER)
+  mps_material_cam_clay_def clay = mps_material_cam_clay_defaults();
+  clay.critical_slope = 0.92, clay.compression = 0.12, clay.swelling = 0.0288;
+  clay.void_ratio = 1.4, clay.preconsolidation = CONFINED;
+  mps_material_small_strain_def small = mps_material_small_strain_defaults();
+  small.shear_modulus = 0.5 * YOUNG / (1.0 + POISSON), small.reference_strain = 1e-4;
+  if (k == CAM_CLAY)
+    check(context, mps_material_create_cam_clay(context, &clay, &material), "material");
+  else if (k == SMALL_STRAIN)
+    check(context, mps_material_create_small_strain(context, &small, &material), "material");
+  else if (k == DRUCKER_PRAGER)
     check(context, mps_material_create_drucker_prager(context, &cone, &material), "material");
   else
     check(context, mps_material_create_linear_elastic(context, YOUNG, POISSON, &material),
@@ -155,6 +170,10 @@ static void fill(contender *c, int dim, kind k, int64_t side) {
     check(c->context, mps_particles_fill_box(c->particles, lo, hi, NULL), "fill");
   check(c->context, mps_particles_set(c->particles, "density", 0, DENSITY), "density");
   check(c->context, mps_particles_add_field(c->particles, "velocity", 0), "velocity");
+  if (k == CAM_CLAY)
+    check(c->context, mps_particles_add_field(c->particles, "stress", 0), "stress");
+  for (int d = 0; d < 3 && k == CAM_CLAY; d++)
+    check(c->context, mps_particles_set(c->particles, "stress", d, -CONFINED), "stress");
   mps_view x;
   mps_edit v;
   check(c->context, mps_particles_view(c->particles, "position", &x), "position");
@@ -347,8 +366,8 @@ int main(int argc, char **argv) {
     fprintf(
         stderr,
         "usage: bench-mpm [--dim 2|3] [--spline 2|3] [--rounds N] [--particles N]\n"
-        "    [--only elastic|two|mixed|body|drucker-prager|undrained|seepage] [--instruction-level "
-        "0|1|3|4]\n"
+        "    [--only elastic|two|mixed|body|drucker-prager|undrained|seepage|cam-clay|small-strain]\n"
+        "    [--instruction-level 0|1|3|4]\n"
         "N particles, 1e3 to 2e7; by default 1e4, 1e5 and 1e6.\n"
         "Other work on the machine disturbs two threads most: OMP_WAIT_POLICY=passive helps.\n");
     return 2;
@@ -359,13 +378,12 @@ int main(int argc, char **argv) {
   printf(
       "# minima of %d rounds, ns a particle-step of processor time, for `two` threads of the wall\n"
       "# clock; mixed: walls and a body in contact (3D: a floor); body: a cylinder on the block;\n"
-      "# d-p: Drucker-Prager; undr, seep: pore water undrained and flowing; memory in bytes: "
-      "fields a\n"
-      "# particle, grid a particle, grid a node\n"
+      "# d-p: Drucker-Prager; undr, seep: pore water undrained and flowing; clay: Cam-Clay;\n"
+      "# smal: small strain; memory in bytes: fields a particle, grid a particle, grid a node\n"
       "# ns, then ratios to the anchor, then memory\n"
       "#dim spline particles  anchor elastic    two    mixed    body     d-p    undr    seep "
-      "elasti    "
-      "two  mixed   body    d-p   undr   seep fields   grid    node\n",
+      "   clay    smal elasti    two  mixed   body    d-p   undr   seep   clay   smal fields   grid    "
+      "node\n",
       o.rounds);
   const int64_t sizes[] = {10000, 100000, 1000000};
   for (int dim = 2; dim <= 3; dim++)

@@ -20,6 +20,7 @@ int main(int argc, char **argv) {
                             .strain = 0.2,
                             .rate = 1e-6,
                             .steps = 1000,
+                            .cycles = 1,
                             .threads = 1,
                             .p0 = 100e3,
                             .k0 = 1.0,
@@ -43,20 +44,26 @@ int main(int argc, char **argv) {
                             .e0 = NAN,
                             .ocr = 1.0,
                             .shear_modulus = NAN,
+                            .reference_strain = 1e-3,
+                            .curvature = 1.0,
+                            .strength = NAN,
                             .out = "out/element"}};
   settings *s = &x.s;
   option table[] = {
       OPTION_HEADING("Path"),
       OPTION_CHOICE("path", ELEMENT_PATHS, &s->path,
                     "isotropic, oedometer, triaxial undrained and drained, plane strain, triaxial "
-                    "extension (both undrained), simple shear"),
+                    "extension (both undrained), simple shear, and that to and fro"),
       OPTION_TEXT("path-file", "FILE", &s->path_file,
                   "CSV of stages instead: increments of strain exx, eyy, ezz, gxy, gzx, gyz or of "
                   "stress sxx, syy, szz, sxy, szx, syz (Pa), tension positive, and steps; an empty "
                   "cell is no strain"),
       OPTION_NUMBER("strain", "1", OPTION_ABOVE_TO(0.0, 10.0), &s->strain,
-                    "logarithmic, at the end: axial, of the volume (iso), or gamma (shear)"),
-      OPTION_INTEGER("steps", "N", OPTION_FROM_TO(1.0, 1e6), &s->steps, "steps of the path"),
+                    "logarithmic, at the end: axial, of the volume (iso), gamma (shear), or its amplitude "
+                    "(cyclic)"),
+      OPTION_INTEGER("steps", "N", OPTION_FROM_TO(1.0, 1e6), &s->steps,
+                     "steps of the path, or of a loop of the cyclic one"),
+      OPTION_INTEGER("cycles", "N", OPTION_FROM_TO(1.0, 400.0), &s->cycles, "cyclic: loops"),
       OPTION_NUMBER("strain-rate", "1/s", OPTION_FROM_TO(1e-12, 1e6), &s->rate,
                     "rate of the largest strain, for laws that know time"),
       OPTION_NUMBER("p0", "Pa", OPTION_FROM_TO(0.0, 1e11), &s->p0,
@@ -64,7 +71,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("k0", "1", OPTION_FROM_TO(0.1, 10.0), &s->k0,
                     "first horizontal over vertical effective stress"),
       OPTION_HEADING("Law"),
-      OPTION_CHOICE("law", ELEMENT_LAWS, &s->law, "law; mcc: modified Cam-Clay"),
+      OPTION_CHOICE("law", ELEMENT_LAWS, &s->law, "law; mcc: modified Cam-Clay; smallstrain: Hardin and Drnevich"),
       OPTION_NUMBER("M", "1", OPTION_FROM_TO(0.05, 2.9), &s->M, "mcc: critical q/p in compression"),
       OPTION_NUMBER("lambda", "1", OPTION_FROM_TO(1e-4, 5.0), &s->lambda,
                     "mcc: slope of virgin compression in e - ln p"),
@@ -75,7 +82,15 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("ocr", "1", OPTION_FROM_TO(1.0, 1000.0), &s->ocr,
                     "mcc: size of the yield surface over that through the first stress"),
       OPTION_NUMBER("shear-modulus", "Pa", OPTION_MODULUS, &s->shear_modulus,
-                    "mcc: constant G; default: by Poisson's ratio"),
+                    "mcc: constant G, default by Poisson's ratio; smallstrain: G at zero strain, default "
+                    "by Young's modulus"),
+      OPTION_NUMBER("reference-strain", "1", OPTION_FROM_TO(1e-7, 1.0), &s->reference_strain,
+                    "smallstrain: gamma at which half of G is left"),
+      OPTION_NUMBER("curvature", "1", OPTION_FROM_TO(0.5, 1.0), &s->curvature,
+                    "smallstrain: exponent of the backbone"),
+      OPTION_NUMBER("strength", "Pa", OPTION_STRENGTH, &s->strength,
+                    "smallstrain: largest sqrt(J2); default, with curvature 1: that of the backbone"),
+
       OPTION_FLAG("lode", &s->lode, "mcc: M follows the Lode angle"),
       COMMON_NUMBER("young", &s->young, NULL),
       COMMON_NUMBER("poisson", &s->poisson, "default 0.3, of mcc 0.25"),

@@ -8,7 +8,7 @@
 #include <mps/domain.h>
 #include <mps/solver.h>
 
-#define RESULT_FIELDS 32
+#define RESULT_FIELDS 96
 #define RESULT_OTHERS 160
 
 typedef struct result {

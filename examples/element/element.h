@@ -9,16 +9,18 @@
 
 #include <mps/soil.h>
 
-enum { ELASTIC, NEO_HOOKEAN, VON_MISES, TRESCA, DRUCKER_PRAGER, MOHR_COULOMB, NEWTONIAN, CAM_CLAY };
-#define ELEMENT_LAWS "elastic|neohookean|vonmises|tresca|druckerprager|mohrcoulomb|newtonian|mcc"
-enum { ISO, OEDOMETER, CU, CD, PS_UNDRAINED, EXTENSION, SHEAR, FROM_FILE };
-#define ELEMENT_PATHS "iso|oedometer|cu|cd|ps-undrained|extension|shear"
+enum { ELASTIC, NEO_HOOKEAN, VON_MISES, TRESCA, DRUCKER_PRAGER, MOHR_COULOMB, NEWTONIAN, CAM_CLAY,
+       SMALL_STRAIN, LAWS };
+#define ELEMENT_LAWS                                                                               \
+  "elastic|neohookean|vonmises|tresca|druckerprager|mohrcoulomb|newtonian|mcc|smallstrain"
+enum { ISO, OEDOMETER, CU, CD, PS_UNDRAINED, EXTENSION, SHEAR, CYCLIC, FROM_FILE };
+#define ELEMENT_PATHS "iso|oedometer|cu|cd|ps-undrained|extension|shear|cyclic"
 
 typedef struct settings {
   int law, path;
   const char *path_file; /* NULL: `path` */
   double strain, rate;   /* 1, 1/s */
-  int64_t steps, threads;
+  int64_t steps, cycles, threads;
   double p0, k0;                      /* Pa, 1: the first stress */
   double young, poisson, nu;          /* nu: another name of poisson; NaN: not given */
   double cohesion, phi, psi, tension; /* Pa, degrees, degrees, Pa */
@@ -30,6 +32,7 @@ typedef struct settings {
   double bulk, viscosity;                           /* Pa, Pa s */
   double M, lambda, kappa, e0, ocr, shear_modulus;  /* e0: NaN, there is none */
   bool lode;
+  double reference_strain, curvature, strength; /* small strain: 1, 1, Pa */
   const char *out;
 } settings;
 
@@ -75,6 +78,8 @@ bool element_drive(element *x);
 
 /* path.csv, summary.json, pictures. `done`: the path has come to its end. */
 bool element_results(element *x, bool done);
+/* Shear modulus and damping ratio of the last loop of a cyclic path; false: there is none. */
+bool element_loop(const element *x, double *modulus, double *damping);
 /* q at which the path ends under shear, by theory; NaN: none. */
 double element_limit(const element *x);
 

@@ -12,43 +12,47 @@
 /* Options that only some laws read, each with a letter for every law, in their order. */
 static const struct {
   const char *option, *laws;
-} uses[] = {{"young", "ENVTDM  "},
-            {"poisson", "ENVTDM C"},
-            {"nu", "ENVTDM C"},
-            {"cohesion", "  VTDM  "},
-            {"phi", "    DM  "},
-            {"psi", "    DM  "},
-            {"tension", "   TDM  "},
-            {"cone", "    D   "},
-            {"yield", "  V     "},
-            {"hardening", "  V     "},
-            {"residual", "  VT    "},
-            {"residual-phi", "     M  "},
-            {"residual-cohesion", "     M  "},
-            {"slip", "  VT M  "},
-            {"band", "  VT M  "},
-            {"linear", "   T M  "},
-            {"rate-factor", "  VT M  "},
-            {"rate-reference", "  VT M  "},
-            {"bulk", "      N "},
-            {"viscosity", "      N "},
-            {"M", "       C"},
-            {"lambda", "       C"},
-            {"kappa", "       C"},
-            {"ocr", "       C"},
-            {"shear-modulus", "       C"},
-            {"lode", "       C"},
-            {"p0", "E VTDM C"},
-            {"k0", "E VTDM C"}};
+} uses[] = {{"young", "ENVTDM  S"},
+            {"poisson", "ENVTDM CS"},
+            {"nu", "ENVTDM CS"},
+            {"cohesion", "  VTDM   "},
+            {"phi", "    DM   "},
+            {"psi", "    DM   "},
+            {"tension", "   TDM   "},
+            {"cone", "    D    "},
+            {"yield", "  V      "},
+            {"hardening", "  V      "},
+            {"residual", "  VT     "},
+            {"residual-phi", "     M   "},
+            {"residual-cohesion", "     M   "},
+            {"slip", "  VT M   "},
+            {"band", "  VT M   "},
+            {"linear", "   T M   "},
+            {"rate-factor", "  VT M   "},
+            {"rate-reference", "  VT M   "},
+            {"bulk", "      N  "},
+            {"viscosity", "      N  "},
+            {"M", "       C "},
+            {"lambda", "       C "},
+            {"kappa", "       C "},
+            {"ocr", "       C "},
+            {"shear-modulus", "       CS"},
+            {"lode", "       C "},
+            {"reference-strain", "        S"},
+            {"curvature", "        S"},
+            {"strength", "        S"},
+            {"p0", "E VTDM CS"},
+            {"k0", "E VTDM CS"}};
 
 static const char *check_uses(const settings *s, const option *table) {
   static char text[160];
   static const char *const names[] = {"elastic",       "neohookean",  "vonmises",  "tresca",
-                                      "druckerprager", "mohrcoulomb", "newtonian", "mcc"};
+                                      "druckerprager", "mohrcoulomb", "newtonian", "mcc",
+                                      "smallstrain"};
   for (size_t k = 0; k < sizeof uses / sizeof *uses; k++) {
     if (!options_given(table, uses[k].option) || uses[k].laws[s->law] != ' ') continue;
     char list[100] = "";
-    for (int law = 0; law < 8; law++)
+    for (int law = 0; law < LAWS; law++)
       if (uses[k].laws[law] != ' ')
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", list[0] ? ", " : "",
                  names[law]);
@@ -75,6 +79,7 @@ const char *element_settle(settings *s, const option *table) {
   if (s->law == TRESCA) s->phi = s->psi = 0.0;
   if (isnan(s->yield)) s->yield = ROOT3 * s->cohesion;
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (s->cycles > 1 && s->path != CYCLIC) return "--cycles is for --path cyclic";
   if (s->law == CAM_CLAY && !(s->kappa < s->lambda)) return "--kappa must be below --lambda";
   if (s->law == CAM_CLAY && s->p0 <= 0.0) return "--p0 must be above 0 for --law mcc";
   const bool softens = s->residual < 1.0 || !isnan(s->residual_phi) || !isnan(s->residual_cohesion);
@@ -98,6 +103,18 @@ static bool make_cam_clay(element *x) {
   const double vertical = 3.0 * s->p0 / (1.0 + 2.0 * s->k0), q = fabs(1.0 - s->k0) * vertical;
   d.preconsolidation = s->ocr * (s->p0 + q * q / (s->M * s->M * s->p0));
   return app_check(&x->a, mps_material_create_cam_clay(x->a.context, &d, &x->material));
+}
+
+static double small_shear(const settings *s) {
+  return isnan(s->shear_modulus) ? s->young / (2.0 * (1.0 + s->poisson)) : s->shear_modulus;
+}
+
+static bool make_small_strain(element *x) {
+  const settings *s = &x->s;
+  mps_material_small_strain_def d = mps_material_small_strain_defaults();
+  d.shear_modulus = small_shear(s), d.poisson = s->poisson;
+  d.reference_strain = s->reference_strain, d.curvature = s->curvature, d.strength = s->strength;
+  return app_check(&x->a, mps_material_create_small_strain(x->a.context, &d, &x->material));
 }
 
 static bool make_von_mises(element *x) {
@@ -153,6 +170,8 @@ bool element_make_law(element *x) {
     return app_check(&x->a, mps_material_create_newtonian(c, &water, &x->material));
   case CAM_CLAY:
     return make_cam_clay(x);
+  case SMALL_STRAIN:
+    return make_small_strain(x);
   default:
     return make_mohr_coulomb(x);
   }
@@ -175,7 +194,7 @@ bool element_start(element *x) {
   x->plastic_at = column_of(x, "plastic_strain");
   const double vertical = 3.0 * s->p0 / (1.0 + 2.0 * s->k0);
   /* the axis of compression: y in plane strain and shear, else z */
-  const int up = s->path == PS_UNDRAINED || s->path == SHEAR ? 1 : 2;
+  const int up = s->path == PS_UNDRAINED || s->path == SHEAR || s->path == CYCLIC ? 1 : 2;
   for (int c = 0; c < 3; c++) x->point.stress[c] = c == up ? -vertical : -s->k0 * vertical;
   return true;
 }
@@ -216,6 +235,8 @@ double element_limit(const element *x) {
                     isnan(s->residual_phi) && isnan(s->residual_cohesion);
   if (s->path_file) return NAN;
   if (s->law == CAM_CLAY) return limit_of_clay(s);
+  if (s->law == SMALL_STRAIN && s->path >= CU)
+    return ROOT3 * (isnan(s->strength) ? s->reference_strain * small_shear(s) : s->strength);
   if (!firm) return NAN;
   if (s->law == VON_MISES && s->path >= CU) return s->yield;
   if (s->law == TRESCA && sheared) return 2.0 * s->cohesion;

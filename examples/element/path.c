@@ -10,7 +10,20 @@
 
 /* ---- by name --------------------------------------------------------------------------------- */
 
-static void named_path(const settings *s, stage *g) {
+/* To one side, then loops to the other and back, a quarter of the steps each way from the middle. */
+static int cyclic_path(const settings *s, stage *g) {
+  const int64_t quarter = (s->steps + 3) / 4;
+  int n = 0;
+  g[n++] = (stage){.strain = {0.0, s->strain}, .steps = quarter};
+  for (int64_t k = 0; k < s->cycles; k++) {
+    g[n++] = (stage){.strain = {0.0, -2.0 * s->strain}, .steps = 2 * quarter};
+    g[n++] = (stage){.strain = {0.0, 2.0 * s->strain}, .steps = 2 * quarter};
+  }
+  return n;
+}
+
+/* Returns the number of stages. */
+static int named_path(const settings *s, stage *g) {
   const double e = s->strain;
   *g = (stage){.steps = s->steps};
   switch (s->path) {
@@ -33,9 +46,12 @@ static void named_path(const settings *s, stage *g) {
     g->strain[0] = e;
     g->strain[4] = -e;
     break;
+  case CYCLIC:
+    return cyclic_path(s, g);
   default:
     g->strain[1] = e;
   }
+  return 1;
 }
 
 /* ---- from a file ----------------------------------------------------------------------------- */
@@ -160,12 +176,12 @@ static bool read_path(element *x) {
 }
 
 bool element_make_path(element *x) {
-  x->stages = calloc(x->s.path_file ? STAGES : 1, sizeof *x->stages);
+  x->stages = calloc(STAGES, sizeof *x->stages);
   if (!x->stages) return app_no_memory(&x->a);
   if (x->s.path_file) {
     if (!read_path(x)) return false;
   } else {
-    named_path(&x->s, &x->stages[x->stage_count++]);
+    x->stage_count = named_path(&x->s, x->stages);
   }
   x->room = 1;
   for (int k = 0; k < x->stage_count; k++) x->room += x->stages[k].steps;
@@ -188,6 +204,7 @@ static double measure(const element *x) {
   case PS_UNDRAINED:
     return 0.0 - e[1];
   case SHEAR:
+  case CYCLIC:
     return e[3];
   default:
     return 0.0 - e[2];
@@ -199,7 +216,7 @@ static double measure(const element *x) {
 static double pore_pressure(const element *x) {
   const double *s = x->point.stress;
   if (x->s.path_file || x->s.path == ISO || x->s.path == OEDOMETER || x->s.path == CD) return 0.0;
-  const int held = x->s.path == SHEAR ? 1 : 0;
+  const int held = x->s.path == SHEAR || x->s.path == CYCLIC ? 1 : 0;
   return s[held] - (x->rows == 0 ? s[held] : x->table[0].stress[held]);
 }
 

@@ -9,7 +9,7 @@
 
 static const char *const law_names[] = {"linear elastic", "neo-Hookean",      "von Mises",
                                         "Tresca",         "Drucker-Prager",   "Mohr-Coulomb",
-                                        "Newtonian",      "modified Cam-Clay"};
+                                        "Newtonian",      "modified Cam-Clay", "small strain"};
 static const char *const path_names[] = {"isotropic compression",
                                          "oedometer",
                                          "undrained triaxial compression",
@@ -17,6 +17,7 @@ static const char *const path_names[] = {"isotropic compression",
                                          "undrained plane strain compression",
                                          "undrained triaxial extension",
                                          "simple shear",
+                                         "cyclic simple shear",
                                          "path of a file"};
 
 static const char *path_name(const settings *s) {
@@ -37,6 +38,23 @@ static bool write_path(element *x) {
     csv_row(&f, 16, cells);
   }
   return output_close(&f);
+}
+
+bool element_loop(const element *x, double *modulus, double *damping) {
+  if (x->s.path_file || x->s.path != CYCLIC) return false;
+  const int64_t length = x->stages[x->stage_count - 1].steps, first = x->rows - 1 - 2 * length;
+  if (first < 0) return false; /* the path has not come to its end */
+  double area = 0.0;
+  for (int64_t k = first; k < x->rows - 1; k++) {
+    const row *a = &x->table[k], *b = a + 1;
+    area += 0.5 * (a->stress[3] + b->stress[3]) * (b->strain - a->strain);
+  }
+  const row *top = &x->table[x->rows - 1], *bottom = &x->table[first + length];
+  const double tau = 0.5 * (top->stress[3] - bottom->stress[3]);
+  const double gamma = 0.5 * (top->strain - bottom->strain);
+  *modulus = tau / gamma;
+  *damping = area / (2.0 * 3.14159265358979323846 * tau * gamma);
+  return true;
 }
 
 static bool write_summary(element *x) {
@@ -61,6 +79,10 @@ static bool write_summary(element *x) {
   json_number(&f, "strain_at_peak", peak->strain);
   json_number(&f, "q_limit", element_limit(x));
   json_number(&f, "k0_normal", mps_material_normal_k0(x->material));
+  double modulus = NAN, damping = NAN;
+  (void)element_loop(x, &modulus, &damping);
+  json_number(&f, "secant_modulus", modulus);
+  json_number(&f, "damping_ratio", damping);
   json_end(&f);
   return output_close(&f);
 }
@@ -106,7 +128,7 @@ static bool draw_q_p(element *x) {
 static bool draw_q_strain(element *x) {
   static const char *const axes[] = {"volume strain (%)", "axial strain (%)", "axial strain (%)",
                                      "axial strain (%)",  "axial strain (%)", "axial extension (%)",
-                                     "shear strain (%)",  "axial strain (%)"};
+                                     "shear strain (%)",  "shear strain (%)", "axial strain (%)"};
   const double limit = element_limit(x);
   output f;
   if (!open_picture(x, &f, "q_strain", "Deviator stress and pore pressure")) return false;
@@ -122,6 +144,29 @@ static bool draw_q_strain(element *x) {
                 1e-3 * limit);
   output_text(&f, "\n");
   return plot_close(&f, x->s.out, "q_strain");
+}
+
+/* Shear stress against shear strain, and of the small-strain law its backbone. */
+static bool draw_loop(element *x) {
+  const settings *s = &x->s;
+  if (s->path_file || s->path != CYCLIC) return true;
+  output f;
+  if (!open_picture(x, &f, "loop", "Loops of shear stress and strain")) return false;
+  output_text(&f, "set xlabel 'shear strain (%%)'\nset ylabel 'shear stress (kPa)'\n"
+                  "set key right bottom opaque\nset zeroaxis\nset samples 400\n"
+                  "set xrange [%.9g:%.9g]\nset offsets 0, 0, graph 0.05, graph 0.05\nplot ",
+              -105.0 * s->strain, 105.0 * s->strain);
+  if (s->law == SMALL_STRAIN) {
+    const double g0 =
+        isnan(s->shear_modulus) ? s->young / (2.0 * (1.0 + s->poisson)) : s->shear_modulus;
+    output_text(&f,
+                "%.9g*x/(1 + (abs(x)/%.9g)**%.9g) dashtype '--' linecolor rgb '#c0392b' "
+                "title 'backbone', ",
+                1e-5 * g0, 100.0 * s->reference_strain, s->curvature);
+  }
+  output_text(&f, "'path.csv' every ::1 using (100*$1):($5/1000) with lines linewidth 2 linecolor "
+                  "rgb '#1f4e8c' title 'path'\n");
+  return plot_close(&f, s->out, "loop");
 }
 
 /* Tics 1, 2, 5 times the powers of ten of a range. */
@@ -176,7 +221,8 @@ static bool draw_e_p(element *x) {
 bool element_results(element *x, bool done) {
   app *a = &x->a;
   if (!done) a->outcome = "failed";
-  if (!write_path(x) || !write_summary(x) || !draw_q_p(x) || !draw_q_strain(x) || !draw_e_p(x))
+  if (!write_path(x) || !write_summary(x) || !draw_q_p(x) || !draw_q_strain(x) || !draw_e_p(x) ||
+      !draw_loop(x))
     return false;
   app_tell_results(a, x->s.out);
   const row *last = &x->table[x->rows - 1];
@@ -185,6 +231,9 @@ bool element_results(element *x, bool done) {
   if (last->u != 0.0) printf(", u %.6g kPa", 1e-3 * last->u);
   if (!isnan(last->void_ratio)) printf(", e %.6g", last->void_ratio);
   if (!isnan(last->pc)) printf(", pc %.6g kPa", 1e-3 * last->pc);
+  double modulus, damping;
+  if (element_loop(x, &modulus, &damping))
+    printf("; last loop: G %.6g MPa, damping ratio %.4f", 1e-6 * modulus, damping);
   if (!isnan(element_limit(x))) printf("; limit of q by theory %.6g kPa", 1e-3 * element_limit(x));
   printf("\n");
   return true;

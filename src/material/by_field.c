@@ -2,10 +2,8 @@
  * constants are scaled for one particle after the other. SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
-enum {
-  FACTORS = MPSI_FACTORS,
-  MOST = 8
-}; /* columns of history: of the factors, and in all at most */
+/* Columns of history: of the factors, and in all at most. */
+enum { FACTORS = MPSI_FACTORS, MOST = MPSI_SMALL_COLUMNS + MPSI_FACTORS };
 
 static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
   if (block->dim == 3) return MPSI_SPACE;
@@ -24,6 +22,10 @@ static void scale_law(mpsi_law *to, const mpsi_law *law, double stiff, double st
   to->apex = strength * law->apex, to->cut = strength * law->cut;
   to->cohesion = strength * law->cohesion, to->cohesion_last = strength * law->cohesion_last;
   to->given_cut = strength * law->given_cut;
+  for (int i = 0; i < MPSI_LAYERS; i++) {
+    to->layer_shear[i] = stiff * law->layer_shear[i];
+    to->layer_strength[i] = strength * law->layer_strength[i];
+  }
 }
 
 /* The block of its particle k alone. */

@@ -45,6 +45,12 @@ static const mps_material_cam_clay_def cam_clay_defaults = {.critical_slope = NA
                                                             .preconsolidation = NAN,
                                                             .least_pressure = NAN};
 
+static const mps_material_small_strain_def small_strain_defaults = {.shear_modulus = NAN,
+                                                                    .poisson = 0.3,
+                                                                    .reference_strain = NAN,
+                                                                    .curvature = 1.0,
+                                                                    .strength = NAN};
+
 #define DEF_INIT(name)                                                                             \
   mps_status mps_material_##name##_def_init(mps_material_##name##_def *def, size_t size) {         \
     return MPSI_DEF_INIT(mps_material_##name##_def, def, size, &name##_defaults);                  \
@@ -55,9 +61,10 @@ DEF_INIT(mohr_coulomb)
 DEF_INIT(newtonian)
 DEF_INIT(user)
 DEF_INIT(cam_clay)
+DEF_INIT(small_strain)
 
 /* A material of the library's own; its columns of history are fields of the table, one for all
- * laws.
+ * laws, but for those that only the small-strain law has.
  */
 static mps_status create(mps_context *context, const char *function, mpsi_law_kind kind,
                          const void *def, mps_material **out) {
@@ -73,7 +80,9 @@ static mps_status create(mps_context *context, const char *function, mpsi_law_ki
   material->wave_modulus = mpsi_law_wave_modulus(&law);
   for (int32_t c = 0; c < count; c++) {
     strcpy(material->history_names[c], type->columns[c]);
-    strcpy(material->history_fields[c], type->columns[c]);
+    const bool own = kind == MPSI_LAW_SMALL_STRAIN && c != MPSI_SMALL_STRAIN;
+    (void)snprintf(material->history_fields[c], sizeof material->history_fields[c], "%s%s%s",
+                   own ? type->name : "", own ? "." : "", type->columns[c]);
   }
   if (kind == MPSI_LAW_CAM_CLAY) {
     material->history_initial[MPSI_CLAY_PC] = law.first_pc;
@@ -118,6 +127,7 @@ CREATE(drucker_prager, MPSI_LAW_DRUCKER_PRAGER)
 CREATE(mohr_coulomb, MPSI_LAW_MOHR_COULOMB)
 CREATE(newtonian, MPSI_LAW_NEWTONIAN)
 CREATE(cam_clay, MPSI_LAW_CAM_CLAY)
+CREATE(small_strain, MPSI_LAW_SMALL_STRAIN)
 
 /* ---- factors of each particle ------------------------------------------------------------------
  */
@@ -133,10 +143,11 @@ mps_status mps_material_create_by_field(mps_context *context, const mps_material
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law was made from another context");
   const mpsi_law_kind kind = law->type->kind;
   if (law->by_field || (kind != MPSI_LAW_LINEAR_ELASTIC && kind != MPSI_LAW_VON_MISES &&
-                        kind != MPSI_LAW_DRUCKER_PRAGER && kind != MPSI_LAW_MOHR_COULOMB))
+                        kind != MPSI_LAW_DRUCKER_PRAGER && kind != MPSI_LAW_MOHR_COULOMB &&
+                        kind != MPSI_LAW_SMALL_STRAIN))
     return mpsi_fail(context, __func__, MPS_ERROR_UNSUPPORTED,
-                     "law: it is %s%s, must be linear_elastic, von_mises, drucker_prager or "
-                     "mohr_coulomb",
+                     "law: it is %s%s, must be linear_elastic, von_mises, drucker_prager, "
+                     "mohr_coulomb or small_strain",
                      law->name, law->by_field ? " by field already" : "");
   const int32_t columns = law->history_count;
   mps_material *m =

@@ -35,7 +35,9 @@
   X(USER,           user_loop,           NULL,             mpsi_no_columns, MPSI_KEPT_ALL,         \
     MPSI_LAW_READS_VOLUME | MPSI_LAW_MAY_REFUSE,  mpsi_define_user,           mpsi_user_moduli)    \
   X(CAM_CLAY,       cam_clay_loop,       "cam_clay",       mpsi_clay_columns, MPSI_KEPT_ALL,        \
-    MPSI_LAW_HAS_START,                           mpsi_define_cam_clay,       mpsi_cam_clay_moduli)
+    MPSI_LAW_HAS_START,                           mpsi_define_cam_clay,       mpsi_cam_clay_moduli)  \
+  X(SMALL_STRAIN,   small_strain_loop,   "small_strain",   mpsi_small_columns, MPSI_KEPT_UNDISSIPATED, \
+    0,                                            mpsi_define_small_strain,   NULL)
 /* clang-format on */
 
 typedef enum mpsi_law_kind {
@@ -74,16 +76,26 @@ typedef struct mpsi_law_type {
 
 extern const mpsi_law_type mpsi_law_types[]; /* by kind */
 extern const char *const mpsi_no_columns[],
-    *const mpsi_metal_columns[], *const mpsi_sand_columns[], *const mpsi_clay_columns[];
+    *const mpsi_metal_columns[], *const mpsi_sand_columns[], *const mpsi_clay_columns[],
+    *const mpsi_small_columns[];
 /* Columns of Cam-Clay. */
 enum { MPSI_CLAY_STRAIN, MPSI_CLAY_PC, MPSI_CLAY_VOID, MPSI_CLAY_GAP, MPSI_CLAY_COLUMNS };
+/* Columns of the small-strain law: two, and the deviators of its layers (xx, yy, xy, zx, yz). */
+enum {
+  MPSI_SMALL_STRAIN,
+  MPSI_SMALL_DISSIPATED,
+  MPSI_SMALL_FIRST,
+  MPSI_LAYERS = 10,
+  MPSI_LAYER_PARTS = 5,
+  MPSI_SMALL_COLUMNS = MPSI_SMALL_FIRST + MPSI_LAYERS * MPSI_LAYER_PARTS
+};
 
 /* The definitions of the laws that are given by two numbers. */
 typedef struct mpsi_elastic_def {
   double young, poisson;
 } mpsi_elastic_def;
 
-/* parameters.c; user.c; cam_clay/start.c; moduli.c */
+/* parameters.c; user.c; cam_clay/start.c; small_strain/backbone.c; moduli.c */
 mps_status mpsi_define_elastic(mps_context *context, const char *function, const void *def,
                                struct mpsi_law *law);
 mps_status mpsi_define_von_mises(mps_context *context, const char *function, const void *def,
@@ -100,6 +112,8 @@ mps_status mpsi_define_user(mps_context *context, const char *function, const vo
                             struct mpsi_law *law);
 mps_status mpsi_define_cam_clay(mps_context *context, const char *function, const void *def,
                                 struct mpsi_law *law);
+mps_status mpsi_define_small_strain(mps_context *context, const char *function, const void *def,
+                                    struct mpsi_law *law);
 void mpsi_user_moduli(const struct mpsi_law *law, const mps_material_block *block, double *moduli);
 void mpsi_cam_clay_moduli(const struct mpsi_law *law, const mps_material_block *block,
                           double *moduli);

@@ -7,7 +7,9 @@
  * that plasticity costs a square root and a division and never a branch. Divisions by constants are
  * products with their reciprocals: in a vector a division is as dear as ten products.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "cam_clay/clay_loop.h"
 #include "core/base/symmetric.h"
+#include "small_strain/layers.h"
 #include "tensor.h"
 
 #define CONCAT_(a, b) a##b
@@ -233,35 +235,6 @@ MPSI_INLINE mps_status mohr_coulomb_loop(const int geometry, const mpsi_law *law
       for (int32_t c = 0; c < components; c++) block->stress[c][k] = s[c];
     }
     volume_loop(geometry, block, begin, end, opened);
-  }
-  return MPS_OK;
-}
-
-/* The spin in the form of this geometry; the return, which iterates, particle by particle. */
-MPSI_INLINE mps_status cam_clay_loop(const int geometry, const mpsi_law *law,
-                                     const mps_material_block *block) {
-  const mpsi_law_columns columns = mpsi_columns_of(block);
-  double *const *h = block->history;
-  for (int64_t k = 0; k < block->count; k++) {
-    const mpsi_sym d = mpsi_strain(geometry, &columns, k, block->dt);
-    const mpsi_spin w = mpsi_spin_of(geometry, &columns, k, block->dt);
-    const mpsi_sym t = mpsi_turn(geometry, mpsi_stress(geometry, &columns, k), w);
-    const double strain[6] = {d.xx, d.yy, d.zz, d.xy, d.zx, d.yz};
-    double s[6] = {t.xx, t.yy, t.zz, t.xy, t.zx, t.yz};
-    mpsi_clay clay = {.strain = h[MPSI_CLAY_STRAIN][k],
-                      .pc = h[MPSI_CLAY_PC][k],
-                      .void_ratio = h[MPSI_CLAY_VOID][k],
-                      .gap = h[MPSI_CLAY_GAP][k],
-                      .volume = block->volume_ratio[k]};
-    block->flags[k] = mpsi_cam_clay_step(law, geometry == MPSI_SPACE ? 3 : 2, strain, s, &clay);
-    h[MPSI_CLAY_STRAIN][k] = clay.strain;
-    h[MPSI_CLAY_PC][k] = clay.pc;
-    h[MPSI_CLAY_VOID][k] = clay.void_ratio;
-    h[MPSI_CLAY_GAP][k] = clay.gap;
-    block->volume_ratio[k] = clay.volume;
-    mpsi_put_stress(
-        geometry, &columns, k,
-        (mpsi_sym){.xx = s[0], .yy = s[1], .zz = s[2], .xy = s[3], .zx = s[4], .yz = s[5]});
   }
   return MPS_OK;
 }

@@ -150,12 +150,16 @@ void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *
   const double settings[] = {
       l->tait,         l->no_tension,    l->turns_stress, l->needs_deformation, l->has_moduli,
       m->wave_modulus, m->history_count, l->softens,      l->softens_linearly,  l->moduli != NULL, m->by_field};
-  _Static_assert(sizeof constants == offsetof(mpsi_law, tait) - offsetof(mpsi_law, shear),
+  _Static_assert(sizeof constants == offsetof(mpsi_law, layer_shear) - offsetof(mpsi_law, shear),
                  "every constant of a law stands in the list");
   add(user, (double)m->type->kind);
   for (size_t k = 0; k < sizeof constants / sizeof *constants; k++) add(user, constants[k]);
   for (size_t k = 0; k < sizeof settings / sizeof *settings; k++) add(user, settings[k]);
   if (l->frictional) add(user, 1.0); /* files of laws without it stay valid */
+  for (int i = 0; i < MPSI_LAYERS && l->layer_shear[0] > 0.0; i++) { /* likewise */
+    add(user, l->layer_shear[i]);
+    add(user, l->layer_strength[i]);
+  }
   for (int32_t c = 0; c < m->history_count; c++) add(user, m->history_initial[c]);
   for (int32_t k = 0; k < m->owned_count; k++) add(user, m->owned_constants[k]);
 }

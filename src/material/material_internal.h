@@ -98,9 +98,12 @@ double mpsi_material_shear(const mps_material *material);
 typedef enum mpsi_kept {
   MPSI_KEPT_ALL,     /* elastic; and users' laws, where it is unknown */
   MPSI_KEPT_ELASTIC, /* change of the stress's energy by Hooke's law: elastic-plastic */
-  MPSI_KEPT_PRESSURE /* the mean stress times tr(d): fluids */
+  MPSI_KEPT_PRESSURE, /* the mean stress times tr(d): fluids */
+  MPSI_KEPT_UNDISSIPATED /* all but the growth of the column mpsi_material_dissipated, J/m3 */
 } mpsi_kept;
 mpsi_kept mpsi_material_kept(const mps_material *material);
+/* That column's index among those of such a law. */
+int32_t mpsi_material_dissipated(void);
 /* Pa s; 0 for all but fluids and users' laws. */
 double mpsi_material_viscosity(const mps_material *material);
 /* Calls `add` with every constant of the law, its kind first, in an order of its kind: two

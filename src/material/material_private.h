@@ -20,7 +20,7 @@ typedef enum mpsi_geometry_kind {
 /* The constants of a law, in the form of its loop. */
 typedef struct mpsi_law {
   bool has_moduli; /* shear and bulk are those of an elastic solid at zero strain */
-  /* from here to `viscosity` only doubles: mpsi_material_constants has each of them */
+  /* from here to `layer_strength` only doubles: mpsi_material_constants has each of them */
   double shear, bulk, lambda; /* Pa */
   double per_bulk;            /* 1/K */
   double yield, hardening;    /* von Mises, Pa */
@@ -39,6 +39,8 @@ typedef struct mpsi_law {
   double slope, compression, swelling, shear_ratio, lode, first_pc, first_void, least_pressure,
       log_least;
   double viscosity;                     /* Pa s */
+  /* Small strain: shear modulus and strength (sqrt(J2)) of each layer, Pa. */
+  double layer_shear[MPSI_LAYERS], layer_strength[MPSI_LAYERS];
   bool tait, no_tension;                /* fluid */
   bool turns_stress, needs_deformation, frictional; /* user */
   bool softens, softens_linearly;       /* or depends on the rate */

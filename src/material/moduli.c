@@ -76,4 +76,6 @@ double mpsi_material_rest_modulus(const mps_material *material) {
 
 double mpsi_material_shear(const mps_material *material) { return material->law.shear; }
 
+int32_t mpsi_material_dissipated(void) { return MPSI_SMALL_DISSIPATED; }
+
 mpsi_kept mpsi_material_kept(const mps_material *material) { return material->type->kept; }

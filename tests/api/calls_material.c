@@ -40,6 +40,7 @@ API_INIT(material_drucker_prager_def)
 API_INIT(material_mohr_coulomb_def)
 API_INIT(material_newtonian_def)
 API_INIT(material_cam_clay_def)
+API_INIT(material_small_strain_def)
 API_INIT(material_user_def)
 API_INIT(material_umat_def)
 API_INIT(material_block)
@@ -112,6 +113,20 @@ static void material_cam_clay(api *a) {
   def.lode = api_choice(a, "lode", 2);
   (void)made_material(
       a, mps_material_create_cam_clay(context, &def, api_null(a, "out") ? NULL : &made), &made);
+}
+
+static void material_small_strain(api *a) {
+  api_begin(a, "mps_material_create_small_strain");
+  mps_material *made = NULL;
+  mps_context *context = api_context(a);
+  mps_material_small_strain_def def = mps_material_small_strain_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.shear_modulus = api_real(a, "shear_modulus", 1e-6, 1e17, 1e7);
+  def.poisson = api_real(a, "poisson", -0.999, 0.49999, 0.3);
+  def.reference_strain = api_real(a, "reference_strain", 1e-7, 1.0, 1e-3);
+  api_loosen(a);
+  (void)made_material(
+      a, mps_material_create_small_strain(context, &def, api_null(a, "out") ? NULL : &made), &made);
 }
 
 static void material_by_field(api *a) {
@@ -389,6 +404,8 @@ static const api_call calls[] = {
     {"mps_material_create_mohr_coulomb", 2, API_CONTEXT, material_mohr_coulomb},
     {"mps_material_cam_clay_def_init", 1, API_NOTHING, init_material_cam_clay_def},
     {"mps_material_create_cam_clay", 2, API_CONTEXT, material_cam_clay},
+    {"mps_material_small_strain_def_init", 1, API_NOTHING, init_material_small_strain_def},
+    {"mps_material_create_small_strain", 2, API_CONTEXT, material_small_strain},
     {"mps_material_create_by_field", 1, API_MATERIAL, material_by_field},
     {"mps_material_normal_k0", 1, API_MATERIAL, normal_k0},
     {"mps_material_create_newtonian", 2, API_CONTEXT, material_newtonian},

@@ -29,6 +29,17 @@ is "$work/iso/path.csv" p -1 126089 126
 run plane $soft --path ps-undrained --strain 0.5
 in_range "$work/plane/summary.json" q 53325 53432 # sqrt(3) times su 30.818 kPa
 
+# Loops of the small-strain law: half of G0 is left at the reference strain, the damping of Masing's
+# hyperbola there is 0.1448; a sixth of G0 and 0.3437 at five times it.
+small="--law smallstrain --shear-modulus 50MPa --nu 0.25 --reference-strain 1e-3 --path cyclic --steps 4000"
+run loop $small --strain 1e-3 --cycles 3
+in_range "$work/loop/summary.json" secant_modulus 24.7e6 25.3e6
+in_range "$work/loop/summary.json" damping_ratio 0.136 0.154
+run wide $small --strain 5e-3
+in_range "$work/wide/summary.json" secant_modulus 8.23e6 8.43e6
+in_range "$work/wide/summary.json" damping_ratio 0.335 0.353
+for name in loop q_strain; do picture "$work/loop/$name.png" 900x640 1f4e8c; done
+
 # A file's stages: the drained test by its lateral stress, then what cannot be.
 printf 'ezz,sxx,syy,steps\n-0.1,0,0,1000\n' >"$work/cd.csv"
 run file $soft --path-file "$work/cd.csv"

@@ -4,6 +4,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "clay_points.h"
 
+#include "material/material_private.h"
+
 static double between(uint64_t *seed, double low, double high) {
   return low + (high - low) * 0.5 * (random_number(seed) + 1.0);
 }
@@ -206,6 +208,114 @@ static void large_strains_are_divided(void **state) {
   }
 }
 
+/* A block is stepped in vectors, a particle alone by cam_clay.c: elastic, yielding, at the apex, with
+ * open gaps, in steps that are divided. The same to rounding, and no bit depends on the block. */
+enum { BLOCK = 157 };
+
+typedef struct clay_block {
+  double gradient[9][BLOCK], stress[6][BLOCK], history[4][BLOCK], volume[BLOCK];
+  int64_t flags[BLOCK];
+} clay_block;
+
+static void fill_block(const mps_material *m, const clay *c, clay_block *b) {
+  uint64_t seed = 19;
+  for (int k = 0; k < BLOCK; k++) {
+    mps_material_point x = point_under(m, 0.0);
+    const double pc = x.history[CLAY_PC], p = pc * scaled(&seed, 1e-3, 1.0);
+    set_stress(&x, &seed, p, c->M * sqrt(fmax(0.0, p * (pc - p))));
+    const double length = scaled(&seed, 1e-6, k % 10 == 0 ? 3e-2 : 3e-3);
+    for (int i = 0; i < 9; i++) b->gradient[i][k] = length * random_number(&seed);
+    for (int i = 0; i < 6; i++) b->stress[i][k] = x.stress[i];
+    for (int i = 0; i < 4; i++) b->history[i][k] = x.history[i];
+    if (k % 9 == 0) b->history[CLAY_GAP][k] = 1e-4;
+    b->volume[k] = 1.0;
+    b->flags[k] = 0;
+  }
+}
+
+static mps_status step_block(const mps_material *m, int kind, clay_block *b, int begin, int end) {
+  double *history[4];
+  mps_material_block block = {.struct_size = sizeof block,
+                              .dim = kind == 2 ? 3 : 2,
+                              .count = end - begin,
+                              .dt = 1.0,
+                              .volume_ratio = b->volume + begin,
+                              .history = history,
+                              .history_count = 4,
+                              .flags = b->flags + begin};
+  for (int i = 0; i < 9; i++)
+    if (kind == 2 || i == 0 || i == 1 || i == 3 || i == 4 || (kind == 1 && i == 8))
+      block.gradient[i] = b->gradient[i] + begin;
+  for (int i = 0; i < (kind == 2 ? 6 : 4); i++) block.stress[i] = b->stress[i] + begin;
+  for (int i = 0; i < 4; i++) history[i] = b->history[i] + begin;
+  return mps_material_update(context, m, &block);
+}
+
+/* Particle k by the step of one particle, in space. */
+static void compare_alone(const mps_material *m, const clay_block *first, const clay_block *now,
+                          int k) {
+  static const int row[6] = {0, 4, 8, 1, 6, 5}, other[6] = {0, 4, 8, 3, 2, 7};
+  double d[6], s[6];
+  mpsi_clay x = {.strain = first->history[CLAY_STRAIN][k],
+                 .pc = first->history[CLAY_PC][k],
+                 .void_ratio = first->history[CLAY_VOID][k],
+                 .gap = first->history[CLAY_GAP][k],
+                 .volume = first->volume[k]};
+  for (int i = 0; i < 6; i++) {
+    d[i] = 0.5 * (first->gradient[row[i]][k] + first->gradient[other[i]][k]);
+    s[i] = first->stress[i][k];
+  }
+  const double pc = x.pc;
+  const int64_t flags = mpsi_cam_clay_step(&m->law, 3, d, s, &x);
+  for (int i = 0; i < 6; i++) mps_assert_near(now->stress[i][k] / pc, s[i] / pc, 1e-12);
+  mps_assert_near(now->history[CLAY_PC][k] / x.pc, 1.0, 1e-12);
+  mps_assert_near(now->history[CLAY_VOID][k], x.void_ratio, 1e-13);
+  mps_assert_near(now->history[CLAY_STRAIN][k], x.strain, 1e-12);
+  mps_assert_near(now->history[CLAY_GAP][k], x.gap, 1e-13);
+  mps_assert_near(now->volume[k], x.volume, 1e-13);
+  assert_int_equal(now->flags[k], flags);
+}
+
+static void blocks_agree_with_single_particles(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  int64_t yields = 0, apart = 0, elastic = 0;
+  for (int draw = 0; draw < 60; draw++) {
+    const clay c = random_clay(&seed);
+    mps_material_cam_clay_def def = clay_def(&c);
+    mps_material *m = NULL;
+    clay_block first, whole, cut;
+    def.lode = draw % 2;
+    if (draw % 3 == 0) def.shear_modulus = 20.0 * c.p0;
+    mps_assert_ok(context, mps_material_create_cam_clay(context, &def, &m));
+    for (int kind = 0; kind < 3; kind++) {
+      fill_block(m, &c, &whole), fill_block(m, &c, &cut);
+      mps_assert_ok(context, step_block(m, kind, &whole, 0, BLOCK));
+      for (int begin = 0, n = 1, end; begin < BLOCK; begin = end, n = 2 * n + 1) {
+        end = begin + n < BLOCK ? begin + n : BLOCK;
+        mps_assert_ok(context, step_block(m, kind, &cut, begin, end));
+      }
+      assert_memory_equal(&whole, &cut, sizeof whole);
+    }
+    /* symmetric gradients: the step alone knows no spin */
+    fill_block(m, &c, &first);
+    for (int k = 0; k < BLOCK; k++)
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < i; j++) first.gradient[3 * i + j][k] = first.gradient[3 * j + i][k];
+    whole = first;
+    mps_assert_ok(context, step_block(m, 2, &whole, 0, BLOCK));
+    for (int k = 0; k < BLOCK; k++) {
+      compare_alone(m, &first, &whole, k);
+      const bool parted = (whole.flags[k] & MPS_MATERIAL_FLAG_APEX) != 0;
+      apart += parted, elastic += whole.flags[k] == 0;
+      yields += !parted && whole.flags[k] != 0;
+    }
+    mps_material_destroy(&m);
+  }
+  print_message("%d yield, %d elastic, %d apart\n", (int)yields, (int)elastic, (int)apart);
+  assert_true(yields > 2000 && apart > 300 && elastic > 1000);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(any_state_returns_to_the_surface),
@@ -214,6 +324,7 @@ int main(void) {
       cmocka_unit_test(a_rotation_rotates_the_stress),
       cmocka_unit_test(geometries_agree),
       cmocka_unit_test(large_strains_are_divided),
+      cmocka_unit_test(blocks_agree_with_single_particles),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

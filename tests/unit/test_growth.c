@@ -101,6 +101,11 @@ static void need_cam_clay(void *def) {
   d->void_ratio = 1.0;
   d->preconsolidation = 1e5;
 }
+static void need_small_strain(void *def) {
+  mps_material_small_strain_def *d = def;
+  d->shear_modulus = 1e7;
+  d->reference_strain = 1e-3;
+}
 static void need_newtonian(void *def) { ((mps_material_newtonian_def *)def)->bulk_modulus = 1e6; }
 
 #define USE_MATERIAL(name)                                                                         \
@@ -115,6 +120,7 @@ USE_MATERIAL(drucker_prager)
 USE_MATERIAL(mohr_coulomb)
 USE_MATERIAL(newtonian)
 USE_MATERIAL(cam_clay)
+USE_MATERIAL(small_strain)
 
 static mps_status use_consolidation(const void *def) {
   mps_particles *set = square();
@@ -688,6 +694,7 @@ static const user users[] = {
     {"mps_eurotop_def", need_eurotop, use_eurotop},
     {"mps_domain_def", need_domain, use_domain},
     {"mps_material_cam_clay_def", need_cam_clay, use_cam_clay},
+    {"mps_material_small_strain_def", need_small_strain, use_small_strain},
     {"mps_material_drucker_prager_def", need_drucker_prager, use_drucker_prager},
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},

@@ -41,6 +41,7 @@
   X(mps_material_drucker_prager_def, mps_material_drucker_prager_def_init, "0.3", 56) \
   X(mps_material_mohr_coulomb_def, mps_material_mohr_coulomb_def_init, "0.3", 112) \
   X(mps_material_newtonian_def, mps_material_newtonian_def_init, "0.3", 32) \
+  X(mps_material_small_strain_def, mps_material_small_strain_def_init, "0.3", 48) \
   X(mps_material_umat_def, mps_material_umat_def_init, "0.3", 104) \
   X(mps_material_user_def, mps_material_user_def_init, "0.3", 104) \
   X(mps_material_von_mises_def, mps_material_von_mises_def_init, "0.3", 80) \

@@ -75,11 +75,21 @@ void mpsi_mpm_energy_given_back(const mpsi_grid *grid, const mpsi_columns *p,
   of_cells(grid, energy, cells)->returned += dt * power;
 }
 
+/* The column of what a law has dissipated, over all particles; NULL: it counts nothing. */
+static const double *dissipated_column(const mpsi_law_use *law) {
+  if (mpsi_material_kept(law->material) != MPSI_KEPT_UNDISSIPATED) return NULL;
+  return law->history[mpsi_material_dissipated()];
+}
+
 void mpsi_mpm_energy_keep(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end,
                           mpsi_before_law *out) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
   for (int c = 0; c < 2 * grid->dim; c++) memcpy(out->stress[c], p->s[c] + begin, bytes);
   memcpy(out->volume, p->V + begin, bytes);
+  for (int64_t k = begin; k < end; k++) {
+    const double *dissipated = dissipated_column(mpsi_law_of(p, k));
+    out->dissipated[k - begin] = dissipated ? dissipated[k] : 0.0;
+  }
 }
 
 /* Recoverable energy (J/m3) of an isotropic elastic solid by its stress. */
@@ -112,6 +122,7 @@ void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mps
                          int64_t begin) {
   const mpsi_kept warm = mpsi_material_kept(law->material);
   const double shear = mpsi_material_shear(law->material), bulk = law->modulus - 4.0 / 3.0 * shear;
+  const double *dissipated = dissipated_column(law);
   mpsi_cell_energy *sum = of_cells(grid, energy, cells);
   for (int64_t k = 0; k < block->count; k++) {
     double s0[6] = {0.0}, s1[6] = {0.0}, trace;
@@ -123,6 +134,8 @@ void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mps
     double stays = work;
     if (warm == MPSI_KEPT_PRESSURE)
       stays = trace;
+    else if (dissipated)
+      stays = work - 0.5 * (V0 + V1) * (dissipated[begin + k] - before->dissipated[k]);
     else if (warm == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
       stays = 0.5 * (V0 + V1) *
               (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear)) /

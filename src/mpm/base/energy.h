@@ -75,6 +75,7 @@ typedef struct mpsi_energy {
 /* What mpsi_mpm_energy_law needs of a run of particles from before their law. */
 typedef struct mpsi_before_law {
   double stress[6][64], volume[64];
+  double dissipated[64]; /* J/m3; set where the law counts it */
 } mpsi_before_law;
 
 /* With a budget: to the step being made, or (at once) to what has been. */
