@@ -9,6 +9,11 @@
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.nu = 0.2,
                                  .young = 1e6,
+                                 .M = 0.92,
+                                 .lambda = 0.205,
+                                 .kappa = 0.044,
+                                 .e0 = 1.4,
+                                 .initial = 100e3,
                                  .cells = NAN,
                                  .load = NAN,
                                  .duration = NAN,
@@ -20,14 +25,25 @@ int main(int argc, char **argv) {
   option table[] = {
       OPTION_HEADING("Ground and water"),
       OPTION_CHOICE("case", "terzaghi|large|mcc|mandel|cryer|strip", &s->kase,
-                    "layer of height H = 1 m, small or large strains; block of half width a = 1 m "
+                    "layer of height H = 1 m: small or large strains, or Cam-Clay; block of half "
+                    "width a = 1 m "
                     "between plates; sphere of radius a = 1 m; half space under a strip of half "
-                    "width B = 1 m, undrained. mcc is not there yet"),
+                    "width B = 1 m, undrained"),
       OPTION_NUMBER("nu", "1", OPTION_FROM_TO(0.0, 0.45), &s->nu,
                     "Poisson's ratio of the grains' frame"),
       COMMON_NUMBER("young", &s->young, "of the grains' frame"),
-      OPTION_NUMBER("load", "Pa", OPTION_ABOVE_TO(0.0, 1e12), &s->load,
-                    "u0, default 0.001 of M' = E (1 - nu)/((1 + nu)(1 - 2 nu)); large 0.5"),
+      OPTION_NUMBER("M", "1", OPTION_FROM_TO(0.05, 2.9), &s->M,
+                    "mcc: slope of the critical state line, q/p"),
+      OPTION_NUMBER("lambda", "1", OPTION_FROM_TO(1e-3, 1.0), &s->lambda,
+                    "mcc: slope of virgin compression in 1 + e over ln p"),
+      OPTION_NUMBER("kappa", "1", OPTION_FROM_TO(1e-4, 1.0), &s->kappa, "mcc: slope of unloading"),
+      OPTION_NUMBER("e0", "1", OPTION_FROM_TO(0.1, 10.0), &s->e0,
+                    "mcc: void ratio before the load"),
+      OPTION_NUMBER("initial", "Pa", OPTION_FROM_TO(100.0, 1e9), &s->initial,
+                    "mcc: vertical effective stress before the load, the largest so far"),
+      OPTION_NUMBER(
+          "load", "Pa", OPTION_ABOVE_TO(0.0, 1e12), &s->load,
+          "u0, default 0.001 of M' = E (1 - nu)/((1 + nu)(1 - 2 nu)); large 0.5; mcc initial"),
       OPTION_NUMBER("stiffness", "1", OPTION_FROM_TO(5.0, 1e4), &s->stiffness,
                     "of the water, (K_w/n)/M'"),
       OPTION_TEXT("times", "T,...", &s->times,

@@ -6,6 +6,8 @@
 #include "common/mpm_course.h"
 #include "common/mpm_model.h"
 
+#include <mps/pore_water.h>
+
 enum { TERZAGHI, LARGE, MCC, MANDEL, CRYER, STRIP };
 enum { EXPLICIT, IMPLICIT };
 enum { MOST_TIMES = 32, MOST_POINTS = 1024, MOST_CELLS = 256 };
@@ -15,6 +17,8 @@ typedef struct settings {
   int64_t threads;
   double cells;             /* along H; of the strip along B */
   double nu, young, load;   /* Pa; load: u0 */
+  double M, lambda, kappa;  /* of Cam-Clay */
+  double e0, initial;       /* void ratio and, Pa, vertical effective stress before the load */
   double duration, damping; /* s that T = 1 lasts; 1/s */
   double stiffness;         /* (K_w/n)/M' */
   const char *times, *out;
@@ -23,8 +27,9 @@ typedef struct settings {
 
 /* What is measured at one time. */
 typedef struct instant {
-  double T, settlement, settlement_exact, force, drained; /* m, m; over the exact one; kg */
-  double u[MOST_POINTS];                                  /* u/u0 */
+  double T, settlement, settlement_exact, force; /* m, m; over the exact one */
+  mps_pore_budget water;                         /* kg */
+  double u[MOST_POINTS];                         /* u/u0 */
 } instant;
 
 typedef struct simulation {

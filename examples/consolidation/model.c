@@ -2,13 +2,14 @@
  *
  * A load q on a drained surface is given by its difference: all pressures, and so the total
  * stresses, are less q. The surface is then free, its water has the pressure -q, and the ground
- * begins without stress; effective stresses and u = p + q are those under the load. Mandel's plate
+ * begins without stress; effective stresses and u = p + q are those under the load. Cam-Clay begins
+ * with an effective stress s0, and all pressures are less q + s0. Mandel's plate
  * moves as its exact solution, and begins with the stresses of the undrained load.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "consolidation.h"
 
 #include <mps/mpm_settle.h>
-#include <mps/pore_water.h>
+#include <mps/soil.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,19 +51,38 @@ static const char *read_times(simulation *sim, const option *table) {
   return NULL;
 }
 
+/* Options of one kind of ground alone. */
+static const char *check_clay(const settings *s, const option *table) {
+  static const char *const clay[] = {"M", "lambda", "kappa", "e0", "initial"};
+  for (size_t k = 0; k < sizeof clay / sizeof *clay && s->kase != MCC; k++)
+    if (options_given(table, clay[k]))
+      return "--M, --lambda, --kappa, --e0 and --initial are for --case mcc alone";
+  if (s->kase == MCC && options_given(table, "young"))
+    return "--young is not for --case mcc, whose stiffness follows --kappa and the pressure";
+  if (s->kase == MCC && !(s->kappa < s->lambda)) return "--kappa must be below --lambda";
+  return NULL;
+}
+
 const char *consolidation_settle(simulation *sim, const option *table) {
   settings *s = &sim->s;
-  if (s->kase == MCC) return "--case mcc is not there yet: it needs the Modified Cam-Clay law";
+  const char *unused = check_clay(s, table);
+  if (unused) return unused;
   if (s->scheme == IMPLICIT)
     return "--scheme implicit is not there yet: pressures are explicit in time";
   sim->modulus = s->young * (1.0 - s->nu) / ((1.0 + s->nu) * (1.0 - 2.0 * s->nu));
   if (isnan(s->cells)) s->cells = s->kase == STRIP ? 4 : s->kase == MANDEL ? 10 : 20;
   if (s->cells != floor(s->cells)) return "--cells must be a whole number";
+  if (s->kase == MCC) {
+    if (isnan(s->load)) s->load = s->initial;
+    if (!(s->e0 - s->lambda * log(1.0 + s->load / s->initial) > 0.05))
+      return "--load must leave pores: e0 - lambda ln(1 + load/initial) above 0.05";
+    sim->modulus = (1.0 + s->e0) * (s->initial + s->load) / s->lambda; /* along K0, at the end */
+  }
   if (isnan(s->load)) s->load = sim->modulus * (s->kase == LARGE ? 0.5 : 1e-3);
   if (s->kase == LARGE && !(exp(-s->load / sim->modulus) > 0.41))
     return "--load must leave pores: at most 0.89 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
            "nu))";
-  if (s->kase != LARGE && !(s->load <= 0.02 * sim->modulus))
+  if (s->kase != LARGE && s->kase != MCC && !(s->load <= 0.02 * sim->modulus))
     return "--load must be small, at most 0.02 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
            "nu)): "
            "the exact solution is of small strains";
@@ -74,9 +94,11 @@ const char *consolidation_settle(simulation *sim, const option *table) {
 
 /* ---- ground ---------------------------------------------------------------------------------- */
 
-static double porosity_of(const settings *s) { return s->kase == LARGE ? 0.6 : 0.4; }
+static double porosity_of(const settings *s) {
+  return s->kase == MCC ? s->e0 / (1.0 + s->e0) : s->kase == LARGE ? 0.6 : 0.4;
+}
 static double cell_of(const settings *s) { return 1.0 / s->cells; }
-static bool is_column(const settings *s) { return s->kase == TERZAGHI || s->kase == LARGE; }
+static bool is_column(const settings *s) { return s->kase <= MCC; }
 
 static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
   const double h = cell_of(s), size = s->kase == STRIP ? STRIP_WIDTHS : 1.0;
@@ -138,13 +160,21 @@ static mps_status add_water(simulation *sim) {
   if (s->kase != STRIP) /* c_v = 1 m2 over the duration */
     water.permeability = WATER * MPS_PORE_GRAVITY / (sim->modulus * s->duration);
   if (s->kase == LARGE) water.exponent = 2.0;
+  if (s->kase == MCC) { /* k0 of the initial stress; see exact.c */
+    water.permeability *= sim->modulus * s->lambda / ((1.0 + s->e0) * s->initial);
+    water.exponent = 1.0;
+    water.ratio_slope = s->lambda;
+  }
   return mps_mpm_add_pore_water(sim->m.mpm, &water);
 }
+
+/* The vertical effective stress before the load, Pa. */
+static double start_of(const settings *s) { return s->kase == MCC ? s->initial : 0.0; }
 
 static mps_status drain_surface(simulation *sim) {
   mps_pore_face_def face = mps_pore_face_defaults();
   face.kind = MPS_PORE_FACE_DRAINED;
-  face.pressure = -sim->s.load;
+  face.pressure = -sim->s.load - start_of(&sim->s);
   face.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
   if (sim->s.kase == CRYER) face.sides |= 1u << MPS_MPM_SIDE_X_UPPER;
   return mps_mpm_add_pore_face(sim->m.mpm, &face, NULL);
@@ -207,6 +237,9 @@ static mps_status add_case(mps_context *context, simulation *sim) {
   mps_status status = add_water(sim);
   if (status != MPS_OK) return status;
   if (sim->s.kase == STRIP) return load_strip(sim);
+  if (sim->s.kase == MCC)
+    status = mps_particles_set(sim->m.particles, "pore_pressure", 0, -sim->s.initial);
+  if (status != MPS_OK) return status;
   if (sim->s.kase != MANDEL) return drain_surface(sim);
   status = begin_mandel(sim);
   return status == MPS_OK ? drive_plate(context, sim) : status;
@@ -227,6 +260,26 @@ static mps_mpm_def solver_of(const settings *s) {
   return def;
 }
 
+/* Cam-Clay that has been loaded to the initial stress without moving sideways; else elastic. */
+static mps_status make_law(mps_context *context, simulation *sim) {
+  const settings *s = &sim->s;
+  if (s->kase != MCC)
+    return mps_material_create_linear_elastic(context, s->young, s->nu, &sim->m.material);
+  mps_particles *set = sim->m.particles;
+  mps_material_cam_clay_def clay = mps_material_cam_clay_defaults();
+  mps_consolidation_def state = mps_consolidation_defaults();
+  clay.critical_slope = s->M;
+  clay.compression = s->lambda;
+  clay.swelling = s->kappa;
+  clay.poisson = s->nu;
+  clay.void_ratio = s->e0;
+  clay.preconsolidation = s->initial; /* that of the particles follows */
+  mps_status status = mps_material_create_cam_clay(context, &clay, &sim->m.material);
+  if (status == MPS_OK) status = mps_particles_add_field(set, "stress", 0);
+  if (status == MPS_OK) status = mps_particles_set(set, "stress", 1, -s->initial);
+  return status == MPS_OK ? mps_particles_set_consolidation(set, sim->m.material, &state) : status;
+}
+
 mps_status consolidation_build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
@@ -245,8 +298,7 @@ mps_status consolidation_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_ground(context, s, &sim->m);
   if (status == MPS_OK && s->kase == CRYER) status = cut_ball(sim->m.particles);
   if (status == MPS_OK) status = find_profile(sim);
-  if (status == MPS_OK)
-    status = mps_material_create_linear_elastic(context, s->young, s->nu, &sim->m.material);
+  if (status == MPS_OK) status = make_law(context, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->kase == STRIP)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
@@ -276,14 +328,14 @@ static mps_status measure(simulation *sim) {
   const bool shifted = is_column(s) || s->kase == CRYER;
   for (int k = 0; k < sim->points; k++) {
     const int64_t at = mps_particles_index(sim->m.particles, sim->id[k]);
-    now->u[k] = *mps_view_f64(&u, at, 0) / s->load + (shifted ? 1.0 : 0.0);
+    now->u[k] = *mps_view_f64(&u, at, 0) / s->load + (shifted ? 1.0 + start_of(s) / s->load : 0.0);
   }
   const double m = s->load / sim->modulus, lost = 1.0 - totals.volume / sim->volume;
   now->T = sim->time[sim->rows];
   now->settlement = is_column(s) ? lost : s->kase == CRYER ? lost / 3.0 : NAN;
   now->settlement_exact = exact_settlement(s, m, now->T);
   now->force = sim->s.kase == MANDEL ? fabs(plate.force[1]) / (2.0 * s->load) : NAN;
-  now->drained = water.drained;
+  now->water = water;
   sim->m.samples = ++sim->rows;
   return MPS_OK;
 }

@@ -44,8 +44,8 @@ static bool write_times(app *a, const simulation *sim) {
   for (int r = 0; r < sim->rows; r++) {
     const instant *now = &sim->row[r];
     const double line[] = {
-        now->T,     now->settlement, now->settlement_exact, pressure_error(sim, r),
-        now->force, now->drained};
+        now->T,     now->settlement,   now->settlement_exact, pressure_error(sim, r),
+        now->force, now->water.drained};
     csv_row(&f, 6, line);
   }
   return output_close(&f);
@@ -67,7 +67,12 @@ static bool write_summary(app *a, const simulation *sim) {
   json_number(&f, "centre_pressure", last->u[sim->points - 1]);
   json_number(&f, "centre_pressure_exact", exact_at(sim, sim->rows - 1, sim->points - 1));
   json_number(&f, "plate_force", last->force);
-  json_number(&f, "drained_kg", last->drained);
+  json_number(&f, "water_start_kg", last->water.start);
+  json_number(&f, "water_kg", last->water.mass);
+  json_number(&f, "entered_kg", last->water.entered);
+  json_number(&f, "left_kg", last->water.left);
+  json_number(&f, "drained_kg", last->water.drained);
+  json_number(&f, "residual_kg", last->water.residual);
   json_end(&f);
   return output_close(&f);
 }
@@ -75,9 +80,10 @@ static bool write_summary(app *a, const simulation *sim) {
 static bool draw_profile(app *a, const simulation *sim) {
   static const char *const colours[] = {"#1f4e8c", "#c0392b", "#2e7d32", "#8e44ad",
                                         "#d68910", "#117a65", "#5d4037", "#34495e"};
-  static const char *const titles[] = {"Terzaghi", "Xie and Leo", "",
+  static const char *const titles[] = {"Terzaghi", "Xie and Leo", "Cam-Clay",
                                        "Mandel",   "Cryer",       "Strip load"};
-  static const char *const depths[] = {"depth/H", "depth/H", "", "1 - x/a", "1 - r/a", "z/B"};
+  static const char *const depths[] = {"depth/H", "depth/H", "depth/H",
+                                       "1 - x/a", "1 - r/a", "z/B"};
   output f;
   if (!plot_open(&f, a, sim->s.out, "profile", 900, 700)) return false;
   output_text(&f,

@@ -20,7 +20,8 @@
  * with the pressure 0, unless a face (mps_mpm_add_pore_face) says otherwise. Thin bodies do not
  * part the water of the cells that they cross.
  *
- * Thread rule: as mps/mpm.h. Not on several ranks. SPDX-License-Identifier: BSD-3-Clause */
+ * On several ranks all functions are collective but mps_mpm_get_pore_water, with the bits of one.
+ * Thread rule: as mps/mpm.h. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_PORE_WATER_H
 #define LIBMPS_PORE_WATER_H
 
@@ -62,8 +63,8 @@ static inline mps_pore_water_def mps_pore_water_defaults(void) {
  *  `courant`. `def` NULL: the defaults. MPS_ERROR_ARGUMENT: a member of `def` or a field out of
  *  range (the message names the particle), a density below that of the water in the pores, a law
  *  without a modulus at rest and no `bulk`, or a fixed dt above the new limit; MPS_ERROR_STATE: the
- *  solver has taken steps or has water already; MPS_ERROR_UNSUPPORTED: several ranks, or the energy
- *  budget; MPS_ERROR_MEMORY. On an error the solver is as before. */
+ *  solver has taken steps or has water already; MPS_ERROR_UNSUPPORTED: the energy budget;
+ *  MPS_ERROR_MEMORY. On an error the solver is as before. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_pore_water(mps_mpm *mpm,
                                                         const mps_pore_water_def *def);
 /** The definition of the water, with its defaults completed (`porosity` and `permeability` stay NaN
@@ -133,6 +134,9 @@ typedef struct mps_pore_budget {
   double drained;  /* kg, that has left through all faces, less what came in */
   double residual; /* kg, start - mass - drained: the error of the cells' means; also particles that
                       were added, removed or edited */
+  double entered;  /* kg, that has come in through all faces, >= 0 */
+  double left;     /* kg, that has gone out, >= 0; less `entered` it is `drained`, and the mass
+                      that the particles have lost */
 } mps_pore_budget;
 /** Budget of the water at present. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library;
  *  MPS_ERROR_STATE: no water. */

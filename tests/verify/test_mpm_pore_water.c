@@ -29,7 +29,7 @@ static void terzaghi(int32_t geometry) {
       0.25 * 1000.0 * MPS_PORE_GRAVITY / c.modulus; /* c_v = 0.25 m2/s: T = 1 is 4 s */
   mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
   mps_assert_ok(context, mps_particles_set(c.s.particles, "pore_pressure", 0, LOAD));
-  const double volume = volume_of(&c);
+  const double volume = volume_of(&c), mass = mpm_scene_totals(&c.s).mass;
   add_load(&c, LOAD);
   for (size_t t = 0; t < sizeof times / sizeof *times; t++) {
     const double T = times[t];
@@ -51,6 +51,9 @@ static void terzaghi(int32_t geometry) {
     assert_true(worst < 0.01);
     mps_assert_near(settled, pore_terzaghi_degree(T), 0.02);
     assert_true(fabs(budget.residual) < 0.01 * budget.drained);
+    /* what has left is what the particles lack, to rounding */
+    mps_assert_near(mass - mpm_scene_totals(&c.s).mass, budget.drained, 1e-13 * mass);
+    mps_assert_near(budget.left - budget.entered, budget.drained, 1e-13 * budget.start);
   }
   mpm_scene_end(&c.s);
 }
@@ -147,7 +150,8 @@ static void flows_through_layers(void **state) {
   mps_assert_ok(context, mps_mpm_run(c.s.mpm, 100.0, 1000000, NULL, NULL));
   const double flux = base / (weight * (0.5 / k1 + 0.5 / k2)),
                middle = base * 0.5 / k2 * weight * flux / base;
-  double in, out, worst = 0.0;
+  double in, out, came, went, worst = 0.0;
+  mps_pore_budget budget;
   mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, number, &in, NULL));
   mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, -1, &out, NULL));
   x = mpm_scene_view(&c.s, "position");
@@ -160,6 +164,13 @@ static void flows_through_layers(void **state) {
   }
   print_message("layers: p within %.2f %%, %.6g kg/s in, %.6g kg/s out, exact %.6g\n",
                 100.0 * worst, -in, out, flux * 1000.0 * c.h);
+  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, number, NULL, &came));
+  mps_assert_ok(context, mps_mpm_get_pore_flow(c.s.mpm, -1, NULL, &went));
+  mps_assert_ok(context, mps_mpm_get_pore_budget(c.s.mpm, &budget));
+  print_message("came in %.9g kg, went out %.9g kg\n", budget.entered, budget.left);
+  assert_true(came < 0.0 && went > 0.0);
+  mps_assert_near(budget.left - budget.entered, came + went, 1e-12 * went);
+  assert_true(budget.entered > -came * (1.0 - 1e-12)); /* the surface draws some in at first */
   mps_assert_near(-in, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
   mps_assert_near(out, flux * 1000.0 * c.h, 0.01 * flux * 1000.0 * c.h);
   assert_true(worst < 0.01);

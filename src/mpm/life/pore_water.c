@@ -63,9 +63,6 @@ static mps_status check_definition(mps_context *context, const mps_pore_water_de
 static mps_status check_solver(mps_mpm *mpm) {
   mps_status status = mpsi_mpm_usable(mpm, add);
   if (status != MPS_OK) return status;
-  if (mpm->partition || mpm->def.domain)
-    return mpsi_fail(mpm->context, add, MPS_ERROR_UNSUPPORTED,
-                     "the solver has a domain of several ranks: pore water needs one process");
   if (mpm->energy.counts)
     return mpsi_fail(mpm->context, add, MPS_ERROR_UNSUPPORTED,
                      "budget is 1: the energy budget has no terms for pore water, must be 0");
@@ -89,10 +86,8 @@ static mps_status fill(mps_context *context, const mpsi_columns *p, const char *
   return status;
 }
 
-/* K_w from the particles' moduli at rest, where the caller gave none. */
-static mps_status find_bulk(mps_context *context, const mpsi_columns *p, mpsi_water *water) {
-  double *bulk = &water->def.bulk, most = 0.0;
-  if (!isnan(*bulk)) return MPS_OK;
+/* The least K_w for this rank's particles, by their moduli at rest. */
+static mps_status find_bulk(mps_context *context, const mpsi_columns *p, double *least) {
   for (int64_t k = 0; k < p->count; k++) {
     double wave, shear;
     mpsi_mpm_elastic(p, k, &wave, &shear);
@@ -100,9 +95,8 @@ static mps_status find_bulk(mps_context *context, const mpsi_columns *p, mpsi_wa
       return mpsi_fail(context, add, MPS_ERROR_ARGUMENT,
                        "bulk is NaN and the law of particle %lld has no modulus at rest: give K_w",
                        (long long)mpsi_particles_integers(p->set, "id")[k]);
-    most = fmax(most, STIFF * wave * p->n[k]);
+    *least = fmax(*least, STIFF * wave * p->n[k]);
   }
-  *bulk = most;
   return MPS_OK;
 }
 
@@ -119,10 +113,14 @@ static mps_status renew_limit(mps_mpm *mpm) {
       mpm->def.dt, mps_mpm_limit(mpm));
 }
 
-static mps_status begin(mps_mpm *mpm) {
+/* A layer without a permeability of the definition has that of the field. */
+static bool has_layers(const mpsi_columns *p) {
+  return mpsi_particles_column(p->set, "permeability", 0) != NULL;
+}
+
+static mps_status add_fields(mps_mpm *mpm, double *bulk) {
   const mps_pore_water_def *def = &mpm->water->def;
-  const bool layers = mpsi_particles_column(mpm->p.set, "permeability", 0) != NULL;
-  mpm->water->flows = !isnan(def->permeability) || layers;
+  mpm->water->flows = !isnan(def->permeability) || has_layers(&mpm->p);
   mps_status status = fill(mpm->context, &mpm->p, "porosity", def->porosity);
   if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure", NAN);
   if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure_gradient", NAN);
@@ -131,9 +129,17 @@ static mps_status begin(mps_mpm *mpm) {
   if (status != MPS_OK) return status;
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
   status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, add);
-  if (status == MPS_OK) status = find_bulk(mpm->context, &mpm->p, mpm->water);
-  if (status == MPS_OK) status = renew_limit(mpm);
-  return status;
+  return status == MPS_OK && isnan(def->bulk) ? find_bulk(mpm->context, &mpm->p, bulk) : status;
+}
+
+/* `status`: so far on this rank. Collective. */
+static mps_status begin(mps_mpm *mpm, mps_status status) {
+  double bulk = 0.0; /* of all particles */
+  if (status == MPS_OK) status = add_fields(mpm, &bulk);
+  if (mpm->partition) status = mpsi_domain_agree_max(mpm->partition->domain, add, status, 1, &bulk);
+  if (status != MPS_OK) return status;
+  if (isnan(mpm->water->def.bulk)) mpm->water->def.bulk = bulk;
+  return renew_limit(mpm);
 }
 
 static void warn(mps_context *context, const mpsi_columns *p) {
@@ -174,8 +180,7 @@ static mps_status keep(mps_context *context, const mpsi_columns *p, const mpsi_r
 }
 
 static void restore(mps_mpm *mpm, const kept *before) {
-  mpsi_free(mpm->context, mpm->water);
-  mpm->water = NULL;
+  mpsi_pore_free(mpm);
   mpsi_particles_drop_fields(mpm->p.set, before->fields);
   mpm->run.speed = before->speed;
   mpm->p.laws.one_modulus = before->one_modulus;
@@ -186,6 +191,21 @@ static void restore(mps_mpm *mpm, const kept *before) {
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
 }
 
+/* All ranks give the same. */
+static mps_status agree_on_water(mps_mpm *mpm, mps_status status, const mps_pore_water_def *def) {
+  mpsi_given given;
+  if (!mpm->partition) return status;
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, def, porosity);
+  MPSI_GIVE(&given, def, permeability);
+  MPSI_GIVE(&given, def, bulk);
+  MPSI_GIVE(&given, def, density);
+  MPSI_GIVE(&given, def, exponent);
+  MPSI_GIVE(&given, def, ratio_slope);
+  mpsi_give(&given, "having a field 'permeability'", has_layers(&mpm->p));
+  return mpsi_domain_agree_given(mpm->partition->domain, add, status, &given);
+}
+
 mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_def) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_pore_water_def def = water_defaults;
@@ -193,20 +213,20 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   if (status == MPS_OK && user_def)
     status = MPSI_DEF_READ(mpm->context, __func__, mps_pore_water_def, user_def, &def);
   if (status == MPS_OK) status = check_definition(mpm->context, &def);
+  status = agree_on_water(mpm, status, &def);
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   if (status != MPS_OK) return status;
   kept before;
   status = keep(mpm->context, &mpm->p, &mpm->run, &before);
-  if (status != MPS_OK) return status;
-  mpm->water = mpsi_alloc(mpm->context, 1, sizeof *mpm->water);
-  if (!mpm->water) status = mpsi_fail_memory(mpm->context, __func__, sizeof *mpm->water);
-  if (status == MPS_OK) {
-    mpm->water->def = def;
-    status = begin(mpm);
-  }
+  mpm->water = status == MPS_OK ? mpsi_alloc(mpm->context, 1, sizeof *mpm->water) : NULL;
+  if (status == MPS_OK && !mpm->water)
+    status = mpsi_fail_memory(mpm->context, __func__, sizeof *mpm->water);
+  if (mpm->water) mpm->water->def = def;
+  const bool kept_values = before.values != NULL;
+  status = begin(mpm, status);
   if (status == MPS_OK)
     warn(mpm->context, &mpm->p);
-  else
+  else if (kept_values)
     restore(mpm, &before);
   mpsi_free(mpm->context, before.values);
   return status;
@@ -228,50 +248,87 @@ mps_status mps_mpm_get_pore_water_sized(const mps_mpm *mpm, mps_pore_water_def *
                         sizeof mpm->water->def);
 }
 
+/* Sums of all ranks, where all are well. */
+static mps_status sum_ranks(const mps_mpm *mpm, const char *function, mps_status status,
+                            int32_t count, mpsi_exact *sum) {
+  if (!mpm->partition) return status;
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  return status == MPS_OK ? mpsi_domain_sum_exact(mpm->partition->domain, function, count, sum)
+                          : status;
+}
+
 mps_status mps_mpm_get_pore_budget_sized(const mps_mpm *mpm, mps_pore_budget *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_water(mpm->context, mpm->water, __func__);
+  enum { MASS, START, DRAINED, ENTERED, SUMS };
+  mpsi_exact sum[SUMS] = {{{0}}};
+  mps_status status = check_water(mpm->context, mpm->water, __func__);
+  if (status == MPS_OK) {
+    mpsi_pore_mass(&mpm->p, mpm->water, &sum[MASS]);
+    sum[START] = mpm->run.steps == 0 ? sum[MASS] : mpm->water->start;
+    for (int f = 0; f < MPSI_PORE_FACES; f++)
+      mpsi_exact_merge(&sum[DRAINED], &mpm->water->drained[f]);
+    sum[ENTERED] = mpm->water->entered;
+  }
+  status = sum_ranks(mpm, "mps_mpm_get_pore_budget", status, SUMS, sum);
   if (status != MPS_OK) return status;
-  mps_pore_budget budget = {.mass = mpsi_pore_mass(&mpm->p, mpm->water),
-                            .start = mpm->water->start};
-  if (mpm->run.steps == 0) budget.start = budget.mass;
-  for (int f = 0; f < MPSI_PORE_FACES; f++) budget.drained += mpm->water->drained[f];
+  mps_pore_budget budget = {.mass = mpsi_exact_value(&sum[MASS]),
+                            .start = mpsi_exact_value(&sum[START]),
+                            .drained = mpsi_exact_value(&sum[DRAINED]),
+                            .entered = mpsi_exact_value(&sum[ENTERED])};
   budget.residual = budget.start - budget.mass - budget.drained;
+  budget.left = budget.drained + budget.entered;
   return mpsi_out_write(mpm->context, "mps_mpm_get_pore_budget", out, size, &budget, sizeof budget);
 }
 
 mps_status mps_mpm_get_pore_flow(const mps_mpm *mpm, int32_t number, double *rate, double *mass) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_water(mpm->context, mpm->water, __func__);
-  if (status != MPS_OK) return status;
-  if (number < -1 || number >= mpm->water->faces)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "number is %d, must be -1 (the free surface) to %lld", number,
-                     (long long)mpm->water->faces - 1);
+  mpsi_exact sum[2] = {{{0}}};
+  mps_status status = check_water(mpm->context, mpm->water, __func__);
+  if (status == MPS_OK && (number < -1 || number >= mpm->water->faces))
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "number is %d, must be -1 (the free surface) to %lld", number,
+                       (long long)mpm->water->faces - 1);
+  if (mpm->partition)
+    status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "number", number);
   const int at = number < 0 ? MPS_PORE_MAX_FACES : number;
-  if (rate) *rate = mpm->water->rate[at];
-  if (mass) *mass = mpm->water->drained[at];
+  if (status == MPS_OK) sum[0] = mpm->water->rate[at], sum[1] = mpm->water->drained[at];
+  status = sum_ranks(mpm, __func__, status, 2, sum);
+  if (status != MPS_OK) return status;
+  if (rate) *rate = mpsi_exact_value(&sum[0]);
+  if (mass) *mass = mpsi_exact_value(&sum[1]);
   return MPS_OK;
 }
 
 /* ---- changes --------------------------------------------------------------------------------- */
 
-mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_mpm_usable(mpm, __func__);
-  if (status == MPS_OK) status = check_water(mpm->context, mpm->water, __func__);
+static mps_status check_level(mps_mpm *mpm, const char *function, const double *point) {
+  mps_status status = mpsi_mpm_usable(mpm, function);
+  if (status == MPS_OK) status = check_water(mpm->context, mpm->water, function);
   if (status != MPS_OK) return status;
-  if (!point) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "point is NULL");
+  if (!point) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "point is NULL");
   double square = 0.0;
   for (int c = 0; c < mpm->grid.dim; c++) {
     if (!isfinite(point[c]))
-      return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "point[%d] is %g m, must be finite", c, point[c]);
     square += mpm->def.gravity[c] * mpm->def.gravity[c];
   }
   if (square == 0.0)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "gravity of the solver is 0: water at rest has no level, must be above 0");
+  return MPS_OK;
+}
+
+mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_level(mpm, __func__, point);
+  if (mpm->partition) {
+    mpsi_given given;
+    mpsi_given_begin(&given);
+    if (status == MPS_OK) mpsi_give_vector(&given, "point", mpm->grid.dim, point);
+    status = mpsi_domain_agree_given(mpm->partition->domain, __func__, status, &given);
+  }
+  if (status != MPS_OK) return status;
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = 0; k < p->count; k++) {
     double u = 0.0;
@@ -282,6 +339,22 @@ mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point) {
       p->g[c][k] = u > 0.0 ? mpm->water->def.density * mpm->def.gravity[c] : 0.0;
   }
   return MPS_OK;
+}
+
+/* All ranks give the same. */
+static mps_status agree_on_face(const mps_mpm *mpm, const char *function, mps_status status,
+                                const mps_pore_face_def *def, int32_t number) {
+  mpsi_given given;
+  if (!mpm->partition) return status;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
+  MPSI_GIVE(&given, def, kind);
+  MPSI_GIVE(&given, def, sides);
+  MPSI_GIVE(&given, def, at_rest);
+  MPSI_GIVE(&given, def, pressure);
+  MPSI_GIVE_VECTOR(&given, def, lower, mpm->grid.dim);
+  MPSI_GIVE_VECTOR(&given, def, upper, mpm->grid.dim);
+  return mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
 }
 
 static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_water *water,
@@ -315,12 +388,14 @@ static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_wa
 mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_pore_face_def def;
-  const mps_status status =
+  mps_status status =
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
+  if (status == MPS_OK && mpm->water->faces == MPS_PORE_MAX_FACES)
+    status =
+        mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                  "the solver has %d pore faces, the most that are allowed", MPS_PORE_MAX_FACES);
+  status = agree_on_face(mpm, __func__, status, &def, -1);
   if (status != MPS_OK) return status;
-  if (mpm->water->faces == MPS_PORE_MAX_FACES)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the solver has %d pore faces, the most that are allowed", MPS_PORE_MAX_FACES);
   if (number) *number = (int32_t)mpm->water->faces;
   mpm->water->face[mpm->water->faces++] = def;
   return MPS_OK;
@@ -329,12 +404,13 @@ mps_status mps_mpm_add_pore_face(mps_mpm *mpm, const mps_pore_face_def *user_def
 mps_status mps_mpm_set_pore_face(mps_mpm *mpm, int32_t number, const mps_pore_face_def *user_def) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_pore_face_def def;
-  const mps_status status =
+  mps_status status =
       read_face(mpm->context, &mpm->grid, mpm->water, &mpm->run, __func__, user_def, &def);
+  if (status == MPS_OK && (number < 0 || number >= mpm->water->faces))
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "number is %d, must be 0 to %lld", number, (long long)mpm->water->faces - 1);
+  status = agree_on_face(mpm, __func__, status, &def, number);
   if (status != MPS_OK) return status;
-  if (number < 0 || number >= mpm->water->faces)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is %d, must be 0 to %lld",
-                     number, (long long)mpm->water->faces - 1);
   mpm->water->face[number] = def;
   return MPS_OK;
 }

@@ -23,7 +23,9 @@ static merging merging_of(const mpsi_value *value) {
   if (strcmp(name, "sizes") == 0) return SIZES;
   if (strcmp(name, "blocks") == 0) return BLOCKS;
   if (strcmp(name, "dashpots") == 0) return DASHES;
-  if (strcmp(name, "boundaries_work") == 0 || strcmp(name, "energies") == 0) return EXACT;
+  if (strcmp(name, "boundaries_work") == 0 || strcmp(name, "energies") == 0 ||
+      strncmp(name, "water/", 6) == 0)
+    return EXACT;
   if (strncmp(name, "boundary", 8) != 0) return SAME;
   if (mpsi_state_name_ends(name, "/step") || mpsi_state_name_ends(name, "/all")) return EXACT;
   return mpsi_state_name_ends(name, "/count") || mpsi_state_name_ends(name, "/removed") ? COUNT

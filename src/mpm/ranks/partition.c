@@ -285,6 +285,7 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
   void *parts[] = {s.own, s.range, s.sent, s.message, s.ghost, s.rank, s.index};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
   partition->outdated = status != MPS_OK;
+  partition->searches++;
   if (partition->outdated) mpm->run.stale = true; /* the lists may have been freed */
   return status;
 }

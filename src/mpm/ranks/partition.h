@@ -26,6 +26,7 @@ typedef struct mpsi_partition {
   mps_domain *domain;
   mpsi_halo *halo;         /* of tiles; NULL: none yet */
   bool outdated;           /* the ghosts are not those of the present blocks */
+  int64_t searches;        /* for ghosts that have been made */
   bool ready;              /* all ranks passed the checks of the last step; no field edited since */
   int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
   int32_t *border;         /* numbers of the blocks of cells */

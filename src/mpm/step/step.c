@@ -100,7 +100,7 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   mps_status status = mpsi_mpm_evaluate_signals(mpm, function, dt, true);
   if (status == MPS_OK) status = prepare(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
-  if (status == MPS_OK) status = mpsi_pore_begin(mpm, function);
+  if (status == MPS_OK) status = mpsi_pore_begin(mpm, function, status);
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
   status = mpsi_mpm_find_constraints(mpm, function);

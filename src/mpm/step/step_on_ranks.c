@@ -11,7 +11,9 @@
 #include "stages.h"
 
 #include "mpm/particles/particles.h"
+#include "means.h"
 #include "mpm/ranks/parcels.h"
+#include "mpm/water/water.h"
 #include "tiles.h"
 
 /* As in step.c. An error loses nothing but the tractions at rest of absorbing sides. `status`: of
@@ -85,6 +87,7 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (status != MPS_OK && mpm->contact.bodies == 0) return status;
   status = prepare(mpm, function, status); /* where ranks agree on the signals of bodies */
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
+  status = mpsi_pore_begin(mpm, function, status);
   if (!unchanged) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
@@ -99,6 +102,7 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (refused)
     return mpsi_domain_agree(mpm->partition->domain, function, mpsi_step_refuse(mpm, function));
   mpsi_step_complete(mpm);
+  if (mpm->water && !mpsi_any_failed(&mpm->grid, mpm->partition)) mpsi_pore_update(mpm);
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 

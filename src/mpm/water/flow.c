@@ -9,6 +9,7 @@
  * opposite faces, so that it is exact for a parabola at a surface and for layers of different
  * permeability; at an impervious face it is that of water at rest.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "layers.h"
 #include "water.h"
 
 #include <string.h>
@@ -130,15 +131,24 @@ static double centre_of(const mpsi_grid *grid, mpsi_water *water, int64_t g, int
 
 /* ---- cells among whole cells ----------------------------------------------------------------- */
 
-/* The cells on all faces of one that is inside; false where one of them is filled in part. */
-static bool find_whole(const mpsi_grid *grid, mpsi_water *water, int64_t g, int k,
-                       const mpsi_pore_cell *cell, const mpsi_pore_cell **beside) {
-  if (!cell->inside) return false;
+/* Cells of a block that are inside, with cells on all faces that have no free face. */
+static void find_whole(const mpsi_grid *grid, const mpsi_water *water, int64_t g, uint64_t *whole) {
+  const mpsi_pore_cell *cell = water->cell + mpsi_first_node(grid, g);
+  memset(whole, 0, MPSI_PORE_WORDS * sizeof *whole);
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) return;
+  mpsi_pore_surrounded(grid, water, g, true, whole);
+  for (int k = 0; k < grid->block_nodes; k++)
+    if (mpsi_pore_marked(whole, k) && !cell[k].inside) whole[k >> 6] &= ~(UINT64_C(1) << (k & 63));
+}
+
+/* The cells on all faces of such a one. */
+static void list_beside(const mpsi_grid *grid, mpsi_water *water, int64_t g, int k,
+                        const mpsi_pore_cell **beside) {
   for (int d = 0; d < 2 * grid->dim; d++) {
-    beside[d] = mpsi_pore_beside(grid, water, g, k, d);
-    if (beside[d]->free) return false;
+    int at = k;
+    const int32_t block = mpsi_pore_step(water, g, &at, d);
+    beside[d] = water->cell + mpsi_first_node(grid, block) + at;
   }
-  return true;
 }
 
 /* The cell's part of the slope to the one beside it, outwards, without that of water at rest. */
@@ -172,8 +182,10 @@ static void slope_among_whole(const mpsi_grid *grid, mpsi_water *water, const mp
 
 /* ---- pressures at the end of the step -------------------------------------------------------- */
 
-static double *outflow_of(mpsi_water *water, int64_t g, int face) {
-  return &water->outflow[g][face < 0 ? MPS_PORE_MAX_FACES : face];
+/* Through faces `face` of the cells of block g; m3/s, below 0 inwards. */
+static void let_out(mpsi_water *water, int64_t g, int face, double rate) {
+  water->outflow[g][face < 0 ? MPS_PORE_MAX_FACES : face] += rate;
+  if (rate < 0.0) water->outflow[g][MPSI_PORE_FACES] -= rate;
 }
 
 /* What a thin cell loses goes through one of its drained faces. */
@@ -183,29 +195,30 @@ static void squeeze(const mpsi_grid *grid, mpsi_water *water, double dt, int64_t
   while (!((cell->free >> d & 1) && mpsi_pore_edge_of(water, cell)->beyond[d] == MPSI_PORE_DRAINED))
     d++;
   cell->gain = cell->change / (dt * grid->measure);
-  *outflow_of(water, g, mpsi_pore_edge_of(water, cell)->face[d]) -= cell->gain;
+  let_out(water, g, mpsi_pore_edge_of(water, cell)->face[d], -cell->gain);
 }
 
 static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell) {
-  const mpsi_pore_cell *beside[6], *behind;
+  const mpsi_pore_cell *behind;
   double x[3], flux = 0.0;
-  if (find_whole(&mpm->grid, mpm->water, g, k, cell, beside))
-    return flux_among_whole(&mpm->grid, mpm->water, &mpm->def, cell, beside);
   const double X = centre_of(&mpm->grid, mpm->water, g, k, cell, x);
   for (int d = 0; d < 2 * mpm->grid.dim; d++) {
     const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
     if (f.known) flux += f.flux;
     if (f.known && behind)
-      *outflow_of(mpm->water, g, mpsi_pore_edge_of(mpm->water, behind)->face[d]) -= f.flux;
+      let_out(mpm->water, g, mpsi_pore_edge_of(mpm->water, behind)->face[d], -f.flux);
   }
   return flux;
 }
 
-static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
-  const struct mpsi_water *water = mpm->water;
+static void advance(mps_mpm *mpm, int64_t g, int k, bool whole, mpsi_pore_cell *cell) {
+  mpsi_water *water = mpm->water;
+  const mpsi_pore_cell *beside[6];
   const double h = mpm->grid.cell;
   double space = mpm->grid.dim == 3 ? h * h * h : h * h;
-  cell->gain = flux_into(mpm, g, k, cell);
+  if (whole) list_beside(&mpm->grid, water, g, k, beside);
+  cell->gain = whole ? flux_among_whole(&mpm->grid, water, &mpm->def, cell, beside)
+                     : flux_into(mpm, g, k, cell);
   /* a cell less than half full at an impervious surface: else its steps would be short */
   if (!cell->inside) {
     const mpsi_pore_edge *edge = mpsi_pore_edge_of(mpm->water, cell);
@@ -218,14 +231,16 @@ static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
 
 static void find_pressures(mps_mpm *mpm, int64_t g, int32_t worker) {
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
+  uint64_t whole[MPSI_PORE_WORDS];
   (void)worker;
   memset(mpm->water->outflow[g], 0, sizeof mpm->water->outflow[g]);
+  find_whole(&mpm->grid, mpm->water, g, whole);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (mpsi_pore_empty(&cell[k])) continue;
+    if (!mpsi_pore_marked(mpm->water->block[g].filled, k)) continue;
     if (cell[k].thin)
       squeeze(&mpm->grid, mpm->water, mpm->run.dt, g, &cell[k]);
     else
-      advance(mpm, g, k, &cell[k]);
+      advance(mpm, g, k, mpsi_pore_marked(whole, k), &cell[k]);
   }
 }
 
@@ -240,12 +255,8 @@ static double between(const face_flow *below, const face_flow *above) {
 }
 
 static void find_slope(const mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
-  const mpsi_pore_cell *beside[6], *behind;
+  const mpsi_pore_cell *behind;
   double x[3];
-  if (find_whole(&mpm->grid, mpm->water, g, k, cell, beside)) {
-    slope_among_whole(&mpm->grid, mpm->water, &mpm->def, cell, beside);
-    return;
-  }
   const double X = centre_of(&mpm->grid, mpm->water, g, k, cell, x);
   for (int c = 0; c < mpm->grid.dim; c++) {
     const face_flow below = at_face(mpm, g, k, 2 * c, true, cell, x, X, &behind);
@@ -271,7 +282,7 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
     const double surface =
         given_pressure(grid, water, def, mpsi_pore_edge_of(water, cell)->face[d], at);
     cell->g[axis] = 0.0;
-    if (mpsi_pore_empty(inside) || inside->thin) continue;
+    if (!inside || inside->thin) continue;
     const double way = 0.5 * h - sign * mpsi_pore_edge_of(water, inside)->shift[axis] +
                        h * mpsi_pore_edge_of(water, cell)->fill[axis];
     const double slope = (surface - inside->now) / way; /* outwards */
@@ -283,14 +294,22 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
 }
 
 static void find_slopes(mps_mpm *mpm, int64_t g, int32_t worker) {
-  mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
+  mpsi_water *water = mpm->water;
+  mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
+  uint64_t whole[MPSI_PORE_WORDS];
   (void)worker;
+  find_whole(&mpm->grid, water, g, whole);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (mpsi_pore_empty(&cell[k])) continue;
-    if (cell[k].thin)
-      interpolate(&mpm->grid, mpm->water, &mpm->def, g, k, &cell[k]);
-    else
+    if (!mpsi_pore_marked(water->block[g].filled, k)) continue;
+    if (cell[k].thin) {
+      interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
+    } else if (mpsi_pore_marked(whole, k)) {
+      const mpsi_pore_cell *beside[6];
+      list_beside(&mpm->grid, water, g, k, beside);
+      slope_among_whole(&mpm->grid, water, &mpm->def, &cell[k], beside);
+    } else {
       find_slope(mpm, g, k, &cell[k]);
+    }
   }
 }
 
@@ -345,6 +364,9 @@ static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
 void mpsi_pore_flow(mps_mpm *mpm) {
   const mpsi_pass pressures = {.finish = find_pressures};
   const mpsi_pass particles = {.finish = find_slopes, .gather = give_to_particles};
-  if (mpm->water->flows) mpsi_mpm_run_pass(mpm, &pressures);
+  if (mpm->water->flows) {
+    mpsi_mpm_run_pass(mpm, &pressures);
+    mpsi_pore_exchange(mpm, MPSI_PORE_NOW);
+  }
   mpsi_mpm_run_pass(mpm, &particles);
 }

@@ -1,5 +1,6 @@
 /* state.c - the water of a solver between steps: values that the caller has written, its mass, and
  * what snapshots and checkpoints keep besides the fields. SPDX-License-Identifier: BSD-3-Clause */
+#include "layers.h"
 #include "water.h"
 
 static mps_status refuse_particle(mps_context *context, const mpsi_columns *p, const char *function,
@@ -30,22 +31,22 @@ mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_wat
   return MPS_OK;
 }
 
-double mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water) {
+void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum) {
   const mps_pore_water_def *def = &water->def;
-  double sum = 0.0;
   for (int64_t k = 0; k < p->count; k++)
-    sum += def->density * p->n[k] * p->V[k] * (1.0 + p->u[k] / def->bulk);
-  return sum;
+    mpsi_exact_add(sum, def->density * p->n[k] * p->V[k] * (1.0 + p->u[k] / def->bulk));
 }
 
 void mpsi_pore_free(mps_mpm *mpm) {
   if (!mpm->water) return;
   mpsi_free(mpm->context, mpm->water->cell_room.item);
   mpsi_free(mpm->context, mpm->water->edge_room.item);
-  mpsi_free(mpm->context, mpm->water->beside_room.item);
+  mpsi_free(mpm->context, mpm->water->block_room.item);
+  mpsi_free(mpm->context, mpm->water->linked_room.item);
   mpsi_free(mpm->context, mpm->water->outflow_room.item);
   mpsi_free(mpm->context, mpm->water->former_room.item);
   mpsi_free(mpm->context, mpm->water->place_room.item);
+  mpsi_pore_free_layers(mpm->context, &mpm->water->layers);
   mpsi_free(mpm->context, mpm->water);
   mpm->water = NULL;
 }
@@ -56,8 +57,9 @@ void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water) {
   mpsi_state_enter(state, "water");
   mpsi_state_agree_integer(state, "flows", water->flows);
   mpsi_state_agree_integer(state, "faces", water->faces);
-  mpsi_state_f64(state, "start", &water->start, 1);
-  mpsi_state_f64(state, "drained", water->drained, MPSI_PORE_FACES);
-  mpsi_state_f64(state, "rate", water->rate, MPSI_PORE_FACES);
+  mpsi_state_i64(state, "start", water->start.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_i64(state, "drained", water->drained[0].limb, MPSI_PORE_FACES * MPSI_EXACT_LIMBS);
+  mpsi_state_i64(state, "entered", water->entered.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_i64(state, "rate", water->rate[0].limb, MPSI_PORE_FACES * MPSI_EXACT_LIMBS);
   mpsi_state_leave(state);
 }

@@ -1,32 +1,37 @@
 /* update.c - the water's part of a step: what comes before the scatter, and what comes after the
  * particles have moved. SPDX-License-Identifier: BSD-3-Clause */
+#include "layers.h"
 #include "water.h"
 
 #include <string.h>
 
 /* ---- before ---------------------------------------------------------------------------------- */
 
+/* Of blocks of cells that have been laid out; those of other ranks come last. */
 static mps_status make_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                             mpsi_water *water, const char *function) {
-  const int64_t blocks = grid->node_count, nodes = blocks * grid->block_nodes;
+  const int64_t blocks = grid->node_count + (water->layers ? water->layers->blocks : 0);
+  const int64_t nodes = blocks * grid->block_nodes;
   if (!mpsi_room_ensure(context, &water->cell_room, nodes, sizeof *water->cell) ||
       !mpsi_room_ensure(context, &water->edge_room, nodes, sizeof *water->edge) ||
-      !mpsi_room_ensure(context, &water->beside_room, 6 * blocks, sizeof *water->beside) ||
-      !mpsi_room_ensure(context, &water->outflow_room, blocks, sizeof *water->outflow) ||
+      !mpsi_room_ensure(context, &water->block_room, blocks, sizeof *water->block) ||
+      !mpsi_room_ensure(context, &water->linked_room, grid->node_count, sizeof *water->linked_at) ||
+      !mpsi_room_ensure(context, &water->outflow_room, grid->node_count, sizeof *water->outflow) ||
       !mpsi_room_ensure(context, &water->former_room, p->count, sizeof *water->former) ||
       !mpsi_room_ensure(context, &water->place_room, p->count, sizeof *water->place))
     return mpsi_fail_memory(context, function, (size_t)nodes * sizeof *water->cell);
   water->cell = water->cell_room.item;
   water->edge = water->edge_room.item;
-  water->beside = water->beside_room.item;
+  water->block = water->block_room.item;
+  water->linked_at = water->linked_room.item;
   water->outflow = water->outflow_room.item;
   water->former = water->former_room.item;
   water->place = water->place_room.item;
   return MPS_OK;
 }
 
-/* Number of the block of nodes at `at`, or -1; the list is in order. */
-static int32_t find_block(const mpsi_grid *grid, const int32_t *at) {
+/* Number of the block of nodes at `at` whose cells are known here, or -1; the list is in order. */
+static int32_t find_block(const mpsi_grid *grid, const mpsi_water *water, const int32_t *at) {
   int64_t low = 0, high = grid->node_count;
   while (low < high) {
     const int64_t middle = (low + high) / 2;
@@ -36,17 +41,46 @@ static int32_t find_block(const mpsi_grid *grid, const int32_t *at) {
       high = middle;
   }
   const bool found = low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at);
-  return found ? (int32_t)low : -1;
+  if (found && !grid->nodes[low].foreign) return (int32_t)low;
+  return water->layers ? mpsi_pore_guest_block(grid, water, at) : -1;
+}
+
+static bool are_linked(const mpsi_grid *grid, const mpsi_water *water) {
+  bool same = water->linked == grid->node_count;
+  for (int64_t g = 0; same && g < grid->node_count; g++)
+    same = memcmp(water->linked_at[g], grid->nodes[g].at, sizeof water->linked_at[g]) == 0;
+  return same;
 }
 
 static void link_blocks(const mpsi_grid *grid, mpsi_water *water) {
-  for (int64_t g = 0; g < grid->node_count; g++)
+  if (are_linked(grid, water)) return;
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    memcpy(water->linked_at[g], grid->nodes[g].at, sizeof water->linked_at[g]);
     for (int d = 0; d < 6; d++) {
       int32_t at[3];
       memcpy(at, grid->nodes[g].at, sizeof at);
       at[d / 2] += d & 1 ? 1 : -1;
-      water->beside[6 * g + d] = d < 2 * grid->dim ? find_block(grid, at) : -1;
+      const bool known = d < 2 * grid->dim && !grid->nodes[g].foreign;
+      water->block[g].beside[d] = known ? find_block(grid, water, at) : -1;
     }
+  }
+  water->linked = grid->node_count;
+}
+
+/* On several ranks: the layers of the present ghosts. Collective. */
+static mps_status renew_layers(mps_mpm *mpm, const char *function, mps_status status) {
+  mpsi_water *water = mpm->water;
+  if (!mpm->partition) return status;
+  if (water->layers && water->layers->searches == mpm->partition->searches) return status;
+  if (status == MPS_OK && !water->layers) {
+    water->layers = mpsi_alloc(mpm->context, 1, sizeof *water->layers);
+    if (!water->layers) status = mpsi_fail_memory(mpm->context, function, sizeof *water->layers);
+    if (water->layers) *water->layers = (mpsi_pore_layers){.searches = -1};
+  }
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (status == MPS_OK) status = mpsi_pore_find_layers(mpm, function);
+  water->linked = -1;
+  return status;
 }
 
 static void keep_volumes(mps_mpm *mpm, int64_t b, int32_t worker) {
@@ -56,14 +90,18 @@ static void keep_volumes(mps_mpm *mpm, int64_t b, int32_t worker) {
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
 
-mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
-  if (!mpm->water) return MPS_OK;
-  const mps_status status = make_room(mpm->context, &mpm->grid, &mpm->p, mpm->water, function);
+mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status) {
+  if (!mpm->water) return status;
+  status = renew_layers(mpm, function, status);
+  if (status == MPS_OK) status = make_room(mpm->context, &mpm->grid, &mpm->p, mpm->water, function);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
         c < mpm->grid.dim ? mpsi_particles_column(mpm->p.set, "seepage", c) : NULL;
-  if (mpm->run.steps == 0) mpm->water->start = mpsi_pore_mass(&mpm->p, mpm->water);
+  if (mpm->run.steps == 0) {
+    memset(&mpm->water->start, 0, sizeof mpm->water->start);
+    mpsi_pore_mass(&mpm->p, mpm->water, &mpm->water->start);
+  }
   link_blocks(&mpm->grid, mpm->water);
   mpsi_mpm_for_cells(mpm, keep_volumes);
   return MPS_OK;
@@ -71,19 +109,27 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function) {
 
 /* ---- after ----------------------------------------------------------------------------------- */
 
+/* What blocks have let out, each block counted on one rank: exactly, in whatever order. */
 static void sum_outflow(const mpsi_grid *grid, mpsi_water *water, double dt) {
   const double amount = water->def.density * grid->measure;
-  for (int f = 0; f < MPSI_PORE_FACES; f++) {
-    double sum = 0.0; /* m3/s, in the order of the blocks */
-    for (int64_t g = 0; g < grid->node_count; g++) sum += water->outflow[g][f];
-    water->rate[f] = amount * sum;
-    water->drained[f] += water->rate[f] * dt;
+  memset(water->rate, 0, sizeof water->rate);
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    if (!mpsi_mpm_counts_node_block(grid, g)) continue;
+    for (int f = 0; f < MPSI_PORE_FACES; f++) {
+      const double rate = amount * water->outflow[g][f];
+      if (rate == 0.0) continue;
+      mpsi_exact_add(&water->rate[f], rate);
+      mpsi_exact_add(&water->drained[f], rate * dt);
+    }
+    const double entering = amount * water->outflow[g][MPSI_PORE_FACES];
+    if (entering != 0.0) mpsi_exact_add(&water->entered, entering * dt);
   }
 }
 
 void mpsi_pore_update(mps_mpm *mpm) {
   if (!mpm->water) return;
   mpsi_pore_find_cells(mpm);
+  mpsi_pore_find_faces(mpm);
   mpsi_pore_flow(mpm);
   if (mpm->water->flows) sum_outflow(&mpm->grid, mpm->water, mpm->run.dt);
 }

@@ -4,30 +4,42 @@
 #ifndef MPSI_MPM_WATER_H
 #define MPSI_MPM_WATER_H
 
+#include "core/base/exact.h"
 #include "mpm/base/mpm_solver.h"
 
 #include <mps/pore_water.h>
+
+typedef struct mpsi_pore_layers mpsi_pore_layers; /* layers.h */
 
 #define MPSI_PORE_FASTEST 1.0 /* m/s, of permeabilities */
 
 /* What is beyond a face of a cell. */
 enum { MPSI_PORE_CELL, MPSI_PORE_CLOSED, MPSI_PORE_DRAINED };
 
-enum { MPSI_PORE_BITS = 3, MPSI_PORE_BLOCK = 1 << (3 * MPSI_PORE_BITS) };
+enum { MPSI_PORE_BITS = 3, MPSI_PORE_WORDS = MPSI_SIDE };
 _Static_assert(1 << MPSI_PORE_BITS == MPSI_SIDE, "digits of a cell's number in its block");
+_Static_assert(MPSI_SIDE *MPSI_SIDE == 64, "a word of marks is a plane of cells");
 
 /* Sums over the particles of a cell, and the means that follow; amounts are of the measure, the
- * rest of 1 m or 1 rad. */
+ * rest of 1 m or 1 rad. Defined where the cell is filled. */
 typedef struct mpsi_pore_cell {
-  double volume;    /* sum V, m3; 0: there is nothing here */
+  double volume;    /* sum V, m3 */
   double change;    /* sum of dV of the step, m3 */
-  double p, g[3];   /* Pa, at the centre of the cell's box; Pa/m */
-  double n, k;      /* porosity; m/s */
+  double p, n;      /* Pa, at the centre of the cell's box; porosity */
+  double k, g[3];   /* m/s; Pa/m */
   double now, gain; /* Pa, at the end of the step; m3/s of water that flows in */
   uint8_t free;     /* bit d: nothing lies beyond face d, but perhaps a body */
   bool inside;      /* there are cells on all its faces; never in axisymmetry */
   bool thin;        /* less than half full at a drained surface: stores nothing */
 } mpsi_pore_cell;
+
+/* A block of cells of the water: those above a block of nodes. Marks are bits by the cells'
+ * numbers, a word for each plane along z. */
+typedef struct mpsi_pore_block {
+  uint64_t filled[MPSI_PORE_WORDS]; /* there are particles */
+  uint64_t full[MPSI_PORE_WORDS];   /* and no face is free */
+  int32_t beside[6];                /* numbers of the blocks beside it, or -1 */
+} mpsi_pore_block;
 
 /* What a cell that is not inside has besides. */
 typedef struct mpsi_pore_edge {
@@ -38,44 +50,61 @@ typedef struct mpsi_pore_edge {
   int8_t face[6];           /* number of the definition, -1: none */
 } mpsi_pore_edge;
 
-enum { MPSI_PORE_FACES = MPS_PORE_MAX_FACES + 1 }; /* the last: the free surface without one */
+enum {
+  MPSI_PORE_FACES = MPS_PORE_MAX_FACES + 1, /* the last: the free surface without one */
+  MPSI_PORE_RATES
+};
 
 struct mpsi_water {
   mps_pore_water_def def;
   bool flows;
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
-  double start;                       /* kg, of the measure */
-  double drained[MPSI_PORE_FACES];    /* kg */
-  double rate[MPSI_PORE_FACES];       /* kg/s, of the last step */
-  mpsi_pore_cell *cell;               /* by nodes of the grid */
-  mpsi_pore_edge *edge;               /* the same: few are in use */
-  int32_t *beside;                    /* by blocks of nodes: the 6 beside, or -1 */
-  double (*outflow)[MPSI_PORE_FACES]; /* m3/s, by blocks of nodes */
+  mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
+  mpsi_exact drained[MPSI_PORE_FACES]; /* kg */
+  mpsi_exact rate[MPSI_PORE_FACES];    /* kg/s, of the last step */
+  mpsi_exact entered;                  /* kg, through all faces */
+  mpsi_pore_cell *cell;   /* by nodes of the grid, then those of other ranks (layers.h) */
+  mpsi_pore_edge *edge;   /* the same: few are in use */
+  mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
+  double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
   double *former;                     /* m3, volumes at the beginning of the step */
-  uint16_t *place;                    /* the cell of each particle: mpsi_pore_cell_at */
+  uint16_t *place;                    /* of each particle: its cell in the tile of its block */
   double *seepage[3];                 /* of the set, or NULL */
-  mpsi_room cell_room, edge_room, beside_room, outflow_room, former_room, place_room;
+  int64_t linked;                     /* blocks of nodes for which `beside` was found, */
+  int32_t (*linked_at)[3];            /* and where they were */
+  mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, place_room, linked_room;
+  mpsi_pore_layers *layers; /* on several ranks, else NULL */
 };
 
-/* The cell at `place` of a block of cells: the block of nodes under its tile, times the
- * nodes of one, and the number in that. Its centre to centre[3] (m). */
+/* The part of a tile that its particles may be in after a step. */
+static inline void mpsi_pore_region(const mpsi_cell_block *cells, int *low, int *high) {
+  for (int c = 0; c < 3; c++) {
+    low[c] = cells->low[c] > 0 ? cells->low[c] - 1 : 0;
+    high[c] = cells->high[c];
+  }
+}
+
+/* The cell at `place` of a block's tile. Its centre to centre[3] (m). */
 static inline mpsi_pore_cell *mpsi_pore_cell_at(const mpsi_grid *grid, mpsi_water *water,
                                                 const mpsi_cell_block *cells, int place,
                                                 double *centre) {
-  const int corner = place / MPSI_PORE_BLOCK, local = place % MPSI_PORE_BLOCK;
   int at[3];
-  mpsi_unravel(local, MPSI_SIDE, at);
+  mpsi_unravel(place, MPSI_TILE_SIDE, at);
   for (int c = 0; c < grid->dim; c++) {
-    const int64_t cell = ((int64_t)cells->at[c] + (corner >> c & 1)) * MPSI_SIDE + at[c];
+    const int64_t cell = (int64_t)cells->at[c] * MPSI_SIDE + at[c];
     centre[c] = grid->origin[c] + grid->cell * ((double)cell + 0.5);
   }
-  return water->cell + mpsi_first_node(grid, cells->to[corner]) + local;
+  return water->cell + mpsi_node_under(grid, cells, at[0], at[1], at[2]);
 }
 
-static inline bool mpsi_pore_empty(const mpsi_pore_cell *cell) {
-  return !cell || !(cell->volume > 0.0);
+static inline bool mpsi_pore_marked(const uint64_t *marks, int k) {
+  return (marks[k >> 6] >> (k & 63) & 1) != 0;
 }
+static inline void mpsi_pore_mark(uint64_t *marks, int k) {
+  marks[k >> 6] |= UINT64_C(1) << (k & 63);
+}
+
 /* Radius (m) that volumes and faces are multiplied by at grid coordinate X; 1 but in axisymmetry.
  */
 static inline double mpsi_pore_radius(const mpsi_grid *grid, double X) {
@@ -89,36 +118,46 @@ static inline const mpsi_pore_edge *mpsi_pore_edge_of(mpsi_water *water,
   static const mpsi_pore_edge whole = {.fill = {1.0, 1.0, 1.0}, .face = {-1, -1, -1, -1, -1, -1}};
   return cell->inside ? &whole : water->edge + (cell - water->cell);
 }
-/* The one beside cell k of block g, or NULL. */
+/* The block beside cell k of block g, or -1, and the place there: *k. */
+static inline int32_t mpsi_pore_step(const mpsi_water *water, int64_t g, int *k, int direction) {
+  const int digit = MPSI_PORE_BITS * (direction / 2), stride = 1 << digit;
+  const int place = *k >> digit & (MPSI_SIDE - 1), last = direction & 1 ? MPSI_SIDE - 1 : 0;
+  const int step = direction & 1 ? stride : -stride;
+  *k += place != last ? step : -(MPSI_SIDE - 1) * step;
+  return place != last ? (int32_t)g : water->block[g].beside[direction];
+}
+/* The filled cell beside cell k of block g, or NULL. */
 static inline mpsi_pore_cell *mpsi_pore_beside(const mpsi_grid *grid, mpsi_water *water, int64_t g,
                                                int k, int direction) {
-  const int digit = MPSI_PORE_BITS * (direction / 2), stride = 1 << digit;
-  const int place = k >> digit & (MPSI_SIDE - 1), last = direction & 1 ? MPSI_SIDE - 1 : 0;
-  const int step = direction & 1 ? stride : -stride;
-  if (place != last) return water->cell + mpsi_first_node(grid, g) + k + step;
-  const int32_t block = water->beside[6 * g + direction];
-  if (block < 0) return NULL;
-  return water->cell + mpsi_first_node(grid, block) + k - (MPSI_SIDE - 1) * step;
+  const int32_t block = mpsi_pore_step(water, g, &k, direction);
+  if (block < 0 || !mpsi_pore_marked(water->block[block].filled, k)) return NULL;
+  return water->cell + mpsi_first_node(grid, block) + k;
 }
+/* faces.c: cells of a block with `filled` or `full` cells on all faces, to out[MPSI_PORE_WORDS]. */
+void mpsi_pore_surrounded(const mpsi_grid *grid, const mpsi_water *water, int64_t g, bool full,
+                          uint64_t *out);
 /* What the pressure of a cell grows by in the step without flow, Pa. */
 static inline double mpsi_pore_squeeze(mpsi_water *water, const mpsi_pore_cell *cell) {
   return -water->def.bulk / cell->n * (cell->change / (cell->volume - cell->change));
 }
-/* cells.c: sums of the particles, then faces and the filled part of each cell, and without flow its
- * pressure at the end of the step. */
+/* cells.c: sums of the particles and their means: which cells are filled, and with what. */
 void mpsi_pore_find_cells(mps_mpm *mpm);
+/* faces.c: what lies beyond the faces of the cells, their filled parts, and without flow their
+ * pressures at the end of the step. */
+void mpsi_pore_find_faces(mps_mpm *mpm);
 /* flow.c: pressures at the end of the step; then their slopes, and what the particles take. */
 void mpsi_pore_flow(mps_mpm *mpm);
 
-/* update.c: before the scatter of a step: room, and the stress with the water's part. */
-mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function);
-/* update.c: after a step whose values are numbers. */
+/* update.c: before the scatter of a step: room for its cells. On several ranks collective where the
+ * blocks are others than in the last step; `status`: of the step so far on this rank. */
+mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status);
+/* update.c: after a step whose values are numbers. Collective. */
 void mpsi_pore_update(mps_mpm *mpm);
 /* state.c: values that the caller has written: MPS_ERROR_ARGUMENT names the particle. */
 mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_water *water,
                            const char *function);
-/* state.c: of the water in the particles' pores, kg of the measure. */
-double mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water);
+/* state.c: adds the water in the pores of this rank's particles, kg of the measure. */
+void mpsi_pore_mass(const mpsi_columns *p, mpsi_water *water, mpsi_exact *sum);
 /* state.c: the state besides the fields; what is freed with the solver. */
 void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water);
 void mpsi_pore_free(mps_mpm *mpm);

@@ -1,0 +1,254 @@
+/* test_domain_pore_water.c - water in the pores on several ranks: every particle, what has drained
+ * and the budget have the bits of the run without a domain, whatever the number of ranks and
+ * threads; so has a run that was cut in two and continues on another number of ranks. An error of
+ * one rank is an error of all. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_ranks.h"
+#include "ranks_team.h"
+
+#include <mps/pore_water.h>
+
+/* Ground that falls on a corner, so that its surface crosses cells: layers in the plane, a body
+ * that goes into it, a ring and a block in space. */
+enum { LAYERS, SETTLED, AROUND, BLOCK, UNDRAINED };
+
+static int dim_here(int what) { return what == BLOCK ? 3 : 2; }
+
+static mps_mpm_def ground_def(mps_domain *domain, int what) {
+  mps_mpm_def def = mps_mpm_defaults();
+  def.domain = domain;
+  def.geometry = what == AROUND  ? MPS_MPM_GEOMETRY_AXISYMMETRIC
+                 : what == BLOCK ? MPS_MPM_GEOMETRY_SPACE
+                                 : MPS_MPM_GEOMETRY_PLANE_STRAIN;
+  def.spline = what == UNDRAINED ? 2 : 3;
+  def.cell = what == BLOCK ? 0.08 : 0.04;
+  def.gravity[1] = -9.81;
+  for (int c = 0; c < dim_here(what); c++) def.lower[c] = 0.0;
+  return def;
+}
+
+static mps_status make_ground(mps_context *own, int what, mps_particles **out) {
+  mps_particles_def def = mps_particles_defaults();
+  const double lo[3] = {what == AROUND ? 0.0 : 0.03, 0.01, 0.03};
+  const double hi[3] = {what == BLOCK ? 0.83 : 1.13, 0.57, 0.75};
+  mps_view x;
+  mps_edit v, k_of;
+  def.dim = dim_here(what);
+  def.spacing = what == BLOCK ? 0.04 : 0.02;
+  mps_status status = mps_particles_create(own, &def, out);
+  TRY(mps_particles_fill_box(*out, lo, hi, NULL));
+  TRY(mps_particles_set(*out, "density", 0, 1900.0));
+  TRY(mps_particles_set(*out, "velocity", 0, 0.0));
+  if (what != UNDRAINED) TRY(mps_particles_add_field(*out, "permeability", 0));
+  TRY(mps_particles_view(*out, "position", &x));
+  TRY(mps_particles_edit(*out, "velocity", &v));
+  for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++) {
+    *mps_edit_f64(&v, k, 0) = *mps_view_f64(&x, k, 0) * cos(5.0 * *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&v, k, 1) = -2.0 + sin(4.0 * *mps_view_f64(&x, k, 0));
+  }
+  TRY(mps_particles_commit(*out, &v));
+  if (what == UNDRAINED) return status;
+  TRY(mps_particles_edit(*out, "permeability", &k_of));
+  for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
+    *mps_edit_f64(&k_of, k, 0) = *mps_view_f64(&x, k, 1) < 0.3 ? 1e-3 : 1e-5;
+  TRY(mps_particles_commit(*out, &k_of));
+  return status;
+}
+
+static mps_status add_water(mps_mpm *mpm, int what) {
+  mps_pore_water_def def = mps_pore_water_defaults();
+  mps_pore_face_def face = mps_pore_face_defaults();
+  const double level[3] = {0.0, 0.4, 0.0};
+  def.porosity = 0.4;
+  if (what != UNDRAINED) def.exponent = 2.0, def.ratio_slope = 0.5;
+  face.kind = MPS_PORE_FACE_DRAINED;
+  face.sides = 1u << MPS_MPM_SIDE_Y_LOWER;
+  face.pressure = 3e3, face.at_rest = 1;
+  face.upper[0] = 0.5;
+  mps_status status = mps_mpm_add_pore_water(mpm, &def);
+  TRY(mps_mpm_add_pore_face(mpm, &face, NULL));
+  TRY(mps_mpm_set_pore_level(mpm, level));
+  return status;
+}
+
+static mps_status add_disc(mps_context *own, mps_domain *domain, scene *s) {
+  mps_body_def body = mps_body_defaults();
+  mps_body_motion motion = mps_body_motion_defaults();
+  mps_contact_def contact = mps_contact_defaults();
+  body.position[0] = 0.6, body.position[1] = 0.7;
+  motion.velocity[1] = -3.0;
+  contact.friction = 0.3;
+  mps_status status = mps_body_create_disc(own, &body, 0.1, &s->body[0]);
+  TRY(mps_body_set_motion(s->body[0], &motion));
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(mps_mpm_add_contact(s->mpm, s->body[0], &contact, &s->contact[0]));
+  return status;
+}
+
+static mps_status make_wet(mps_context *own, mps_domain *domain, int what, scene *s) {
+  const mps_mpm_def def = ground_def(domain, what);
+  mps_status status = make_ground(own, what, &s->set);
+  TRY(mps_material_create_linear_elastic(own, 2e5, 0.3, &s->material[0]));
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
+  TRY(add_water(s->mpm, what));
+  if (status == MPS_OK && what == SETTLED) status = add_disc(own, domain, s);
+  return status;
+}
+
+/* Also what the faces have let out. */
+static mps_status keep_wet(mps_domain *domain, scene *s, result *r) {
+  mps_pore_budget budget = {0};
+  mps_status status = mps_mpm_get_totals(s->mpm, &r->totals);
+  TRY(mps_mpm_get_pore_budget(s->mpm, &budget));
+  memcpy(r->other, &budget, sizeof budget);
+  TRY(mps_mpm_get_pore_flow(s->mpm, -1, r->other + 10, r->other + 11));
+  TRY(mps_mpm_get_pore_flow(s->mpm, 0, r->other + 12, r->other + 13));
+  TRY(keep_order(domain, s->set, r));
+  r->dt = mps_mpm_dt(s->mpm), r->limit = mps_mpm_limit(s->mpm), r->time = mps_mpm_time(s->mpm);
+  TRY(keep(s->set, r));
+  return status;
+}
+
+/* With a step back in time on the way. */
+static mps_status compute_wet(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                              result *r) {
+  scene s = {.set = NULL};
+  mps_snapshot *then = NULL;
+  mps_status status = make_wet(own, domain, what, &s);
+  r->first = s.set ? mps_particles_count(s.set) : 0;
+  TRY(mps_mpm_step(s.mpm, steps / 2));
+  TRY(mps_mpm_snapshot(s.mpm, &then));
+  TRY(mps_mpm_step(s.mpm, 5));
+  TRY(mps_mpm_rollback(s.mpm, then));
+  TRY(mps_mpm_step(s.mpm, steps - steps / 2));
+  mps_snapshot_destroy(&then);
+  TRY(keep_wet(domain, &s, r));
+  if (status == MPS_OK && what != UNDRAINED && (r->other[11] == 0.0 || r->other[13] == 0.0))
+    status = MPS_ERROR_INTERNAL; /* water goes through both */
+  end_scene(&s);
+  return status;
+}
+
+static void test_layers(void **state) {
+  (void)state, compare_teams(compute_wet, LAYERS, 80, false);
+}
+static void test_settled(void **state) {
+  (void)state, compare_teams(compute_wet, SETTLED, 60, true);
+}
+static void test_around(void **state) { (void)state, compare_teams(compute_wet, AROUND, 60, true); }
+static void test_block(void **state) { (void)state, compare_teams(compute_wet, BLOCK, 40, true); }
+static void test_undrained(void **state) {
+  (void)state, compare_teams(compute_wet, UNDRAINED, 60, true);
+}
+
+/* ---- cut in two ------------------------------------------------------------------------------ */
+
+#define CHECKPOINT "test_domain_pore_water.h5"
+
+static mps_status halve(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                        const char *from, const char *to, result *r) {
+  scene s = {.set = NULL};
+  mps_status status = make_wet(own, domain, what, &s);
+  if (from) TRY(mps_mpm_restore(s.mpm, from, NULL));
+  TRY(mps_mpm_step(s.mpm, steps));
+  if (to) TRY(mps_mpm_save(s.mpm, to, NULL));
+  TRY(keep_wet(domain, &s, r));
+  end_scene(&s);
+  return status;
+}
+
+static mps_status begin(mps_context *own, mps_domain *domain, int what, int64_t steps, result *r) {
+  return halve(own, domain, what, steps, NULL, CHECKPOINT, r);
+}
+
+static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t steps, result *r) {
+  return halve(own, domain, what, steps, CHECKPOINT, NULL, r);
+}
+
+static void run_half(result_fn *half, int32_t size, int64_t steps, const result *expected) {
+  ranks s = {.compute = half, .what = LAYERS, .threads = 1, .length = steps};
+  int64_t *seen = calloc((size_t)expected->count + 1, sizeof *seen);
+  run_team(&s, size);
+  for (int32_t r = 0; r < size; r++) {
+    if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
+    compare(expected, &s.rank[r], seen);
+    drop(&s.rank[r]);
+  }
+  for (int64_t i = 0; i < expected->count; i++) assert_int_equal(seen[i], 1);
+  free(seen);
+}
+
+/* Written on 4 ranks, a run continues with the bits of one that was not cut, on 3 and without a
+ * domain; written without a domain, on 3. */
+static void test_cut(void **state) {
+  (void)state;
+  if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
+  const int64_t steps = 40;
+  result half = {0}, whole = {0}, on = {0};
+  mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mps_assert_ok(own, halve(own, NULL, LAYERS, 2 * steps, NULL, NULL, &whole));
+  mps_assert_ok(own, begin(own, NULL, LAYERS, steps, &half));
+  run_half(go_on, 3, steps, &whole);
+  remove(CHECKPOINT);
+  run_half(begin, 4, steps, &half);
+  run_half(go_on, 3, steps, &whole);
+  mps_assert_ok(own, go_on(own, NULL, LAYERS, steps, &on));
+  int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
+  compare(&whole, &on, seen);
+  free(seen);
+  drop(&half), drop(&whole), drop(&on);
+  mps_context_destroy(&own);
+  remove(CHECKPOINT);
+}
+
+/* ---- what goes wrong on one rank ------------------------------------------------------------- */
+
+static void test_refused_memory(void **state) {
+  (void)state, refuse_memory(compute_wet, LAYERS, 8, 9);
+}
+
+enum { OTHER_BULK, BAD_POROSITY, OTHER_FACE, OTHER_LEVEL, OTHER_NUMBER, TROUBLES };
+
+static const trouble_case trouble[TROUBLES] = {
+    [OTHER_BULK] = {MPS_ERROR_ARGUMENT, "bulk is "},
+    [BAD_POROSITY] = {MPS_ERROR_ARGUMENT, "rank 1: porosity is -1"},
+    [OTHER_FACE] = {MPS_ERROR_ARGUMENT, "pressure is "},
+    [OTHER_LEVEL] = {MPS_ERROR_ARGUMENT, "point is "},
+    [OTHER_NUMBER] = {MPS_ERROR_ARGUMENT, "number is "},
+};
+
+static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
+  scene s = {.set = NULL};
+  mps_pore_water_def def = mps_pore_water_defaults();
+  mps_pore_face_def face = mps_pore_face_defaults();
+  const double level[2] = {0.0, what == OTHER_LEVEL ? 0.1 * rank : 0.4};
+  const mps_mpm_def solver = ground_def(domain, LAYERS);
+  double mass;
+  mps_status status = make_ground(own, LAYERS, &s.set);
+  TRY(mps_material_create_linear_elastic(own, 2e5, 0.3, &s.material[0]));
+  status = mps_domain_agree(domain, status);
+  TRY(mps_mpm_create(own, s.set, s.material[0], &solver, &s.mpm));
+  TRY(mps_particles_set(s.set, "permeability", 0, 1e-4));
+  def.porosity = what == BAD_POROSITY && rank == 1 ? -1.0 : 0.4;
+  if (what == OTHER_BULK) def.bulk = 1e7 * (1 + rank);
+  face.pressure = what == OTHER_FACE ? rank : 0.0;
+  TRY(mps_mpm_add_pore_water(s.mpm, &def));
+  TRY(mps_mpm_add_pore_face(s.mpm, &face, NULL));
+  TRY(mps_mpm_set_pore_level(s.mpm, level));
+  TRY(mps_mpm_get_pore_flow(s.mpm, what == OTHER_NUMBER && rank == 2 ? 0 : -1, NULL, &mass));
+  end_scene(&s);
+  return status;
+}
+
+static void test_trouble(void **state) {
+  (void)state, meet_troubles(run_trouble, trouble, TROUBLES);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_layers),         cmocka_unit_test(test_settled),
+      cmocka_unit_test(test_around),         cmocka_unit_test(test_block),
+      cmocka_unit_test(test_undrained),      cmocka_unit_test(test_cut),
+      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_trouble)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
