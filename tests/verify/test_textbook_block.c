@@ -45,7 +45,8 @@ static double plane_place(const shaking *s, double t) {
 }
 
 /* Slip of a rigid block down the plane (m): it slips down where the plane's acceleration up the
- * slope is above ay = g (mu cos - sin), and up where it is below -g (mu cos + sin). Steps of 1e-6 s.
+ * slope is above ay = g (mu cos - sin), and up where it is below -g (mu cos + sin). Steps of 1e-6
+ * s.
  */
 static double rigid_slip(const shaking *s) {
   const double hold = s->friction * G * cos(s->slope), pull = G * sin(s->slope), dt = 1e-6;

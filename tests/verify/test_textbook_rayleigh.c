@@ -16,8 +16,8 @@
 #define VS 100.0
 #define DENSITY 1800.0
 #define DEPTH (4.0 * WAVE)
-#define SPEED 1e-3  /* m/s, of the start */
-#define PERIODS 30  /* of a run, the last ten of which are measured */
+#define SPEED 1e-3 /* m/s, of the start */
+#define PERIODS 30 /* of a run, the last ten of which are measured */
 #define MEASURED 10
 enum { PER_PERIOD = 40, SAMPLES = PERIODS * PER_PERIOD };
 
@@ -97,9 +97,10 @@ static void state(const char *name, int count, const record *r, double a, double
   for (int k = 0; k <= SAMPLES; k++)
     textbook_row(f, 3, (double[]){r->t[k], r->along[k], r->across[k]});
   textbook_close(f);
-  print_message("%s, %d particles a wavelength: c/Vs %.5f (%+.2f %%), H/V %.4f (%+.2f %%), %.1f s\n",
-                name, count, *velocity, 100.0 * (*velocity / exact_velocity(a) - 1.0), *shape,
-                100.0 * (*shape / exact_shape(a) - 1.0), textbook_cost() - began);
+  print_message(
+      "%s, %d particles a wavelength: c/Vs %.5f (%+.2f %%), H/V %.4f (%+.2f %%), %.1f s\n", name,
+      count, *velocity, 100.0 * (*velocity / exact_velocity(a) - 1.0), *shape,
+      100.0 * (*shape / exact_shape(a) - 1.0), textbook_cost() - began);
 }
 
 static double sample_time(int k) { return WAVE / VS / 0.92 * k / PER_PERIOD; }

@@ -1,6 +1,6 @@
-/* test_textbook_taylor.c - Taylor's bar: a copper rod of 32.4 x 6.4 mm hits a smooth rigid wall with
- * 227 m/s, von Mises with linear hardening. No closed form: finite elements have a final length of
- * 21.3 to 21.5 mm and a foot of 7.0 to 7.2 mm radius. WLS-MPM in axisymmetry.
+/* test_textbook_taylor.c - Taylor's bar: a copper rod of 32.4 x 6.4 mm hits a smooth rigid wall
+ * with 227 m/s, von Mises with linear hardening. No closed form: finite elements have a final
+ * length of 21.3 to 21.5 mm and a foot of 7.0 to 7.2 mm radius. WLS-MPM in axisymmetry.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 
@@ -57,8 +57,7 @@ static void hit(int cells, double *length, double *radius) {
   shape_of(&s, 0.5 * h, length, radius);
   const mps_totals t = mpm_scene_totals(&s);
   print_message("radius of %d cells: length %.3f mm, foot %.3f mm, velocity %.2f m/s, %.1f s\n",
-                cells, 1e3 * *length, 1e3 * *radius, t.linear[1] / t.mass,
-                textbook_cost() - began);
+                cells, 1e3 * *length, 1e3 * *radius, t.linear[1] / t.mass, textbook_cost() - began);
   mpm_scene_end(&s);
 }
 
