@@ -2,7 +2,7 @@
  * the run-out that Lube, Huppert, Sparks and Freundt measured.
  *
  * The column stands on the bed y = 0, L0 wide from the wall x = 0 (a line of symmetry), a L0 high,
- * and is released at once. Drucker-Prager in plane strain.
+ * and is released at once. Drucker-Prager in plane strain; or a cylinder of radius L0.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/mpm_course.h"
 #include "common/mpm_heap.h"
@@ -22,7 +22,7 @@ typedef struct settings {
   int64_t ppc, threads;
   int cone;
   int spline; /* degree of the weights less 2 */
-  bool sweep, compare;
+  bool sweep, compare, axisymmetric;
   mpm_course_options course;
   const char *out;
 } settings;
@@ -57,15 +57,23 @@ typedef struct simulation {
  * the bed: (L - L0)/L0 = 1.2 a for a < 1.8 and 1.9 a^(2/3) for a > 2.8; between them here a
  * straight line. Height H/L0 = a where the top stays, a^(2/5) above; ours is the mean over 0.1 L0,
  * at least 2 h, at the wall. Glass beads run further, 1.8 a for a < 3 and 2.3 a^(2/3) above (E.
- * Lajeunesse, J. B. Monnier, G. M. Homsy, Phys. Fluids 17 (2005) 103302): only drawn. */
+ * Lajeunesse, J. B. Monnier, G. M. Homsy, Phys. Fluids 17 (2005) 103302): only drawn.
+ *
+ * Cylinders: G. Lube, H. E. Huppert, R. S. J. Sparks, M. A. Hallworth, "Axisymmetric collapses of
+ * granular columns", J. Fluid Mech. 508 (2004) 175-199: 1.24 a for a < 1.7 and 1.6 sqrt(a) above;
+ * the height is a where the top stays, 0.88 a^(1/6) above. */
 
-static double law_runout(double a) {
+static double law_runout(const settings *s, double a) {
+  if (s->axisymmetric) return a < 1.7 ? 1.24 * a : 1.6 * sqrt(a);
   const double low = 1.2 * 1.8, high = 1.9 * pow(2.8, 2.0 / 3.0);
   if (a <= 1.8) return 1.2 * a;
   return a < 2.8 ? low + (high - low) * (a - 1.8) : 1.9 * pow(a, 2.0 / 3.0);
 }
 
-static double law_height(double a) { return a <= 1.0 ? a : pow(a, 0.4); }
+static double law_height(const settings *s, double a) {
+  if (s->axisymmetric) return fmin(a, 0.88 * pow(a, 1.0 / 6.0));
+  return a <= 1.0 ? a : pow(a, 0.4);
+}
 
 /* It rests, or has had its time. One that Ctrl-C has stopped has no run-out yet. */
 static bool has_ended(const column_case *c) {
@@ -121,6 +129,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   law.dilation = fmin(s->psi, c->phi) * PI / 180.0;
   law.cohesion = c->cohesion;
   mps_mpm_def def = mps_mpm_defaults();
+  if (s->axisymmetric) def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
   def.cell = s->h;
   def.spline = s->spline + 2;
   def.lower[0] = def.lower[1] = 0.0;
@@ -216,8 +225,10 @@ static mps_status build(mps_context *context, void *user) {
 static mps_status sample(simulation *sim, column_case *c) {
   mpm_heap heap;
   const int k = c->rows;
-  const mps_status status =
-      mpm_heap_measure(&sim->m, G, fmax(0.1 * sim->s.width, 2.0 * sim->s.h), &heap);
+  const settings *s = &sim->s;
+  const mpm_heap_def def = {G, fmax((s->axisymmetric ? 0.2 : 0.1) * s->width, 2.0 * s->h),
+                            s->axisymmetric, s->density};
+  const mps_status status = mpm_heap_measure(&sim->m, &def, &heap);
   if (status != MPS_OK) return status;
   c->t[k] = mps_mpm_time(sim->m.mpm);
   c->front[k] = heap.front;
@@ -227,7 +238,8 @@ static mps_status sample(simulation *sim, column_case *c) {
   c->reach = heap.reach;
   c->detached = heap.detached;
   c->mass = heap.mass;
-  if (k == 0) c->mass_start = sim->s.density * c->aspect * sim->s.width * sim->s.width;
+  if (k == 0) c->mass_start = s->density * c->aspect * s->width * s->width;
+  if (k == 0 && s->axisymmetric) c->mass_start *= PI * s->width;
   c->peak = fmax(c->peak, heap.kinetic);
   c->rows++;
   sim->m.samples++;
@@ -292,9 +304,9 @@ static bool write_cases(app *a, const simulation *sim) {
                           c->phi,
                           c->cohesion,
                           runout(s, c),
-                          law_runout(c->aspect),
+                          law_runout(s, c->aspect),
                           final_height(s, c),
-                          law_height(c->aspect),
+                          law_height(s, c->aspect),
                           c->time_at_rest,
                           c->volume_ratio,
                           runout_98(s, c)};
@@ -381,28 +393,35 @@ static bool draw_columns(app *a, const simulation *sim) {
 
 static bool draw_law(app *a, const simulation *sim) {
   const settings *s = &sim->s;
+  const bool ring = s->axisymmetric;
+  const char *laws =
+      ring ? "low(x) = x < 1.7 ? 1.24*x : NaN\nhigh(x) = x > 1.7 ? 1.6*sqrt(x) : NaN\n"
+             "top(x) = x < 0.85 ? x : 0.88*x**(1.0/6)"
+           : "low(x) = x < 1.8 ? 1.2*x : NaN\nhigh(x) = x > 2.8 ? 1.9*x**(2.0/3) : NaN\n"
+             "beads(x) = x < 3 ? 1.8*x : 2.3*x**(2.0/3)\ntop(x) = x < 1 ? x : x**0.4";
+  const char *beads = ring ? ""
+                           : "beads(x) with lines dashtype '--' linecolor rgb '#888888' title "
+                             "'glass beads, Lajeunesse et al. 2005', \\\n";
+  const char *sand = ring ? "sand, Lube et al. 2004" : "sand, Lube et al. 2005";
   output f;
   if (!plot_open(&f, a, s->out, "runout", 1200, 560)) return false;
   output_text(
       &f,
       "set multiplot layout 1,2 title \"Collapse of a column on a bed\\n{/*0.8 {/Symbol f} = %g°, "
       "h = L_0/%.3g}\"\n"
-      "low(x) = x < 1.8 ? 1.2*x : NaN\nhigh(x) = x > 2.8 ? 1.9*x**(2.0/3) : NaN\n"
-      "beads(x) = x < 3 ? 1.8*x : 2.3*x**(2.0/3)\ntop(x) = x < 1 ? x : x**0.4\n"
+      "%s\n"
       "set logscale xy\nset xtics (0.5, 1, 2, 5, 10)\nset ytics (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, "
       "20)\nset xrange [0.3:10]\nset samples 400\nset key left top reverse Left samplen 2.5 font "
       "',13'\n"
       "set xlabel 'a = H_0/L_0'\nset ylabel 'run-out (L - L_0)/L_0'\nset yrange [*<0.2:20]\n"
       "law = \"linecolor rgb '#c0392b'\"\n"
       "dots = \"with points pointtype 7 pointsize 1.4 linecolor rgb '#1f4e8c' title 'WLS-MPM'\"\n"
-      "plot beads(x) with lines dashtype '--' linecolor rgb '#888888' title "
-      "'glass beads, Lajeunesse et al. 2005', \\\n"
-      "  low(x) with lines @law title 'sand, Lube et al. 2005', high(x) with lines @law notitle, "
+      "plot %s  low(x) with lines @law title '%s', high(x) with lines @law notitle, "
       "\\\n  'cases.csv' every ::1 using 2:5 @dots\n"
       "set ylabel 'final height H/L_0'\nset yrange [0.2:5]\n"
-      "plot top(x) with lines @law title 'sand, Lube et al. 2005', 'cases.csv' every ::1 using 2:7 "
+      "plot top(x) with lines @law title '%s', 'cases.csv' every ::1 using 2:7 "
       "@dots\nunset multiplot\n",
-      s->phi, s->width / s->h);
+      s->phi, s->width / s->h, laws, beads, sand, sand);
   return plot_close(&f, s->out, "runout");
 }
 
@@ -412,7 +431,7 @@ static void summarise(output *f, const simulation *sim) {
   const column_case *c = &sim->column[sim->count - 1];
   double worst = NAN;
   for (int k = 0; k < sim->count; k++) {
-    const double d = runout(s, &sim->column[k]) / law_runout(sim->column[k].aspect) - 1.0;
+    const double d = runout(s, &sim->column[k]) / law_runout(s, sim->column[k].aspect) - 1.0;
     if (isnan(worst) || fabs(d) > fabs(worst)) worst = d;
   }
   json_integer(f, "columns", sim->count);
@@ -421,12 +440,12 @@ static void summarise(output *f, const simulation *sim) {
   json_number(f, "phi", c->phi);
   json_number(f, "cohesion", c->cohesion);
   json_number(f, "runout", runout(s, c));
-  json_number(f, "runout_law", law_runout(c->aspect));
-  json_number(f, "runout_error", runout(s, c) / law_runout(c->aspect) - 1.0);
+  json_number(f, "runout_law", law_runout(s, c->aspect));
+  json_number(f, "runout_error", runout(s, c) / law_runout(s, c->aspect) - 1.0);
   json_number(f, "runout_error_worst", worst);
   json_number(f, "runout_98", runout_98(s, c));
   json_number(f, "height", final_height(s, c));
-  json_number(f, "height_law", law_height(c->aspect));
+  json_number(f, "height_law", law_height(s, c->aspect));
   json_number(f, "time_at_rest", c->time_at_rest);
   json_number(f, "volume_ratio_max", c->volume_ratio);
   json_number(f, "detached", c->detached);
@@ -455,8 +474,8 @@ static bool finish(app *a, void *user) {
       continue;
     }
     printf("%-12s a = %-4g run-out %.3f (law %.3f)  height %.3f (law %.3f)  %s %.3g s\n", c->name,
-           c->aspect, runout(s, c), law_runout(c->aspect), final_height(s, c),
-           law_height(c->aspect), isnan(c->time_at_rest) ? "still moves at" : "at rest after",
+           c->aspect, runout(s, c), law_runout(s, c->aspect), final_height(s, c),
+           law_height(s, c->aspect), isnan(c->time_at_rest) ? "still moves at" : "at rest after",
            c->t[c->rows - 1]);
   }
   return true;
@@ -520,6 +539,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Column"),
       OPTION_NUMBER("aspect", "1", OPTION_FROM_TO(0.1, 20.0), &s->aspect, "a = H0/L0"),
       OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width, "L0 from the wall, whole cells"),
+      OPTION_FLAG("axisymmetric", &s->axisymmetric, "a cylinder of the radius --width"),
       OPTION_FLAG("sweep", &s->sweep, "columns of a = 0.5, 1, 2, 3, 4, 6 against the law"),
       OPTION_FLAG("compare", &s->compare,
                   "three columns: sand; phi/2 and c = 0.05 rho g H; clay of c = 0.15 rho g H"),

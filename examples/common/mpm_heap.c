@@ -27,7 +27,7 @@ static double end_of_heap(int64_t count, double *x, double gap) {
 
 /* ---- the heap -------------------------------------------------------------------------------- */
 
-static mps_status measure(mps_particles *particles, double g, double band, mpm_heap *out) {
+static mps_status measure(mps_particles *particles, const mpm_heap_def *def, mpm_heap *out) {
   mps_view x, v, m, volume;
   mps_status status = mps_particles_view(particles, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(particles, "velocity", &v);
@@ -44,25 +44,28 @@ static mps_status measure(mps_particles *particles, double g, double band, mpm_h
     return MPS_ERROR_MEMORY;
   }
   *out = (mpm_heap){0};
+  const double section =
+      def->axisymmetric ? 3.14159265358979323846 * def->band * def->band : def->band;
   int64_t beside = 0;
   for (int64_t i = 0; i < count; i++) {
     const int64_t k = rows[i];
     const double mass = *mps_view_f64(&m, k, 0), vx = *mps_view_f64(&v, k, 0);
     const double vy = *mps_view_f64(&v, k, 1), V = *mps_view_f64(&volume, k, 0);
     out->mass += mass;
-    out->potential += mass * g * *mps_view_f64(&x, k, 1);
+    out->potential += mass * def->g * *mps_view_f64(&x, k, 1);
     out->kinetic += 0.5 * mass * (vx * vx + vy * vy);
     out->volume += V;
-    out->volume_ratio = fmax(out->volume_ratio, V / (spacing * spacing));
-    if (*mps_view_f64(&x, k, 0) >= band) continue;
-    out->height += V / band;
+    const double start = def->axisymmetric ? mass / def->density : spacing * spacing;
+    out->volume_ratio = fmax(out->volume_ratio, V / start);
+    if (*mps_view_f64(&x, k, 0) >= def->band) continue;
+    out->height += V / section;
     place[beside++] = *mps_view_f64(&x, k, 1);
   }
   out->top = end_of_heap(beside, place, 2.0 * spacing) + 0.5 * spacing;
   for (int64_t k = 0; k < count; k++) place[k] = *mps_view_f64(&x, k, 0);
   const double last = end_of_heap(count, place, 2.0 * spacing);
   out->front = last + 0.5 * spacing;
-  out->reach = place[(int64_t)(0.98 * (double)(count - 1))];
+  out->reach = def->axisymmetric ? NAN : place[(int64_t)(0.98 * (double)(count - 1))];
   for (int64_t i = 0; i < count; i++)
     if (*mps_view_f64(&x, rows[i], 0) > last)
       out->detached += *mps_view_f64(&m, rows[i], 0) / out->mass;
@@ -71,10 +74,10 @@ static mps_status measure(mps_particles *particles, double g, double band, mpm_h
   return MPS_OK;
 }
 
-mps_status mpm_heap_measure(mpm_model *m, double g, double band, mpm_heap *out) {
+mps_status mpm_heap_measure(mpm_model *m, const mpm_heap_def *def, mpm_heap *out) {
   mps_particles *whole;
   mps_status status = mpm_model_whole(m, &whole);
-  if (status == MPS_OK && whole) status = measure(whole, g, band, out);
+  if (status == MPS_OK && whole) status = measure(whole, def, out);
   return mpm_model_tell(m, status, sizeof *out / sizeof(double), &out->front);
 }
 

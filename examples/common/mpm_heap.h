@@ -10,20 +10,27 @@
 
 typedef struct mpm_heap {
   double front;        /* m: farthest x of the heap, half a spacing beyond the last particle */
-  double reach;        /* m: 98 % of the particles are nearer to the wall */
+  double reach;        /* m: 98 % of the particles are nearer to the wall; axisymmetry: NaN */
   double top;          /* m: highest y of the heap beside the wall, likewise */
-  double height;       /* m: volume beside the wall over the width of the band */
-  double mass;         /* kg, of all particles; per unit thickness, as the following */
+  double height;       /* m: volume beside the wall over the area of the band */
+  double mass;         /* kg, of all particles; plane: of 1 m, as the following */
   double potential;    /* J above the bed, gravity g given */
   double kinetic;      /* J */
   double volume;       /* m3 */
-  double volume_ratio; /* largest volume of a particle over spacing squared */
+  double volume_ratio; /* largest V/V0 of a particle */
   double detached;     /* share of the mass ahead of the front */
 } mpm_heap;
 
+typedef struct mpm_heap_def {
+  double g;          /* m/s2 */
+  double band;       /* m: beside the wall is x < band */
+  bool axisymmetric; /* x = 0 is the axis of a cylinder */
+  double density;    /* kg/m3, of particles at the start; axisymmetry */
+} mpm_heap_def;
+
 /* Drops are left out: particles ahead of a gap of 2 spacings (for `top`: above it) that are less
- * than 1 % of all. Beside the wall is x < `band` (m). Collective: all ranks receive it. */
-mps_status mpm_heap_measure(mpm_model *m, double g, double band, mpm_heap *out);
+ * than 1 % of all. Collective: all ranks receive it. */
+mps_status mpm_heap_measure(mpm_model *m, const mpm_heap_def *def, mpm_heap *out);
 
 /* Positions and one value of all particles at one time, in ascending order of ids. */
 typedef struct mpm_snapshot {

@@ -94,7 +94,8 @@ static mps_status take_sample(simulation *sim, int k) {
   const settings *s = &sim->s;
   const char *pressure = s->method == METHOD_MPS ? "pressure" : "stress";
   mpm_heap *heap = &sim->heap[k];
-  mps_status status = mpm_heap_measure(&sim->m, G, 2.0 * s->h, heap);
+  const mpm_heap_def def = {.g = G, .band = 2.0 * s->h};
+  mps_status status = mpm_heap_measure(&sim->m, &def, heap);
   if (status == MPS_OK && k % SHOT_EVERY == 0)
     status = mpm_snapshot_take(&sim->m, time_now(sim), pressure, &sim->shot[k / SHOT_EVERY]);
   if (status == MPS_OK && frame_is_due(k, SAMPLES, s->frames)) status = write_frame(sim);

@@ -12,10 +12,12 @@ enum { FOOTING_SAMPLES = 120, FOOTING_SETTLED = 30, VON_MISES = 0, DRUCKER_PRAGE
 enum { STRIP = 0, CIRCLE = 1 };
 
 typedef struct settings {
-  int model, cone, shape; /* VON_MISES or DRUCKER_PRAGER; mps_material_cone; STRIP or CIRCLE */
-  double width, depth;    /* m, of the half model */
-  double phi, psi;        /* degrees */
-  double cohesion, young; /* Pa */
+  int model, cone, shape;   /* VON_MISES or DRUCKER_PRAGER; mps_material_cone; STRIP or CIRCLE */
+  double width, depth;      /* m, of the half model */
+  double phi, psi;          /* degrees */
+  double cohesion, young;   /* Pa */
+  double surcharge;         /* Pa, on the ground beside the footing */
+  double top, top_cohesion; /* m, Pa: of an upper layer; 0: none */
   double poisson, density, gravity;
   int contact;            /* mps_contact_method */
   int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
@@ -36,6 +38,16 @@ typedef struct simulation {
   double strain;                                            /* largest plastic strain */
   mpm_course course;
 } simulation;
+
+/* What pressures are shown over: the surcharge, rho g B/2 or the cohesion of the upper ground. Pa.
+ */
+typedef struct footing_unit {
+  double value;
+  const char *name;
+} footing_unit;
+footing_unit footing_unit_of(const settings *s);
+/* A layer on rigid rough ground that is thinner than a mechanism is deep. */
+bool footing_is_thin(const settings *s);
 
 /* Fills in what depends on the model. Returns why settings are not consistent; NULL: good. */
 const char *footing_settle(settings *s, const option *table);

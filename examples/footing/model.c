@@ -27,10 +27,16 @@ const char *footing_settle(settings *s, const option *table) {
   const char *large = mpm_model_too_large(s->width * s->depth / (s->h * s->h) * (double)s->ppc);
   if (large) return large;
   if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --h";
-  if (s->width < 3.0 * s->half_width || s->depth < 1.5 * s->half_width)
+  const bool layer = !cone && s->shape == STRIP;
+  if (s->width < 3.0 * s->half_width || (!layer && footing_is_thin(s)))
     return "--domain must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
-           "the "
-           "ground moves when it fails";
+           "the ground moves when it fails; a strip on cohesive ground may have a thinner layer";
+  if (s->depth < s->h * (4.0 - 1e-9)) return "--domain must be at least 4 cells of --h deep";
+  if (!cone && options_given(table, "surcharge")) return "--surcharge is for --model druckerprager";
+  if ((s->top > 0.0) != (s->top_cohesion > 0.0)) return "--top and --top-cohesion need one another";
+  if (cone && s->top > 0.0) return "--top and --top-cohesion are for --model vonmises";
+  if (s->top > s->depth - s->h)
+    return "--top must leave at least a cell of --h of the ground below";
   if (isnan(s->rate)) s->rate = s->settled ? 1.5e-3 : 0.5e-3;
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
@@ -39,6 +45,17 @@ const char *footing_settle(settings *s, const option *table) {
     return "--settlement must be at most half of --half-width";
   if (isnan(s->gravity)) s->gravity = cone ? 9.81 : 0.0;
   return NULL;
+}
+
+bool footing_is_thin(const settings *s) { return s->depth < 1.5 * s->half_width * (1.0 - 1e-9); }
+
+footing_unit footing_unit_of(const settings *s) {
+  const double cohesion = s->top > 0.0 ? s->top_cohesion : s->cohesion;
+  const double weight = s->density * s->gravity * s->half_width;
+  if (s->surcharge > 0.0) return (footing_unit){s->surcharge, "surcharge"};
+  if (s->model == DRUCKER_PRAGER && weight > 100.0 * cohesion)
+    return (footing_unit){weight, "{/Symbol r} g B/2"};
+  return (footing_unit){cohesion, "cohesion"};
 }
 
 /* ---- building -------------------------------------------------------------------------------- */
@@ -75,14 +92,23 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
-/* Ground at rest under its own weight, (57). */
+/* Ground at rest under its own weight, (57), and the surcharge. */
 static mps_status set_stress(mps_particles *set, const settings *s) {
+  if (s->gravity == 0.0) {
+    const double k0 = s->poisson / (1.0 - s->poisson), across = -s->surcharge;
+    const double stress[4] = {k0 * across, across, k0 * across, 0.0};
+    mps_status status = MPS_OK;
+    for (int c = 0; c < 4 && status == MPS_OK; c++)
+      status = mps_particles_set(set, "stress", c, stress[c]);
+    return status;
+  }
   const mps_geostatic_layer layer = {
       .thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson), .density = NAN};
   mps_geostatic_def def = mps_geostatic_defaults();
   def.layers = &layer, def.layer_count = 1;
   def.gravity = s->gravity;
   def.surface = s->depth;
+  def.surcharge = s->surcharge;
   return mps_particles_set_geostatic(set, &def);
 }
 
@@ -93,31 +119,69 @@ static mps_status make_ground(mps_context *context, const settings *s, mpm_model
   mps_status status = mpm_model_particles(m, context, &def);
   if (status == MPS_OK) status = mps_particles_fill_box(m->particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
-  return status == MPS_OK && s->gravity > 0.0 ? set_stress(m->particles, s) : status;
+  return status == MPS_OK && s->gravity + s->surcharge > 0.0 ? set_stress(m->particles, s) : status;
 }
 
 /* In plane strain von Mises' law has the shear strength c of Tresca's; under a circle it has not.
  */
-static mps_status make_clay(mps_context *context, const settings *s, mps_material **out) {
+static mps_status make_clay(mps_context *context, const settings *s, double cohesion,
+                            mps_material **out) {
   if (s->shape == CIRCLE) {
     mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
-    law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
+    law.young = s->young, law.poisson = s->poisson, law.cohesion = cohesion;
     law.friction = law.dilation = 0.0;
     return mps_material_create_mohr_coulomb(context, &law, out);
   }
   mps_material_von_mises_def law = mps_material_von_mises_defaults();
   law.young = s->young, law.poisson = s->poisson;
-  law.yield_stress = sqrt(3.0) * s->cohesion; /* (54) */
+  law.yield_stress = sqrt(3.0) * cohesion; /* (54) */
   return mps_material_create_von_mises(context, &law, out);
 }
 
 static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
-  if (s->model == VON_MISES) return make_clay(context, s, out);
+  if (s->model == VON_MISES) return make_clay(context, s, s->cohesion, out);
   mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = s->cone;
   law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
   law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE;
   return mps_material_create_drucker_prager(context, &law, out);
+}
+
+/* Ids of the particles above `level`, from x = `from` on. */
+static mps_status choose(const settings *s, mps_particles *set, double from, double level,
+                         int64_t *count, int64_t *ids) {
+  mps_view x, id;
+  mps_status status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(set, "id", &id);
+  const double little = 1e-6 * s->h;
+  *count = 0;
+  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++)
+    if (*mps_view_f64(&x, k, 0) > from + little && *mps_view_f64(&x, k, 1) > level + little)
+      ids[(*count)++] = *mps_view_i64(&id, k, 0);
+  return status;
+}
+
+/* The clay of the upper layer, and the surcharge on the uppermost particles beside the footing. */
+static mps_status add_layer_and_surcharge(mps_context *context, const settings *s, mpm_model *m) {
+  mps_particles *set = m->particles;
+  int64_t *ids = malloc((size_t)(mps_particles_count(set) + 1) * sizeof *ids), count;
+  mps_status status = ids ? MPS_OK : MPS_ERROR_MEMORY;
+  mps_material *clay = NULL;
+  if (status == MPS_OK && s->top > 0.0) {
+    status = choose(s, set, 0.0, s->depth - s->top, &count, ids);
+    if (status == MPS_OK) status = make_clay(context, s, s->top_cohesion, &clay);
+    if (status == MPS_OK && count > 0) status = mps_mpm_set_material(m->mpm, clay, count, ids);
+    mps_material_destroy(&clay);
+  }
+  if (status == MPS_OK && s->surcharge > 0.0) {
+    mps_mpm_load_def load = mps_mpm_load_defaults();
+    status = choose(s, set, s->half_width, s->depth - mps_particles_spacing(set), &count, ids);
+    load.ids = ids, load.id_count = count;
+    load.traction[1] = -s->surcharge;
+    if (status == MPS_OK && count > 0) status = mps_mpm_add_load(m->mpm, &load, NULL);
+  }
+  free(ids);
+  return status;
 }
 
 mps_status footing_build(mps_context *context, void *user) {
@@ -150,6 +214,7 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
   if (status == MPS_OK) status = add_contact(s, sim);
+  if (status == MPS_OK) status = add_layer_and_surcharge(context, s, &sim->m);
   if (status == MPS_OK) status = mpm_course_begin(&sim->course, context, true);
   sim->m.samples = sim->rows;
   return status;

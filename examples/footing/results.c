@@ -14,6 +14,7 @@ enum { LINES = 40 };
 
 /* q/c of the run, and the reference values. */
 typedef struct capacity {
+  double unit;                 /* Pa: the cohesion, of the upper layer where there are two */
   double last;                 /* mean over the last fifth of the path; NaN: it has not ended */
   double undeformed, slope;    /* of the line through the path's second half: at no settlement, and
                                   per mm: limit analysis knows the ground's first shape only */
@@ -22,7 +23,7 @@ typedef struct capacity {
 
 static void fit_path(const simulation *sim, capacity *c) {
   const int first = sim->rows / 2, n = sim->rows - first;
-  const double unit = sim->s.cohesion;
+  const double unit = c->unit;
   double x = 0.0, q = 0.0, xx = 0.0, xq = 0.0;
   c->last = 0.0;
   for (int k = first; k < sim->rows; k++) x += sim->path[k] * 1e3 / n, q += sim->q[k] / unit / n;
@@ -41,6 +42,16 @@ static void fit_path(const simulation *sim, capacity *c) {
  * J. Mech. Phys. Solids 4 (1955) 10-16; rough, G. Eason and R. T. Shield, Z. angew. Math. Phys. 11
  * (1960) 33-43. Coulomb's friction lets the base bear c, as a rough one does, where mu q > c. */
 static void find_cohesive_limits(const settings *s, capacity *c) {
+  if (s->top >
+      0.0) { /* known by bounds alone: R. S. Merifield et al., Geotechnique 49 (1999) 471 */
+    c->smooth = c->rough = c->exact = NAN;
+    return;
+  }
+  if (footing_is_thin(s)) { /* a rough strip: G. G. Meyerhof, T. K. Chaplin 1953 */
+    c->rough = fmax(c->rough, PI + 1.0 + s->half_width / s->depth);
+    c->smooth = NAN;
+    c->exact = s->mu >= 1.0 ? c->rough : NAN;
+  }
   if (s->shape == STRIP) return;
   c->smooth = 5.69, c->rough = 6.05;
   c->exact = s->mu == 0.0 ? c->smooth : s->mu * c->smooth >= 1.0 ? c->rough : NAN;
@@ -53,6 +64,7 @@ static double limit(const settings *s, bool rough) {
                            .friction = s->phi * PI / 180.0,
                            .cohesion = s->cohesion,
                            .weight = s->density * s->gravity,
+                           .surcharge = s->surcharge,
                            .rough = rough};
   const double coarse = characteristics_capacity(&f, LINES / 2);
   const double fine = characteristics_capacity(&f, LINES);
@@ -62,6 +74,7 @@ static double limit(const settings *s, bool rough) {
 static capacity measure(const simulation *sim) {
   const settings *s = &sim->s;
   capacity c = {.smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
+  c.unit = s->top > 0.0 ? s->top_cohesion : s->cohesion;
   c.last = c.undeformed = c.slope = NAN; /* the ground bears more until the end of the path */
   if (sim->rows == sim->samples) fit_path(sim, &c);
   if (s->model == VON_MISES) {
@@ -76,12 +89,12 @@ static capacity measure(const simulation *sim) {
 
 /* ---- tables ---------------------------------------------------------------------------------- */
 
-static bool write_pressure(app *a, const settings *s, const simulation *sim) {
+static bool write_pressure(app *a, const settings *s, const simulation *sim, const capacity *c) {
   output f;
   if (!output_open(&f, a, s->out, "pressure.csv")) return false;
   csv_header(&f, "settlement_mm,q_kPa,q_over_c");
   for (int k = 0; k < sim->rows; k++) {
-    const double row[] = {sim->path[k] * 1e3, sim->q[k] * 1e-3, sim->q[k] / s->cohesion};
+    const double row[] = {sim->path[k] * 1e3, sim->q[k] * 1e-3, sim->q[k] / c->unit};
     csv_row(&f, 3, row);
   }
   return output_close(&f);
@@ -129,6 +142,11 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_number(&f, "q_exact", c->exact);
   json_number(&f, "q_exact_smooth", c->smooth);
   json_number(&f, "q_exact_rough", c->rough);
+  /* At no settlement, as all of the bearing capacity were that of the surcharge, or of the weight.
+   */
+  const double q = c->undeformed * c->unit, weight = s->density * s->gravity * s->half_width;
+  json_number(&f, "q_over_surcharge", s->surcharge > 0.0 ? q / s->surcharge : NAN);
+  json_number(&f, "q_over_weight", weight > 0.0 ? q / weight : NAN);
   json_end(&f);
   return output_close(&f);
 }
@@ -145,24 +163,32 @@ static void draw_limit(output *f, double value, const char *dash, const char *ti
 static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   output f;
   char loading[32] = "quasi-static";
+  const footing_unit unit = footing_unit_of(s);
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
   if (!s->settled) snprintf(loading, sizeof loading, "%g mm/s", 1e3 * s->rate);
   output_text(&f,
               "set title \"%s footing on %s ground\\n{/*0.85 h = %g m, %s %g m, "
               "%s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
-              "set ylabel 'pressure over cohesion, q/c'\nset key right bottom opaque\n"
-              "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:3 with lines "
+              "set ylabel 'pressure over %s'\nset key right bottom opaque\n"
+              "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:($2*%.9g) with lines "
               "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
               s->shape == CIRCLE ? "Circular" : "Strip",
               s->model == VON_MISES ? "cohesive" : "frictional", s->h,
-              s->shape == CIRCLE ? "radius" : "half width", s->half_width, loading, s->mu);
+              s->shape == CIRCLE ? "radius" : "half width", s->half_width, loading, s->mu,
+              unit.name, 1e3 / unit.value);
+  const double scale = c->unit / unit.value;
   const bool cone = s->model == DRUCKER_PRAGER;
   const bool circle = s->shape == CIRCLE;
-  if (!cone && !circle) draw_limit(&f, c->exact, "--", "Prandtl");
-  if (circle && c->exact != c->rough) draw_limit(&f, c->smooth, "--", "smooth base, Shield");
-  if (circle && c->exact != c->smooth) draw_limit(&f, c->rough, "-.", "rough base, Eason, Shield");
-  if (cone && c->exact != c->rough) draw_limit(&f, c->smooth, "--", "smooth base, characteristics");
-  if (cone && c->exact != c->smooth) draw_limit(&f, c->rough, "-.", "rough base, characteristics");
+  if (!cone && !circle)
+    draw_limit(&f, scale * c->exact, "--", footing_is_thin(s) ? "Meyerhof, Chaplin" : "Prandtl");
+  if (circle && c->exact != c->rough)
+    draw_limit(&f, scale * c->smooth, "--", "smooth base, Shield");
+  if (circle && c->exact != c->smooth)
+    draw_limit(&f, scale * c->rough, "-.", "rough base, Eason, Shield");
+  if (cone && c->exact != c->rough)
+    draw_limit(&f, scale * c->smooth, "--", "smooth base, characteristics");
+  if (cone && c->exact != c->smooth)
+    draw_limit(&f, scale * c->rough, "-.", "rough base, characteristics");
   output_text(&f, "\n");
   return plot_close(&f, s->out, "pressure");
 }
@@ -260,7 +286,7 @@ bool footing_finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   const capacity c = measure(sim);
-  if (!write_pressure(a, s, sim) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
+  if (!write_pressure(a, s, sim, &c) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
       !draw_pressure(a, s, &c) || !draw_bands(a, s, sim))
     return false;
   app_tell_results(a, s->out);

@@ -1,0 +1,64 @@
+# Draws the pictures of docs/verification/textbook.md from what scripts/verify --page textbook has left in out/verify:
+# gnuplot docs/images/textbook.gp, in the root of the sources.
+set encoding utf8
+set datafile separator ','
+set grid
+blue = '#1f4e8c'; red = '#c0392b'; grey = '#888888'; green = '#2e7d32'
+block = 'out/verify/test-verify-textbook_block/'
+wave = 'out/verify/test-verify-textbook_rayleigh/'
+bar = 'out/verify/test-verify-textbook_taylor/'
+folder(name) = system("ls -td out/verify/".name."* 2>/dev/null | head -1").'/'
+
+# ---- motion ---------------------------------------------------------------------------------
+set terminal pngcairo size 1200,900 enhanced font 'DejaVu Sans,11'
+set output 'docs/images/textbook-motion.png'
+set multiplot layout 2,2
+set key bottom right
+set title "Newmark's block, one pulse of 0.4 g"
+set xlabel 't (s)'; set ylabel 'slip (m)'
+plot block.'block_pulse.csv' every ::1 using 1:3 with lines lw 2 lc rgb blue title 'WLS-MPM', 0.122625 dt '--' lc rgb red title 'closed form, at the end'
+set title "Newmark's block, five cycles of 0.35 g down 15°"
+plot block.'block_cycles.csv' every ::1 using 1:3 with lines lw 2 lc rgb blue title 'WLS-MPM', 0.231714 dt '--' lc rgb red title 'rigid block, at the end'
+set title 'Surface wave, explicit MPS, 40 particles a wavelength'
+set ylabel 'velocity of the surface (mm/s)'; set key top right
+plot [0:3.3] wave.'rayleigh_particles.csv' every ::1 using 1:($3*1e3) with lines lc rgb blue title 'vertical', '' every ::1 using 1:($2*1e3) with lines lc rgb red title 'horizontal'
+set title "Taylor's bar after 80 µs: plastic strain"
+set xlabel 'r (mm)'; set ylabel 'z (mm)'; set size ratio -1
+set palette defined (0 '#f7fbff', 0.3 '#6baed6', 1 '#08306b')
+plot [-9:9] [0:24] bar.'taylor.csv' every ::1 using ($1*1e3):($2*1e3):3 with points pt 7 ps 0.22 palette notitle, '' every ::1 using (-$1*1e3):($2*1e3):3 with points pt 7 ps 0.22 palette notitle, 21.4 dt '--' lc rgb red title '21.4 mm'
+unset multiplot
+
+# ---- bearing capacity ------------------------------------------------------------------------
+set size noratio
+set key bottom right
+set terminal pngcairo size 1200,820 enhanced font 'DejaVu Sans,11'
+set output 'docs/images/textbook-bearing.png'
+nq = folder('mps-footing_--model_druckerprager_--gravity_0')
+smooth = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--young_100MPa_--domain_3x1.5_--quasi')
+rough = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--young_100MPa_--domain_5x2_--friction_1_--quasi')
+thin = folder('mps-footing_--half-width_1_--domain_3x0.5')
+set multiplot layout 2,2
+set xlabel 'settlement (mm)'
+set title 'Surcharge, {/Symbol f} = 30°, h = 0.05 m'; set ylabel 'pressure over the surcharge'
+plot [0:*] [0:*] nq.'pressure.csv' every ::1 using 1:($2/10) with lines lw 2 lc rgb blue title 'WLS-MPM', 18.401 dt '--' lc rgb red title 'N_q, Prandtl and Reissner'
+set title 'Weight, {/Symbol f} = 30°, smooth'; set ylabel 'pressure over {/Symbol r} g B/2'
+plot [0:*] [0:*] smooth.'pressure.csv' every ::1 using 1:($2/4.905) with lines lw 2 lc rgb blue title 'WLS-MPM, at rest after each part', 7.653 dt '--' lc rgb red title 'N_{/Symbol g}, Martin'
+set title 'Weight, {/Symbol f} = 30°, rough'
+plot [0:*] [0:*] rough.'pressure.csv' every ::1 using 1:($2/4.905) with lines lw 2 lc rgb blue title 'WLS-MPM, at rest after each part', 14.75 dt '--' lc rgb red title 'N_{/Symbol g}, Martin'
+set title 'Thin layer of clay, B = 4 H, rough'; set ylabel 'pressure over c'
+plot [0:*] [0:*] thin.'pressure.csv' every ::1 using 1:3 with lines lw 2 lc rgb blue title 'WLS-MPM', 6.1416 dt '--' lc rgb red title '{/Symbol p} + 1 + B/(2 H)'
+unset multiplot
+
+# ---- walls and sand --------------------------------------------------------------------------
+set terminal pngcairo size 1200,420 enhanced font 'DejaVu Sans,11'
+set output 'docs/images/textbook-sand.png'
+set multiplot layout 1,2
+set title 'Wall that leaves sand, ground below the toe'
+set xlabel 'path over height'; set ylabel 'K'; set key top right
+walls = 'out/verify/mps-wall_--base_0.5_--h_'
+plot [0:0.01] [0:0.6] walls.'0.125/pressure.csv' every ::2 using 1:3 with lines lc rgb grey title 'h = H/8', walls.'0.0625/pressure.csv' every ::2 using 1:3 with lines lc rgb green title 'h = H/16', walls.'0.03125/pressure.csv' every ::2 using 1:3 with lines lw 2 lc rgb blue title 'h = H/32', 1.0/3 dt '--' lc rgb red title 'Rankine'
+set title 'Cylinders of sand, run-out over time'
+set xlabel 't (s)'; set ylabel '(L - L_0)/L_0'; set key bottom right
+columns = 'out/verify/mps-column-collapse_--axisymmetric_--aspect_'
+plot [0:*] [0:3.2] columns.'1_--frames_0_--h_0.005/front_column.csv' every ::1 using 1:2 with lines lw 2 lc rgb blue title 'a = 1', columns.'3_--frames_0_--h_0.005/front_column.csv' every ::1 using 1:2 with lines lw 2 lc rgb green title 'a = 3', 1.24 dt '--' lc rgb blue title 'Lube et al., a = 1', 2.771 dt '--' lc rgb green title 'a = 3'
+unset multiplot

@@ -1,0 +1,165 @@
+/* test_textbook_block.c - Newmark's sliding block (N. M. Newmark, Effects of earthquakes on dams
+ * and embankments, Geotechnique 15 (1965) 139-160): a stiff elastic block of particles on a rigid
+ * rough plane that is shaken. Slip after one rectangular pulse on level ground against the closed
+ * form, and after five cycles down a slope against the equation of a rigid block, integrated apart.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+
+#include "test_fixture.h"
+#include "textbook_table.h"
+
+#define G 9.81
+#define PI 3.14159265358979323846
+#define LENGTH 0.8 /* m, of the block */
+#define HEIGHT 0.2
+#define DENSITY 2000.0
+#define YOUNG 5e7 /* Pa: a shear wave crosses the height in 2 ms */
+#define REST 0.1  /* s before the plane moves */
+
+/* A block on a plane at the angle `slope` (rad), in axes along the plane. */
+typedef struct shaking {
+  const char *name;
+  double friction, slope;
+  double peak, frequency; /* m/s2; Hz, 0: one rectangular pulse */
+  double duration;        /* s, of the pulse or the cycles */
+  double end;             /* s */
+} shaking;
+
+/* Acceleration of the plane, positive up the slope. */
+static double plane_acceleration(const shaking *s, double t) {
+  const double u = t - REST;
+  if (u < 0.0 || u >= s->duration) return 0.0;
+  return s->frequency > 0.0 ? s->peak * sin(2.0 * PI * s->frequency * u) : s->peak;
+}
+
+/* Its integral. */
+static double plane_velocity(const shaking *s, double t) {
+  const double u = fmin(fmax(t - REST, 0.0), s->duration), w = 2.0 * PI * s->frequency;
+  return s->frequency > 0.0 ? s->peak * (1.0 - cos(w * u)) / w : s->peak * u;
+}
+
+static double plane_place(const shaking *s, double t) {
+  const double u = fmin(fmax(t - REST, 0.0), s->duration), w = 2.0 * PI * s->frequency;
+  const double after = fmax(t - REST - s->duration, 0.0) * plane_velocity(s, t);
+  return after + (s->frequency > 0.0 ? s->peak / w * (u - sin(w * u) / w) : 0.5 * s->peak * u * u);
+}
+
+/* Slip of a rigid block down the plane (m): it slips down where the plane's acceleration up the
+ * slope is above ay = g (mu cos - sin), and up where it is below -g (mu cos + sin). Steps of 1e-6
+ * s.
+ */
+static double rigid_slip(const shaking *s) {
+  const double hold = s->friction * G * cos(s->slope), pull = G * sin(s->slope), dt = 1e-6;
+  double v = 0.0, slip = 0.0; /* of the block against the plane, down the slope */
+  for (int64_t k = 0; k < (int64_t)(s->end / dt); k++) {
+    const double drive = plane_acceleration(s, (k + 0.5) * dt) + pull;
+    double a = 0.0;
+    if (v > 0.0 || (v == 0.0 && drive > hold)) a = drive - hold;
+    if (v < 0.0 || (v == 0.0 && drive < -hold)) a = drive + hold;
+    const double next = v + a * dt;
+    const bool stops = v != 0.0 && next * v <= 0.0 && fabs(drive) <= hold;
+    slip += 0.5 * (v + (stops ? 0.0 : next)) * dt;
+    v = stops ? 0.0 : next;
+  }
+  return slip;
+}
+
+static mps_status move(void *user, double t, double motion[3]) {
+  const shaking *s = user;
+  motion[0] = plane_place(s, t);
+  motion[1] = plane_velocity(s, t);
+  motion[2] = plane_acceleration(s, t);
+  return MPS_OK;
+}
+
+/* The plane is y = 0, x points up the slope. The stress of rest across the plane is there. */
+static mps_body *place_block(mpm_scene *s, shaking *how, double h) {
+  *s = mpm_scene_begin(context, 0.5 * h, 0.0, 0.0, YOUNG);
+  mpm_scene_box(s, 0.0, 0.0, LENGTH, HEIGHT);
+  mps_assert_ok(context, mps_particles_set(s->particles, "density", 0, DENSITY));
+  mps_assert_ok(context, mps_particles_set(s->particles, "stress", 0, 0.0));
+  const mps_view x = mpm_scene_view(s, "position");
+  mps_edit stress = mpm_scene_edit(s, "stress");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double across = -DENSITY * G * cos(how->slope) * (HEIGHT - *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&stress, k, 1) = across;
+    *mps_edit_f64(&stress, k, 2) = 0.3 * across;
+  }
+  mpm_scene_commit(s, &stress);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = h;
+  def.gravity[0] = -G * sin(how->slope);
+  def.gravity[1] = -G * cos(how->slope);
+  mps_assert_ok(context, mps_mpm_create(context, s->particles, s->material, &def, &s->mpm));
+  const double up[2] = {0.0, 1.0};
+  mps_body *plane = NULL;
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_body_create_half_plane(context, NULL, up, &plane));
+  mps_assert_ok(context, mps_signal_create_user(context, move, how, &signal));
+  mps_assert_ok(context, mps_body_drive(plane, 0, signal, 1.0));
+  mps_signal_destroy(&signal);
+  mpm_scene_contact(s, plane, how->friction);
+  return plane;
+}
+
+/* Down the slope, against the plane, of the centre of mass. */
+static double slip_of(mpm_scene *s, const shaking *how) {
+  const mps_view x = mpm_scene_view(s, "position");
+  double sum = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++) sum += *mps_view_f64(&x, k, 0);
+  return plane_place(how, mps_mpm_time(s->mpm)) - (sum / (double)x.shape[0] - 0.5 * LENGTH);
+}
+
+static double slide(shaking *how, double h, double expected) {
+  mpm_scene s;
+  const double began = textbook_cost();
+  mps_body *plane = place_block(&s, how, h);
+  FILE *f = textbook_table(how->name, "t_s,plane_m_s2,slip_m");
+  const int samples = 200;
+  double slip = 0.0;
+  for (int k = 0; k <= samples; k++) {
+    const double t = how->end * k / samples;
+    mps_assert_ok(context, mps_mpm_run(s.mpm, t, 1000000, NULL, NULL));
+    slip = slip_of(&s, how);
+    textbook_row(f, 3, (double[]){t, plane_acceleration(how, t), slip});
+  }
+  textbook_close(f);
+  print_message("%s, h %g m: slip %.6f m, exact %.6f (%+.2f %%), %.1f s\n", how->name, h, slip,
+                expected, 100.0 * (slip / expected - 1.0), textbook_cost() - began);
+  mpm_scene_end(&s);
+  mps_body_destroy(&plane);
+  return slip;
+}
+
+/* Level ground, 0.4 g for 0.25 s over mu = 0.2: a t0^2/2 (a/ay - 1). */
+static void slips_after_a_pulse(void **state) {
+  (void)state;
+  shaking how = {.name = "block_pulse", .friction = 0.2, .peak = 0.4 * G, .duration = 0.25};
+  how.end = REST + 0.7;
+  const double yield = how.friction * G;
+  const double exact = 0.5 * how.peak * how.duration * how.duration * (how.peak / yield - 1.0);
+  mps_assert_near(rigid_slip(&how), exact, 1e-5 * exact);
+  mps_assert_near(slide(&how, 0.05, exact), exact, 0.01 * exact);
+}
+
+/* A slope of 15 degrees, mu = 0.4 (ay 0.128 g), five cycles of 0.35 g and 2 Hz. */
+static void slips_down_a_slope(void **state) {
+  (void)state;
+  shaking how = {.name = "block_cycles",
+                 .friction = 0.4,
+                 .slope = PI / 12.0,
+                 .peak = 0.35 * G,
+                 .frequency = 2.0,
+                 .duration = 2.5};
+  how.end = REST + 3.0;
+  const double exact = rigid_slip(&how);
+  mps_assert_near(slide(&how, 0.05, exact), exact, 0.01 * exact);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(slips_after_a_pulse),
+      cmocka_unit_test(slips_down_a_slope),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
