@@ -11,7 +11,7 @@ mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p,
   b->open = 0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (b->hold[k].kind == MPS_BOUNDARY_OPEN) b->open |= 1u << k;
-  const bool any = b->open != 0 || mpsi_mpm_some_take_away(contacts);
+  const bool any = b->open != 0 || mpsi_mpm_any_body_removes(contacts);
   if (!any || mpsi_room_ensure(context, &rooms->gone, p->count, 1)) return MPS_OK;
   return mpsi_fail_memory(context, function, (size_t)p->count);
 }
