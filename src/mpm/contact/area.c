@@ -1,24 +1,26 @@
-/* area.c - the area of the surface that each contact constraint stands for, where the shear stress
- * on the surface has a strength or an adhesion in Pa. The constraints of one step are no measure of
+/* area.c - the area of the surface that each contact constraint represents, where the shear stress
+ * on the surface has a strength or an adhesion in Pa. The constraints of one step do not measure
  * it: where soil flows along a body, few of the particles beside it are in contact in any one step.
- * The layer of soil next to the surface is: a particle of volume V at the distance D from the
- * surface stands for the area
+ * The layer of soil next to the surface does: a particle of volume V at the distance D from the
+ * surface represents the area
  *
  *   a = V J w(D),   w = t^2/d for t = D/d from 0 to 1, (1 - (t - 1)^2)/d from 1 to 2,
  *
- * d being the particles' spacing. J narrows a unit of the parallel surface through the particle to
- * what it is on the body (mpsi_foot), in axisymmetry by the radii too. The integral of w is 1. Rows
- * d apart sum up to 1 wherever they begin, since w(D) + w(D + d) = 1/d; where they are pressed
- * together the sum changes with the square of the strain alone, as w' = 1/d^2 at d/2; and where no
- * particle is nearer than g, (g/d)^3/3 of the area is lacking. Where 2 d is more than a cell h, for
- * which tiles have no room, w = 2/h (1 - D/h), which lacks 2 g/h.
+ * d being the spacing of the particles. J is the ratio of an area on the body to its area on the
+ * parallel surface through the particle (mpsi_foot), in axisymmetry with the ratio of the radii.
+ * The integral of w is 1. Rows of particles d apart sum up to 1 wherever they begin, since w(D) +
+ * w(D + d) = 1/d; where they are compressed the sum changes with the square of the strain alone, as
+ * w' = 1/d^2 at d/2; and where no particle is nearer than g, (g/d)^3/3 of the area is lacking.
+ * Where 2 d is more than a cell h, for which tiles have no room, w = 2/h (1 - D/h), which lacks 2
+ * g/h.
  *
- * The area goes by bilinear weights to the corners of the cell of the foot, and from these to the
- * constraints within two cells, by cubic weights times their normal impulses: the sum of their
- * areas is that of the surface that soil covers. Of constraints that share nodes only the sum of
- * their normal impulses is determined: with equal parts one that has hardly any could not bear the
- * shear of its part by friction. Sums of a block are made apart and added to the nodes in the order
- * of the colours; those of other ranks come with their constraints (exchange.h).
+ * The area is distributed by bilinear weights to the corners of the cell that contains the foot,
+ * and from these to the constraints within two cells, by cubic weights times their normal impulses:
+ * the sum of their areas is that of the surface that soil covers. The factor is needed because
+ * among constraints that share nodes only the sum of the normal impulses is determined: with equal
+ * parts, a constraint with hardly any normal impulse could not carry the shear of its part by
+ * friction. Sums of a block are made separately and added to the nodes in the order of the colours;
+ * those of other ranks arrive with their constraints (exchange.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 
@@ -26,15 +28,15 @@
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
-/* Nodes around the foot x, under the tile of a block of cells. */
+/* Nodes around a foot, under the tile of a block of cells, with weights. */
 typedef struct around {
   int low[3], side;
   double w[3][4];
 } around;
 
-/* Bilinear weights over the corners of the foot's cell (`side` 2), or cubic ones over four nodes an
- * axis (4). The foot is hardly a cell off a particle of the block: what would lie beyond the tile
- * is at its edge. `block`: of the cells. */
+/* Bilinear weights over the corners of the cell of the foot x (`side` 2), or cubic ones over four
+ * nodes an axis (4). The foot is less than about a cell from a particle of the block; nodes beyond
+ * the tile are replaced by those at its edge. `block`: coordinates of the block of cells. */
 static around find_around(const mpsi_grid *grid, const int32_t *block, const double *x, int side) {
   around out = {.side = side, .w = {{1.0}, {1.0}, {1.0}}};
   for (int c = 0; c < grid->dim; c++) {
@@ -54,7 +56,7 @@ static int nodes_around(const mpsi_grid *grid, int side) {
   return grid->dim == 3 ? side * side * side : side * side;
 }
 
-/* Place under the tile and weight of node n of them. */
+/* Position under the tile and weight of node n around the foot. */
 static double node_around(const around *a, int n, int *at) {
   const int i[3] = {n % a->side, n / a->side % a->side, n / a->side / a->side};
   for (int c = 0; c < 3; c++) at[c] = a->low[c] + i[c];
@@ -71,7 +73,7 @@ static mpsi_area *area_under(const mpsi_grid *grid, const mpsi_contacts *contact
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-/* m: between rows of particles; how far from the surface they stand for a part of it. */
+/* Layer of soil next to the surface, m: spacing of its rows of particles; thickness. */
 typedef struct layer {
   double row, reach;
 } layer;
@@ -81,7 +83,7 @@ static layer find_layer(const mpsi_grid *grid, const mpsi_columns *p) {
   return (layer){row, fmin(2.0 * row, grid->cell)};
 }
 
-/* 1/m: w at the distance D (m) below the reach. */
+/* Weight w (1/m) at the distance D (m), less than the thickness of the layer. */
 static double weight_at(layer l, double distance) {
   const double t = fmax(0.0, distance) / l.row;
   if (l.reach < 2.0 * l.row * (1.0 - 1e-9))
@@ -96,7 +98,7 @@ static double area_of(const mpsi_grid *grid, const mpsi_columns *p, layer l, int
   return grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? area * foot->at[0] / p->x[0][k] : area;
 }
 
-/* Distances change no faster than places: see constraints.c. */
+/* Particles that the distance of the last one excludes are skipped, as in constraints.c. */
 bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
                         const mpsi_cell_pair *pair, double *tile) {
   const mpsi_cell_block *cells = &grid->cells[pair->cells];
@@ -231,7 +233,7 @@ bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contac
   return true;
 }
 
-/* Blocks of one colour share no node. */
+/* Blocks of one colour share no node, so that their sums are added without conflicts. */
 void mpsi_mpm_find_areas(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   if (!all->areas || all->constraint_count == 0) return;

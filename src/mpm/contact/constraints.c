@@ -1,13 +1,13 @@
-/* constraints.c - the contact constraints of a step: particles that may reach a body in dt, their
- * weights at the foot, and the warm start from the impulses of the last step. A particle counts by
- * its distance from the surface, not by the nodes inside the body that it sees: thin bodies have
- * contacts too.
+/* constraints.c - contact constraints of a step: particles that may reach a body in dt, their
+ * weights at the foot (the nearest point of the surface), and the warm start from the impulses of
+ * the last step. A particle becomes a candidate by its distance from the surface, whether or not
+ * its stencil has nodes inside the body: thin bodies have contacts too.
  *
  * The impulse acts at the foot x_c through psi_i = phi_i(x_p) + grad phi_i . (x_c - x_p): sum psi_i
- * = 1 and sum psi_i x_i = x_c, so that nodes receive its force and its moment about any point.
+ * = 1 and sum psi_i x_i = x_c, so that the nodes receive its force and its moment about any point.
  *
  * Blocks of cells are listed colour by colour (blocks.h), the constraints of a block by place, then
- * by body: in the order in which impulses.c sweeps, whatever the order of the particles.
+ * by body: the order in which impulses.c sweeps, whatever the order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/base/kernels.h"
@@ -24,7 +24,7 @@ static uint64_t slot_of(const mpsi_impulses *all, int64_t id, int64_t body) {
   return (key >> 20) & all->lookup_mask;
 }
 
-/* Twice as many slots as impulses at least. */
+/* Hash table with at least twice as many slots as impulses. */
 bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts) {
   mpsi_impulses *all = &contacts->impulses;
   int64_t slots = 16;
@@ -86,7 +86,7 @@ static void place_of(const mpsi_grid *grid, const mpsi_columns *p, int64_t k, do
   for (int c = 0; c < 3; c++) x[c] = c < grid->dim ? p->x[c][k] : 0.0;
 }
 
-/* Distance (m) beyond which no particle of the block is in contact. */
+/* Distance (m) from the body beyond which no particle of the block can come into contact in dt. */
 static double longest_reach(const mpsi_grid *grid, const mpsi_columns *p,
                             const mpsi_kernels *kernels, double dt, const mpsi_cell_block *cells,
                             const mps_contact *contact) {
@@ -94,8 +94,8 @@ static double longest_reach(const mpsi_grid *grid, const mpsi_columns *p,
   return (1.4 * contact->def.offset + dt * (mpsi_contact_speed(contact) + fastest)) * (1.0 + 1e-9);
 }
 
-/* Bounds by the foot of x: distances change no faster than positions, and a convex body lies behind
- * the tangent plane. */
+/* Bounds from the foot of x, which exclude other particles without a search: the distance from a
+ * body changes at most by the distance moved, and a convex body lies behind its tangent plane. */
 static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const double *x,
                        double reach) {
   const double slack = fmax(foot->distance - reach, 0.0);
@@ -118,8 +118,8 @@ static bool may_be_in_contact(const mpsi_grid *grid, const mpsi_columns *p, doub
   return mpsi_impulse_near(foot->distance - half, half, closing, dt);
 }
 
-/* Whether no particle of the block is within `reach` of the body: all are in the box from which
- * none has left (mpsi_cell_block.left). */
+/* Whether the box that holds all particles of the block (mpsi_cell_block.left) lies farther than
+ * `reach` (m) from the body. */
 static bool is_block_far(const mpsi_grid *grid, const mpsi_cell_block *cells,
                          const mps_contact *contact, double reach) {
   const double first = grid->spline == 3 ? 1.0 : 0.5;
@@ -139,8 +139,8 @@ static bool is_block_far(const mpsi_grid *grid, const mpsi_cell_block *cells,
   return before > reach * (1.0 + 1e-9);
 }
 
-/* Candidates of a pair of a block and a body: the last foot found excludes most particles as too
- * far. */
+/* Lists the candidates of a pair of block and body; bounds from the last foot exclude most
+ * particles. */
 static void find_candidates(const mpsi_grid *grid, const mpsi_columns *p,
                             const mpsi_contacts *contacts, const mpsi_kernels *kernels, double dt,
                             const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
@@ -179,14 +179,15 @@ static int64_t share_candidates(const mpsi_grid *grid, const mpsi_contacts *cont
     const mpsi_cell_block *cells = &grid->cells[pair->cells];
     pair->first_candidate = count;
     pair->candidates = 0;
-    pair->in_contact = false; /* also of blocks scattered after the contacts are solved (step.c) */
+    /* also for blocks that are scattered after the contacts are solved (step.c) */
+    pair->in_contact = false;
     pair->deepest = 0.0;
     if (mpsi_by_impulses(contacts->handle[pair->body])) count += cells->end - cells->begin;
   }
   return count;
 }
 
-/* The blocks with candidates, colour by colour. */
+/* Lists the blocks with candidates, colour by colour. */
 static void list_blocks(const mpsi_grid *grid, mpsi_contacts *contacts) {
   mpsi_impulses *all = &contacts->impulses;
   all->constraint_count = all->block_count = 0;
@@ -253,7 +254,7 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-/* ---- their weights --------------------------------------------------------------------------- */
+/* ---- weights of the constraints -------------------------------------------------------------- */
 
 static int by_place(const void *a, const void *b) {
   const mpsi_constraint *s = a, *t = b;
@@ -286,20 +287,21 @@ static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *
   }
 }
 
-/* psi at the nodes of the constraint's stencil. */
-static void weigh(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                  const mpsi_constraint *constraint, mpsi_foot_weights *out) {
+/* Extrapolated shape functions psi at the nodes of the constraint's stencil. */
+static void find_psi(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                     const mpsi_constraint *constraint, mpsi_foot_weights *out) {
   double d[3];
   for (int a = 0; a < 3; a++) d[a] = constraint->impulse.at[a] - constraint->x[a];
   mpm->kernels->foot(mpm, cells, worker, constraint->particle, d, out);
 }
 
-/* Tile node of number s of the stencil. */
+/* Tile node of stencil node s. */
 static void find_place(const mpsi_foot_weights *f, int s, int *place) {
   place[0] = f->at[0] + s % 4, place[1] = f->at[1] + s / 4 % 4, place[2] = f->at[2] + s / 16;
 }
 
-/* Adds `weight` to those of a node of the constraint, which may be there already, for a ghost. */
+/* Adds `weight` for a node to the constraint. `may_be_there`: the node can be listed already, when
+ * it is the image of a ghost too. */
 static void add_node(mpsi_constraint *constraint, double **node, double (*to)[4], double *at,
                      const double *weight, bool may_be_there) {
   int32_t i = may_be_there ? 0 : constraint->nodes;
@@ -313,8 +315,8 @@ static void add_node(mpsi_constraint *constraint, double **node, double (*to)[4]
   for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
 }
 
-/* psi at the nodes of the constraint's stencil that have mass, where these may stand for ghosts or
- * be other ranks'. */
+/* Weights and mobility of a constraint at mirrors or on several ranks, where ghosts are replaced by
+ * their images: psi differs between components. */
 static void fit_unevenly(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                          const mpsi_mirrors *mirrors, mpsi_contacts *contacts,
                          const mpsi_cell_block *cells, const mpsi_foot_weights *f, int64_t n) {
@@ -346,7 +348,7 @@ static void fit_unevenly(const mpsi_grid *grid, const mpsi_boundaries *boundarie
     }
 }
 
-/* The same where each stands for itself. */
+/* Weights and mobility of an even constraint: nodes without mirrors, on one rank. */
 static void fit_evenly(const mpsi_grid *grid, mpsi_contacts *contacts, const mpsi_cell_block *cells,
                        const mpsi_foot_weights *f, int64_t n) {
   mpsi_impulses *all = &contacts->impulses;
@@ -372,11 +374,11 @@ static void fit_evenly(const mpsi_grid *grid, mpsi_contacts *contacts, const mps
   for (int a = 0; a < 3; a++) constraint->impulse.mobility[a] = mobility;
 }
 
-/* The weights of a constraint, and its mobility. */
+/* Weights and mobility (inverse of the effective mass) of a constraint. */
 static void fit_constraint(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
   mpsi_constraint *constraint = &mpm->contact.impulses.constraint[n];
   mpsi_foot_weights f;
-  weigh(mpm, cells, &mpm->grid.workers[worker], constraint, &f);
+  find_psi(mpm, cells, &mpm->grid.workers[worker], constraint, &f);
   constraint->nodes = 0;
   constraint->even = !mpm->partition && !cells->mirrors;
   if (constraint->even)
@@ -385,7 +387,7 @@ static void fit_constraint(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t w
     fit_unevenly(&mpm->grid, &mpm->boundaries, &mpm->mirrors, &mpm->contact, cells, &f, n);
 }
 
-/* States of nodes for the constraints whose fits were not kept. */
+/* States of nodes (support.h) where some fit has not been stored by the scatter. */
 static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
                         const mpsi_constraint_block *block, mpsi_worker *worker) {
   const mpsi_constraint *constraint = mpm->contact.impulses.constraint + block->first;
@@ -395,6 +397,7 @@ static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
   if (!all) mpsi_mpm_find_states(mpm, cells, worker);
 }
 
+/* Adds the mirrors' part of the impulses of a block's constraints to the walls. */
 static void mirror_block(void *data, int64_t unit, int32_t number) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;
@@ -409,7 +412,7 @@ static void mirror_block(void *data, int64_t unit, int32_t number) {
     const mpsi_impulse *c = &constraint->impulse;
     mpsi_foot_weights f;
     if (!(c->normal_impulse > 0.0)) continue;
-    weigh(mpm, cells, worker, constraint, &f);
+    find_psi(mpm, cells, worker, constraint, &f);
     for (uint64_t left = f.active; left != 0; left &= left - 1) {
       const int s = __builtin_ctzll(left);
       int place[3];

@@ -1,5 +1,6 @@
-/* contacts.c - the contacts of a solver with bodies: added, queried and ended. At work: pairs.c,
- * inside.c, constraints.c, impulses.c, penalty.c. SPDX-License-Identifier: BSD-3-Clause */
+/* contacts.c - the contacts of a solver with bodies: adding, querying and ending them. What they do
+ * in a step: pairs.c, inside.c, constraints.c, impulses.c, penalty.c.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "particle.h"
 #include "mpm/particles/particles.h"
 
@@ -7,8 +8,8 @@
 
 #include <string.h>
 
-#define OVERLAP 0.1 /* cells: bodies may by so much */
-#define SHARP 1e-3  /* cells: walls below are the edge of two faces */
+#define OVERLAP 0.1 /* cells: most that two bodies may overlap */
+#define SHARP 1e-3  /* cells: a thinner wall is the edge of two faces */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -29,7 +30,7 @@ static mps_status check_body(mps_context *context, const mpsi_grid *grid,
   return MPS_OK;
 }
 
-/* Half spaces are there to be laid one over the other, as floor and wall. */
+/* Refuses overlapping bodies. Half spaces may overlap, as a floor and a wall do. */
 static mps_status check_overlap(mps_context *context, const mpsi_grid *grid,
                                 const mpsi_contacts *contacts, const char *function,
                                 const mps_body *body) {
@@ -95,7 +96,7 @@ mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, co
   return status;
 }
 
-/* See area.c. */
+/* Warns of a spacing of particles for which areas (area.c) are too small on curved surfaces. */
 static void warn_of_areas(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                           const mpsi_contacts *contacts, const mps_contact *contact) {
   const double spacing = mps_particles_spacing(p->set);
@@ -107,7 +108,7 @@ static void warn_of_areas(mps_context *context, const mpsi_grid *grid, const mps
       contacts->bodies, spacing, 0.5 * grid->cell);
 }
 
-/* All ranks make the same contact with the same body. */
+/* Checks that all ranks make the same contact with the same body. */
 static mps_status compare_ranks(mpsi_partition *partition, const char *function, mps_status status,
                                 const mps_contact *contact) {
   if (!partition) return status;
@@ -134,15 +135,15 @@ static mps_status compare_ranks(mpsi_partition *partition, const char *function,
   return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
-/* ---- the handle's questions ------------------------------------------------------------------ */
+/* ---- queries of a contact -------------------------------------------------------------------- */
 
 static mps_status check_owner(void *owner, const char *function) {
   mps_mpm *mpm = owner;
   return mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
 }
 
-/* Without bodies the lists of pairs are not made any more: they must be empty. */
-static void forget_pairs(const mpsi_grid *grid, mpsi_contacts *contacts) {
+/* Empties the lists of pairs, which steps without bodies do not rebuild. */
+static void clear_pairs(const mpsi_grid *grid, mpsi_contacts *contacts) {
   contacts->cell_pair_count = contacts->node_pair_count = contacts->mask_count = 0;
   contacts->thin = false;
   for (int64_t b = 0; b < grid->cell_count; b++) grid->cells[b].pairs = 0;
@@ -171,13 +172,14 @@ static void end(void *owner, mps_contact *contact) {
   all->bodies = to;
   mpsi_mpm_forget_impulses(&mpm->contact, ended);
   for (int32_t b = 0; b < to; b++) all->state[b].warned = false;
-  forget_pairs(&mpm->grid, &mpm->contact);
+  clear_pairs(&mpm->grid, &mpm->contact);
   mpsi_contact_leave(contact);
 }
 
-/* Whether particle k at x is in contact with the body now, by the method of the contact; `c`
- * receives force and depth, `foot` and `half` where and from which half size (m) its gap counts. By
- * impulses: one that the body has pushed in the last step. */
+/* Whether particle k at x is in contact with the body now, by the method of the contact; by
+ * impulses: whether the body exerted an impulse on it in the last step. `c` receives force and
+ * depth, `foot` the nearest point of the surface, `half` the half size (m) from which the gap
+ * counts. */
 static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
                           int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
                           double *half) {
@@ -233,9 +235,9 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
 static const mpsi_contact_owner owner_of_contacts = {
     .check = check_owner, .end = end, .particles = list_particles};
 
-/* ---- making and ending ----------------------------------------------------------------------- */
+/* ---- adding and ending ----------------------------------------------------------------------- */
 
-/* For one more than there are. */
+/* Memory for one more contact. */
 static mps_status ensure_contact(mps_context *context, mpsi_contacts *all, const char *function) {
   const int64_t count = (int64_t)all->bodies + 1;
   const bool good = mpsi_room_keep(context, &all->handle_room, count, sizeof(mps_contact *)) &&
@@ -247,8 +249,8 @@ static mps_status ensure_contact(mps_context *context, mpsi_contacts *all, const
   return good ? MPS_OK : mpsi_fail_memory(context, function, (size_t)count * sizeof *all->state);
 }
 
-/* Both shares of a contact that is not made. */
-static void give_up(mps_contact *contact) {
+/* Releases both references to a contact that could not be added. */
+static void release_failed(mps_contact *contact) {
   if (!contact) return;
   mpsi_contact_release(contact);
   mpsi_contact_release(contact);
@@ -272,7 +274,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
     status = mpsi_mpm_begin_partners(&mpm->contact.partners, mpm->partition->domain, __func__);
   status = compare_ranks(mpm->partition, __func__, status, contact);
   if (status != MPS_OK) {
-    give_up(contact);
+    release_failed(contact);
     return status;
   }
   mps_contact_def *d = &contact->def;
@@ -290,7 +292,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
         mpm->partition, __func__,
         mpsi_mpm_check_inside(mpm->context, &mpm->grid, &mpm->p, __func__, contact, 0));
   if (status != MPS_OK) {
-    give_up(contact);
+    release_failed(contact);
     return status;
   }
   warn_of_areas(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, contact);

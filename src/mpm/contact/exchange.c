@@ -10,16 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define UNDER (2 * MPSI_SIDE)          /* nodes an axis under a tile, in whole blocks */
-#define PLACES (UNDER * UNDER * UNDER) /* from here on those across thin bodies */
+#define UNDER (2 * MPSI_SIDE)          /* nodes an axis of the whole blocks under a tile */
+#define PLACES (UNDER * UNDER * UNDER) /* index from which on values across thin bodies follow */
 
 typedef struct head {
-  int32_t at[3];  /* of the block of cells */
-  int32_t colour; /* in whose turn it is swept */
-  int64_t cells;  /* its number, on its own rank */
-  int64_t bytes;  /* of the entry */
+  int32_t at[3];  /* coordinates of the block of cells */
+  int32_t colour; /* colour of the block: the order of the sweeps */
+  int64_t cells;  /* index of the block on its own rank */
+  int64_t bytes;  /* length of the entry */
   int64_t nodes, constraints;
-  int64_t components; /* of a weight: 1, 3 */
+  int64_t components; /* components of a weight: 1, 3 */
   int64_t areas;
 } head;
 
@@ -29,15 +29,15 @@ typedef struct named_area {
 } named_area;
 
 typedef struct named_node {
-  int64_t place; /* under the tile; see PLACES */
+  int64_t place; /* index under the tile; see PLACES */
   double value[4];
 } named_node;
 
-/* ---- to the others --------------------------------------------------------------------------- */
+/* ---- writing messages ------------------------------------------------------------------------ */
 
 static int under_index(int i, int j, int k) { return (k * UNDER + j) * UNDER + i; }
 
-/* The node of the grid, one of those under the tile of `cells`. */
+/* Index under the tile of `cells` of a node of the grid. */
 static int place_under(const mpsi_grid *grid, const mpsi_cell_block *cells, const double *node) {
   const int64_t number = (node - (const double *)grid->node) / 4;
   const int64_t block = number / grid->block_nodes;
@@ -52,7 +52,7 @@ static int place_under(const mpsi_grid *grid, const mpsi_cell_block *cells, cons
 
 static int64_t index_bytes(int64_t nodes) { return (nodes + 1) / 2 * 8; }
 
-/* At most. `block`: NULL where there are areas alone. */
+/* Upper limit of the length of an entry. `block`: NULL where there are areas and no constraints. */
 static int64_t entry_bytes(const mpsi_grid *grid, const mpsi_contacts *contacts,
                            const mpsi_cell_block *cells, const mpsi_constraint_block *block) {
   const mpsi_impulses *all = &contacts->impulses;
@@ -68,7 +68,8 @@ static int64_t entry_bytes(const mpsi_grid *grid, const mpsi_contacts *contacts,
   return bytes + nodes * (int64_t)(3 * sizeof(double) + sizeof(named_node));
 }
 
-/* The nodes of the block's constraints, each once; `number` of each place in that list. */
+/* Lists the nodes of the block's constraints, each once; `number`: position in that list by index
+ * under the tile. */
 static int64_t name_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
                           const mpsi_constraint_block *block, int32_t *number, named_node *out) {
   const mpsi_impulses *all = &contacts->impulses;
@@ -133,7 +134,8 @@ static char *write_areas(const mpsi_grid *grid, const mpsi_columns *p,
   return to + h->areas * (int64_t)sizeof *out;
 }
 
-/* `block`: NULL where there are areas alone. Returns `to` where there are none either. */
+/* Writes the entry of a block of cells and returns its end; returns `to` where there is nothing to
+ * send. `block`: NULL where there are areas and no constraints. */
 static char *write_block(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_contacts *contacts, const mpsi_cell_block *cells,
                          const mpsi_constraint_block *block, char *to) {
@@ -151,9 +153,9 @@ static char *write_block(const mpsi_grid *grid, const mpsi_columns *p,
   return end;
 }
 
-/* ---- from all -------------------------------------------------------------------------------- */
+/* ---- reading messages ------------------------------------------------------------------------ */
 
-/* An entry of a message. */
+/* An entry of a message; `own`: of this rank. */
 typedef struct entry {
   head h;
   const char *data; /* behind the head */
@@ -167,7 +169,7 @@ typedef struct exchange {
   const char *own;
   int64_t own_bytes;
   entry *entry;
-  int64_t entries, constraints, nodes; /* nodes: of all entries, and their areas */
+  int64_t entries, constraints, nodes; /* nodes: nodes and areas of all entries */
 } exchange;
 
 static const char *message_of(const exchange *m, int32_t k, int64_t *bytes) {
@@ -175,7 +177,7 @@ static const char *message_of(const exchange *m, int32_t k, int64_t *bytes) {
   return k < m->box.count ? m->box.mail[k].data : m->own;
 }
 
-/* Counts the entries, or lists them. */
+/* Counts the entries of all messages; lists them if there is a list. */
 static void read_entries(exchange *m) {
   m->entries = m->constraints = m->nodes = 0;
   for (int32_t k = 0; k <= m->box.count; k++) {
@@ -193,8 +195,8 @@ static void read_entries(exchange *m) {
   }
 }
 
-/* The order of one rank: colour by colour, as sort_colours. */
-static int by_turn(const void *left, const void *right) {
+/* The order of sweeps on one rank: colour by colour, as sort_colours in layout.c. */
+static int by_colour(const void *left, const void *right) {
   const head *a = &((const entry *)left)->h, *b = &((const entry *)right)->h;
   if (a->colour != b->colour) return a->colour < b->colour ? -1 : 1;
   for (int c = 2; c >= 0; c--)
@@ -223,8 +225,8 @@ static void place_of(const int32_t *block, int place, int32_t *at) {
   at[2] = block[2] * MPSI_SIDE + place / UNDER / UNDER;
 }
 
-/* The areas of an entry, to those of others. */
-static void take_areas(exchange *m, const head *h, const char *from) {
+/* Adds the areas of an entry to the shared nodes. */
+static void add_areas(exchange *m, const head *h, const char *from) {
   static const double none[4] = {0.0};
   for (int64_t k = 0; k < h->areas; k++, from += sizeof(named_area)) {
     named_area named;
@@ -238,7 +240,7 @@ static void take_areas(exchange *m, const head *h, const char *from) {
 }
 
 /* Appends the constraints of an entry. */
-static void take_entry(exchange *m, const entry *e, int64_t first) {
+static void append_entry(exchange *m, const entry *e, int64_t first) {
   mpsi_impulses *all = &m->mpm->contact.impulses;
   const named_node *named = (const named_node *)e->data;
   const char *from = e->data + e->h.nodes * (int64_t)sizeof *named;
@@ -266,7 +268,7 @@ static void take_entry(exchange *m, const entry *e, int64_t first) {
       for (size_t c = components; c < 3; c++) weight[c] = weight[0];
     }
   }
-  take_areas(m, &e->h, from);
+  add_areas(m, &e->h, from);
 }
 
 static void append_constraints(exchange *m, int64_t slots) {
@@ -290,7 +292,7 @@ static void append_constraints(exchange *m, int64_t slots) {
                                 .count = e->h.constraints,
                                 .cells = e->own ? (int32_t)e->h.cells : -1};
     memcpy(all->block[all->block_count - 1].at, e->h.at, sizeof e->h.at);
-    take_entry(m, e, all->constraint_count);
+    append_entry(m, e, all->constraint_count);
     all->constraint_count += e->h.constraints;
   }
   while (colour <= MPSI_CORNERS) all->colour[colour++] = all->block_count;
@@ -310,15 +312,15 @@ static mps_status join(exchange *m) {
                                 (size_t)m->nodes * sizeof(mpsi_shared_node));
   m->entry = r->list.item;
   read_entries(m);
-  if (m->entries > 0) qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_turn);
+  if (m->entries > 0) qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_colour);
   append_constraints(m, slots);
   return MPS_OK;
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-/* Blocks of cells in the order of the colours that have constraints, which `next` is the first of,
- * or may have areas. */
+/* Constraints of a block of cells, or NULL. Called for blocks of cells in the order of the colours;
+ * `next` counts those with constraints. */
 static const mpsi_constraint_block *constraints_of(const mpsi_impulses *all, int32_t cells,
                                                    int64_t *next) {
   if (*next == all->block_count || all->block[*next].cells != cells) return NULL;
@@ -340,7 +342,7 @@ static int64_t message_bytes(const mpsi_grid *grid, const mpsi_contacts *contact
   return bytes;
 }
 
-/* Constraints that are sent to partners, or the others. */
+/* Writes the entries of the blocks that are sent to partners (`sent`), or of the others. */
 static char *write_blocks(const mpsi_grid *grid, const mpsi_columns *p,
                           const mpsi_contacts *contacts, bool sent, char *to) {
   const mpsi_impulses *all = &contacts->impulses;
@@ -354,7 +356,7 @@ static char *write_blocks(const mpsi_grid *grid, const mpsi_columns *p,
   return to;
 }
 
-/* For this rank's entries, of which the ones to send are first, with their receivers. */
+/* Memory for this rank's entries, those to be sent first, and for a list of the receivers. */
 static mps_status make_room_for_message(exchange *m, mps_domain_message **list) {
   mps_mpm *mpm = m->mpm;
   mps_domain *domain = mpm->partition->domain;
@@ -367,8 +369,9 @@ static mps_status make_room_for_message(exchange *m, mps_domain_message **list) 
   return MPS_OK;
 }
 
-/* The same message to each partner. */
-static int32_t address(exchange *m, mps_domain_message *list) {
+/* Writes this rank's entries and addresses the same message to each partner; returns their
+ * number. */
+static int32_t address_partners(exchange *m, mps_domain_message *list) {
   const mps_mpm *mpm = m->mpm;
   const mps_domain *domain = mpm->partition->domain;
   int32_t count = 0;
@@ -394,7 +397,7 @@ mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_st
   mpm->contact.exchange.nodes = 0;
   mpm->contact.exchange.constraints = constraints;
   if (status == MPS_OK && constraints > 0) {
-    const int32_t count = address(&m, list);
+    const int32_t count = address_partners(&m, list);
     if (mpm->contact.partners.any) status = mpsi_domain_post(domain, function, count, list, &m.box);
     if (status == MPS_OK) status = join(&m);
     status = mpsi_domain_agree(domain, function, status);
@@ -411,7 +414,7 @@ void mpsi_mpm_end_contact_exchange(mpsi_contacts *contacts) {
   for (int64_t k = 0; k < r->nodes; k++)
     if (shared[k].home)
       memcpy(shared[k].home + MPSI_VECTOR, shared[k].value + MPSI_VECTOR, 3 * sizeof(double));
-  for (int64_t n = 0; n < all->constraint_count; n++) /* what is read of them later is at home */
+  for (int64_t n = 0; n < all->constraint_count; n++) /* what is read later are this rank's nodes */
     for (int32_t i = 0; i < all->constraint[n].nodes && all->constraint[n].pair >= 0; i++) {
       double **node = &all->node[n * all->stride + i];
       *node = ((mpsi_shared_node *)((char *)*node - offsetof(mpsi_shared_node, value)))->home;

@@ -1,12 +1,12 @@
-/* impulses.c - the impulses of a step, by sweeps of projected Gauss-Seidel over the contact
+/* impulses.c - contact impulses of a step, by sweeps of projected Gauss-Seidel over the contact
  * constraints (constraints.c): each update satisfies one constraint exactly with all others as they
  * are (contact/impulse.h), and changes its nodes by psi_i J/m_i at once (sweep.c). Sweeps go
- * forward and backward in turn, begin with the impulses of the last step, and end where one changes
+ * forward and backward in turn, start with the impulses of the last step, and end when one changes
  * the impulses by less than a tolerance.
  *
- * Blocks of one colour share no node: where no body moves freely, their sweeps are independent and
- * are divided among the threads, with the same bits. A free body is in contact with all blocks at
- * once; then one thread takes them in their order. SPDX-License-Identifier: BSD-3-Clause */
+ * Blocks of one colour share no node: where no body moves freely their sweeps are independent and
+ * are divided among the threads, with the same bits. A free body couples all blocks; then one
+ * thread sweeps over them in their order. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "sweeps.h"
 
@@ -16,11 +16,11 @@
 
 #define SHARED 512 /* constraints: below, dividing the work costs more than it gains */
 
-/* ---- all blocks ------------------------------------------------------------------------------ */
+/* ---- sweeps over all blocks ------------------------------------------------------------------ */
 
 typedef struct sweep {
   mps_mpm *mpm;
-  int64_t first; /* block */
+  int64_t first; /* first block of the colour */
   bool warm, back;
 } sweep;
 
@@ -51,9 +51,9 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
   }
 }
 
-/* ---- when sweeps end ------------------------------------------------------------------------- */
+/* ---- the end of the sweeps ------------------------------------------------------------------- */
 
-/* The most sweeps and the least tolerance of all contacts. */
+/* Largest number of sweeps and smallest tolerance of all contacts. */
 static int32_t most_sweeps(const mpsi_contacts *contacts, double *tolerance) {
   int32_t most = 0;
   *tolerance = INFINITY;
@@ -81,8 +81,8 @@ double mpsi_mpm_relative_change(const double *most) {
   return changed > 0.0 ? sqrt(changed / most[MPSI_SWEEP_IMPULSES]) : 0.0;
 }
 
-/* Of all ranks where sweeps may end by it (`agree`); else they hear of it at the end of the step,
- * with what they agree on there (block_results.c). */
+/* Relative change of the impulses in the last sweep: of all ranks where it may end the sweeps
+ * (`agree`); else it is reduced at the end of the step (block_results.c). */
 static void find_change(mpsi_contacts *contacts, mpsi_partition *partition, bool agree) {
   double most[MPSI_SWEEP_SUMS];
   mpsi_mpm_sweep_sums(contacts, most);
@@ -92,13 +92,13 @@ static void find_change(mpsi_contacts *contacts, mpsi_partition *partition, bool
   contacts->impulses.left = mpsi_mpm_relative_change(most);
 }
 
-/* Sweeps may end after so many: half of them went backward, and fewer than ten follow what changes
- * from step to step too slowly. */
-static bool is_checked(int32_t sweeps) { return sweeps >= 10 && sweeps % 4 == 2; }
+/* Whether sweeps may end after this number: half of them went backward, and at least ten, because
+ * fewer lag behind a load that changes slowly from step to step. */
+static bool may_end_after(int32_t sweeps) { return sweeps >= 10 && sweeps % 4 == 2; }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-/* The impulse `by` on the particle, to the impulses on its block and on the body. */
+/* Adds the reaction to the impulse `by` on a particle to the load of its pair on the body. */
 static void add_reaction(const mpsi_contacts *contacts, double dt,
                          const mpsi_constraint *constraint, const double *by) {
   mpsi_cell_pair *pair = &contacts->cell_pair[constraint->pair];
@@ -114,8 +114,9 @@ static void add_reaction(const mpsi_contacts *contacts, double dt,
   mpsi_contact_add_load(&load->by, arm, force);
 }
 
-/* Forces on the bodies, and the initial state of the next step. */
-static void take_over(mpsi_contacts *contacts, double dt) {
+/* Adds the reactions of all constraints to the loads on the bodies, and stores the impulses for the
+ * warm start of the next step. */
+static void store_impulses(mpsi_contacts *contacts, double dt) {
   mpsi_impulses *all = &contacts->impulses;
   mpsi_warm_impulse *next = all->next_room.item;
   int64_t count = 0;
@@ -149,12 +150,12 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
     if (s % 2 != 0) mpsi_mpm_distribute_areas(mpm);
     sweep_all(mpm, false, s % 2 == 0);
     all->sweeps = s;
-    if (s < most && (tolerance == 0.0 || !is_checked(s))) continue;
+    if (s < most && (tolerance == 0.0 || !may_end_after(s))) continue;
     find_change(&mpm->contact, mpm->partition, tolerance > 0.0);
     if (!(all->left > tolerance)) break;
   }
   mpsi_mpm_mirror_constraints(mpm);
-  take_over(&mpm->contact, mpm->run.dt);
+  store_impulses(&mpm->contact, mpm->run.dt);
 }
 
 void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,

@@ -11,42 +11,43 @@
 
 #include <mps/mpm.h>
 
-/* A particle that may reach a body in the step being made. Its weights and nodes are weight[k *
- * stride] and on, node[k * stride] and on, k its number in the list. A weight has 1/m of the node
- * and then psi for each component of its velocity, in the places that they have in the node: these
- * differ where ghosts of mirrors (mirror.h) stand for nodes. Where none may, the constraint is
- * `even`, and its weights are pairs of 1/m and psi, from the same place on: half the memory to read
- * in a sweep. */
+/* Contact constraint: a particle that may reach a body in this step. Constraint k of the list has
+ * weight[k * stride] and on, node[k * stride] and on. The weight of a node is 1/m, followed by psi
+ * for each component of its velocity. The psi differ between components where ghosts of mirrors
+ * (mirror.h) have been replaced by their images. Elsewhere the constraint is `even` and its weights
+ * are pairs of 1/m and psi, from the same place on: half the memory to read in a sweep. */
 typedef struct mpsi_constraint {
   mpsi_impulse impulse;
   double x[3];       /* m, of the particle */
-  double carried[3]; /* m/s, velocity at the foot that moving mirrors give besides the nodes */
-  int64_t particle;  /* index, */
-  int64_t id;        /* and what it keeps when the particles are sorted */
-  int64_t pair;      /* of contact.cell_pair; -1: of another rank (exchange.h), as its particle */
+  double carried[3]; /* m/s, part of the velocity at the foot that comes from the velocity of
+                        mirrors */
+  int64_t particle;  /* index of the particle */
+  int64_t id;        /* its id, which does not change when particles are sorted */
+  int64_t pair;      /* index in contact.cell_pair; -1: constraint and particle of another rank
+                        (exchange.h) */
   int32_t body, part, nodes;
   bool even;
-  int32_t areas; /* nodes whose areas it shares, of around[] (area.c) */
+  int32_t areas; /* number of nodes, in around[], whose areas it has a part of (area.c) */
 } mpsi_constraint;
 
-/* The constraints of a block of cells: consecutive in the list. */
+/* Constraints of a block of cells, consecutive in the list. */
 typedef struct mpsi_constraint_block {
   int64_t first, count;
-  int32_t cells;            /* -1: of another rank */
-  int32_t at[3];            /* of the cells */
+  int32_t cells;            /* block of cells; -1: of another rank */
+  int32_t at[3];            /* coordinates of the block */
   double changed, impulses; /* (N s)2, sums of squares in the last sweep: changes, impulses */
 } mpsi_constraint_block;
 
-/* What a body gave to a particle in the last step. */
+/* Impulse of a body on a particle in the last step, from which the sweeps of the next one start. */
 typedef struct mpsi_warm_impulse {
   int64_t id, body;
   double by[3]; /* N s */
 } mpsi_warm_impulse;
 
-/* At a node, for one body: the area that soil covers, and the normal impulses of the constraints
- * that bear it (area.c). */
+/* At a node, for one body: the area of the surface that soil covers, and the sum of the normal
+ * impulses of the constraints beside it (area.c). */
 typedef struct mpsi_area {
-  double area;   /* m2, of the measure */
+  double area;   /* m2, for the thickness or sector angle of the model */
   double normal; /* N s, weighted */
 } mpsi_area;
 typedef struct mpsi_area_share {
@@ -56,55 +57,59 @@ typedef struct mpsi_area_share {
 
 typedef struct mpsi_impulses {
   mpsi_constraint *constraint;
-  mpsi_constraint_block *block; /* colour by colour */
+  mpsi_constraint_block *block; /* in the order of the colours */
   double (*weight)[4];
-  double **node; /* its four values: see mpsi_node */
+  double **node; /* its four values, as in mpsi_node */
   int32_t *candidate;
   int64_t constraint_count, block_count;
-  int64_t colour[9]; /* first block of each in `block` */
+  int64_t colour[9]; /* first block of each colour in `block` */
   int32_t stride;
-  bool free_bodies;        /* one of those in contact moves freely */
-  mpsi_impulse_body *body; /* of each contact */
-  mpsi_warm_impulse *warm; /* of the last step */
+  bool free_bodies;        /* a body in contact moves freely */
+  mpsi_impulse_body *body; /* body of each contact */
+  mpsi_warm_impulse *warm; /* impulses of the last step */
   int64_t warm_count;
-  double warm_dt; /* s, of that step */
-  int64_t sweeps; /* of that step, and the relative change of impulses in the last of them */
+  double warm_dt; /* s, dt of that step */
+  int64_t sweeps; /* number of sweeps of that step; relative change of the impulses in the last of
+                     them */
   double left;
-  int32_t *lookup; /* by particle and body: index into `kept`, or -1; lookup_mask + 1 of them */
+  int32_t *
+      lookup; /* hash table by particle and body: index into `warm`, or -1; lookup_mask + 1 slots */
   uint64_t lookup_mask;
   bool areas;      /* some contact has a strength or an adhesion */
-  mpsi_area *area; /* as contact.node; on several ranks see exchange.h */
+  mpsi_area *area; /* indexed as contact.node; on several ranks see exchange.h */
   int64_t area_count;
-  int64_t area_first; /* block of the colour in work */
+  int64_t area_first; /* first block of the colour being processed */
   mpsi_area_share *around;
   mpsi_room constraint_room, block_room, weight_room, node_room, candidate_room, warm_room,
       next_room, lookup_room, area_room, around_room, body_room;
 } mpsi_impulses;
 
-/* constraints.c: before anything moves, candidates for contact in the step to be made, and room;
- * then, the masses of the nodes known, the constraints with their weights, and how deep particles
- * are. */
+/* constraints.c: before anything moves, candidates for contact in the step, and memory for their
+ * constraints; then, with the masses of the nodes, the constraints with weights and warm start, and
+ * the depth of particles. */
 mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function);
 void mpsi_mpm_fit_constraints(mps_mpm *mpm);
-/* area.c: room for the areas of the step and of so many constraints; the areas; and the shear
- * strength of each constraint by its part of them, with the present normal impulses. */
+/* area.c: memory for the areas of the step and of so many constraints; areas at the nodes; shear
+ * strength of each constraint by its part of these, with the present normal impulses. */
 bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contacts,
                         mpsi_partition *partition, int64_t constraints);
 void mpsi_mpm_find_areas(mps_mpm *mpm);
 void mpsi_mpm_distribute_areas(mps_mpm *mpm);
-/* constraints.c: what mirrors give with the impulses of a step. */
+/* constraints.c: adds the mirrors' part of a step's contact impulses to the impulses of the
+ * walls. */
 void mpsi_mpm_mirror_constraints(mps_mpm *mpm);
-/* constraints.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of
- * the last step on a particle, or NULL; where a particle bears on the contact's body; a contact has
- * ended: bodies above it move down by one. */
+/* constraints.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
+ * step on a particle, or NULL; foot and half size with which a particle bears on the contact's
+ * body; removes the impulses of a contact that has ended, and moves the bodies above it down by
+ * one. */
 bool mpsi_mpm_index_impulses(mps_context *context, mpsi_contacts *contacts);
 const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, int64_t id,
                                                int32_t body);
 mpsi_bearing mpsi_mpm_bearing(const mpsi_grid *grid, const mpsi_columns *p,
                               const mps_contact *contact, int64_t particle, const double *x);
 void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body);
-/* impulses.c: the impulses of a step, to nodes and pairs; and, the nodes' last velocities known,
- * what the contacts have lost. */
+/* impulses.c: sweeps over the constraints and adds their impulses to nodes and pairs; then, with
+ * the final velocities of the nodes, the energy lost in the contacts. */
 void mpsi_mpm_apply_impulses(mps_mpm *mpm);
 void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                 mpsi_energy *energy, const mpsi_kernels *kernels);
@@ -118,7 +123,7 @@ static inline bool mpsi_by_impulses(const mps_contact *contact) {
   return contact->def.method == MPS_CONTACT_METHOD_IMPULSE;
 }
 
-/* The weights of an even constraint. */
+/* Weights of an even constraint: pairs of 1/m and psi. */
 static inline double (*mpsi_even_weights(const mpsi_impulses *all, int64_t constraint))[2] {
   return (double(*)[2])(double *)all->weight[constraint * all->stride];
 }

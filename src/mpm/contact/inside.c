@@ -1,6 +1,6 @@
-/* inside.c - which nodes lie inside a body or outside the domain, and which are corners of cells
- * that hold particles, with the surface's normals there. These decide which nodes a particle near a
- * body may use (Nakamura 5.1, with the same-side test of support.h).
+/* inside.c - nodes inside bodies or outside the domain, nodes that are corners of cells with
+ * particles, and the surface normals at those that are both. By these a particle near a body finds
+ * its active nodes (Nakamura 5.1, with the side test of support.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 
@@ -8,8 +8,8 @@
 
 /* ---- before a step --------------------------------------------------------------------------- */
 
-/* The node `place` of the block is inside a body. */
-static void note_inside(mpsi_node_block *nodes, const int *place) {
+/* Adds the node `place` to the range of the block's nodes inside bodies. */
+static void add_to_range(mpsi_node_block *nodes, const int *place) {
   nodes->inside = true;
   for (int c = 0; c < 3; c++) {
     if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
@@ -17,16 +17,16 @@ static void note_inside(mpsi_node_block *nodes, const int *place) {
   }
 }
 
-/* Distances change no faster than places: where a node is `far` (m) from the surface, the next
- * nodes of its row are on the same side of it, as many as this. */
-static int same_behind(const mpsi_grid *grid, double far) {
+/* Number of nodes after the present one in its row that lie on the same side of the surface: the
+ * distance from the surface, here `far` (m), changes at most by the distance between nodes. */
+static int count_same_side(const mpsi_grid *grid, double far) {
   const double cells = far * grid->inverse * (1.0 - 1e-9);
   return cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
 }
 
-/* How many nodes of the block from the one at `place` on, x, lie before the tangent plane at the
- * foot of a point outside, where no convex body holds them: itself, its row, its plane, the rest.
- */
+/* Number of nodes of the block, from the one at `place` (position x) on, that lie outside a convex
+ * body because they are before the tangent plane at the foot of an outer point: the node alone, its
+ * row, its plane or all the rest; 0: not known. */
 static int count_before(const mpsi_grid *grid, const mpsi_foot *foot, const int *place,
                         const double *x) {
   const double least = 1e-9 * grid->cell;
@@ -41,7 +41,7 @@ static int count_before(const mpsi_grid *grid, const mpsi_foot *foot, const int 
   return count;
 }
 
-/* Nodes of a block that lie inside the body of its pair t. */
+/* Marks the nodes of a block that lie inside the body of its pair t. */
 static void find_inside_body(const mpsi_grid *grid, const mpsi_contacts *contacts,
                              mpsi_node_block *nodes, int32_t t, uint8_t *inside) {
   const int32_t b = contacts->node_pair[t].body;
@@ -57,12 +57,12 @@ static void find_inside_body(const mpsi_grid *grid, const mpsi_contacts *contact
     mpsi_node_place(grid, nodes->at, k, x);
     if (convex && (done = count_before(grid, &foot, place, x)) > 0) continue;
     foot = mpsi_body_foot(contacts->body[b], x);
-    done = 1 + same_behind(grid, fabs(foot.distance));
+    done = 1 + count_same_side(grid, fabs(foot.distance));
     if (done > MPSI_SIDE - place[0]) done = MPSI_SIDE - place[0];
     for (int i = 0; i < done && foot.distance < 0.0; i++, place[0]++) {
       held[k + i] = 1;
       inside[k + i] |= (uint8_t)state;
-      note_inside(nodes, place);
+      add_to_range(nodes, place);
     }
   }
 }
@@ -84,14 +84,14 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
     if (mpm->contact.penalty_bodies > 0)
       memset(mpm->contact.node + (int64_t)t * mpm->grid.block_nodes, 0,
              count * sizeof *mpm->contact.node);
-    if (mpm->contact.state[b].parts) continue; /* cuts no support: thin_bodies.h */
+    if (mpm->contact.state[b].parts) continue; /* such a body cuts no support: thin_bodies.h */
     if (mpsi_mpm_body_reaches(&mpm->grid, &mpm->contact, b, nodes->at, MPSI_SIDE))
       find_inside_body(&mpm->grid, &mpm->contact, nodes, t, inside);
   }
 }
 
-/* Cells low to high - 1 of the block along each axis with corners inside bodies; false where there
- * are none. */
+/* Range, low to high - 1 along each axis, of the block's cells with corners inside bodies; false:
+ * there are none. */
 static bool cells_near(const mpsi_grid *grid, const mpsi_cell_block *cells, int *low, int *high) {
   bool any = false;
   for (int c = 0; c < 3; c++) low[c] = MPSI_TILE_SIDE, high[c] = 0;
@@ -110,7 +110,8 @@ static bool cells_near(const mpsi_grid *grid, const mpsi_cell_block *cells, int 
 typedef void (*corner_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
                           void *data);
 
-/* Corners of the cells that hold particles, some of them more than once. */
+/* Calls `work` for the corners of all cells that hold particles and may have corners inside bodies,
+ * for some corners more than once. */
 static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner_fn work,
                         void *data) {
   int low[3], high[3];
@@ -140,7 +141,7 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
   }
 }
 
-/* Normals of the bodies that hold the node `local` of a block. */
+/* Surface normals of the bodies that contain node `local` of a block. */
 static void find_normals(const mpsi_grid *grid, const mpsi_contacts *contacts,
                          const mpsi_node_block *nodes, int local) {
   double x[3];
@@ -154,7 +155,8 @@ static void find_normals(const mpsi_grid *grid, const mpsi_contacts *contacts,
   }
 }
 
-/* Several blocks may mark one node at once: the first finds the normals there. */
+/* Marks a node as reached. Threads on several blocks may mark the same node at once: the first
+ * finds the normals there. */
 static void mark_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
   _Atomic uint8_t *reached = data;
   const int64_t node = mpsi_node_under(&mpm->grid, cells, at[0], at[1], at[2]);
@@ -172,17 +174,18 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
   for_corners(mpm, &mpm->grid.cells[b], mark_node, mpm->contact.reached);
 }
 
-static void list_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
+static void set_corner_bit(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                           void *data) {
   const int t = mpsi_tile_index(at[0], at[1], at[2]);
   (void)mpm, (void)cells;
   ((uint64_t *)data)[t / 64] |= UINT64_C(1) << t % 64;
 }
 
-static void list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits) {
-  for_corners(mpm, &mpm->grid.cells[b], list_node, bits);
+static void list_corners(const mps_mpm *mpm, int64_t b, uint64_t *bits) {
+  for_corners(mpm, &mpm->grid.cells[b], set_corner_bit, bits);
 }
 
-static void take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
+static void mark_ghost_corners(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
   for (int t = 0; t < mpm->grid.tile_nodes; t++) {
     int at[3];
     if (!(bits[t / 64] >> t % 64 & 1)) continue;
@@ -191,16 +194,16 @@ static void take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
   }
 }
 
-/* On several ranks: corners of the cells that hold particles, of ghosts too, as bits of their
- * tiles, and whether thin bodies part them. */
+/* On several ranks: exchanges, as one bit for each node of a tile, the corners of cells that hold
+ * particles, and whether thin bodies make nodes of the block two-sided. */
 mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known) {
   mpsi_partition *partition = mpm->partition;
   const int64_t nodes = (mpm->grid.tile_nodes + 63) / 64;
-  const int64_t words = nodes + 1; /* whether thin bodies part it; less than a parcel has */
+  const int64_t words = nodes + 1; /* the last one: two-sided; fewer than a parcel has */
   uint64_t *out = (uint64_t *)partition->out, *in = (uint64_t *)partition->in;
   if (partition->borders > 0) memset(out, 0, (size_t)(partition->borders * words) * sizeof *out);
   for (int64_t k = 0; known && k < partition->borders; k++) {
-    list_reached(mpm, partition->border[k], out + k * words);
+    list_corners(mpm, partition->border[k], out + k * words);
     out[k * words + nodes] = mpm->grid.cells[partition->border[k]].thin;
   }
   const int32_t item = (int32_t)(words * (int64_t)sizeof *out);
@@ -209,15 +212,16 @@ mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool kn
   for (int64_t b = 0; known && status == MPS_OK && b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
     if (!cells->ghost) continue;
-    take_reached(mpm, b, in + cells->parcel * words);
+    mark_ghost_corners(mpm, b, in + cells->parcel * words);
     cells->thin = in[cells->parcel * words + nodes] != 0;
   }
   return status;
 }
 
-/* ---- states under a tile --------------------------------------------------------------------- */
+/* ---- states of the nodes under a tile -------------------------------------------------------- */
 
-/* Nodes low to high - 1 of the tile along axis c are in the domain, or beyond a mirror. */
+/* Range, low to high - 1, of the tile's nodes along axis c that are in the domain or beyond a
+ * mirror. */
 static void domain_under(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int *low,
                          int *high) {
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
@@ -236,7 +240,7 @@ static void mark_outside(const mpsi_grid *grid, const mpsi_cell_block *cells, ui
              (size_t)(high[0] - low[0]));
 }
 
-/* Of the nodes of a block under the corner q of the tile, in bodies or beside thin ones. */
+/* States of the nodes in bodies or beside thin ones, of the block under corner q of the tile. */
 static void mark_near(const mpsi_grid *grid, const mpsi_contacts *contacts,
                       const mpsi_node_block *nodes, int q, mpsi_worker *worker) {
   int from[3] = {0}, to[3] = {1, 1, 1}, shift[3] = {0};

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-/* Half the diagonal of a tile or block of `side` nodes an axis, in cells, and a little for
- * round-off: a body that has a node of it inside is no further than that from its centre. */
+/* Half the diagonal, in cells, of a tile or block of `side` nodes an axis, with a margin for
+ * round-off: a body that contains one of its nodes is no farther than that from its centre. */
 static double half_diagonal(const mpsi_grid *grid, int side) {
   return 0.5 * (side - 1) * sqrt((double)grid->dim) * (1.0 + 1e-9);
 }
@@ -22,7 +22,7 @@ bool mpsi_mpm_body_reaches(const mpsi_grid *grid, const mpsi_contacts *contacts,
   return mpsi_body_reaches(contacts->body[body], x, half_diagonal(grid, side) * grid->cell);
 }
 
-/* Bits of bodies, 64 a word. */
+/* Words of a set of bodies, a bit each. */
 static int64_t words_of(const mpsi_contacts *contacts) { return (contacts->bodies + 63) / 64; }
 
 static bool has_bit(const uint64_t *row, int32_t bit) { return row[bit / 64] >> (bit % 64) & 1; }
@@ -33,7 +33,8 @@ static uint64_t *near_row(const mpsi_contacts *contacts, int64_t g) {
   return (uint64_t *)contacts->near_room.item + g * words_of(contacts);
 }
 
-/* The same as mpsi_mpm_body_reaches in a loop over blocks, of which x is the middle. */
+/* mpsi_mpm_body_reaches in a loop over blocks, with bounds from the last one; x: centre of the
+ * block. */
 static bool reaches_next(const mpsi_contacts *contacts, int32_t body, const double *x,
                          double reach) {
   return mpsi_body_reaches_next(contacts->body[body], x, reach, &contacts->state[body].last);
@@ -44,8 +45,8 @@ static void begin_loop(const mpsi_contacts *contacts) {
     contacts->state[b].last = (mpsi_last_distance){.distance = 0.0};
 }
 
-/* By the place of the block alone: so all ranks that have it know the same nodes to be inside, and
- * the same supports to be cut. */
+/* Bodies near each block of nodes, by the position of the block alone: so all ranks that have the
+ * block find the same nodes inside bodies and the same supports cut. */
 static void find_bodies_of_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts) {
   const double reach = half_diagonal(grid, MPSI_SIDE) * grid->cell;
   begin_loop(contacts);
@@ -59,7 +60,7 @@ static void find_bodies_of_nodes(const mpsi_grid *grid, const mpsi_contacts *con
   }
 }
 
-/* What there is of the lists of pairs. */
+/* Lengths of the lists of pairs, loads and masks. */
 typedef struct pair_counts {
   int64_t cells, loads, nodes, near;
 } pair_counts;
@@ -78,8 +79,8 @@ static void add_cell_pair(const mpsi_grid *grid, const mpsi_contacts *contacts, 
   count->loads += contacts->handle[body]->parts;
 }
 
-/* Lists the pairs of blocks of cells and bodies; false where there is no room for them all, `count`
- * says how many there are. */
+/* Lists the pairs of blocks of cells and bodies; false where their memory is too small: `count` has
+ * the lengths for a second call. */
 static bool list_cell_pairs(const mpsi_grid *grid, const mpsi_contacts *contacts,
                             pair_counts *count) {
   const double reach = half_diagonal(grid, MPSI_TILE_SIDE) * grid->cell;
@@ -99,12 +100,12 @@ static bool list_cell_pairs(const mpsi_grid *grid, const mpsi_contacts *contacts
 }
 
 /* Friction with a body that moves freely depends on the mass of all nodes in contact with it. */
-static bool asks_for_mass(const mpsi_contacts *contacts, int32_t body) {
+static bool needs_mass(const mpsi_contacts *contacts, int32_t body) {
   return contacts->handle[body]->def.friction > 0.0 && !mpsi_by_impulses(contacts->handle[body]) &&
          contacts->body[body]->def.motion != MPS_BODY_MOTION_DRIVEN;
 }
 
-/* The pairs of blocks of nodes and bodies. The same in two goes: see list_cell_pairs. */
+/* Lists the pairs of blocks of nodes and bodies; false as list_cell_pairs. */
 static bool list_node_pairs(const mpsi_grid *grid, const mpsi_contacts *contacts,
                             pair_counts *count) {
   count->nodes = count->near = 0;
@@ -115,7 +116,7 @@ static bool list_node_pairs(const mpsi_grid *grid, const mpsi_contacts *contacts
     nodes->waits = false;
     for (int32_t k = 0; k < contacts->bodies; k++) {
       if (!has_bit(near, k)) continue;
-      nodes->waits = nodes->waits || asks_for_mass(contacts, k);
+      nodes->waits = nodes->waits || needs_mass(contacts, k);
       if (count->nodes < contacts->node_pair_room.capacity)
         ((mpsi_node_pair *)contacts->node_pair_room.item)[count->nodes] =
             (mpsi_node_pair){(int32_t)g, k, 0.0};
@@ -127,7 +128,7 @@ static bool list_node_pairs(const mpsi_grid *grid, const mpsi_contacts *contacts
   return count->nodes <= contacts->node_pair_room.capacity;
 }
 
-/* Penalty contacts have sums at the nodes; all have normals there. */
+/* Memory for the surface normals at the nodes, and for the nodal sums of penalty contacts. */
 static bool ensure_nodes(mps_context *context, mpsi_contacts *contact, int64_t nodes) {
   if (!mpsi_room_ensure(context, &contact->normal_room, nodes, sizeof *contact->normal) ||
       !mpsi_room_ensure(context, &contact->node_room, contact->penalty_bodies > 0 ? nodes : 0,
@@ -138,7 +139,7 @@ static bool ensure_nodes(mps_context *context, mpsi_contacts *contact, int64_t n
   return true;
 }
 
-/* The lists, each in a second go where the first finds that they are longer than their room. */
+/* Makes both lists, each a second time where its memory was too small. */
 static bool make_lists(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contact,
                        pair_counts *count) {
   bool good = mpsi_room_ensure(context, &contact->near_room, grid->node_count * words_of(contact),
@@ -193,12 +194,12 @@ void mpsi_mpm_find_contact_mass(const mpsi_grid *grid, const mpsi_contacts *cont
                                 mpsi_partition *partition) {
   mpsi_exact *sum = contact->sum_room.item; /* a body has one part at least */
   bool any = false;
-  for (int32_t b = 0; b < contact->bodies; b++) any = any || asks_for_mass(contact, b);
+  for (int32_t b = 0; b < contact->bodies; b++) any = any || needs_mass(contact, b);
   if (!any) return;
   memset(sum, 0, (size_t)contact->bodies * sizeof *sum);
   for (int64_t t = 0; t < contact->node_pair_count; t++) {
     const mpsi_node_pair *pair = &contact->node_pair[t];
-    if (asks_for_mass(contact, pair->body) &&
+    if (needs_mass(contact, pair->body) &&
         (!partition || mpsi_mpm_counts_node_block(grid, pair->nodes)))
       mpsi_exact_add(&sum[pair->body], pair->mass);
   }

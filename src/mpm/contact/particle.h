@@ -1,12 +1,12 @@
-/* particle.h - one particle of the solver against one body, as src/contact sees it.
+/* particle.h - contact of one particle with one body, by the functions of src/contact.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_CONTACT_PARTICLE_H
 #define MPSI_MPM_CONTACT_PARTICLE_H
 
 #include "mpm/base/mpm_solver.h"
 
-/* False where the particle is not in contact with the body. The state of the particle is that at
- * the beginning of the step. */
+/* Depth, force and slip of a particle in contact with a body, by its state at the beginning of the
+ * step; false where it is not in contact. */
 MPSI_INLINE bool mpsi_find_contact(const mpsi_grid *grid, const mpsi_columns *p,
                                    const mps_mpm_def *def, const mps_contact *contact, int dim,
                                    int64_t particle, mpsi_contact_particle *out) {

@@ -1,8 +1,8 @@
-/* partners.c - see partners.h. Ranks reduce the counts of failures and of constraints, then a
- * matrix of bits, of which each rank sets its own part: a row of the ranks whose constraints its
- * own ones reach, and a row of the ranks whose constraints change nodes under its own blocks that
- * have none there; of more than MPSI_MOST_PARTNERS ranks or with free bodies, one row of the ranks
- * with constraints. SPDX-License-Identifier: BSD-3-Clause */
+/* partners.c - see partners.h. Ranks reduce the counts of failures and of constraints and a matrix
+ * of bits, of which each rank sets two rows: ranks whose constraints are linked to its own by
+ * common nodes; and ranks whose constraints change nodes under its blocks that have no constraints
+ * of their own there (readers). With more than MPSI_MOST_PARTNERS ranks, or with free bodies, there
+ * is one row, of the ranks with constraints. SPDX-License-Identifier: BSD-3-Clause */
 #include "partners.h"
 
 #include "mpm/grid/blocks.h"
@@ -17,7 +17,7 @@ enum { FAILED, CONSTRAINTS, HEAD };
 
 static int32_t words_of(const mps_domain *domain) { return (mps_domain_size(domain) + 63) / 64; }
 
-/* Some body moves freely, and is in contact with all blocks at once. */
+/* Whether some body moves freely: it couples the constraints of all blocks. */
 static bool has_free_bodies(const mpsi_contacts *contacts) {
   bool found = false;
   for (int32_t b = 0; b < contacts->bodies; b++)
@@ -25,7 +25,7 @@ static bool has_free_bodies(const mpsi_contacts *contacts) {
   return found;
 }
 
-/* Two for each rank, or one. */
+/* Number of rows of the matrix: two for each rank, or one. */
 static int32_t rows_of(const mpsi_contacts *contacts, const mps_domain *domain) {
   const int32_t ranks = mps_domain_size(domain);
   return has_free_bodies(contacts) || ranks > MPSI_MOST_PARTNERS ? 1 : 2 * ranks;
@@ -73,8 +73,8 @@ void mpsi_mpm_mark_contact_blocks(const mpsi_contacts *contacts, mpsi_grid *grid
   for (int64_t k = 0; k < all->block_count; k++) grid->cells[all->block[k].cells].in_contact = true;
 }
 
-/* Marks spread over blocks with constraints over one block of nodes. Returns whether some were
- * marked. */
+/* Extends the marks `sent` to blocks with constraints that share a block of nodes with a marked
+ * one; returns whether any was new. */
 static bool spread(mpsi_grid *grid) {
   bool changed = false;
   for (int64_t g = 0; g < grid->node_count; g++) {
@@ -91,8 +91,8 @@ static bool spread(mpsi_grid *grid) {
   return changed;
 }
 
-/* Own blocks beside ghosts are sent; ranks of ghosts with constraints go to `linked` where an own
- * block has constraints too, else to `readers`. */
+/* Marks own blocks with constraints beside ghosts as sent; sets the ranks of ghosts with
+ * constraints in `linked` where an own block has constraints too, else in `readers`. */
 static void find_links(mpsi_grid *grid, const int32_t *ghost_rank, uint64_t *linked,
                        uint64_t *readers) {
   for (int64_t g = 0; g < grid->node_count; g++) {
@@ -117,7 +117,7 @@ static void find_links(mpsi_grid *grid, const int32_t *ghost_rank, uint64_t *lin
   }
 }
 
-/* All constraints are sent to all ranks. */
+/* One row: marks all blocks with constraints as sent to all ranks that have any. */
 static void send_rows(mpsi_grid *grid, int32_t rank, uint64_t *row) {
   for (int64_t b = 0; b < grid->cell_count; b++) {
     mpsi_cell_block *cells = &grid->cells[b];
@@ -129,9 +129,10 @@ static void send_rows(mpsi_grid *grid, int32_t rank, uint64_t *row) {
 
 /* ---- all ranks ------------------------------------------------------------------------------- */
 
-/* From this rank on along the rows of linked ranks; then the readers of any of them. */
-static void follow(mpsi_contact_partners *m, int32_t ranks, const uint64_t *linked,
-                   const uint64_t *readers) {
+/* Partners of this rank: the ranks that rows of linked ranks lead to, and the readers of any of
+ * these. */
+static void find_reachable(mpsi_contact_partners *m, int32_t ranks, const uint64_t *linked,
+                           const uint64_t *readers) {
   const int32_t words = (ranks + 63) / 64;
   uint64_t *own = m->own, *all = own + words;
   bool changed = true;
@@ -151,7 +152,7 @@ static void follow(mpsi_contact_partners *m, int32_t ranks, const uint64_t *link
   memcpy(own, all, (size_t)words * sizeof *own);
 }
 
-static void take_rows(mpsi_contact_partners *m, const mps_domain *domain, const uint64_t *rows,
+static void read_rows(mpsi_contact_partners *m, const mps_domain *domain, const uint64_t *rows,
                       int32_t count) {
   const int32_t words = words_of(domain);
   int64_t bits = 0;
@@ -160,7 +161,7 @@ static void take_rows(mpsi_contact_partners *m, const mps_domain *domain, const 
   memset(m->own, 0, (size_t)words * sizeof *m->own);
   set_bit(m->own, mps_domain_rank(domain));
   if (count > 1)
-    follow(m, mps_domain_size(domain), rows, rows + (int64_t)(count / 2) * words);
+    find_reachable(m, mps_domain_size(domain), rows, rows + (int64_t)(count / 2) * words);
   else
     for (int32_t w = 0; w < words; w++) m->own[w] |= rows[w];
 }
@@ -187,6 +188,6 @@ mps_status mpsi_mpm_find_partners(mpsi_contacts *contacts, mpsi_grid *grid,
   if (lost != MPS_OK) return lost;
   if (m->words[FAILED] > 0) return mpsi_domain_agree(domain, function, status);
   *constraints = m->words[CONSTRAINTS];
-  take_rows(m, domain, row, rows);
+  read_rows(m, domain, row, rows);
   return MPS_OK;
 }

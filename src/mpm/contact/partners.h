@@ -27,18 +27,18 @@ typedef struct mpsi_contact_partners {
   mpsi_room words_room, own_room;
 } mpsi_contact_partners;
 
-/* For the ranks of a domain, before there are contacts. Not
- * collective, nor is the next. */
+/* Allocates for the ranks of a domain, before the first contact. Not collective. */
 mps_status mpsi_mpm_begin_partners(mpsi_contact_partners *partners, mps_domain *domain,
                                    const char *function);
 /* Marks this rank's blocks of cells that have constraints or areas, before their tiles are sent. */
 void mpsi_mpm_mark_contact_blocks(const struct mpsi_contacts *contacts, struct mpsi_grid *grid);
-/* Finds the partners, and which of the blocks are sent to them (mpsi_cell_block.sent).
- * `constraints`: number on all ranks. First all agree on `status`. Collective. */
+/* Finds the partner ranks, and the blocks whose constraints are sent to them
+ * (mpsi_cell_block.sent). `constraints`: number on all ranks. All ranks first agree on `status`.
+ * Collective. */
 mps_status mpsi_mpm_find_partners(struct mpsi_contacts *contacts, struct mpsi_grid *grid,
                                   const struct mpsi_partition *partition, const char *function,
                                   mps_status status, int64_t *constraints);
-/* Whether it is a partner, or this rank itself. */
+/* Whether a rank is a partner, or this rank. */
 bool mpsi_mpm_is_partner(const mpsi_contact_partners *partners, int32_t rank);
 void mpsi_mpm_free_partners(mpsi_contact_partners *partners, mps_context *context);
 

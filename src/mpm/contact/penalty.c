@@ -1,6 +1,6 @@
-/* penalty.c - penalty contact on its way to the nodes, Nakamura (29), (30): the particles of a
+/* penalty.c - penalty contact from particles to nodes, Nakamura (29), (30): the particles of a
  * block are summed into tiles of the worker, one for each pair of the block and a body, and these
- * are added to the nodes in the order of the colours. Those of other ranks come with the tiles of
+ * are added to the nodes in the order of the colours. Tiles of other ranks arrive with those of
  * momentum (step/tiles.c). SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 

@@ -1,7 +1,7 @@
 /* penalty_friction.c - penalty contact at the nodes of a block: the normal forces of all bodies
- * first, then Coulomb friction body by body, Nakamura (31)-(34); then the forces on the bodies, by
- * whatever contact. The equations of one particle or node are in src/contact: friction.c has
- * (31)-(34). SPDX-License-Identifier: BSD-3-Clause */
+ * first, then Coulomb friction body by body, Nakamura (31)-(34); and the loads on the bodies, from
+ * contact of either method. The equations of one particle or node are in src/contact: friction.c
+ * has (31)-(34). SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/base/mpm_solver.h"
 
@@ -48,7 +48,7 @@ void mpsi_mpm_apply_friction(const mpsi_grid *grid, const mpsi_contacts *contact
   }
 }
 
-/* ---- what the bodies feel -------------------------------------------------------------------- */
+/* ---- loads on the bodies --------------------------------------------------------------------- */
 
 enum { FORCE = 0, MOMENT = 3, CONTACTS = 6, SUMS };
 typedef mpsi_exact load_sums[SUMS];
@@ -63,7 +63,7 @@ bool mpsi_mpm_sum_room(mps_context *context, mpsi_contacts *contacts) {
   return mpsi_room_ensure(context, &contacts->sum_room, all_parts(contacts), sizeof(load_sums));
 }
 
-/* Of body b on this rank, to the sums of its parts. */
+/* Adds the loads on body b on this rank to the exact sums of its parts. */
 static void add_loads(const mpsi_grid *grid, const mpsi_contacts *contacts, int32_t b,
                       load_sums *sum) {
   for (int64_t k = 0; k < contacts->cell_pair_count; k++) {
@@ -80,6 +80,7 @@ static void add_loads(const mpsi_grid *grid, const mpsi_contacts *contacts, int3
   }
 }
 
+/* Reactions of body b by the sums over its parts, its motion, and the work of contact. */
 static void react(const mpsi_contacts *contacts, mpsi_energy *energy, const mpsi_settling *settling,
                   double dt, int32_t b, load_sums *sum) {
   mps_contact *contact = contacts->handle[b];
@@ -103,7 +104,7 @@ static void react(const mpsi_contacts *contacts, mpsi_energy *energy, const mpsi
   }
 }
 
-/* Reactions to the bodies, by the sums over all blocks on all ranks: exact, independent of the
+/* Reactions of the bodies, by exact sums over the blocks of all ranks, independent of the
  * partition. Then the bodies move. */
 void mpsi_mpm_update_bodies(mps_mpm *mpm) {
   load_sums *sum = mpm->contact.sum_room.item, *of = sum;

@@ -1,19 +1,18 @@
-/* removal.c - bodies that take away the particles which they find inside: when the contact is made,
- * and before each step those that lie deeper than its depth.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* removal.c - bodies that remove particles from their inside: when the contact is made, and before
+ * each step those deeper than the contact's `depth`. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 
-enum { TAKEN = 1, BY_THIS }; /* marks of particles */
+enum { REMOVED = 1, REMOVED_BY_THIS }; /* marks of particles */
 
-static bool takes_away(const mps_contact *contact) {
+static bool removes_particles(const mps_contact *contact) {
   return contact->def.inside == MPS_CONTACT_INSIDE_REMOVE;
 }
 
-bool mpsi_mpm_some_take_away(const mpsi_contacts *all) {
+bool mpsi_mpm_any_body_removes(const mpsi_contacts *all) {
   bool any = false;
-  for (int32_t b = 0; b < all->bodies; b++) any = any || takes_away(all->handle[b]);
+  for (int32_t b = 0; b < all->bodies; b++) any = any || removes_particles(all->handle[b]);
   return any;
 }
 
@@ -22,9 +21,10 @@ static double *place_of(const mpsi_grid *grid, const mpsi_columns *p, int64_t k,
   return x;
 }
 
-/* Marks particles [begin, end) that lie deeper than `depth` below the surface. */
-static int64_t into_body(const mpsi_grid *grid, const mpsi_columns *p, const mps_contact *contact,
-                         double depth, int64_t begin, int64_t end, uint8_t *gone, uint8_t mark) {
+/* Marks particles [begin, end) that lie deeper than `depth` (m) below the surface; returns their
+ * number. */
+static int64_t mark_deeper(const mpsi_grid *grid, const mpsi_columns *p, const mps_contact *contact,
+                           double depth, int64_t begin, int64_t end, uint8_t *gone, uint8_t mark) {
   int64_t count = 0;
   for (int64_t k = begin; k < end; k++) {
     double x[3];
@@ -39,11 +39,11 @@ static int64_t into_body(const mpsi_grid *grid, const mpsi_columns *p, const mps
 enum { MASS, COUNT, AMOUNTS };
 typedef mpsi_exact amounts[AMOUNTS];
 
-/* What the body has taken away, on all ranks. */
-static mps_status count_out(const mpsi_grid *grid, const mpsi_columns *p,
-                            const mpsi_contacts *contacts, mpsi_partition *partition,
-                            const char *function, mps_contact *contact, const uint8_t *gone,
-                            uint8_t mark) {
+/* Adds number and mass of the particles that a body removes on all ranks to its reactions. */
+static mps_status add_removed(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mpsi_contacts *contacts, mpsi_partition *partition,
+                              const char *function, mps_contact *contact, const uint8_t *gone,
+                              uint8_t mark) {
   amounts *sum = contacts->sum_room.item;
   const int32_t parts = contact->body->parts;
   mps_status status = MPS_OK;
@@ -66,7 +66,7 @@ static mps_status count_out(const mpsi_grid *grid, const mpsi_columns *p,
   return status;
 }
 
-/* Room for the sums of a contact, which need not be one of the solver's yet. */
+/* Memory for the sums of a contact, which the solver need not have yet. */
 static mps_status ensure_amounts(mps_context *context, mpsi_contacts *contacts,
                                  const char *function, const mps_contact *contact) {
   const int32_t parts = contact->body->parts;
@@ -75,7 +75,7 @@ static mps_status ensure_amounts(mps_context *context, mpsi_contacts *contacts,
              : mpsi_fail_memory(context, function, (size_t)parts * sizeof(amounts));
 }
 
-/* Marks particles in the body, which no body before it has marked. */
+/* Marks particles in the body that no earlier body has marked; returns their number. */
 static int64_t mark_inside(const mpsi_grid *grid, const mpsi_columns *p,
                            const mpsi_contacts *contacts, const mpsi_rooms *rooms, int32_t body,
                            uint8_t mark) {
@@ -85,42 +85,45 @@ static int64_t mark_inside(const mpsi_grid *grid, const mpsi_columns *p,
     const mpsi_cell_pair *pair = &contacts->cell_pair[t];
     const mpsi_cell_block *cells = &grid->cells[pair->cells];
     if (pair->body == body)
-      count += into_body(grid, p, contact, contact->def.depth, cells->begin, cells->end,
-                         rooms->gone.item, mark);
+      count += mark_deeper(grid, p, contact, contact->def.depth, cells->begin, cells->end,
+                           rooms->gone.item, mark);
   }
   return count;
 }
 
-/* The same of all bodies, with the same mark. */
+/* Marks the particles in all bodies that remove them, with one mark; returns their number. */
 static int64_t mark_all(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
                         const mpsi_rooms *rooms) {
   int64_t count = 0;
   if (p->count > 0) memset(rooms->gone.item, 0, (size_t)p->count);
   for (int32_t b = 0; b < contacts->bodies; b++)
-    if (takes_away(contacts->handle[b])) count += mark_inside(grid, p, contacts, rooms, b, TAKEN);
+    if (removes_particles(contacts->handle[b]))
+      count += mark_inside(grid, p, contacts, rooms, b, REMOVED);
   return count;
 }
 
-/* What each body takes away, on all ranks. */
-static mps_status count_by_body(const mpsi_grid *grid, const mpsi_columns *p,
-                                const mpsi_contacts *contacts, mpsi_partition *partition,
-                                const mpsi_rooms *rooms, const char *function) {
+/* Adds what each body removes, on all ranks, to its reactions; where bodies overlap the first
+ * removes. */
+static mps_status add_removed_by_body(const mpsi_grid *grid, const mpsi_columns *p,
+                                      const mpsi_contacts *contacts, mpsi_partition *partition,
+                                      const mpsi_rooms *rooms, const char *function) {
   uint8_t *gone = rooms->gone.item;
   mps_status status = MPS_OK;
   if (p->count > 0) memset(gone, 0, (size_t)p->count);
   for (int32_t b = 0; b < contacts->bodies && status == MPS_OK; b++) {
-    if (!takes_away(contacts->handle[b])) continue;
-    mark_inside(grid, p, contacts, rooms, b, BY_THIS);
-    status = count_out(grid, p, contacts, partition, function, contacts->handle[b], gone, BY_THIS);
+    if (!removes_particles(contacts->handle[b])) continue;
+    mark_inside(grid, p, contacts, rooms, b, REMOVED_BY_THIS);
+    status = add_removed(grid, p, contacts, partition, function, contacts->handle[b], gone,
+                         REMOVED_BY_THIS);
     for (int64_t k = 0; k < p->count; k++)
-      if (gone[k]) gone[k] = TAKEN;
+      if (gone[k]) gone[k] = REMOVED;
   }
   return status;
 }
 
 mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
                                  bool *cleared) {
-  if (!mpsi_mpm_some_take_away(&mpm->contact)) return status;
+  if (!mpsi_mpm_any_body_removes(&mpm->contact)) return status;
   for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
     status = ensure_amounts(mpm->context, &mpm->contact, function, mpm->contact.handle[b]);
   const int64_t count =
@@ -129,7 +132,8 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
   if (mpm->partition)
     status = mpsi_domain_agree_max(mpm->partition->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
-  status = count_by_body(&mpm->grid, &mpm->p, &mpm->contact, mpm->partition, &mpm->rooms, function);
+  status = add_removed_by_body(&mpm->grid, &mpm->p, &mpm->contact, mpm->partition, &mpm->rooms,
+                               function);
   if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->p.set, mpm->rooms.gone.item);
   *cleared = status == MPS_OK;
   return status;
@@ -138,7 +142,7 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
 mps_status mpsi_mpm_clear_body(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                mpsi_contacts *contacts, mpsi_partition *partition,
                                const char *function, mps_contact *contact) {
-  if (!takes_away(contact)) return MPS_OK;
+  if (!removes_particles(contact)) return MPS_OK;
   uint8_t *gone = mpsi_alloc(context, p->count, 1);
   mps_status status = MPS_OK;
   if (!gone) status = mpsi_fail_memory(context, function, (size_t)p->count);
@@ -146,8 +150,8 @@ mps_status mpsi_mpm_clear_body(mps_context *context, const mpsi_grid *grid, cons
   status = mpsi_mpm_agree(partition, function, status);
   int64_t count = 0;
   if (status == MPS_OK) {
-    count = into_body(grid, p, contact, 0.0, 0, p->count, gone, TAKEN);
-    status = count_out(grid, p, contacts, partition, function, contact, gone, TAKEN);
+    count = mark_deeper(grid, p, contact, 0.0, 0, p->count, gone, REMOVED);
+    status = add_removed(grid, p, contacts, partition, function, contact, gone, REMOVED);
   }
   if (status == MPS_OK && count > 0) mpsi_particles_take_out(p->set, gone);
   mpsi_free(context, gone);

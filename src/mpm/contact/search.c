@@ -1,5 +1,5 @@
-/* search.c - which particles of a block may be near a body, four at once: the bound that the last
- * foot found gives for the others (constraints.c), and which particles are in cells with corners in
+/* search.c - searches over the particles of a block, four at once: particles that may be near a
+ * body, by bounds from the last foot found (constraints.c); particles in cells with corners in
  * bodies (inside.c). Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/loops.h"
@@ -19,7 +19,7 @@ double MPSI_LEVELLED(mpsi_mpm_fastest)(const mpsi_grid *grid, const mpsi_columns
   return sqrt(fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3])));
 }
 
-/* Lanes of particles that may be near. */
+/* Lanes of particles that the bounds do not exclude. */
 MPSI_INLINE mpsi_mask may_be_near(const mpsi_columns *p, int dim, const mpsi_far *far, int64_t k,
                                   int n) {
   mpsi_quad square = {0.0}, before = {0.0};
@@ -48,12 +48,13 @@ int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mpsi_grid *grid, const mpsi_colu
   return grid->dim == 3 ? next_near(p, 3, far, begin, end) : next_near(p, 2, far, begin, end);
 }
 
-/* Lanes of particles that may be in cells low to high - 1 of each axis, of which the first queried
- * excludes most; on the upper side of the domain, or beyond, one is in the last cell. */
+/* Lanes of particles that may be in cells low to high - 1 of each axis; the axis `slim`, whose
+ * range is shortest, is tested first. A particle on the upper side of the domain or beyond counts
+ * to the last cell. */
 MPSI_INLINE mpsi_mask may_be_in(const mpsi_grid *grid, const mpsi_columns *p,
                                 const mpsi_cell_block *cells, int dim, int slim, const int *low,
                                 const int *high, int64_t k, int n) {
-  const double slack = 1e-6; /* of round-off: the caller checks again */
+  const double slack = 1e-6; /* margin for round-off: the caller checks again */
   mpsi_mask in = (mpsi_mask){0, 1, 2, 3} < n;
   for (int a = 0; a < dim && (in[0] | in[1] | in[2] | in[3]); a++) {
     const int c = slim + a < dim ? slim + a : slim + a - dim;

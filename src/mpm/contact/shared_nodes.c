@@ -1,12 +1,12 @@
-/* shared_nodes.c - the nodes that constraints of all partner ranks use, each once, found by their
- * place on the grid (exchange.h). SPDX-License-Identifier: BSD-3-Clause */
+/* shared_nodes.c - replicas of the nodes that constraints of all partner ranks use, each once,
+ * found by a hash of their coordinates (exchange.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 
 #include "mpm/grid/blocks.h"
 
 #include <string.h>
 
-/* The node here, or NULL. */
+/* The node in this rank's grid, or NULL. */
 static double *find_home(const mpsi_grid *grid, const int32_t *at, bool across) {
   int32_t block[3], local = 0;
   for (int c = 2; c >= 0; c--) {
@@ -30,7 +30,7 @@ static double *find_home(const mpsi_grid *grid, const int32_t *at, bool across) 
   return grid->node[mpsi_grid_first_node(grid, across ? grid->nodes[low].across : low) + local];
 }
 
-/* Where in the lookup the node is, or would be. */
+/* Slot of the hash table that has the node, or is free for it. */
 static int64_t slot_of(const mpsi_contact_exchange *r, const int32_t *at, int32_t kind) {
   const mpsi_shared_node *shared = r->shared.item;
   const int32_t *lookup = r->lookup.item;

@@ -4,11 +4,12 @@
 #include "contact/update.h"
 #include "mpm/base/loops.h"
 
-#define WAYS 8 /* sums side by side: none waits for the one before */
+#define WAYS 8 /* independent partial sums: additions do not wait for one another */
 
-/* psi of number i of the weights of a constraint. */
+/* psi of node number i of a constraint, for the four values of a node. */
 MPSI_INLINE mpsi_quad psi_of(const double *weight, bool even, int32_t i) {
-  if (!even) return mpsi_get(weight + 4 * i); /* its first lane multiplies a mass, for nothing */
+  /* the first lane multiplies the mass of the node and is not used */
+  if (!even) return mpsi_get(weight + 4 * i);
   const double psi = weight[2 * i + 1];
   return (mpsi_quad){psi, psi, psi, psi};
 }
@@ -20,7 +21,7 @@ MPSI_INLINE void kick_nodes(double *const *node, const double *weight, bool even
              mpsi_get(node[i]) + psi_of(weight, even, i) * (weight[(even ? 2 : 4) * i] * impulse));
 }
 
-/* What the impulse `by` does to the nodes, and to the body. */
+/* Changes the velocities of the constraint's nodes, and of a free body, by the impulse `by`. */
 MPSI_INLINE void kick(mpsi_impulses *all, int64_t n, const double *by) {
   const mpsi_constraint *constraint = &all->constraint[n];
   const mpsi_quad impulse = {0.0, by[0], by[1], by[2]};
@@ -34,7 +35,7 @@ MPSI_INLINE void kick(mpsi_impulses *all, int64_t n, const double *by) {
     mpsi_impulse_kick(&all->body[constraint->body], constraint->impulse.at, by);
 }
 
-/* sum psi v, from `first` on. */
+/* first + sum psi v over the nodes of a constraint. */
 MPSI_INLINE mpsi_quad sum_nodes(double *const *node, const double *weight, bool even, int32_t nodes,
                                 mpsi_quad first) {
   mpsi_quad sum[WAYS] = {first};
@@ -47,7 +48,7 @@ MPSI_INLINE mpsi_quad sum_nodes(double *const *node, const double *weight, bool 
   return sum[0];
 }
 
-/* Velocity of the particle's side at the foot. */
+/* Velocity of the ground at the foot of a constraint. */
 MPSI_INLINE void velocity_at(const mpsi_impulses *all, int64_t n, double *v) {
   const mpsi_constraint *constraint = &all->constraint[n];
   double *const *node = all->node + n * all->stride;
@@ -65,7 +66,8 @@ void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mpsi_impulses *all, int64_t con
   velocity_at(all, constraint, v);
 }
 
-/* `tangent_impulse` holds the last step's impulse. */
+/* Warm start: applies the impulses of the last step, in `tangent_impulse`, in the ratio of the
+ * steps' dt. */
 void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
                                   const mpsi_constraint_block *block) {
   const double fraction = all->warm_dt > 0.0 ? dt / all->warm_dt : 0.0;
@@ -78,7 +80,8 @@ void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
   }
 }
 
-/* Counts what it changes, by which the sweeps end. */
+/* One Gauss-Seidel update of each constraint of a block, with the sums of squares of impulses and
+ * of their changes, by which the sweeps end. */
 void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block,
                                    bool back) {
   double changed = 0.0, impulses = 0.0;

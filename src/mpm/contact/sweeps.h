@@ -1,5 +1,5 @@
-/* sweeps.h - how much the last sweep over the contacts of a step has changed their impulses.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* sweeps.h - relative change of the impulses in the last Gauss-Seidel sweep of a step, by which the
+ * sweeps end. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_SWEEPS_H
 #define MPSI_MPM_SWEEPS_H
 
@@ -10,7 +10,7 @@ enum { MPSI_SWEEP_CHANGED, MPSI_SWEEP_IMPULSES, MPSI_SWEEP_SUMS };
 /* (N s)2, the largest sums of squares over a block of cells of this rank, of changes and of
  * impulses: their maxima over all ranks are the same on any number of these. */
 void mpsi_mpm_sweep_sums(const mpsi_contacts *contacts, double *most);
-/* Root of the change over the impulses; 0 where nothing has changed. */
+/* Root of the change over the impulses; 0 without a change. */
 double mpsi_mpm_relative_change(const double *most);
 
 #endif

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-#define CLEAR 0.02   /* cells: what is nearer to the surface looks from that far off it, */
-#define CLOSED 0.002 /* and a way that comes so near leads into it */
+#define CLEAR 0.02   /* cells: least distance of a line of sight's ends from the surface */
+#define CLOSED 0.002 /* cells: a line that comes nearer enters the body */
 enum { MOST_STEPS = 200 };
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
@@ -32,8 +32,8 @@ bool mpsi_mpm_begin_across(mps_context *context, const mpsi_grid *grid, const mp
   return good;
 }
 
-/* Where x looks from, and how far that is from the surface. */
-static mpsi_sight stand(const mpsi_grid *grid, const mpsi_foot *foot, const double *x) {
+/* Origin of the lines of sight of x, and its distance from the surface. */
+static mpsi_sight origin_of(const mpsi_grid *grid, const mpsi_foot *foot, const double *x) {
   const double clear = CLEAR * grid->cell;
   mpsi_sight out = {.distance = fmax(foot->distance, clear)};
   for (int c = 0; c < grid->dim; c++)
@@ -49,8 +49,9 @@ static bool near_thin(const mpsi_contacts *contacts, const mpsi_node_block *node
   return any;
 }
 
-/* A body between two nodes of a stencil leads through one of its cells, and no point of a cell is
- * further from all its nodes than half the diagonal. */
+/* Only nodes within half a cell's diagonal of a body are beside it: a body between two nodes of a
+ * stencil passes through one of its cells, and no point of a cell is farther from its nearest
+ * corner than that. */
 void mpsi_mpm_find_sight(const mpsi_grid *grid, const mpsi_contacts *contacts, int64_t g) {
   mpsi_node_block *nodes = &grid->nodes[g];
   nodes->thin = false;
@@ -65,7 +66,7 @@ void mpsi_mpm_find_sight(const mpsi_grid *grid, const mpsi_contacts *contacts, i
       double x[3];
       mpsi_node_place(grid, nodes->at, k, x);
       const mpsi_foot foot = mpsi_body_foot(contacts->body[b], x);
-      sight[k] = stand(grid, &foot, x);
+      sight[k] = origin_of(grid, &foot, x);
       if (sight[k].distance > half) continue;
       beside[k] = 1;
       nodes->thin = true;
@@ -75,7 +76,7 @@ void mpsi_mpm_find_sight(const mpsi_grid *grid, const mpsi_contacts *contacts, i
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
-/* Room for `count` blocks of nodes, keeping the present ones. */
+/* Memory for `count` blocks of nodes, keeping the present ones. */
 static bool keep_and_widen(mps_context *context, mpsi_grid *grid, int64_t count) {
   const bool good =
       mpsi_room_keep(context, &grid->nodes_room, count, sizeof *grid->nodes) &&
@@ -101,8 +102,8 @@ static bool ensure_tiles(mps_context *context, mpsi_grid *grid, mpsi_mirrors *mi
   return true;
 }
 
-/* The block across those nodes: it is prescribed, damped and counted as they are, without penalty
- * contact. */
+/* Makes the block for the values across `nodes`: boundaries, damping and energy as theirs, but no
+ * penalty contact. */
 static void make_across(mpsi_grid *grid, const mpsi_node_block *nodes) {
   mpsi_node_block *across = &grid->nodes[nodes->across];
   *across = *nodes;
@@ -130,15 +131,15 @@ bool mpsi_mpm_list_across(mps_context *context, mpsi_grid *grid, mpsi_mirrors *m
   return true;
 }
 
-/* ---- sight ----------------------------------------------------------------------------------- */
+/* ---- lines of sight -------------------------------------------------------------------------- */
 
-/* The wall of the mirror at the upper or lower end of axis c, m. */
+/* Coordinate (m) of the mirror at the upper or lower end of axis c. */
 static double mirror_at(const mpsi_grid *grid, int c, bool upper) {
   const int64_t node = upper ? grid->high[c] : grid->low[c];
   return grid->origin[c] + grid->cell * (double)node;
 }
 
-/* A place beyond a mirror to its image. */
+/* Replaces a point beyond a mirror by its image. */
 static void fold(const mpsi_grid *grid, const mpsi_cell_block *cells, double *x) {
   for (int c = 0; c < grid->dim; c++)
     for (int upper = 0; upper < 2; upper++) {
@@ -148,7 +149,7 @@ static void fold(const mpsi_grid *grid, const mpsi_cell_block *cells, double *x)
     }
 }
 
-/* How far the way from a along `way` to its end at 1 goes from t before it passes a mirror. */
+/* Parameter at which the line a + t way, t to 1, crosses a mirror next after t; INFINITY: none. */
 static double next_mirror(const mpsi_grid *grid, const mpsi_cell_block *cells, const double *a,
                           const double *way, double t) {
   double next = INFINITY;
@@ -160,8 +161,8 @@ static double next_mirror(const mpsi_grid *grid, const mpsi_cell_block *cells, c
   return next;
 }
 
-/* Whether the straight way from `from` to `to` (m), both outside, is free of the body, which is
- * mirrored as the ground is: in steps of the distance to the surface, which cannot pass it. */
+/* Whether the straight line from `from` to `to` (m), both outside the body, is free of it; the body
+ * is mirrored as the ground is. Steps of the distance to the surface cannot pass it. */
 static bool is_free(const mpsi_grid *grid, const mpsi_cell_block *cells, const mps_body *body,
                     const mpsi_sight *from, const double *to) {
   double way[3] = {0.0}, x[3] = {0.0}, distance = from->distance;
@@ -180,8 +181,8 @@ static bool is_free(const mpsi_grid *grid, const mpsi_cell_block *cells, const m
   return true;
 }
 
-/* What is known of tile node `at`, or of its partner, for the body; the place is that of the node
- * itself, `ghost` or not. */
+/* Origin of lines of sight of tile node `at` for the body; a `ghost` has that of its image,
+ * mirrored. */
 static mpsi_sight sight_of(const mpsi_grid *grid, const mpsi_contacts *contacts,
                            const mpsi_cell_block *cells, int32_t body, const int *at, bool *ghost) {
   int place[3];
@@ -201,9 +202,9 @@ static mpsi_sight sight_of(const mpsi_grid *grid, const mpsi_contacts *contacts,
   return out;
 }
 
-/* Whether the place of tile node `at`, not beyond a mirror, lies before the tangent plane at the
- * particle's foot: then it is seen past a convex body, as is one in whose own plane's front the
- * particle lies. */
+/* Whether tile node `at`, not a ghost, lies before the tangent plane at the particle's foot: a
+ * convex body cannot separate it then. The same is true if the particle lies before the node's
+ * tangent plane. */
 static bool is_before(const mpsi_grid *grid, const mpsi_cell_block *cells, const int *at,
                       const mpsi_foot *foot) {
   const double local[3] = {at[0], at[1], at[2]};
@@ -216,8 +217,8 @@ static bool is_before(const mpsi_grid *grid, const mpsi_cell_block *cells, const
   return across > 0.0;
 }
 
-/* Whether the place of tile node `at` lies a cell or more below the tangent plane at the particle's
- * foot, along the axis that is nearest to the normal. */
+/* Whether tile node `at` lies a cell or more below the tangent plane at the particle's foot, along
+ * the axis that is nearest to the normal. */
 static bool is_deep(const mpsi_grid *grid, const mpsi_cell_block *cells, const int *at,
                     const mpsi_foot *foot) {
   const double local[3] = {at[0], at[1], at[2]};
@@ -230,13 +231,14 @@ static bool is_deep(const mpsi_grid *grid, const mpsi_cell_block *cells, const i
   return depth > (1.0 - 1e-9) * cell;
 }
 
+/* Adds the nodes of the stencil from `base` that body b separates from a particle at x. */
 static void add_parted_by(const mpsi_grid *grid, const mpsi_contacts *contacts,
                           const mpsi_cell_block *cells, int32_t b, const int *base, const double *x,
                           mpsi_parted *out) {
   const mps_body *body = contacts->body[b];
   const bool convex = contacts->handle[b]->convex;
   const mpsi_foot foot = mpsi_body_foot(body, x);
-  const mpsi_sight own = stand(grid, &foot, x);
+  const mpsi_sight own = origin_of(grid, &foot, x);
   const int n = grid->spline;
   if (own.distance > 2.0 * sqrt((double)grid->dim) * grid->cell) return;
   for (int k = 0; k <= (grid->dim == 3 ? n : 0); k++)
@@ -250,7 +252,8 @@ static void add_parted_by(const mpsi_grid *grid, const mpsi_contacts *contacts,
         for (int c = 0; c < 3; c++) way[c] = node.at[c] - own.at[c];
         const double reach = own.distance + (ghost ? 0.0 : node.distance);
         if (convex && !ghost && mpsi_dot3(way, node.normal) < node.distance) continue;
-        if (mpsi_dot3(way, way) < reach * reach) continue; /* two balls without the body */
+        /* two overlapping balls that contain no part of the body */
+        if (mpsi_dot3(way, way) < reach * reach) continue;
         if (is_free(grid, cells, body, &own, node.at)) continue;
         const uint64_t bit = UINT64_C(1) << (16 * k + 4 * j + i);
         out->across |= bit;

@@ -8,15 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Those of particles that are here; returns how many. */
-static int64_t keep_own(mpsi_impulses *all, const mps_particles *particles) {
+/* Keeps the impulses of this rank's particles; returns their number. */
+static int64_t keep_local(mpsi_impulses *all, const mps_particles *particles) {
   int64_t count = 0;
   for (int64_t k = 0; k < all->warm_count; k++)
     if (mps_particles_index(particles, all->warm[k].id) >= 0) all->warm[count++] = all->warm[k];
   return all->warm_count = count;
 }
 
-static mps_status take(mpsi_impulses *all, const char *function, const mpsi_mailbox *box) {
+static mps_status append_received(mpsi_impulses *all, const char *function,
+                                  const mpsi_mailbox *box) {
   const int64_t size = (int64_t)sizeof *all->warm;
   int64_t count = all->warm_count;
   for (int32_t k = 0; k < box->count; k++) count += box->mail[k].bytes / size;
@@ -38,7 +39,7 @@ mps_status mpsi_mpm_share_warm_start(mpsi_impulses *all, const mps_particles *pa
   mps_context *context = mpsi_particles_context(particles);
   const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
   mpsi_mailbox box = {.context = context};
-  double any = (double)keep_own(all, particles);
+  double any = (double)keep_local(all, particles);
   mps_domain_message *list = mpsi_alloc(context, ranks, sizeof *list);
   if (!list && status == MPS_OK)
     status = mpsi_fail_memory(context, function, (size_t)ranks * sizeof *list);
@@ -50,7 +51,8 @@ mps_status mpsi_mpm_share_warm_start(mpsi_impulses *all, const mps_particles *pa
       if (r != rank)
         list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = all->warm};
     status = mpsi_domain_exchange(domain, function, count, list, &box);
-    if (status == MPS_OK) status = mpsi_domain_agree(domain, function, take(all, function, &box));
+    if (status == MPS_OK)
+      status = mpsi_domain_agree(domain, function, append_received(all, function, &box));
   }
   mpsi_domain_free_mail(&box);
   mpsi_free(context, list);

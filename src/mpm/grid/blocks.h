@@ -1,18 +1,18 @@
-/* blocks.h - the grid that follows the particles, in blocks.
+/* blocks.h - the background grid, which exists only where particles are, in blocks.
  *
- * The grid is cut into blocks of 8 nodes along each axis; only nodes in the support of a particle
- * exist. A particle is sorted into a block of cells by the lowest node of its stencil, so that the
+ * A block has 8 nodes along each axis; only blocks with nodes in the support of a particle exist. A
+ * particle belongs to the block of cells that has the lowest node of its stencil, so that the
  * stencils of a block lie in a tile of 13 nodes along each axis, which begins at the block's first
- * node: 1 node that only a particle which has left to the lower side uses, 8, 1 for one that has
- * left to the upper side, and the other 3 of a cubic stencil. So the particles are sorted again
- * only when one has moved a whole cell beyond its block, or beyond the cells of it that had
- * particles: the rest of the tile is not worked on. The tile lies over the block's own nodes and
- * its neighbours at +x, +y, +x+y (and so on at +z).
+ * node: 1 node for particles that have moved out of the block on the lower side, 8, 1 for those on
+ * the upper side, and the other 3 of a cubic stencil. So the particles are sorted again only when
+ * one has moved a whole cell beyond its block, or beyond the cells of it that had particles: the
+ * rest of the tile is not processed. The tile lies over the block's own nodes and those of its
+ * neighbours at +x, +y, +x+y (and so on at +z).
  *
- * Each task sums the particles of one block of cells into a tile of its own and adds that to the
- * nodes. Blocks of one colour (2 along each axis) share no nodes; blocks that do give one after the
- * other, in the order of their colours (pass.h). No two tasks write the same memory, and no sum
- * depends on the number of threads.
+ * A task sums the particles of one block of cells into a tile of its own and adds that to the
+ * nodes. Blocks of one colour (2 along each axis) share no nodes; blocks that share some add to
+ * them one after the other, in the order of their colours (pass.h). No two tasks write the same
+ * memory, and no sum depends on the number of threads.
  *
  * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -27,41 +27,41 @@
 #define MPSI_SIDE 8
 #define MPSI_TILE_SIDE (MPSI_SIDE + 5)
 #define MPSI_CORNERS 8        /* blocks of nodes under a tile: 4 in 2D */
-#define MPSI_MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
+#define MPSI_MAX_CELLS 0x1p30 /* from the origin: below, node coordinates are exact */
 #define MPSI_NO_WALL (INT64_C(1) << 30)
 
 /* A block of cells with particles. */
 typedef struct mpsi_cell_block {
-  int64_t begin, end;       /* particles */
+  int64_t begin, end;       /* range of its particles */
   int32_t at[3];            /* block coordinates: its first node is at * MPSI_SIDE */
   int32_t low[3], high[3];  /* its stencils use tile nodes low to high - 1 of each axis */
   int32_t to[MPSI_CORNERS]; /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
-  /* What the loops must look after in the block; a block without any of these, which most are, has
-   * full supports only.
+  /* Special cases of the block. Most blocks have none of these, and then full supports only.
    *   edge    some node of the tile is outside the domain, beyond a side that is no mirror
    *   inside  some node that its stencils may use is in a body
    *   cut     edge, inside, thin, or the standard scheme: support may be cut, states are found
    *   split   some block of nodes under it is split: forces are summed apart from momenta there
-   *   thin    a thin body may part nodes of its stencils from particles (thin_bodies.h)
+   *   thin    a thin body may separate nodes of its stencils from particles (thin_bodies.h)
    *   apart   cut or split: the tile of forces is in use */
   bool edge, inside, cut, split, thin, apart;
   uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
-  int32_t first_mirror; /* of these in the list */
-  bool light; /* some block of nodes under it is: particles get back what its nodes keep */
+  int32_t first_mirror; /* first of these in mirrors.mirror */
+  bool light; /* some block of nodes under it is light: retained momentum is returned (cut_gather.c)
+               */
   bool gone;  /* a particle has passed an open side */
   bool left;  /* a particle is more than a cell outside the block */
-  int32_t first_pair, pairs;  /* bodies near it: of the list of mpsi_cell_pair */
-  int64_t first_fit;          /* of its particles in the list of kept fits; -1: none are kept */
-  int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after
-                                 this one, in the order of colours; -1: this is the last */
-  int32_t waits;              /* number of to[q] that others give to before */
-  uint8_t first;              /* bit q: this is the first that gives to to[q] */
+  int32_t first_pair, pairs;  /* bodies near it: range of contact.cell_pair */
+  int64_t first_fit;          /* index of its first particle in grid.fit; -1: no fits are stored */
+  int32_t next[MPSI_CORNERS]; /* the block of cells that adds to the block of nodes to[q] after this
+                                 one, in the order of colours; -1: this is the last */
+  int32_t waits;              /* number of to[q] to which others add before */
+  uint8_t first;              /* bit q: this is the first to add to to[q] */
   int64_t bad;                /* first particle not finite or outside the domain, or -1 */
-  bool lost;                  /* that one, and no other, is outside: all are finite */
+  bool lost;                  /* that particle is outside the domain; all are finite */
   double speed;               /* largest c + |v|, m/s */
   /* On several ranks (partition.h): */
-  bool ghost;      /* another rank's: it has no particles here */
-  bool late;       /* it, or one that gives before it, is a ghost */
+  bool ghost;      /* block of another rank, without particles here */
+  bool late;       /* it is a ghost, or a ghost adds before it */
   bool in_contact; /* it has constraints in the step, or areas (area.c) */
   bool sent;       /* these are sent to partner ranks: partners.h */
   int64_t parcel;  /* index of its tile among received (ghosts) or sent ones; -1: none */
@@ -70,45 +70,46 @@ typedef struct mpsi_cell_block {
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
 typedef struct mpsi_node_block {
   int32_t at[3];
-  int32_t side;   /* slot of its side sums, or -1: only particles with full supports reach it */
-  int32_t near;   /* slot of its inside masks, or -1: no body near */
-  bool split;     /* side has the forces: the velocity before them is needed */
-  int32_t across; /* block of nodes with the sums of particles that a thin body parts from these
-                     nodes, or -1 (thin_bodies.h) */
+  int32_t side;   /* slot of its side values in grid.side, or -1: all particles near it have full
+                     supports */
+  int32_t near;   /* slot of its nodes in contact.inside, or -1: no body is near */
+  bool split;     /* forces are summed apart, in side: the velocity before them is needed */
+  int32_t across; /* block of nodes with the values across thin bodies, or -1 (thin_bodies.h) */
   bool thin;      /* some node is beside a thin body */
-  bool light;     /* some node's own mass is less than forces see: MPSI_LEAST_MASS */
-  bool inside;    /* some node is in a body: */
-  int32_t low[3], high[3];    /* they are within low to high - 1 */
-  int32_t first_pair, pairs;  /* bodies near it, or near a block of cells whose tile covers it: of
-                                 the list of mpsi_node_pair */
-  int32_t first_held, holds;  /* of the list of mpsi_held */
+  bool light;  /* some node's own mass is less than the mass that forces accelerate: MPSI_LEAST_MASS
+                */
+  bool inside; /* some node is in a body: */
+  int32_t low[3], high[3];   /* range low to high - 1 of these nodes */
+  int32_t first_pair, pairs; /* bodies near it, or near a block of cells whose tile covers it: range
+                                of contact.node_pair */
+  int32_t first_held, holds; /* range of boundaries.held */
   int32_t from[MPSI_CORNERS]; /* blocks of cells whose tiles cover it, as corner q; -1: none */
-  bool late;                  /* a ghost, or one that gives after one, gives to it (partition.h) */
-  bool foreign;               /* only ghosts cover it: it has part of its sums */
-  bool waits;                 /* its friction needs the mass of all nodes in contact with a body */
+  bool late;    /* a ghost, or a block that adds after one, adds to it (partition.h) */
+  bool foreign; /* only ghosts cover it: its sums are not complete */
+  bool waits;   /* its friction needs the mass of all nodes in contact with a body */
 } mpsi_node_block;
 
-/* A node, four doubles: particles to nodes sums mass and momentum; then lane 0 is the mass and the
- * others the velocity. The momentum has dt times the force with it, but in split blocks.
- * Its side, where the block has one: EXCESS is sum (w - phi) m, mass by weights less mass by shape
- * functions, then in split blocks the force; later the velocity v_i^n before the forces. */
+/* Values of a node. In P2G these are mass and momentum, after the update mass and velocity. The
+ * momentum includes dt times the force, except in split blocks. Side values, where the block has
+ * them: in P2G the excess mass sum (w - phi) m, mass by weights less mass by shape functions, and
+ * in split blocks the force; after the update the velocity v_i^n before the forces. */
 typedef double mpsi_node[4];
 enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
 
-/* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
+/* Scratch memory of a worker for its present block: tiles of MPSI_TILE_SIDE^dim nodes. */
 typedef struct mpsi_worker {
   void *memory;
-  mpsi_node *tile, *force;               /* force, and excess mass: where they are apart */
-  mpsi_node *across_tile, *across_force; /* the same of what thin bodies part (thin_bodies.h) */
-  struct mpsi_penalty_node *penalty;     /* of each pair of the block: see penalty.c */
-  uint8_t *state;                        /* MPSI_... bits, 0: free */
+  mpsi_node *tile, *force;               /* force and excess mass, in blocks that are `apart` */
+  mpsi_node *across_tile, *across_force; /* values across thin bodies (thin_bodies.h) */
+  struct mpsi_penalty_node *penalty;     /* one tile for each pair of the block: see penalty.c */
+  uint8_t *state;                        /* states of the tile's nodes, MPSI_... bits; 0: free */
 } mpsi_worker;
 
-/* The fit of a particle beside bodies, from the scatter of a step to its gather
+/* Least-squares fit of a particle beside bodies, stored by the scatter of a step for its gather
  * (least_squares.h). */
 typedef struct mpsi_kept_fit {
   double q[12];    /* the upper half of the inverse of M by rows, q00, q01, q02, ... (shape.h) */
-  uint64_t active; /* bit 16 k + 4 j + i: node of the stencil that takes part */
+  uint64_t active; /* bit 16 k + 4 j + i: this node of the stencil is active */
 } mpsi_kept_fit;
 enum { MPSI_FITTED_CUT = 1, MPSI_FITTED_FULL = 2 };
 
@@ -117,11 +118,11 @@ enum { MPSI_FITTED_CUT = 1, MPSI_FITTED_FULL = 2 };
 #define MPSI_INSIDE 2u   /* in a body */
 #define MPSI_REACHED 4u  /* in a body, and corner of a cell that holds a particle */
 #define MPSI_PLAIN 8u    /* any node with the standard method, whose supports are cut everywhere */
-#define MPSI_THIN 16u    /* beside or in a thin body, which parts particles (thin_bodies.h) */
+#define MPSI_THIN 16u    /* beside or in a thin body (thin_bodies.h) */
 #define MPSI_IMPULSE 32u /* in a body with contact by impulses, */
 #define MPSI_PENALTY 64u /* or with penalty contact; besides MPSI_INSIDE */
 
-/* A particle by its key, as it is sorted. */
+/* Sort key and index of a particle. */
 typedef struct mpsi_radix {
   uint64_t key;
   int64_t index;
@@ -129,53 +130,56 @@ typedef struct mpsi_radix {
 
 /* Shape functions of a fit can be negative, so that a node with hardly any particle, between two
  * bodies above all, could get a tiny or negative mass. Forces accelerate at least this fraction of
- * its mass by weights, which never is. */
+ * its mass by weights, which is positive. */
 #define MPSI_LEAST_MASS 0.02
 static inline double mpsi_node_mass(double mass, double weight) {
   return fmax(mass, MPSI_LEAST_MASS * weight);
 }
-/* What its momentum is divided by: its own mass, unless that is smaller than the fraction. Else a
- * node of negative mass would move against its particles. */
+/* Mass by which a node's momentum is divided: its own mass, unless that is near zero or slightly
+ * negative, within the fraction. With another mass a node of negative mass would move against its
+ * particles. */
 static inline double mpsi_carried_mass(double mass, double weight) {
   return mass < -MPSI_LEAST_MASS * weight ? mass : mpsi_node_mass(mass, weight);
 }
-/* Its own mass, by what it has after the update and the excess. */
+/* Own mass of a node, from its mass after the update and the excess mass. */
 static inline double mpsi_own_mass(double mass, double excess) {
   return fmin(mass, mass / MPSI_LEAST_MASS - excess);
 }
 
 typedef struct mpsi_grid {
-  int32_t dim, spline; /* of the definition, as the next four */
+  int32_t dim, spline; /* from the definition, as the next four */
   mps_mpm_geometry geometry;
-  double measure;         /* m or rad */
+  double measure;         /* thickness, m, or sector angle, rad */
   double origin[3], cell; /* m */
   /* For comparison (mps/experimental.h): */
-  bool by_weight;                  /* velocities go to the nodes by the weights */
-  bool strain_by_fit;              /* the laws see the slopes of the fit */
-  bool standard;                   /* the original material point method: no support is fitted */
-  double flip;                     /* of that, else 0 */
-  bool apart;                      /* a reader wants the forces apart from the momenta everywhere */
-  int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
+  bool by_weight;     /* momentum is transferred to the nodes by weights */
+  bool strain_by_fit; /* the laws see the slopes of the fit */
+  bool standard;      /* the original material point method: no support is fitted */
+  double flip;        /* FLIP fraction of that method, else 0 */
+  bool apart;         /* forces are summed apart from momenta everywhere, for reading/nodes.c */
+  int32_t block_nodes, tile_nodes; /* number of nodes of a block, of a tile */
   double inverse;                  /* 1/m, 1/h */
   int64_t low[3], high[3];         /* first and last node of the domain */
-  int64_t use_low[3], use_high[3]; /* and of nodes that stencils may use: none beyond mirrors */
+  int64_t use_low[3], use_high[3]; /* first and last node that stencils may use: as low, high, but
+                                      without a limit at mirrors */
   mpsi_cell_block *cells;
   mpsi_node_block *nodes;
   mpsi_node *node, *side;
-  int64_t cell_count, node_count, side_count; /* of blocks; of slots of `side` */
-  int64_t across_count; /* blocks of nodes behind the `node_count` that have a place of their own */
+  int64_t cell_count, node_count, side_count; /* number of blocks; of slots of `side` */
+  int64_t across_count; /* number of blocks of nodes for values across thin bodies, behind the first
+                           node_count */
   int32_t *coloured;    /* numbers of blocks of cells, colour by colour */
-  int64_t colour[MPSI_CORNERS + 1]; /* first of each in `coloured` */
+  int64_t colour[MPSI_CORNERS + 1]; /* index of the first of each colour in `coloured` */
   mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
   mpsi_radix *radix;  /* 2 items a particle */
   mpsi_radix *sorted; /* the half of `radix` with the order, while the blocks are made */
   int32_t own_bits;   /* lower bits of a sorted key: the stencil's place within its block */
   mpsi_room digits_room, pass_room;
   mpsi_worker *workers;
-  mpsi_room across_room; /* of their second tiles */
+  mpsi_room across_room; /* second tiles of the workers */
   int32_t worker_count;
   mpsi_kept_fit *fit; /* of particles of blocks beside bodies: see mpsi_cell_block.first_fit */
-  uint8_t *fitted;    /* what was kept in the present step: MPSI_FITTED_... or 0 */
+  uint8_t *fitted;    /* whether the fit is of the present step: MPSI_FITTED_... or 0 */
   mpsi_room fit_room, fitted_room;
 } mpsi_grid;
 
@@ -226,25 +230,26 @@ static inline int64_t mpsi_grid_first_node(const mpsi_grid *grid, int64_t g) {
   return g * grid->block_nodes;
 }
 
-/* order.c: keys and indices of the particles in their order, the block above `own_bits` bits; NULL
- * when out of memory. */
+/* order.c: sorted keys and indices of the particles, with the block above the lower `own_bits`
+ * bits; NULL when out of memory. */
 mpsi_radix *mpsi_mpm_find_order(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
                                 int32_t *own_bits);
-/* ready.c: sorts the particles by blocks and builds the lists of blocks; layout.c: where there are
- * no other ranks. */
+/* ready.c: sorts the particles by blocks and rebuilds the lists of blocks; layout.c: the same on
+ * one rank. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function);
-/* layout.c: its parts: the particles in order, by blocks of cells; room for such; and, once
- * they are in grid.cells in their order, what follows from them. */
+/* layout.c, parts of that: sorts the particles and lists the blocks of cells; memory for blocks of
+ * cells; colours and blocks of nodes for the blocks of cells in grid.cells. */
 mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function);
 bool mpsi_mpm_ensure_cells(mps_context *context, mpsi_grid *grid, int64_t cells);
 bool mpsi_mpm_build_nodes(mps_context *context, mpsi_grid *grid, int64_t cells);
-/* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
+/* layout.c: builds the lists of blocks from those of an earlier sort, in whose order the particles
+ * are. */
 mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
                                  mpsi_partition *partition, const char *function, int64_t count,
                                  const mpsi_block *block);
-/* node_update.c: one block of nodes: emptied; velocities, normal contact forces; friction and
- * walls. */
+/* node_update.c, of one block of nodes: sets its sums to zero; velocities and normal penalty
+ * forces; friction, boundaries, damping. */
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);

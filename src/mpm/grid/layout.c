@@ -1,6 +1,5 @@
-/* layout.c - the grid that follows the particles: the blocks of cells that hold particles, and the
- * blocks of nodes that their tiles need. Both lists ascend in z, then y, then x.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* layout.c - the blocks of cells that hold particles, and the blocks of nodes that their tiles
+ * need. Both lists ascend in z, then y, then x. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include "core/particles/particles_internal.h"
@@ -9,7 +8,7 @@
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
-/* Widens the part of the tile in use by a stencil, and by a cell to either side. */
+/* Extends the part of the tile in use to a stencil, with one more cell on either side. */
 static void widen_use(const mpsi_grid *grid, uint64_t within, mpsi_cell_block *cells) {
   for (int c = 0; c < grid->dim; c++, within /= MPSI_SIDE) {
     const int32_t low = (int32_t)(within % MPSI_SIDE);
@@ -26,11 +25,12 @@ static void widen_use(const mpsi_grid *grid, uint64_t within, mpsi_cell_block *c
 
 typedef struct key_chunks {
   mps_mpm *mpm;
-  int64_t length;         /* particles in a chunk */
-  int64_t first[CHUNKS];  /* blocks that begin in the chunk; then the number of its first */
+  int64_t length;        /* particles in a chunk */
+  int64_t first[CHUNKS]; /* number of blocks that begin in the chunk; then the index of the first of
+                            them */
   mpsi_cell_block *cells; /* NULL: they are only counted */
-  int64_t *order;         /* of list_order */
-  bool warm[CHUNKS];      /* its particles are in order already */
+  int64_t *order;         /* result of list_order */
+  bool in_order[CHUNKS];  /* its particles are in order already */
 } key_chunks;
 
 static int32_t for_chunks(key_chunks *c, void (*work)(void *data, int64_t chunk, int32_t worker)) {
@@ -46,7 +46,7 @@ static int64_t end_of_chunk(const key_chunks *c, int64_t chunk) {
   return end < c->mpm->p.count ? end : c->mpm->p.count;
 }
 
-/* Counts the blocks that begin in a chunk, or notes where. */
+/* Counts the blocks that begin in a chunk, or lists them. */
 static void find_begins(void *data, int64_t chunk, int32_t worker) {
   key_chunks *c = data;
   const mpsi_grid *grid = &c->mpm->grid;
@@ -62,7 +62,7 @@ static void find_begins(void *data, int64_t chunk, int32_t worker) {
   if (!c->cells) c->first[chunk] = number;
 }
 
-/* Runs of particles of the sorted keys: how many there are, or the blocks with their particles. */
+/* Number of blocks of cells in the sorted keys. */
 static int64_t count_cells(key_chunks *c) {
   int64_t sum = 0;
   const int32_t chunks = for_chunks(c, find_begins);
@@ -81,29 +81,29 @@ static void make_cells(key_chunks *c, int64_t count, mpsi_cell_block *cells) {
     cells[b].end = b + 1 < count ? cells[b + 1].begin : c->mpm->p.count;
 }
 
-/* The order, for mpsi_particles_permute_in. */
+/* Lists a chunk of the order for mpsi_particles_permute_in. */
 static void list_chunk(void *data, int64_t chunk, int32_t worker) {
   key_chunks *c = data;
   const int64_t end = end_of_chunk(c, chunk);
   (void)worker;
-  c->warm[chunk] = true;
+  c->in_order[chunk] = true;
   for (int64_t k = chunk * c->length; k < end; k++) {
     c->order[k] = c->mpm->grid.sorted[k].index;
-    if (c->order[k] != k) c->warm[chunk] = false;
+    if (c->order[k] != k) c->in_order[chunk] = false;
   }
 }
 
-/* Whether the particles have it already. */
+/* Lists the order; returns whether the particles are in it already. */
 static bool list_order(mps_mpm *mpm, int64_t *order) {
   key_chunks c = {.mpm = mpm, .order = order};
-  bool warm = true;
+  bool in_order = true;
   const int32_t chunks = for_chunks(&c, list_chunk);
-  for (int32_t k = 0; k < chunks; k++) warm = warm && c.warm[k];
-  return warm;
+  for (int32_t k = 0; k < chunks; k++) in_order = in_order && c.in_order[k];
+  return in_order;
 }
 
-/* Particles [begin, end) of one stencil by their ids, so that their order is not that of former
- * sorts: by insertion at falling distances, few steps where they are nearly in order. */
+/* Orders particles [begin, end) of one stencil by their ids, so that the result does not depend on
+ * former sorts. Shell sort: few steps where they are nearly in order. */
 static void order_by_id(mpsi_radix *key, const int64_t *id, int64_t begin, int64_t end) {
   static const int64_t gap[] = {701, 301, 132, 57, 23, 10, 4, 1};
   for (size_t g = 0; g < sizeof gap / sizeof *gap; g++)
@@ -116,8 +116,8 @@ static void order_by_id(mpsi_radix *key, const int64_t *id, int64_t begin, int64
     }
 }
 
-/* Where the block is whose particles are in their order but for those of one stencil: `begin` and
- * `end` are known. */
+/* Position of a block, the part of its tile in use, and the order of the particles of each stencil.
+ * `begin` and `end` of the block are known. */
 static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   mpsi_cell_block *cells = &mpm->grid.cells[b];
@@ -137,8 +137,9 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
 }
 
-/* The sorted list of blocks shifted to each corner of a tile gives sorted lists; merging them gives
- * the blocks of nodes, and the tiles that cover each. The count alone where `nodes` is NULL. */
+/* Blocks of nodes, and the blocks of cells whose tiles cover each. The sorted list of blocks of
+ * cells, shifted to each corner of a tile, gives sorted lists; these are merged. Returns the
+ * number; `nodes` NULL: the number alone. */
 static int64_t make_nodes(const mpsi_grid *grid, mpsi_node_block *nodes) {
   mpsi_cell_block *cells = grid->cells;
   const int corners = 1 << grid->dim;
@@ -168,7 +169,7 @@ static int64_t make_nodes(const mpsi_grid *grid, mpsi_node_block *nodes) {
   }
 }
 
-/* Same colour: the same parities of the block coordinates. */
+/* Lists the blocks of cells by colour: the parities of their coordinates. */
 static void sort_colours(mpsi_grid *grid) {
   int64_t count = 0;
   for (int colour = 0; colour < MPSI_CORNERS; colour++) {
@@ -191,7 +192,7 @@ bool mpsi_mpm_ensure_cells(mps_context *context, mpsi_grid *grid, int64_t cells)
   return good;
 }
 
-/* What follows from the blocks of cells. */
+/* Colours, blocks of nodes and the order of additions for the blocks of cells. */
 bool mpsi_mpm_build_nodes(mps_context *context, mpsi_grid *grid, int64_t cells) {
   grid->cell_count = cells;
   sort_colours(grid);
@@ -243,7 +244,7 @@ mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mp
       grid->cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
     }
   }
-  if (partition) { /* its ghosts follow before the next step */
+  if (partition) { /* ghosts are found before the next step */
     grid->cell_count = count;
     partition->outdated = true;
     return MPS_OK;
@@ -252,11 +253,12 @@ mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mp
                                                     : no_room(context, grid, function, count);
 }
 
-/* The particles in the order of the sorted keys. */
+/* Puts the particles in the order of the sorted keys. */
 static mps_status put_in_order(mps_mpm *mpm, const char *function) {
   const int64_t count = mpm->p.count;
   mpsi_radix *lower = mpm->grid.radix, *upper = lower + count;
-  /* The half that is not sorted is free now for the order, and the other one after that. */
+  /* The unsorted half of `radix` is free for the order, the sorted half after the order is
+   * listed. */
   int64_t *other = (int64_t *)(mpm->grid.sorted == lower ? upper : lower), *order = other;
   int64_t *own = (int64_t *)(mpm->grid.sorted == lower ? lower : upper);
   mpm->run.stale = false;

@@ -1,10 +1,11 @@
 /* order.c - the order of the particles: by blocks of cells (z, y, x from the top), within a block
  * by the lowest nodes of their stencils, row by row, and those of one stencil (layout.c) by their
- * ids: the order is that of the positions, whatever it was before. A radix sort from the lowest
- * digit up, shared out in chunks: it is stable, so that the order does not depend on the chunks.
+ * ids: so the order follows from the positions, whatever it was before. A radix sort from the
+ * lowest digit up, divided into chunks: it is stable, so that the order does not depend on the
+ * chunks.
  *
  * Where the blocks are so far apart that their coordinates do not fit one word, the particles are
- * sorted by two words, the lower first, and blocks are then counted through.
+ * sorted by two words, the lower first, and the blocks are then numbered.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "blocks.h"
 #include "core/internal.h"
@@ -25,13 +26,13 @@ typedef struct sorter {
   int64_t chunk; /* particles in a unit of work */
   int32_t chunks;
   int64_t low[3];   /* first block of each axis */
-  int32_t bits[3];  /* of the number of blocks along each axis */
-  int32_t own_bits; /* of the nodes of a block */
+  int32_t bits[3];  /* bits of the block number along each axis */
+  int32_t own_bits; /* bits of a stencil's place within its block */
   bool upper;       /* keys are the upper words: blocks along z and y */
   bool two_words;
-  int32_t shift; /* of the digit in work */
+  int32_t shift; /* of the present digit */
   mpsi_radix *from, *to;
-  int32_t (*place)[DIGITS]; /* of each chunk: where its next item of a digit goes */
+  int32_t (*place)[DIGITS]; /* position of the next item of each chunk and digit */
   double least[MOST_CHUNKS][3], most[MOST_CHUNKS][3]; /* m, of each chunk's particles */
 } sorter;
 
@@ -78,7 +79,7 @@ static int64_t block_at(const mpsi_grid *grid, int c, double x) {
   return mpsi_block_of((int64_t)mpsi_base(grid->spline, mpsi_grid_at(grid, c, x)));
 }
 
-/* First block and number of bits of each axis; whether one word holds them all. */
+/* First block and number of bits of each axis, and whether one word holds them all. */
 static void find_range(sorter *s) {
   for_chunks(s, find_extent);
   int32_t bits = s->own_bits;
@@ -101,7 +102,8 @@ static inline int64_t whole(double x) {
   return n - (x < (double)n);
 }
 
-/* Blocks from the first along each axis, and the stencil's place within its block. */
+/* Block number of a particle along each axis, from the first; returns the place of its stencil
+ * within the block. */
 static inline uint64_t block_of_particle(const sorter *s, int64_t k, uint64_t *block) {
   const mpsi_grid *grid = s->grid;
   uint64_t within = 0;
@@ -129,7 +131,7 @@ static void make_keys(sorter *s, int32_t chunk, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end; k++) s->from[k] = (mpsi_radix){key_of(s, k), k};
 }
 
-/* Keys of items that have been moved. */
+/* Other keys for items that have been moved. */
 static void change_keys(sorter *s, int32_t chunk, int64_t begin, int64_t end) {
   (void)chunk;
   for (int64_t k = begin; k < end; k++) s->from[k].key = key_of(s, s->from[k].index);
@@ -149,7 +151,7 @@ static void move_items(sorter *s, int32_t chunk, int64_t begin, int64_t end) {
     s->to[place[s->from[k].key >> s->shift & (DIGITS - 1)]++] = s->from[k];
 }
 
-/* Sorts `from`, whose keys have so many bits; the sorted items are in `from` again. */
+/* Sorts `from`, whose keys have so many bits; the result is in `from`. */
 static void sort_word(sorter *s, int32_t bits) {
   for (s->shift = 0; s->shift < bits; s->shift += DIGIT_BITS) {
     for_chunks(s, count_digits);
@@ -167,7 +169,8 @@ static void sort_word(sorter *s, int32_t bits) {
   }
 }
 
-/* Keys of two words to one: the number of the block in the order instead of its coordinates. */
+/* Replaces keys of two words by one: the number of the block in the order, in place of its
+ * coordinates. */
 static void number_blocks(sorter *s) {
   uint64_t before[3] = {0}, number = 0;
   for (int64_t k = 0; k < s->p->count; k++) {

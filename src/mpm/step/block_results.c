@@ -6,7 +6,7 @@
 
 #include "core/particles/particles_internal.h"
 
-/* The particle that ends the step, of which the message says what is wrong with it. */
+/* Reports the particle that ends the step; `what` is wrong with it. */
 static mps_status report_bad(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                              const mpsi_run *run, const char *function, int64_t k,
                              const char *what) {
@@ -24,7 +24,7 @@ static mps_status report_bad(mps_context *context, const mpsi_grid *grid, const 
   return status;
 }
 
-/* On several ranks: what has been found anywhere. An error of one is that of all. */
+/* Reduces the results over all ranks. An error of one is that of all. */
 static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, int64_t bad,
                                 int64_t lost) {
   mpsi_partition *partition = mpm->partition;
@@ -59,7 +59,7 @@ static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed
   mpm->run.lost = mpm->run.lost || (!mpm->run.broken && found[LOST] > 0.0);
   if (mpm->run.lost) mpm->run.stale = true;
   if (!mpm->run.broken && found[LOST] == 0.0) return MPS_OK;
-  if (mpm->run.broken && bad < 0) own = MPS_OK; /* the others have worse */
+  if (mpm->run.broken && bad < 0) own = MPS_OK; /* another rank reports a broken particle */
   return mpsi_domain_agree(partition->domain, function, own);
 }
 

@@ -1,9 +1,9 @@
-/* cut.c - before each step: which blocks have particles with cut supports, and which sum the forces
- * apart from the momenta (see mpsi_cell_block).
+/* cut.c - before each step: blocks with particles whose supports are cut, and blocks in which
+ * forces are summed apart from momenta (see mpsi_cell_block).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
-/* Nodes low to high - 1 of a tile. */
+/* Range of nodes, low to high - 1, of a tile. */
 typedef struct box {
   int low[3], high[3];
 } box;
@@ -21,8 +21,8 @@ static box common(const box *a, const box *b) {
   return out;
 }
 
-/* Of the nodes that the block's stencils may use, those of the node block at corner q of the tile
- * from its `low` to its `high`. */
+/* Tile nodes, of those that the block's stencils may use, that belong to the block of nodes under
+ * corner q, from its node `low` to `high`. */
 static box box_under(const mpsi_cell_block *cells, int q, const int32_t *low, const int32_t *high) {
   box used, out;
   for (int c = 0; c < 3; c++) {
@@ -33,7 +33,7 @@ static box box_under(const mpsi_cell_block *cells, int q, const int32_t *low, co
   return common(&used, &out);
 }
 
-/* Where the stencils that have a node in a body may have nodes; empty where none has. */
+/* Range of the nodes of all stencils with a node in a body; empty where there are none. */
 static box near_bodies(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   const int reach = grid->spline;
   box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
@@ -57,13 +57,14 @@ static bool near_thin(const mpsi_grid *grid, const mpsi_contacts *contacts,
   return any && contacts->thin;
 }
 
-/* Forces are needed apart from the momenta at all nodes. */
+/* Whether forces are needed apart from the momenta at all nodes. */
 static bool all_apart(const mpsi_grid *grid, const mpsi_energy *energy,
                       const mpsi_settling *settling, const mps_mpm_def *def) {
   return mpsi_forces_apart(energy, settling, def) || grid->apart;
 }
 
-/* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
+/* Assigns side values to the blocks of nodes under a cut block of cells, and marks those that are
+ * split. */
 static void mark_cut(mpsi_grid *grid, const mpsi_contacts *contacts, const mpsi_energy *energy,
                      const mpsi_settling *settling, const mps_mpm_def *def,
                      const mpsi_cell_block *cells, const box *near, bool finds) {
@@ -88,7 +89,7 @@ static void mark_cut(mpsi_grid *grid, const mpsi_contacts *contacts, const mpsi_
   }
 }
 
-/* Which blocks keep the fits of their particles; false: memory refused. */
+/* Blocks that store the fits of their particles: those beside bodies; false: memory refused. */
 static bool list_fits(mps_context *context, mpsi_grid *grid) {
   int64_t count = 0;
   for (int64_t b = 0; b < grid->cell_count; b++) {

@@ -1,7 +1,7 @@
 /* damping.c - see damping.h. Local damping opposes the motion by a fraction of the unbalanced force
  * (Cundall 1987), viscous damping by the momentum times a rate. Neither acts on components that a
- * boundary prescribes, and both come after all other forces: what boundaries and bodies exert is
- * then as if there were none. SPDX-License-Identifier: BSD-3-Clause */
+ * boundary prescribes, and both are applied after all other forces, so that the forces of
+ * boundaries and bodies do not depend on them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@ void mpsi_mpm_damp_nodes(const mpsi_grid *grid, const mps_mpm_def *def, double d
     for (int c = 0; c < grid->dim; c++) {
       double *v = &node[k][MPSI_VECTOR + c];
       if (fixed[k] >> c & 1) continue;
-      if (local > 0.0) { /* at most to a stop */
+      if (local > 0.0) { /* at most until the velocity is 0 */
         const double change = local * fabs(*v - side[k][MPSI_VECTOR + c]);
         *v = *v > 0.0 ? fmax(*v - change, 0.0) : fmin(*v + change, 0.0);
       }
@@ -28,9 +28,9 @@ void mpsi_mpm_damp_nodes(const mpsi_grid *grid, const mps_mpm_def *def, double d
   }
 }
 
-/* ---- distance from equilibrium --------------------------------------------------------------- */
+/* ---- unbalanced force ------------------------------------------------------------------------ */
 
-/* N, the sum of the sizes of gravity and loads on the particles of a block. */
+/* Sum of the magnitudes of gravity and loads on the particles of a block, N. */
 static double applied_to_particles(const mpsi_grid *grid, const mpsi_columns *p,
                                    const mps_mpm_def *def, const mpsi_cell_block *cells) {
   double sum = 0.0;
@@ -59,9 +59,11 @@ mps_status mpsi_mpm_begin_balance(mps_context *context, const mpsi_grid *grid,
   return MPS_OK;
 }
 
-static double size_of(const double *v) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+static double magnitude_of(const double *v) {
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
 
-/* Of the forces of bodies on node k. */
+/* Sum of the magnitudes of penalty contact forces on node k, N. */
 static double contact_force(const mpsi_grid *grid, const mpsi_contacts *contacts,
                             const mpsi_node_block *nodes, int k) {
   double sum = 0.0;
@@ -69,9 +71,9 @@ static double contact_force(const mpsi_grid *grid, const mpsi_contacts *contacts
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
     const mpsi_node_pair *pair = &contacts->node_pair[t];
     const mpsi_contact_node *at = &contacts->node[(int64_t)t * grid->block_nodes + k];
-    sum += size_of(at->force);
+    sum += magnitude_of(at->force);
     if (contacts->handle[pair->body]->def.friction > 0.0 && pair->mass != 0.0)
-      sum += fabs(at->mass) * size_of(at->slip);
+      sum += fabs(at->mass) * magnitude_of(at->slip);
   }
   return sum;
 }
@@ -93,8 +95,8 @@ void mpsi_mpm_measure_balance(const mpsi_grid *grid, const mpsi_contacts *contac
       if (!(fixed[k] >> c & 1)) free[c] = v - side[k][MPSI_VECTOR + c];
       sum.kinetic += 0.5 * m * v * v;
     }
-    sum.unbalanced += m * size_of(free) / dt;
-    sum.applied += m * size_of(by_boundary) / dt + contact_force(grid, contacts, nodes, k);
+    sum.unbalanced += m * magnitude_of(free) / dt;
+    sum.applied += m * magnitude_of(by_boundary) / dt + contact_force(grid, contacts, nodes, k);
   }
   settling->nodes[g] = sum;
 }

@@ -1,5 +1,5 @@
-/* damping.h - damping at the nodes, once all forces and what is held are known; and how far the
- * nodes are from equilibrium, for mps_mpm_settle. SPDX-License-Identifier: BSD-3-Clause */
+/* damping.h - damping at the nodes, after all forces and boundaries; and the unbalanced force of
+ * the nodes, for mps_mpm_settle. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_DAMPING_H
 #define MPSI_MPM_DAMPING_H
 
@@ -9,8 +9,8 @@
 /* A block of nodes in a step of mps_mpm_settle. */
 typedef struct mpsi_node_balance {
   double kinetic;    /* J, after the step */
-  double unbalanced; /* N, sum over nodes of the size of the force that nothing holds */
-  double applied;    /* N, likewise of what bodies and boundaries exert */
+  double unbalanced; /* N, sum over nodes of the magnitude of the unbalanced force */
+  double applied;    /* N, sum over nodes of the magnitudes of contact and boundary forces */
 } mpsi_node_balance;
 
 typedef struct mpsi_settling {
@@ -20,21 +20,22 @@ typedef struct mpsi_settling {
   bool from_rest;
   double before;        /* J, kinetic energy of the last step; 0 from rest */
   int64_t steps, peaks; /* so far */
-  mpsi_exact applied;   /* N, sum of the sizes of gravity and loads on this rank's particles */
+  mpsi_exact applied;   /* N, sum of the magnitudes of gravity and loads on this rank's particles */
   mpsi_node_balance *nodes;
   mpsi_room nodes_room;
 } mpsi_settling;
 
-/* Before a step, where settling: room, and what is applied to the particles, of which some may
- * leave in the step. */
+/* Before a step of mps_mpm_settle: memory, and the forces applied to the particles, some of which
+ * may leave in the step. */
 mps_status mpsi_mpm_begin_balance(mps_context *context, const mpsi_grid *grid,
                                   const mpsi_columns *p, mpsi_settling *s, const mps_mpm_def *def,
                                   const char *function);
-/* Block g, bit c of `fixed`: component c is prescribed. `held` has the velocities before the
- * boundaries. */
+/* Energy and unbalanced force of the nodes of block g. `fixed`: bit c: component c of the node is
+ * prescribed; `held`: velocities before the boundaries. */
 void mpsi_mpm_measure_balance(const mpsi_grid *grid, const mpsi_contacts *contacts,
                               const mpsi_settling *settling, double dt, int64_t g,
                               const uint8_t *fixed, const mpsi_node *held);
+/* Damps the velocities of the nodes of block g, but not their prescribed components (`fixed`). */
 void mpsi_mpm_damp_nodes(const mpsi_grid *grid, const mps_mpm_def *def, double dt, int64_t g,
                          const uint8_t *fixed);
 

@@ -1,4 +1,4 @@
-/* insertion.c - particles that the caller puts in and takes out between steps.
+/* insertion.c - particles that the caller adds and removes between steps.
  *
  *   caller                      set                       solver
  *   mps_particles_append, fill  new ones, with places --> insert: inside the domain? volume, law
@@ -6,11 +6,11 @@
  *   mps_particles_remove        closes the gaps       --> renew: columns, number
  *   step                                              --> all have a mass? sort, blocks, limit
  *
- * On several ranks all get what is added, and each keeps what lies in its blocks (owners.c).
+ * On several ranks each is given all that is added, and keeps what lies in its blocks (owners.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/particles.h"
 
-static mps_status take_in(mps_mpm *mpm, const char *function, int64_t first, int64_t count) {
+static mps_status add_particles(mps_mpm *mpm, const char *function, int64_t first, int64_t count) {
   mps_status status = mpsi_mpm_usable(mpm, function);
   if (status != MPS_OK) return status;
   if (first + count > MPSI_MPM_MOST_PARTICLES)
@@ -38,7 +38,7 @@ static mps_status take_in(mps_mpm *mpm, const char *function, int64_t first, int
 
 mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
   mps_mpm *mpm = self;
-  const mps_status status = take_in(mpm, function, first, count);
+  const mps_status status = add_particles(mpm, function, first, count);
   return mpm->partition ? mpsi_mpm_keep_own_inserted(mpm->context, &mpm->grid, &mpm->p, mpm->water,
                                                      mpm->partition, function, status, first)
                         : status;

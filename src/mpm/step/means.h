@@ -1,6 +1,6 @@
 /* means.h - sums over particles at the nodes, {sum V, sum V value} and in the filter a third, for
- * means by cell or by node after the step's G2P, when the nodes have done their work: they take the
- * place of mass and momentum. SPDX-License-Identifier: BSD-3-Clause */
+ * means by cell or by node after the step's G2P. They replace the mass and momentum of the nodes,
+ * which are not needed any more. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_MEANS_H
 #define MPSI_MPM_MEANS_H
 
@@ -8,14 +8,14 @@
 
 enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1, MPSI_SUM_FLOW = 2, MPSI_SUMS = 3 };
 
-/* Place (m) of a particle when G2P found its stencil: it has moved by dt v since. */
+/* Position (m) of a particle when G2P found its stencil: it has moved by dt v since. */
 static inline void mpsi_former_place(const mpsi_grid *grid, const mpsi_columns *p, double dt,
                                      int64_t k, double *x) {
   for (int c = 0; c < 3; c++) x[c] = c < grid->dim ? p->x[c][k] - dt * p->v[c][k] : 0.0;
 }
 
-/* The sums of tile node (i, j, k): those of a block, in the tile of a worker, or (NULL) those of
- * all blocks, at the node; `across`: of what thin bodies part (thin_bodies.h). */
+/* Sums of tile node (i, j, k): those of a block, in the tile of a worker, or (worker NULL) those of
+ * all blocks, at the node; `across`: values across thin bodies (thin_bodies.h). */
 static inline double *mpsi_sums_at(const mpsi_grid *grid, const mpsi_cell_block *cells,
                                    const mpsi_worker *worker, bool across, int i, int j, int k) {
   if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];
@@ -23,19 +23,20 @@ static inline double *mpsi_sums_at(const mpsi_grid *grid, const mpsi_cell_block 
                            : mpsi_node_under(grid, cells, i, j, k)];
 }
 
-/* Empties the part of the worker's tiles that the block uses. */
+/* Sets the part of the worker's tiles that the block uses to zero. */
 void mpsi_clear_sums(const mpsi_grid *grid, int64_t b, int32_t worker);
-/* In the scatter of a pass: what `sum` puts into a worker's tile, here or on the block's own rank,
- * to the nodes. */
+/* Scatter task of a pass: adds what `sum` puts into a worker's tile, here or on the block's own
+ * rank, to the nodes. */
 void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t worker, mpsi_mpm_task sum);
 /* A pass: `add` calls mpsi_add_sums with `sum`; then `gather`, block by block. */
 void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather);
-/* Whether the step has failed on some rank, or the only one: places may be no places, or a law has
- * refused. Collective. */
+/* Whether the step has failed on any rank, so that positions may not be finite; whether a law has
+ * refused on any. Collective. */
 bool mpsi_any_failed(const mpsi_grid *grid, mpsi_partition *partition);
 bool mpsi_any_refused(const mpsi_columns *p, mpsi_partition *partition);
 
-/* filter.c: of a step whose number the interval divides, the mean stresses of frictional laws. */
+/* filter.c: whether this step, by its number and the interval, filters the mean stresses of
+ * frictional laws; the filter. */
 bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run);
 void mpsi_mpm_filter(mps_mpm *mpm);
 

@@ -1,5 +1,5 @@
-/* node_update.c - one block of nodes: emptied before the particles' sums; then velocities without
- * and with the forces, Nakamura (25), (26), (39). SPDX-License-Identifier: BSD-3-Clause */
+/* node_update.c - one block of nodes: sums set to zero before P2G; then velocities without and with
+ * the forces, Nakamura (25), (26), (39). SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
@@ -14,7 +14,7 @@ void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   if (nodes->across >= 0) mpsi_mpm_clear_nodes(mpm, nodes->across, worker);
 }
 
-/* Nodes that only particles with full supports reach: the force is in the momentum. */
+/* Velocities of nodes whose particles all have full supports: the momentum includes the force. */
 static void update_free(const mpsi_grid *grid, mpsi_node *node) {
   for (int k = 0; k < grid->block_nodes; k++) {
     if (node[k][MPSI_MASS] == 0.0) continue; /* no particle near, as most nodes of an edge block */
@@ -23,7 +23,8 @@ static void update_free(const mpsi_grid *grid, mpsi_node *node) {
   }
 }
 
-/* Returns whether the own mass of some node is less than the one that forces see. */
+/* Velocities of nodes with side values; returns whether the own mass of some node is less than the
+ * mass that forces accelerate. */
 static bool update_cut(const mpsi_grid *grid, double dt, bool split, mpsi_node *node,
                        mpsi_node *side) {
   bool light = false;
@@ -61,8 +62,8 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   if (nodes->across >= 0) mpsi_mpm_update_nodes(mpm, nodes->across, worker);
 }
 
-/* Friction with bodies, mirrors having acted. `held` receives the velocities that the nodes would
- * have without boundaries. */
+/* Friction with bodies, after mirrors. `held` receives the velocities that the nodes would have
+ * without boundaries. */
 static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
@@ -79,8 +80,8 @@ static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
     for (int c = MPSI_VECTOR; c < 4; c++) held[k][c] += node[k][c] - before[k][c];
 }
 
-/* The same with damping, and with the energies of the nodes and their distance from equilibrium
- * where these are needed. */
+/* Friction, boundaries and damping of the nodes, with their energies and unbalanced forces where
+ * these are needed. */
 static void finish_and_damp(mps_mpm *mpm, int64_t g) {
   mpsi_node held[MOST], damped[MOST];
   uint8_t fixed[MOST] = {0};

@@ -1,5 +1,5 @@
 /* outflow.c - particles that leave the set at the end of a step: those that have passed an open
- * side of the domain (what bodies take away before a step: contact/removal.c).
+ * side of the domain (removal by bodies, before a step: contact/removal.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/particles.h"
 
@@ -11,7 +11,7 @@ mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p,
   b->open = 0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (b->hold[k].kind == MPS_BOUNDARY_OPEN) b->open |= 1u << k;
-  const bool any = b->open != 0 || mpsi_mpm_some_take_away(contacts);
+  const bool any = b->open != 0 || mpsi_mpm_any_body_removes(contacts);
   if (!any || mpsi_room_ensure(context, &rooms->gone, p->count, 1)) return MPS_OK;
   return mpsi_fail_memory(context, function, (size_t)p->count);
 }
@@ -27,9 +27,9 @@ static int32_t passed(const mpsi_grid *grid, const mpsi_columns *p,
   return -1;
 }
 
-/* The momentum of a removed particle is subtracted from the total, as by an impulse. */
-static void carry_out(const mpsi_grid *grid, const mpsi_columns *p, mpsi_energy *energy, int64_t k,
-                      mpsi_boundary *hold) {
+/* Subtracts the momentum of a removed particle from the total, as an impulse of the side. */
+static void subtract_particle(const mpsi_grid *grid, const mpsi_columns *p, mpsi_energy *energy,
+                              int64_t k, mpsi_boundary *hold) {
   const double m = p->m[k], h = grid->cell;
   const double second = grid->standard ? 0.0 : h * h / (grid->spline == 3 ? 3.0 : 4.0);
   double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}}, kinetic = 0.0;
@@ -60,7 +60,7 @@ static int64_t through_sides(const mpsi_grid *grid, const mpsi_columns *p,
       const int32_t side = passed(grid, p, boundaries, k);
       if (side < 0) continue;
       mpsi_boundary *hold = &boundaries->hold[side];
-      carry_out(grid, p, energy, k, hold);
+      subtract_particle(grid, p, energy, k, hold);
       hold->removed++;
       mpsi_exact_add(&hold->sums->all[MPSI_BOUNDARY_MASS], p->m[k]);
       gone[k] = 1;

@@ -1,4 +1,4 @@
-/* ready.c - what comes before a step where the caller, the ranks or the particles have changed
+/* ready.c - updates before a step where the caller, the ranks or the particles have changed
  * something: blocks of the present positions, masses, boundaries, the Courant limit.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
@@ -24,7 +24,8 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
     status = mpsi_mpm_compare_edits(&mpm->contact, mpm->partition, &mpm->run, &mpm->def, function,
                                     status);
   if (status != MPS_OK) return status;
-  if (mpm->run.lost) mpm->run.lost = false, mpm->run.edited = true; /* on no rank any more */
+  /* no rank has a lost particle any more */
+  if (mpm->run.lost) mpm->run.lost = false, mpm->run.edited = true;
   if (!mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm->context, &mpm->p, function);
   if (status == MPS_OK)

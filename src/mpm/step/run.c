@@ -5,14 +5,14 @@
 #include "settle.h"
 #include "core/base/digits.h"
 
-/* All ranks have the same arguments. */
+/* Checks that all ranks have the same argument. */
 static mps_status same_on_ranks(mpsi_partition *partition, const char *function, mps_status status,
                                 const char *name, double value) {
   if (!partition) return status;
   return mpsi_domain_agree_same(partition->domain, function, status, name, value);
 }
 
-/* ---- the size of a step ---------------------------------------------------------------------- */
+/* ---- the time step --------------------------------------------------------------------------- */
 
 mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
@@ -30,8 +30,8 @@ mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
 
 /* ---- many steps ------------------------------------------------------------------------------ */
 
-static mps_status ask_cancel(mps_context *context, mpsi_partition *partition, const mpsi_run *run,
-                             const char *function) {
+static mps_status check_cancel(mps_context *context, mpsi_partition *partition, const mpsi_run *run,
+                               const char *function) {
   if (partition ? !partition->cancel : !mpsi_cancelled(context)) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_CANCELLED,
                    "stopped by the cancel hook at step %lld, t = %g s", (long long)run->steps,
@@ -51,11 +51,11 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (status != MPS_OK) return status;
   mpsi_guard_enter(&mpm->run.guard, mpm->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    if (mpm->run.edited) status = mpsi_mpm_apply_edits(mpm, __func__); /* some have left */
+    if (mpm->run.edited) status = mpsi_mpm_apply_edits(mpm, __func__); /* particles have left */
     if (status == MPS_OK) status = mpsi_mpm_check_bounded(mpm, __func__);
     if (status == MPS_OK) status = mpsi_mpm_step_from_settling(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count)
-      status = ask_cancel(mpm->context, mpm->partition, &mpm->run, __func__);
+      status = check_cancel(mpm->context, mpm->partition, &mpm->run, __func__);
   }
   if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_restore_edit_state(&mpm->run, &before);
   mpsi_guard_end(&mpm->run.guard);
@@ -71,7 +71,7 @@ static mps_status call(mps_mpm *mpm, const char *function, mps_mpm_fn callback, 
                         : status;
 }
 
-/* A run under way. */
+/* Arguments of a run. */
 typedef struct run {
   double start, t_end;
   int64_t every;
@@ -79,8 +79,8 @@ typedef struct run {
   void *user;
 } run;
 
-/* The next step goes there at most; the last two are equal: forces of a very short one would be
- * rough. */
+/* Size (s) of the next step, at most to t_end. The last two steps are equal, because a very short
+ * one has irregular forces. */
 static double next_step(const mps_mpm *mpm, double t_end, bool *last) {
   const double dt = mps_mpm_dt(mpm), rest = t_end - mpm->run.time;
   *last = rest <= dt * (1.0 + 1e-9);
@@ -96,7 +96,7 @@ static mps_status march(mps_mpm *mpm, const char *function, const run *r) {
   if (called) status = call(mpm, function, r->callback, r->user);
   while (status == MPS_OK && mpm->run.time < r->t_end) {
     if (called || mpm->run.edited)
-      status = mpsi_mpm_apply_edits(mpm, function); /* some have left */
+      status = mpsi_mpm_apply_edits(mpm, function); /* particles have left */
     if (status == MPS_OK) status = mpsi_mpm_check_advance(mpm, function);
     if (status != MPS_OK) break;
     const int64_t steps = mpm->run.steps;
@@ -111,7 +111,7 @@ static mps_status march(mps_mpm *mpm, const char *function, const run *r) {
                     r->t_end - r->start);
     }
     if (status == MPS_OK && !last)
-      status = ask_cancel(mpm->context, mpm->partition, &mpm->run, function);
+      status = check_cancel(mpm->context, mpm->partition, &mpm->run, function);
   }
   return status;
 }

@@ -1,6 +1,6 @@
-/* settle.c - static equilibrium by dynamic relaxation with kinetic damping: the particles swing
- * towards equilibrium, and where their kinetic energy has passed a peak they are stopped, since
- * there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
+/* settle.c - static equilibrium by dynamic relaxation with kinetic damping: the particles
+ * accelerate towards equilibrium, and are stopped when their kinetic energy has passed a peak,
+ * since there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
 #include "settle.h"
 
 #include "mpm/particles/particles.h"
@@ -20,7 +20,7 @@ mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_mpm_settle_def, def, size, &settle_defaults);
 }
 
-/* ---- bodies stand still ---------------------------------------------------------------------- */
+/* ---- bodies at rest -------------------------------------------------------------------------- */
 
 static mps_status check_still(mps_context *context, const mpsi_contacts *contacts,
                               mpsi_water *water, const char *function) {
@@ -48,7 +48,7 @@ static void stop_bodies(const mpsi_contacts *contacts) {
   }
 }
 
-static void let_bodies_go(const mpsi_contacts *contacts) {
+static void release_bodies(const mpsi_contacts *contacts) {
   for (int32_t b = 0; b < contacts->bodies; b++) {
     mpsi_pose *pose = &contacts->body[b]->pose;
     const mpsi_contact_state *state = &contacts->state[b];
@@ -82,40 +82,40 @@ static void stop_particles(mps_mpm *mpm) {
 
 /* ---- settling -------------------------------------------------------------------------------- */
 
-/* Before a step of another kind the particles of a cut mps_mpm_settle stop. */
+/* Stops the particles of a cancelled mps_mpm_settle before a step of another kind. */
 static void leave_settling(mps_mpm *mpm) {
   if (!mpm->settling.cut) return;
   mpm->settling.cut = false;
   stop_particles(mpm);
 }
 
-/* What stopping changes, for a first step that cannot be made: ids, velocities and slopes in the
- * order of the particles. NULL: no memory. */
-static double *keep_motion(mps_context *context, const mpsi_columns *p, const char *function) {
+/* Copy of what stopping changes, for a first step that fails: ids, velocities and velocity
+ * gradients in the order of the particles. NULL: no memory. */
+static double *save_motion(mps_context *context, const mpsi_columns *p, const char *function) {
   const int64_t n = p->count;
-  double *warm = mpsi_alloc(context, 13 * n, sizeof *warm);
-  if (!warm) {
-    (void)mpsi_fail_memory(context, function, (size_t)n * 13 * sizeof *warm);
+  double *saved = mpsi_alloc(context, 13 * n, sizeof *saved);
+  if (!saved) {
+    (void)mpsi_fail_memory(context, function, (size_t)n * 13 * sizeof *saved);
     return NULL;
   }
-  const size_t bytes = (size_t)n * sizeof *warm;
-  memcpy(warm, mpsi_particles_integers(p->set, "id"), bytes);
+  const size_t bytes = (size_t)n * sizeof *saved;
+  memcpy(saved, mpsi_particles_integers(p->set, "id"), bytes);
   for (int c = 0; c < 12; c++) {
     const double *column = c < 3 ? p->v[c] : p->L[c - 3];
-    if (column) memcpy(warm + (c + 1) * n, column, bytes);
+    if (column) memcpy(saved + (c + 1) * n, column, bytes);
   }
-  return warm;
+  return saved;
 }
 
-static void put_motion_back(const mpsi_columns *p, const double *warm) {
+static void restore_motion(const mpsi_columns *p, const double *saved) {
   const int64_t n = p->count;
   for (int64_t k = 0; k < n; k++) {
     int64_t id;
-    memcpy(&id, &warm[k], sizeof id);
+    memcpy(&id, &saved[k], sizeof id);
     const int64_t at = mps_particles_index(p->set, id); /* the step may have sorted */
     for (int c = 0; c < 12 && at >= 0; c++) {
       double *column = c < 3 ? p->v[c] : p->L[c - 3];
-      if (column) column[at] = warm[(c + 1) * n + k];
+      if (column) column[at] = saved[(c + 1) * n + k];
     }
   }
 }
@@ -125,12 +125,12 @@ mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, doubl
   const int64_t steps = mpm->run.steps;
   const mpsi_energy energy = mpm->energy;
   double *motion = NULL;
-  if (!mpm->partition && !(motion = keep_motion(mpm->context, &mpm->p, function)))
+  if (!mpm->partition && !(motion = save_motion(mpm->context, &mpm->p, function)))
     return MPS_ERROR_MEMORY;
   leave_settling(mpm);
   const mps_status status = mpsi_mpm_take_step(mpm, function, dt);
   if (motion && status != MPS_OK && mpm->run.steps == steps && !mpm->run.broken) {
-    put_motion_back(&mpm->p, motion);
+    restore_motion(&mpm->p, motion);
     memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
     mpm->settling.cut = true;
   }
@@ -140,7 +140,7 @@ mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, doubl
 
 enum { UNBALANCED, APPLIED, KINETIC, SUMS };
 
-/* The sizes of the forces that bodies give by impulses to the particles here (N). */
+/* Adds the magnitudes of the contact forces by impulses on this rank's particles (N). */
 static void add_impulses(const mpsi_contacts *contacts, double dt, mpsi_exact *sum) {
   const mpsi_impulses *all = &contacts->impulses;
   for (int64_t n = 0; n < all->constraint_count; n++) {
@@ -155,7 +155,7 @@ static void add_impulses(const mpsi_contacts *contacts, double dt, mpsi_exact *s
   }
 }
 
-/* Of all blocks, on all ranks: exact, independent of the partition. */
+/* Sums over the blocks of all ranks: exact, independent of the partition. */
 static mps_status sum_balance(const mpsi_grid *grid, const mpsi_contacts *contacts,
                               mpsi_partition *partition, const mpsi_settling *settling, double dt,
                               const char *function, double *sums) {
@@ -176,7 +176,7 @@ static mps_status sum_balance(const mpsi_grid *grid, const mpsi_contacts *contac
   return status;
 }
 
-/* One step; the time of the run stands still. */
+/* One step of the relaxation; the time of the run does not change. */
 static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now) {
   const double time = mpm->run.time;
   mps_status status = mpsi_mpm_check_bounded(mpm, function);
@@ -260,7 +260,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
     MPSI_GIVE(&given, &def, max_steps);
     status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   }
-  double *motion = status == MPS_OK ? keep_motion(mpm->context, &mpm->p, function) : NULL;
+  double *motion = status == MPS_OK ? save_motion(mpm->context, &mpm->p, function) : NULL;
   if (status == MPS_OK && !motion) status = MPS_ERROR_MEMORY;
   status = mpsi_mpm_agree(mpm->partition, function, status);
   if (status != MPS_OK) {
@@ -285,11 +285,11 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   status = relax_until(mpm, function, &def, &now);
   mpsi_guard_end(&mpm->run.guard);
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
-  let_bodies_go(&mpm->contact);
+  release_bodies(&mpm->contact);
   settling->on = false;
   if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->partition &&
       !mpm->run.broken) { /* no step was made */
-    put_motion_back(&mpm->p, motion);
+    restore_motion(&mpm->p, motion);
     memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
     settling->cut = former.cut, settling->from_rest = former.from_rest;
     settling->before = former.before;

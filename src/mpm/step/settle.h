@@ -5,7 +5,7 @@
 
 #include "mpm/base/mpm_solver.h"
 
-/* mpsi_mpm_take_step; after settling that was cut the particles start from rest. A step that fails
- * has changed nothing (on several ranks they stay at rest). */
+/* mpsi_mpm_take_step, before which the particles stop where mps_mpm_settle was cancelled. A step
+ * that fails has changed nothing (on several ranks they stay at rest). */
 mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, double dt);
 #endif

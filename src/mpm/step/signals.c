@@ -1,6 +1,6 @@
-/* signals.c - what the caller's signals say of a step: factors of loads at its beginning,
- * velocities of boundaries at its middle, places of bodies at its end. All are evaluated before
- * anything of the step is done, so that one that refuses leaves the state as it was.
+/* signals.c - the caller's signals in a step: factors of loads at its beginning, velocities of
+ * boundaries at its middle, positions of bodies at its end. All are evaluated before anything of
+ * the step changes, so that one that refuses leaves the state as it was.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 

@@ -4,7 +4,7 @@
 #include "core/particles/particles_internal.h"
 #include "mpm/particles/particles.h"
 
-#define CHATTER 6.0 /* k dt^2/m above which a contact does not settle */
+#define CHATTER 6.0 /* k dt^2/m above which a penalty contact oscillates */
 
 mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_find_forces(mpm, function);
@@ -55,8 +55,8 @@ static mpsi_mpm_task g2p(const mpsi_grid *grid, const mpsi_kernels *kernels) {
   return kernels->g2p[grid->geometry][grid->spline - 2];
 }
 
-static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_mpm_keep_block(&mpm->grid, &mpm->p, &mpm->undo, b);
+static void save_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
   g2p(&mpm->grid, mpm->kernels)(mpm, b, worker);
 }
 
@@ -71,7 +71,7 @@ mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *con
 void mpsi_step_gather_pass(const mpsi_grid *grid, const mpsi_undo *undo,
                            const mpsi_kernels *kernels, mpsi_pass *pass) {
   pass->finish = mpsi_mpm_finish_nodes;
-  pass->gather = undo->on ? keep_and_gather : g2p(grid, kernels);
+  pass->gather = undo->on ? save_and_gather : g2p(grid, kernels);
 }
 
 void mpsi_step_without_contact(const mpsi_boundaries *boundaries, mpsi_contacts *contacts,
@@ -85,7 +85,7 @@ void mpsi_step_after_gather(mps_mpm *mpm) {
   mpsi_mpm_sum_boundaries(&mpm->grid, &mpm->boundaries, &mpm->mirrors, &mpm->energy, mpm->run.dt);
   mpsi_mpm_drive_particles(&mpm->grid, &mpm->p, &mpm->boundaries, &mpm->energy, mpm->run.dt);
   mpsi_mpm_find_impulse_loss(&mpm->grid, &mpm->contact, &mpm->energy,
-                             mpm->kernels); /* before means take the nodes' places */
+                             mpm->kernels); /* before means replace the values of the nodes */
   if (!mpm->p.laws.at_once || mpm->p.laws.some_filtered) mpsi_mpm_apply_laws_by_cell(mpm);
 }
 

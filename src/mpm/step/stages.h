@@ -7,18 +7,18 @@
 #include "mpm/base/kernels.h"
 #include "mpm/grid/pass.h"
 
-/* A step on its way through the passes over the grid. */
+/* A step, as data of its passes over the grid. */
 typedef struct mpsi_step {
   const char *function;
   double dt; /* s */
   mps_status status;
 } mpsi_step;
 
-/* The last preparation, once nothing is taken out any more: forces on particles, energies and the
+/* Last preparation, after bodies have removed particles: forces on particles, energies and the
  * unbalanced force before the step. Nothing has moved. */
 mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function);
-/* From here on the step is one of `dt`; warns once of one that is too long for the Courant limit
- * or for a penalty contact. */
+/* Sets the dt of the step; warns once of one that is too long for the Courant limit or for a
+ * penalty contact. */
 void mpsi_step_begin(mps_mpm *mpm, double dt);
 /* Particles to nodes in one process: clear, scatter, update. */
 mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *contacts,
@@ -26,16 +26,16 @@ mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *con
 /* Nodes to particles: adds finish and gather to the pass. */
 void mpsi_step_gather_pass(const mpsi_grid *grid, const mpsi_undo *undo,
                            const mpsi_kernels *kernels, mpsi_pass *pass);
-/* In a step without contact: no impulses to start the next one from. Then the boundaries begin. */
+/* A step without contact: clears the warm-start impulses, and begins the boundaries. */
 void mpsi_step_without_contact(const mpsi_boundaries *boundaries, mpsi_contacts *contacts,
                                double dt);
 /* All particles have moved: reactions of boundaries, particles with a prescribed velocity, energy
  * lost in contacts, laws by means of the change of volume. */
 void mpsi_step_after_gather(mps_mpm *mpm);
-/* A law of the caller has refused: all goes back to the beginning of the step. The law's status
- * with its record, or MPS_OK where another rank's has refused. */
+/* Restores the state at the beginning of the step after a law of the caller has refused. The law's
+ * status with its record, or MPS_OK where the law of another rank has refused. */
 mps_status mpsi_step_refuse(mps_mpm *mpm, const char *function);
-/* The step is whole: reactions and poses of bodies, energy, time. */
+/* Completes the step: reactions and poses of bodies, energy, time. */
 void mpsi_step_complete(mps_mpm *mpm);
 
 /* step.c: the step in one process. */

@@ -21,7 +21,7 @@
 
 static mps_status prepare(mps_mpm *mpm, const char *function) {
   mps_status status = MPS_OK;
-  bool removed = true; /* particles, by bodies that take away what they reach */
+  bool removed = true; /* particles have been removed by bodies */
   while (status == MPS_OK && removed) {
     removed = false;
     if (mpm->run.stale) {
@@ -45,7 +45,7 @@ static bool find_masses(mps_mpm *mpm, void *data) {
   return true;
 }
 
-/* No particle moves before all depths are known. */
+/* Constraints and their impulses. No particle moves before all depths are known. */
 static bool solve_contacts(mps_mpm *mpm, void *data) {
   mpsi_step *step = data;
   mpsi_mpm_fit_constraints(mpm);
@@ -67,7 +67,7 @@ static bool can_solve_in_one_wave(const mpsi_grid *grid, const mpsi_columns *p,
   return can;
 }
 
-/* The nodes of all constraints are updated before the contacts are solved. */
+/* Marks the nodes of all constraints, which are updated before the contacts are solved. */
 static void wait_for_constraints(const mpsi_grid *grid, const mpsi_contacts *contacts) {
   const mpsi_impulses *all = &contacts->impulses;
   for (int64_t k = 0; k < all->block_count; k++)

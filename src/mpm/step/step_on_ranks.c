@@ -16,8 +16,8 @@
 #include "mpm/water/water.h"
 #include "tiles.h"
 
-/* As in step.c. An error loses nothing but the tractions at rest of absorbing sides. `status`: of
- * the call so far on this rank; collective. */
+/* Preparation as in step.c. After an error only the tractions at rest of absorbing sides are lost.
+ * `status`: of the call so far on this rank; collective. */
 static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status) {
   bool removed = true;
   while (removed) {
@@ -46,7 +46,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status)
 /* Constraints of partner ranks are exchanged with the statuses of all; no particle moves before all
  * depths are known. */
 static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, mps_status status) {
-  mpsi_mpm_find_contact_mass(&mpm->grid, &mpm->contact, mpm->partition); /* of all ranks */
+  mpsi_mpm_find_contact_mass(&mpm->grid, &mpm->contact, mpm->partition); /* mass over all ranks */
   mpsi_mpm_fit_constraints(mpm);
   if (status == MPS_OK)
     status = mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, function);
@@ -58,7 +58,8 @@ static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, 
   return MPS_OK;
 }
 
-/* `status`: of the search for constraints on this rank, which goes out with these. */
+/* P2G, contact and G2P. `status`: of the search for constraints on this rank, on which ranks agree
+ * when they exchange these. */
 static mps_status transfer(mps_mpm *mpm, const char *function, double dt, mps_status status) {
   mpsi_pass pass = mpsi_step_scatter_pass(&mpm->grid, &mpm->contact, mpm->kernels);
   const mps_status sent = mpsi_mpm_send_tiles(mpm, function);
@@ -85,7 +86,7 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (mpsi_mpm_signals_may_refuse(&mpm->grid, &mpm->loads, &mpm->boundaries))
     status = mpsi_mpm_agree_in_step(mpm, function, status, 0, NULL);
   if (status != MPS_OK && mpm->contact.bodies == 0) return status;
-  status = prepare(mpm, function, status); /* where ranks agree on the signals of bodies */
+  status = prepare(mpm, function, status); /* in which ranks agree on the signals of bodies */
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
   status = mpsi_pore_begin(mpm, function, status);
   if (!unchanged) status = mpsi_mpm_agree_before_step(mpm, function, status);

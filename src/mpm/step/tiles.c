@@ -11,7 +11,7 @@
 #include "mpm/base/kernels.h"
 #include "mpm/ranks/parcels.h"
 
-/* What a tile has follows from bodies, boundaries and blocks, and so does the room of a step. */
+/* The contents of tiles and the memory of a step depend on bodies, boundaries and blocks alone. */
 bool mpsi_mpm_partition_unchanged(const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
                                   mpsi_partition *partition, const mpsi_settling *settling,
                                   const mpsi_run *run) {
@@ -49,7 +49,8 @@ static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *
   return mpsi_mpm_copy_nodes(cells, tile, sizeof *tile, parcel, pack);
 }
 
-/* Tiles and those across; those of forces where they are apart. */
+/* Copies the tiles of momenta, those of forces where they are apart, and both across thin bodies,
+ * to or from a parcel. */
 static double *copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
                           bool pack) {
   parcel = copy_tile(cells, worker->tile, parcel, pack);
@@ -60,9 +61,9 @@ static double *copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worke
   return parcel;
 }
 
-static void copy_springs(const mpsi_grid *grid, const mpsi_contacts *contacts,
-                         const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
-                         bool pack) {
+static void copy_penalty_tiles(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                               const mpsi_cell_block *cells, const mpsi_worker *worker,
+                               double *parcel, bool pack) {
   for (int32_t q = 0; q < cells->pairs; q++)
     if (mpsi_mpm_has_penalty(contacts, cells, q))
       parcel = mpsi_mpm_copy_nodes(cells, mpsi_mpm_penalty_tile(grid, worker, q),
@@ -82,7 +83,7 @@ static void pack(void *data, int64_t k, int32_t number) {
   parcel[2] = cells->thin;
   parcel[3] = cells->in_contact;
   parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, true);
-  copy_springs(&mpm->grid, &mpm->contact, cells, worker, parcel, true);
+  copy_penalty_tiles(&mpm->grid, &mpm->contact, cells, worker, parcel, true);
 }
 
 mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function) {
@@ -95,7 +96,7 @@ mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function) {
   return partition->lost;
 }
 
-/* ---- to the nodes ---------------------------------------------------------------------------- */
+/* ---- sums at the nodes ----------------------------------------------------------------------- */
 
 void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t number) {
   mpsi_partition *partition = mpm->partition;
@@ -112,7 +113,7 @@ void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t number) {
   cells->thin = parcel[2] != 0.0;
   cells->in_contact = parcel[3] != 0.0;
   parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, false);
-  copy_springs(&mpm->grid, &mpm->contact, cells, worker, parcel, false);
+  copy_penalty_tiles(&mpm->grid, &mpm->contact, cells, worker, parcel, false);
   mpm->kernels->flush(mpm, b, number);
   mpsi_mpm_add_penalty(&mpm->grid, &mpm->contact, cells, worker);
 }

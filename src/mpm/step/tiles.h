@@ -8,17 +8,18 @@
 
 #include <stdbool.h>
 
-/* Whether the step to be made needs what the last one needed, so that nothing of it can fail: then
- * the ranks need no reduction. Not collective: all know the same. */
+/* Whether the step needs the same memory and messages as the last one, so that no preparation can
+ * fail: then the ranks need no reduction. Not collective: all ranks find the same. */
 bool mpsi_mpm_partition_unchanged(const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
                                   mpsi_partition *partition, const mpsi_settling *settling,
                                   const mpsi_run *run);
-/* Before a step, all that can fail has been done: the worst of all ranks. Collective. */
+/* Worst status of all ranks, after all preparations of a step that can fail. Collective. */
 mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_status status);
-/* Sums the border into tiles and sends them; mpsi_mpm_receive_parcels has what comes. Collective.
- */
+/* Sums the border blocks into tiles and sends these; mpsi_mpm_receive_parcels receives those of
+ * ghosts. Collective. */
 mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function);
-/* In a pass: a block of cells to its nodes, whichever rank has summed it. Not collective. */
+/* Scatter task of a pass: adds the tile of a block of cells to its nodes, whichever rank has summed
+ * it. Not collective. */
 void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

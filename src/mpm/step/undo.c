@@ -1,7 +1,7 @@
-/* undo.c - see undo.h. What a step has written when a law refuses: the particles' columns, where
- * boundaries are and what they have counted, the forces at rest of absorbing sides, the impulses of
- * contacts from which the next ones begin. Time, bodies and the account of energy come after the
- * laws. SPDX-License-Identifier: BSD-3-Clause */
+/* undo.c - see undo.h. A step has changed, when a law refuses: columns of the particles, positions
+ * and sums of boundaries, forces at rest of absorbing sides, and the saved-start impulses of
+ * contacts. Time, bodies and energy budget change after the laws.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
@@ -26,19 +26,19 @@ static void list_columns(const mpsi_grid *grid, const mpsi_columns *p, mpsi_undo
     for (int32_t h = 0; h < p->laws.law[k].columns; h++) add(u, p->laws.law[k].history[h]);
 }
 
-static double *warm(const mpsi_undo *u, int32_t c, int64_t count) {
+static double *saved(const mpsi_undo *u, int32_t c, int64_t count) {
   return (double *)u->room.item + c * count;
 }
 
-/* A step exchanges the memory of the impulses of contacts with that of the step before. */
-static void keep_impulses(const mpsi_contacts *contacts, mpsi_undo *undo) {
+/* A step swaps the memory of the saved-start impulses with that of the step before. */
+static void save_impulses(const mpsi_contacts *contacts, mpsi_undo *undo) {
   const mpsi_impulses *all = &contacts->impulses;
   undo->kept_impulses = all->warm_room.item;
   undo->warm_count = all->warm_count;
   undo->warm_dt = all->warm_dt;
 }
 
-static void put_impulses_back(mpsi_contacts *contacts, const mpsi_undo *undo) {
+static void restore_impulses(mpsi_contacts *contacts, const mpsi_undo *undo) {
   mpsi_impulses *all = &contacts->impulses;
   if (all->warm_room.item != undo->kept_impulses) {
     const mpsi_room next = all->warm_room;
@@ -50,16 +50,16 @@ static void put_impulses_back(mpsi_contacts *contacts, const mpsi_undo *undo) {
   all->warm_dt = undo->warm_dt;
 }
 
-/* The sums of boundaries, to their copies or back. */
+/* Copies the sums of boundaries, or restores them (`back`). */
 static void copy_sums(const mpsi_boundaries *boundaries, const mpsi_undo *undo, bool back) {
-  mpsi_boundary_sums *warm = undo->sums_room.item;
+  mpsi_boundary_sums *saved = undo->sums_room.item;
   for (int32_t k = 0; k < boundaries->holds; k++) {
     mpsi_boundary_sums *sums = boundaries->hold[k].sums;
     if (!sums) continue;
     if (back)
-      *sums = *warm++;
+      *sums = *saved++;
     else
-      *warm++ = *sums;
+      *saved++ = *sums;
   }
 }
 
@@ -86,28 +86,28 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   memcpy(u->hold_room.item, b->hold, (size_t)b->holds * sizeof *b->hold);
   u->holds_dt = b->dt;
   copy_sums(&mpm->boundaries, &mpm->undo, false);
-  keep_impulses(&mpm->contact, &mpm->undo);
+  save_impulses(&mpm->contact, &mpm->undo);
   if (b->dashpot_count > 0)
     memcpy(u->dashpot_room.item, b->dashpot, (size_t)b->dashpot_count * sizeof *b->dashpot);
   return MPS_OK;
 }
 
-void mpsi_mpm_keep_block(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_undo *u,
+void mpsi_mpm_save_block(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_undo *u,
                          int64_t block) {
   const mpsi_cell_block *cells = &grid->cells[block];
   const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
   for (int32_t c = 0; c < u->columns; c++)
-    memcpy(warm(u, c, p->count) + cells->begin, u->column[c] + cells->begin, bytes);
+    memcpy(saved(u, c, p->count) + cells->begin, u->column[c] + cells->begin, bytes);
 }
 
 void mpsi_mpm_undo(const mpsi_grid *grid, const mpsi_columns *p, mpsi_boundaries *b,
                    mpsi_contacts *contacts, const mpsi_undo *u) {
   for (int32_t c = 0; c < u->columns; c++)
-    memcpy(u->column[c], warm(u, c, p->count), (size_t)p->count * sizeof(double));
+    memcpy(u->column[c], saved(u, c, p->count), (size_t)p->count * sizeof(double));
   memcpy(b->hold, u->hold_room.item, (size_t)b->holds * sizeof *b->hold);
   b->dt = u->holds_dt;
   copy_sums(b, u, true);
-  put_impulses_back(contacts, u);
+  restore_impulses(contacts, u);
   if (b->dashpot_count > 0)
     memcpy(b->dashpot, u->dashpot_room.item, (size_t)b->dashpot_count * sizeof *b->dashpot);
   for (int64_t c = 0; c < grid->cell_count; c++) { /* no particle has moved */

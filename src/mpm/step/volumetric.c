@@ -1,36 +1,35 @@
 /* volumetric.c - means of the change of volume, by cell or by node.
  *
- * F-bar by cell: the laws see the mean change of volume of the cell in place of the
- * particle's own. A cell with many particles then has one condition of constant volume, as the
- * nodes can satisfy, instead of one for each particle.
+ * F-bar by cell: the laws take the mean change of volume of the cell in place of the particle's
+ * own. A cell with many particles then has one condition of constant volume, as the nodes can
+ * satisfy, instead of one for each particle.
  *
  * The particles of a cell are those with the same stencil at the beginning of the step, whichever
- * block they are sorted to. When G2P has read the nodes, these have done their work: the lowest
+ * block they are sorted to. After G2P the values of the nodes are not needed any more: the lowest
  * node of each stencil then holds {sum V, sum V tr(d)} of its cell. In plane strain a deviation
- * from the mean changes the strain out of the plane too, by its third, as in space: else the part
- * without trace would change.
+ * from the mean changes the out-of-plane strain too, by its third, as in 3D: else the deviatoric
+ * part would change.
  *
- * By node, with the B-spline weights w of the step's beginning: t_i = sum w V tr(d)/sum w V, and
- * the particle's is sum w t_i. A rate that is smooth leaves differences of pressures that are there
- * already; so, after the laws, p_i = sum w V p/sum w V and p~ = sum w p_i, which takes the place of
- * the mean stress of a fluid (its state J stays as it is, so nothing is smoothed twice), and to
- * which that of other laws tends by beta c dt/h. Ghosts of mirrors fold as mass does (mirror.h).
+ * By node, with the B-spline weights w at the beginning of the step: t_i = sum w V tr(d)/sum w V,
+ * and the particle's is sum w t_i. A smooth rate does not remove differences of pressure that exist
+ * already; so, after the laws, p_i = sum w V p/sum w V and p~ = sum w p_i, which replaces the mean
+ * stress of a fluid (its state J does not change, so nothing is smoothed twice), and to which that
+ * of other laws tends by beta c dt/h. Ghosts of mirrors are folded as mass is (mirror.h).
  *
  * At a wall or a surface all particles of a node lie on one side of it, and the mean of a pressure
- * that grows with depth is off by its slope times their distance. So a fluid's pressure goes to the
- * node and back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V
- * and p~ = sum w (p_i - rho g.(x_i - x)): at rest it is kept as it is.
+ * that grows with depth is wrong by its gradient times their distance. So a fluid's pressure is
+ * extrapolated to the node and back with its gradient at rest, p_i = sum w V (p + rho g.(x_i -
+ * x))/sum w V and p~ = sum w (p_i - rho g.(x_i - x)): a fluid at rest does not change.
  *
- * By node and by law frictional laws, by cell those with dilation see each particle's own tr(d)
- * instead. Means of the rate under forces by own pressures let rough pressures do work from
- * nothing, and dilation makes them rough: a dilatant sand blew up. Their mean stress is filtered
- * instead, by filter.c.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * By node and by law frictional laws, and by cell those with dilation, take each particle's own
+ * tr(d) instead. With means of the rate and forces by own pressures, irregular pressures do net
+ * work in a closed cycle, and dilation makes pressures irregular: a dilatant sand became unstable.
+ * Its mean stress is filtered instead, by filter.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "means.h"
 
-#define BETA 0.03 /* larger ones spread pressure at free surfaces */
+#define BETA 0.03 /* larger values spread pressure at free surfaces */
 
-/* A particle whose law takes its own tr(d). */
+/* Whether the particle's law takes its own tr(d). */
 static bool keeps_own(const mpsi_columns *p, int64_t k) {
   return p->laws.some_own && mpsi_law_of(p, k)->own_volume;
 }
@@ -43,7 +42,7 @@ static void find_diagonal(const mpsi_grid *grid, const mpsi_columns *p, const do
   diagonal[2] = space ? p->D[8] : grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC ? p->L[4] : NULL;
 }
 
-/* Those of a cell that a thin body parts (thin_bodies.h) are two cells. */
+/* Sums of the particle's cell. A cell that a thin body divides counts as two. */
 static double *sums_of(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
                        double dt, const mpsi_cell_block *cells, const mpsi_worker *worker,
                        int64_t particle) {
@@ -58,26 +57,28 @@ static double *sums_of(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_
   return mpsi_sums_at(grid, cells, worker, across, at[0], at[1], at[2]);
 }
 
-static const double level[3] = {0.0, 0.0, 0.0}; /* no slope */
+static const double level[3] = {0.0, 0.0, 0.0}; /* zero gradient */
 
 /* ---- by node --------------------------------------------------------------------------------- */
 
 static bool by_nodes(const mps_mpm_def *def) { return def->volumetric == MPS_MPM_VOLUMETRIC_NODES; }
 
-/* A particle whose mean stress is filtered, not smoothed (filter.c). */
+/* Whether the particle's mean stress is filtered, not smoothed (filter.c). */
 static bool is_filtered(const mpsi_columns *p, int64_t k) {
   return p->laws.some_filtered && mpsi_law_of(p, k)->filtered;
 }
 
-/* Nodes of a tile along each axis, ghosts of mirrors by their partners, and weights. */
+/* Tile nodes of a particle's stencil along each axis, with images in place of ghosts of mirrors,
+ * and weights. */
 typedef struct support {
   int at[3][4];
   double w[3][4];
-  double x[3];     /* place of the particle in the tile, in cells */
-  uint64_t across; /* see thin_bodies.h */
+  double x[3];     /* position of the particle in the tile, in cells */
+  uint64_t across; /* nodes of which the values across are used (thin_bodies.h) */
 } support;
 
-/* The particle has moved by dt v since G2P found its stencil, or was moved back to a wall. */
+/* Stencil of a particle as G2P found it: it has moved by dt v since, or was moved back to a
+ * wall. */
 static support support_of(const mpsi_grid *grid, const mpsi_columns *p,
                           const mpsi_contacts *contacts, double dt, const mpsi_cell_block *cells,
                           int64_t k) {
@@ -99,9 +100,9 @@ static support support_of(const mpsi_grid *grid, const mpsi_columns *p,
   return out;
 }
 
-/* What a value with the slope (3, per cell) at the particle is further on at a node of its support.
- */
-static double further(const support *s, const double *slope, int i, int j, int k) {
+/* Difference between a node of the support and the particle of a linear function with the gradient
+ * `slope` (3, per cell). */
+static double linear_change(const support *s, const double *slope, int i, int j, int k) {
   return slope[0] * (s->at[0][i] - s->x[0]) + slope[1] * (s->at[1][j] - s->x[1]) +
          slope[2] * (s->at[2][k] - s->x[2]);
 }
@@ -113,9 +114,10 @@ static double *node_of(const mpsi_grid *grid, const mpsi_cell_block *cells,
   return mpsi_sums_at(grid, cells, worker, across, s->at[0][i], s->at[1][j], s->at[2][k]);
 }
 
-/* Adds {V, V value} by the weights; or the mean of the nodes' means. */
-static void give(const mpsi_grid *grid, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                 const support *s, double V, double value, const double *slope) {
+/* Adds {V, V value} to the nodes by the weights, with the value extrapolated by `slope`. */
+static void add_to_nodes(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker, const support *s, double V, double value,
+                         const double *slope) {
   const int n = grid->spline, depth = grid->dim == 3 ? n : 0;
   for (int k = 0; k <= depth; k++)
     for (int j = 0; j <= n; j++)
@@ -123,12 +125,13 @@ static void give(const mpsi_grid *grid, const mpsi_cell_block *cells, const mpsi
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k] * V;
         double *to = node_of(grid, cells, worker, s, i, j, k);
         to[MPSI_SUM_VOLUME] += w;
-        to[MPSI_SUM_VALUE] += w * (value + further(s, slope, i, j, k));
+        to[MPSI_SUM_VALUE] += w * (value + linear_change(s, slope, i, j, k));
       }
 }
 
-static double take(const mpsi_grid *grid, const mpsi_cell_block *cells, const support *s,
-                   const double *slope) {
+/* Weighted mean of the nodes' means, extrapolated back to the particle by `slope`. */
+static double mean_of_nodes(const mpsi_grid *grid, const mpsi_cell_block *cells, const support *s,
+                            const double *slope) {
   const int n = grid->spline, depth = grid->dim == 3 ? n : 0;
   double sum = 0.0, weight = 0.0;
   for (int k = 0; k <= depth; k++)
@@ -137,7 +140,8 @@ static double take(const mpsi_grid *grid, const mpsi_cell_block *cells, const su
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k];
         const double *from = node_of(grid, cells, NULL, s, i, j, k);
         if (!(from[MPSI_SUM_VOLUME] > 0.0) || w == 0.0) continue;
-        sum += w * (from[MPSI_SUM_VALUE] / from[MPSI_SUM_VOLUME] - further(s, slope, i, j, k));
+        sum +=
+            w * (from[MPSI_SUM_VALUE] / from[MPSI_SUM_VOLUME] - linear_change(s, slope, i, j, k));
         weight += w;
       }
   return sum / weight;
@@ -147,8 +151,9 @@ static double mean_stress(const mpsi_columns *p, int64_t k) {
   return (p->s[0][k] + p->s[1][k] + p->s[2][k]) / 3.0;
 }
 
-/* How the mean stress of a fluid at rest grows along each axis, in a cell: means over the nodes
- * near then leave it as it is, at walls and surfaces too, where the nodes lie on one side. */
+/* Gradient at rest, per cell, of the mean stress of a fluid; 0 for other laws. With it means over
+ * the nodes do not change a fluid at rest, also at walls and surfaces, where the nodes lie on one
+ * side. */
 static void slope_at_rest(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *def,
                           int64_t k, double *slope) {
   const bool fluid = mpsi_material_kept(mpsi_law_of(p, k)->material) == MPSI_KEPT_PRESSURE;
@@ -165,7 +170,7 @@ static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
     const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
     double slope[3];
     slope_at_rest(&mpm->grid, &mpm->p, &mpm->def, k, slope);
-    give(&mpm->grid, cells, worker, &s, mpm->p.V[k], mean_stress(&mpm->p, k), slope);
+    add_to_nodes(&mpm->grid, cells, worker, &s, mpm->p.V[k], mean_stress(&mpm->p, k), slope);
   }
 }
 
@@ -181,13 +186,14 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
       mpsi_mpm_elastic(&mpm->p, k, &wave, &shear);
       fraction = fmin(1.0, BETA * sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse);
     }
-    const double change = fraction * (take(&mpm->grid, cells, &s, slope) - mean_stress(&mpm->p, k));
+    const double change =
+        fraction * (mean_of_nodes(&mpm->grid, cells, &s, slope) - mean_stress(&mpm->p, k));
     for (int c = 0; c < 3; c++) p->s[c][k] += change;
   }
   mpm->kernels->speed(mpm, b, worker);
 }
 
-/* ---- both ------------------------------------------------------------------------------------ */
+/* ---- by cell and by node --------------------------------------------------------------------- */
 
 static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
@@ -200,7 +206,7 @@ static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
     if (keeps_own(&mpm->p, k)) continue;
     if (by_nodes(&mpm->def)) {
       const support s = support_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, k);
-      give(&mpm->grid, cells, worker, &s, V[k], trace, level);
+      add_to_nodes(&mpm->grid, cells, worker, &s, V[k], trace, level);
       continue;
     }
     double *sums = sums_of(&mpm->grid, &mpm->p, &mpm->contact, mpm->run.dt, cells, worker, k);
@@ -222,7 +228,7 @@ static void mean_diagonals(const mpsi_grid *grid, const mpsi_columns *p,
       mean = own;
     } else if (by_nodes(def)) {
       const support s = support_of(grid, p, contacts, dt, cells, k);
-      mean = take(grid, cells, &s, level);
+      mean = mean_of_nodes(grid, cells, &s, level);
     } else {
       const double *sums = sums_of(grid, p, contacts, dt, cells, NULL, k);
       mean = sums[MPSI_SUM_VALUE] / sums[MPSI_SUM_VOLUME];

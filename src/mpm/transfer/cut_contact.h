@@ -1,4 +1,4 @@
-/* cut_contact.h - penalty contact of one of the particles of a cut support: normal force, slip and
+/* cut_contact.h - penalty contact of a particle with a cut support: normal force, slip and
  * friction, Nakamura (28)-(30). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_CUT_CONTACT_H
 #define MPSI_MPM_CUT_CONTACT_H
@@ -6,7 +6,7 @@
 #include "mpm/contact/particle.h"
 #include "least_squares.h"
 
-/* The node `local` of the block g, in contact with body b. */
+/* Contact sums of body b at node `local` of block g. */
 static mpsi_contact_node *contact_node_of(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                           int32_t g, int local, int32_t b) {
   int32_t t = grid->nodes[g].first_pair;
@@ -14,7 +14,8 @@ static mpsi_contact_node *contact_node_of(const mpsi_grid *grid, const mpsi_cont
   return &contacts->node[(int64_t)t * grid->block_nodes + local];
 }
 
-/* The node of the tile whose sums a node of the stencil takes part in. */
+/* Tile node to which contributions to node (i, j, k) of the stencil are added: its image for a
+ * ghost. */
 static int tile_node_of(const mpsi_support *s, int i, int j, int k) {
   const int side = MPSI_SIDE, plane = side * side;
   return mpsi_tile_index((s->corner[0][i] ? side : 0) + s->local[0][i],
@@ -22,11 +23,11 @@ static int tile_node_of(const mpsi_support *s, int i, int j, int k) {
                          (s->corner[2][k] ? side : 0) + s->local[2][k] / plane);
 }
 
-/* Whether the body of the block's pair `number` holds a node of the stencil, in the domain or not.
- */
-static bool mpsi_holds_some(const mpsi_grid *grid, const mpsi_contacts *contacts,
-                            const mpsi_cell_block *cells, int dim, int spline,
-                            const mpsi_support *s, int32_t number) {
+/* Whether the body of the block's pair `number` has penalty contact and contains a node of the
+ * stencil, in the domain or outside. */
+static bool mpsi_contains_node(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                               const mpsi_cell_block *cells, int dim, int spline,
+                               const mpsi_support *s, int32_t number) {
   const int32_t body = contacts->cell_pair[cells->first_pair + number].body;
   bool any = false;
   if (mpsi_by_impulses(contacts->handle[body])) return false;
@@ -41,7 +42,8 @@ static bool mpsi_holds_some(const mpsi_grid *grid, const mpsi_contacts *contacts
   return any;
 }
 
-/* Normal force and slip of a particle against one body, Nakamura (28)-(30). */
+/* Penalty contact of particle p with the body of the block's pair `number`, Nakamura (28)-(30):
+ * adds normal force and slip to the nodes by phi, and the reaction to the loads on the body. */
 MPSI_INLINE void mpsi_scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells,
                                       const mpsi_worker *worker, int dim, int spline, int64_t p,
                                       const mpsi_cut *b, const mpsi_support *at,
@@ -76,12 +78,12 @@ MPSI_INLINE void mpsi_scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells
   }
 }
 
-/* The friction that the nodes have given, back to the part of the surface that the particle
- * particles in contact: at a node by the part of its mass in contact. */
-MPSI_INLINE void mpsi_share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                     int spline, int64_t p, const mpsi_cut *b,
-                                     const mpsi_support *at, const mpsi_shape_values *f,
-                                     mpsi_cell_pair *pair) {
+/* Adds the reaction to the nodes' friction to the load on the surface part that particle p is in
+ * contact with: at each node the particle's fraction of the mass in contact. */
+MPSI_INLINE void mpsi_add_friction_load(mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                        int spline, int64_t p, const mpsi_cut *b,
+                                        const mpsi_support *at, const mpsi_shape_values *f,
+                                        mpsi_cell_pair *pair) {
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
   if (!pair->in_contact || mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
@@ -97,7 +99,7 @@ MPSI_INLINE void mpsi_share_friction(mps_mpm *mpm, const mpsi_cell_block *cells,
     const double local[3] = {b->at[0] + i, b->at[1] + j, b->at[2] + k};
     const double mass = mpm->p.m[p] * f->phi[n];
     double arm[3], reaction[3], slip[3] = {from->slip[0], from->slip[1], from->slip[2]};
-    if (mpsi_is_folded(at, i, j, k)) { /* its own slip, and what the wall has given with it */
+    if (mpsi_is_folded(at, i, j, k)) { /* friction of the node, and the wall's reaction to it */
       mpsi_reflect_at(mpm, cells, b, i, j, k, slip, 0.0);
       double given[3] = {slip[0], slip[1], slip[2]};
       mpsi_reflect_at(mpm, cells, b, i, j, k, given, mpm->run.dt * mass);

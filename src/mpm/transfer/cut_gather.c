@@ -1,21 +1,22 @@
-/* cut_gather.c - nodes to particles where bodies or edges cut the support, by the fits that the
- * scatter of the step has kept or by new ones; the momentum that nodes of small mass have kept;
- * velocity gradients for the laws; and, by the same fits, weights at a foot on a body. Particle by
- * particle in the lanes of a vector, as cut_scatter.c. Compiled once for each instruction set.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* cut_gather.c - nodes to particles where bodies or sides of the domain cut the support:
+ * velocities, velocity gradients, and the momentum retained by nodes of small mass, by the fits
+ * that the scatter of the step has stored or by new ones. By the same fits shape functions
+ * extrapolated to a contact point on a body. Each particle is a lane of a vector, as in
+ * cut_scatter.c. Compiled once for each instruction set. SPDX-License-Identifier: BSD-3-Clause */
 #include "cut_contact.h"
 #include "spin.h"
 
 /* ---- sums over the nodes --------------------------------------------------------------------- */
 
-/* Sums over the nodes, by component of their velocities. */
+/* Sums over the nodes of a stencil, by component of the velocity. */
 typedef struct node_sums {
-  mpsi_quad by[3][4];     /* w by 1, s_x, s_y, s_z */
-  mpsi_quad v[3];         /* phi, */
-  mpsi_quad moment[3][3]; /* and that by s of the other axes */
+  mpsi_quad by[3][4];     /* sum w v times 1, s_x, s_y, s_z */
+  mpsi_quad v[3];         /* sum phi v */
+  mpsi_quad moment[3][3]; /* sum phi v s_d, d other than the component */
 } node_sums;
 
-/* Component `c` of node i of a row, number n of the stencil, as each particle sees it. */
+/* Velocity component `c` of node i of a row, number n of the stencil: for each particle its own
+ * value or that across a thin body. */
 MPSI_INLINE mpsi_quad value_at(const mpsi_cut *b, const mpsi_node *node, const mpsi_node *across,
                                int n, int i, int c) {
   const double v = node[i][c];
@@ -26,10 +27,11 @@ MPSI_INLINE mpsi_quad value_at(const mpsi_cut *b, const mpsi_node *node, const m
   return (mpsi_quad)(((mpsi_mask)(mpsi_quad){w, w, w, w} & parted) | ((mpsi_mask)own & ~parted));
 }
 
-/* `across`: NULL where no thin body parts nodes from particles. */
+/* Adds row (j, k) of nodes to the sums. `across`: values across thin bodies; NULL without such
+ * bodies. */
 MPSI_INLINE void sum_row(int dim, int spline, const mpsi_cut *b, const mpsi_node *node,
                          const mpsi_node *across, int j, int k, node_sums *out) {
-  const mpsi_quad value = mpsi_across(dim, b, b->q[0], j, k);
+  const mpsi_quad value = mpsi_row_value(dim, b, b->q[0], j, k);
   mpsi_quad one[3] = {{0.0}}, by_x[3] = {{0.0}}, partition[3] = {{0.0}};
   for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
     const mpsi_quad x = b->s[0][i], phi = value + b->q[0][1] * x;
@@ -54,11 +56,13 @@ MPSI_INLINE void sum_row(int dim, int spline, const mpsi_cut *b, const mpsi_node
   }
 }
 
-/* Velocities of the nodes of a row. */
+/* Velocities of the nodes of row (j, k) of the stencil. */
 MPSI_INLINE const mpsi_node *row_of(const mpsi_cut *b, mpsi_node *tile, int j, int k) {
   return (const mpsi_node *)tile + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
 }
 
+/* Velocities, derivatives (1/s, for the laws) and slopes (for the next scatter) of a batch, to
+ * `out` from index `at` on. */
 MPSI_INLINE void gather(const mpsi_grid *grid, const mpsi_worker *worker, int dim, int spline,
                         bool thin, const mpsi_cut *b, mpsi_gathered *out, int at) {
   node_sums sum = {.v = {{0.0}}};
@@ -73,8 +77,8 @@ MPSI_INLINE void gather(const mpsi_grid *grid, const mpsi_worker *worker, int di
       for (int c = 1; c <= dim; c++) L[a][d] += b->q[1 + d][c] * sum.by[a][c];
       mpsi_put(out->derivative[dim * a + d] + at, L[a][d]);
     }
-  const mpsi_mask keeps = mpsi_keeps_spin(grid, b);
-  if (mpsi_some(keeps)) mpsi_take_spin(dim, spline, grid->inverse, keeps, sum.moment, L);
+  const mpsi_mask keeps = mpsi_conserves_spin(grid, b);
+  if (mpsi_any_lane(keeps)) mpsi_set_spin(dim, spline, grid->inverse, keeps, sum.moment, L);
   for (int a = 0; a < dim; a++) {
     mpsi_put(out->v[a] + at, sum.v[a]);
     for (int d = 0; d < dim; d++) mpsi_put(out->slope[dim * a + d] + at, L[a][d]);
@@ -83,7 +87,7 @@ MPSI_INLINE void gather(const mpsi_grid *grid, const mpsi_worker *worker, int di
 
 /* ---- derivatives along full axes ------------------------------------------------------------- */
 
-/* dw/w at the nodes of one axis, 1/m. */
+/* Ratios (dw/dx)/w at the nodes of one axis, 1/m. */
 MPSI_INLINE void find_ratios(const mpsi_grid *grid, int spline, const mpsi_cut *b, int axis,
                              mpsi_quad *ratio) {
   for (int l = 0; l < 4; l++) {
@@ -96,10 +100,10 @@ MPSI_INLINE void find_ratios(const mpsi_grid *grid, int spline, const mpsi_cut *
   }
 }
 
-/* Derivatives along the axes whose stencil is full, ghosts of mirrors included, where nothing but
- * sides of the domain cuts the support: there the fit falls apart into one along each axis
- * (wall_support.h), so that phi/w along such an axis is constant and d phi = phi dw/w. Along the
- * other axes, and near bodies, the slopes serve. */
+/* Derivatives of the velocity for the laws, along the axes whose stencil is full (with ghosts of
+ * mirrors), if only sides of the domain cut the support. There the fit is a product of fits along
+ * the axes (wall_support.h): phi/w is constant along such an axis, so that d phi = phi dw/w. Along
+ * the other axes, and beside bodies, the slopes of the fit are used. */
 MPSI_INLINE void find_strain(const mpsi_grid *grid, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int dim, int spline, bool thin,
                              const mpsi_cut *b, mpsi_gathered *out, int at) {
@@ -122,25 +126,28 @@ MPSI_INLINE void find_strain(const mpsi_grid *grid, const mpsi_cell_block *cells
   }
 }
 
-/* ---- momentum that nodes have kept ----------------------------------------------------------- */
+/* ---- momentum retained by nodes of small mass ------------------------------------------------ */
 
-/* Momentum that a node has and its particles would not get: all is done with a mass m that is never
- * less than MPSI_LEAST_MASS of that by weights, and they take with their own, M. */
-static void find_kept(const mpsi_grid *grid, const mpsi_node_block *nodes, int32_t g, int local,
-                      double *weight, double *warm) {
+/* Momentum (kg m/s) that a node retains: its velocity follows from a mass m of at least
+ * MPSI_LEAST_MASS times its mass by weights, `weight`, but its own mass M, which its particles
+ * represent, is smaller. What they do not represent is (m - M) times the velocity. */
+static void find_retained(const mpsi_grid *grid, const mpsi_node_block *nodes, int32_t g, int local,
+                          double *weight, double *retained) {
   const double *node = grid->node[mpsi_first_node(grid, g) + local];
   const double *side = grid->side[mpsi_first_node(grid, nodes->side) + local];
   const double m = node[MPSI_MASS], own = mpsi_own_mass(m, side[MPSI_EXCESS]);
   *weight = own + side[MPSI_EXCESS];
-  const bool moves = nodes->split && mpsi_carried_mass(own, *weight) < 0.0; /* as they do */
+  /* then the momentum before the forces was divided by M itself, and nothing of it is missing */
+  const bool moves = nodes->split && mpsi_carried_mass(own, *weight) < 0.0;
   for (int c = 0; c < 3; c++)
-    warm[c] =
+    retained[c] =
         own < m ? (m - own) * (node[MPSI_VECTOR + c] - (moves ? side[MPSI_VECTOR + c] : 0.0)) : 0.0;
 }
 
-/* That momentum, back to the particles by their weights: all of it. */
-static void give_back(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                      const mpsi_cut *b, int lane, double *v) {
+/* Adds the retained momentum of the nodes to the velocity v of the particle in a lane, by the
+ * weights: all particles together get all of it. */
+static void return_momentum(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                            const mpsi_cut *b, int lane, double *v) {
   mpsi_support at;
   mpsi_make_support(&mpm->grid, cells, dim, b->at, &at);
   MPSI_FOR_NODES(dim, spline) {
@@ -149,22 +156,23 @@ static void give_back(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int s
     if (w == 0.0) continue;
     if (b->across[lane] >> n & 1) g = mpm->grid.nodes[g].across;
     const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-    double weight, warm[3];
+    double weight, retained[3];
     if (!nodes->light) continue;
-    find_kept(&mpm->grid, nodes, g, mpsi_support_local(&at, i, j, k), &weight, warm);
-    for (int c = 0; c < 3 && weight > 0.0; c++) warm[c] *= w / weight;
+    find_retained(&mpm->grid, nodes, g, mpsi_support_local(&at, i, j, k), &weight, retained);
+    for (int c = 0; c < 3 && weight > 0.0; c++) retained[c] *= w / weight;
     if (mpsi_is_folded(&at, i, j, k))
-      mpsi_reflect_at(mpm, cells, b, i, j, k, warm, mpm->p.m[b->first + lane]);
-    for (int c = 0; c < dim && weight > 0.0; c++) v[c] += warm[c];
+      mpsi_reflect_at(mpm, cells, b, i, j, k, retained, mpm->p.m[b->first + lane]);
+    for (int c = 0; c < dim && weight > 0.0; c++) v[c] += retained[c];
   }
 }
 
-MPSI_APART void give_all_back(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                              const mpsi_cut *b, mpsi_gathered *out, int at) {
+/* Returns retained momentum to the particles of a batch, and enters it in the energy budget. */
+MPSI_APART void return_momenta(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                               const mpsi_cut *b, mpsi_gathered *out, int at) {
   for (int lane = 0; lane < b->lanes; lane++) {
     double v[3] = {0.0}, before[3] = {0.0};
     for (int c = 0; c < dim; c++) before[c] = v[c] = out->v[c][at + lane];
-    give_back(mpm, cells, dim, spline, b, lane, v);
+    return_momentum(mpm, cells, dim, spline, b, lane, v);
     for (int c = 0; c < dim; c++) {
       out->v[c][at + lane] = v[c];
       before[c] = v[c] - before[c];
@@ -177,11 +185,11 @@ MPSI_APART void give_all_back(mps_mpm *mpm, const mpsi_cell_block *cells, int di
 
 /* ---- the standard scheme --------------------------------------------------------------------- */
 
-/* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
- * the forces. */
-MPSI_INLINE void keep_own(const mpsi_grid *grid, const mpsi_columns *points,
-                          const mpsi_cell_block *cells, int dim, int spline, int64_t p,
-                          const mpsi_support *at, const mpsi_shape_values *f, double *own) {
+/* FLIP part of a particle's velocity: `flip` times the difference between its velocity and that of
+ * the nodes before the forces, interpolated to the particle. */
+MPSI_INLINE void find_flip_part(const mpsi_grid *grid, const mpsi_columns *points,
+                                const mpsi_cell_block *cells, int dim, int spline, int64_t p,
+                                const mpsi_support *at, const mpsi_shape_values *f, double *own) {
   mpsi_quad before = {0.0};
   MPSI_FOR_NODES(dim, spline) {
     const int32_t side = grid->nodes[mpsi_support_block(cells, at, i, j, k)].side;
@@ -191,7 +199,7 @@ MPSI_INLINE void keep_own(const mpsi_grid *grid, const mpsi_columns *points,
   for (int c = 0; c < dim; c++) own[c] = grid->flip * (points->v[c][p] - before[MPSI_VECTOR + c]);
 }
 
-/* One particle by its shape functions. */
+/* Velocity and gradient of one particle by the shape functions of standard MPM. */
 MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b,
                             const mpsi_support *at, const mpsi_shape_values *f, int64_t p,
@@ -203,7 +211,7 @@ MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
     v += f->phi[n] * node;
     for (int d = 0; d < dim; d++) by[d] += f->gradient[d][n] * node;
   }
-  if (mpm->grid.flip > 0.0) keep_own(&mpm->grid, &mpm->p, cells, dim, spline, p, at, f, own);
+  if (mpm->grid.flip > 0.0) find_flip_part(&mpm->grid, &mpm->p, cells, dim, spline, p, at, f, own);
   for (int c = 0; c < dim; c++) {
     out->v[c][to] = v[MPSI_VECTOR + c];
     out->own[c][to] = own[c];
@@ -212,7 +220,7 @@ MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
   }
 }
 
-/* All that is to be done for each particle by itself. */
+/* Work done particle by particle: standard MPM, and the loads by friction of penalty contact. */
 MPSI_APART void gather_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                             int dim, int spline, const mpsi_cut *b, mpsi_gathered *out, int to) {
   mpsi_support at;
@@ -224,14 +232,15 @@ MPSI_APART void gather_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
     if (mpm->grid.standard)
       gather_one(mpm, cells, worker, dim, spline, b, &at, &f, p, out, to + lane);
     for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
-      if (mpsi_holds_some(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
-        mpsi_share_friction(mpm, cells, dim, spline, p, b, &at, &f,
-                            &mpm->contact.cell_pair[cells->first_pair + q]);
+      if (mpsi_contains_node(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
+        mpsi_add_friction_load(mpm, cells, dim, spline, p, b, &at, &f,
+                               &mpm->contact.cell_pair[cells->first_pair + q]);
   }
 }
 
 /* ---- segments -------------------------------------------------------------------------------- */
 
+/* Whether the scatter has found the supports of particles [begin, end) full. */
 MPSI_INLINE bool are_full(const mpsi_grid *grid, const mpsi_cell_block *cells, int64_t chunk,
                           int begin, int end) {
   const uint8_t *fitted = grid->fitted + cells->first_fit + (chunk - cells->begin);
@@ -250,7 +259,7 @@ MPSI_INLINE void gather_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
       mpsi_find_fit(mpm, cells, worker, dim, spline, thin, true, b);
     gather(&mpm->grid, worker, dim, spline, thin, b, out, at);
     if (b->held == 0) find_strain(&mpm->grid, cells, worker, dim, spline, thin, b, out, at);
-    if (cells->light) give_all_back(mpm, cells, dim, spline, b, out, at);
+    if (cells->light) return_momenta(mpm, cells, dim, spline, b, out, at);
   }
   if (mpm->grid.standard || b->held & MPSI_PENALTY)
     gather_each(mpm, cells, worker, dim, spline, b, out, at);
@@ -314,7 +323,8 @@ void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cell
   MPSI_CHOOSE(fit_body, particle, out);
 }
 
-/* By the fit that the scatter has kept for the particle in this step. */
+/* psi = phi + grad phi . d by the fit that the scatter of this step has stored; q: upper half of
+ * M^-1. */
 MPSI_INLINE bool foot_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
                            const mpsi_worker *worker, int dim, int spline, const double *q,
                            const mpsi_stencil *at, const double *d, double *psi) {
@@ -337,7 +347,7 @@ MPSI_INLINE bool foot_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
   return true;
 }
 
-/* By a fit of its own. */
+/* psi = phi + grad phi . d by a new fit, where none is stored. */
 static void foot_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                         int64_t particle, const double *d, mpsi_foot_weights *out) {
   mpsi_stencil at;

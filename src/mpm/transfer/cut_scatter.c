@@ -1,15 +1,15 @@
-/* cut_scatter.c - particles to nodes where bodies or edges cut the support: momentum, force and
- * excess mass by the least-squares fit, particle by particle in the lanes of a vector; penalty
- * contact of each. With the variants for comparison (standard scheme, momentum by weights) one
- * particle after the other, by its shape functions. Compiled once for each instruction set.
+/* cut_scatter.c - particles to nodes where bodies or sides of the domain cut the support: momentum,
+ * force and excess mass by the least-squares fit, each particle in a lane of a vector, and penalty
+ * contact. The variants for comparison (standard MPM, momentum by weights) go particle by particle,
+ * by the shape functions. Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cut_contact.h"
 #include "spin.h"
 
-/* ---- what the particles give ----------------------------------------------------------------- */
+/* ---- contributions of the particles ---------------------------------------------------------- */
 
-/* V sigma and the forces by phi of the particles, to what they give by w: grad phi of axis d
- * is w q[1 + d]. */
+/* Forces of a batch as factors of w_i: internal force - V sigma . grad phi, where grad phi along
+ * axis d is w q[1 + d], and body forces by phi = w q[0]. */
 MPSI_INLINE void find_force(const mpsi_grid *grid, const mpsi_columns *from, const mps_mpm_def *def,
                             int dim, const mpsi_cut *b, mpsi_source *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
@@ -32,7 +32,7 @@ MPSI_INLINE void find_force(const mpsi_grid *grid, const mpsi_columns *from, con
   }
 }
 
-/* Lanes without a particle have no mass and no volume. */
+/* Mass, momentum and force of a batch. Lanes without a particle have no mass and no volume. */
 MPSI_INLINE void find_source(const mpsi_grid *grid, const mpsi_columns *from,
                              const mps_mpm_def *def, int dim, const mpsi_cut *b, mpsi_source *out) {
   const int64_t p = b->first;
@@ -50,22 +50,24 @@ MPSI_INLINE void find_source(const mpsi_grid *grid, const mpsi_columns *from,
   find_force(grid, from, def, dim, b, out);
 }
 
-/* The same of one row of nodes along x, by particle: at s_x = 0, and by s_x. */
+/* The linear functions of mpsi_source on one row of nodes along x, for each particle: values at s_x
+ * = 0. */
 typedef struct row_source {
   mpsi_quad phi, momentum[3], by_weight[3], force[3];
 } row_source;
 
 MPSI_INLINE void find_row(int dim, const mpsi_cut *b, const mpsi_source *s, bool turns, int j,
                           int k, row_source *out) {
-  out->phi = mpsi_across(dim, b, b->q[0], j, k);
+  out->phi = mpsi_row_value(dim, b, b->q[0], j, k);
   for (int a = 0; a < dim; a++) {
-    out->momentum[a] = mpsi_across(dim, b, s->momentum[a], j, k);
-    out->force[a] = mpsi_across(dim, b, s->force[a], j, k);
-    if (turns) out->by_weight[a] = mpsi_across(dim, b, s->by_weight[a], j, k);
+    out->momentum[a] = mpsi_row_value(dim, b, s->momentum[a], j, k);
+    out->force[a] = mpsi_row_value(dim, b, s->force[a], j, k);
+    if (turns) out->by_weight[a] = mpsi_row_value(dim, b, s->by_weight[a], j, k);
   }
 }
 
-/* Sums of a row: mass, momentum; mass by weights, force. The nodes side by side. */
+/* Adds the particles of a batch to the sums of a row, whose nodes are the lanes: `sum` is mass and
+ * momentum, `force` excess mass (by weights less by phi) and force. */
 MPSI_INLINE void add_row(int dim, const mpsi_cut *b, const mpsi_source *s, const row_source *row,
                          bool turns, int lanes, const mpsi_quad *w, mpsi_quad *sum,
                          mpsi_quad *force) {
@@ -84,9 +86,11 @@ MPSI_INLINE void add_row(int dim, const mpsi_cut *b, const mpsi_source *s, const
   force[0] -= sum[0];
 }
 
-/* To the nodes: momentum to the tile, force and excess mass to the tile of forces. */
-MPSI_INLINE void give_rows(int dim, int spline, const mpsi_cut *b, const mpsi_source *s, bool turns,
-                           const mpsi_quad *weight, mpsi_node *tile, mpsi_node *forces) {
+/* Adds a batch to the nodes: mass and momentum to the tile, force and excess mass to the tile of
+ * forces. */
+MPSI_INLINE void add_stencil(int dim, int spline, const mpsi_cut *b, const mpsi_source *s,
+                             bool turns, const mpsi_quad *weight, mpsi_node *tile,
+                             mpsi_node *forces) {
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const int t = mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
@@ -105,18 +109,19 @@ MPSI_INLINE void give_rows(int dim, int spline, const mpsi_cut *b, const mpsi_so
     }
 }
 
-/* The same, where thin bodies part nodes from some particles: to the tiles on their side. */
-MPSI_INLINE void give_parted(const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b,
-                             const mpsi_source *s) {
+/* Adds a batch beside thin bodies: a node that these separate from a particle gets its contribution
+ * in the second tiles, the values across. */
+MPSI_INLINE void add_two_sided(const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b,
+                               const mpsi_source *s) {
   mpsi_quad w[2][MPSI_STENCIL];
   MPSI_FOR_NODES(dim, spline) {
     const mpsi_mask across = mpsi_has_node(b->across, n);
     w[0][n] = (mpsi_quad)((mpsi_mask)b->w[n] & ~across);
     w[1][n] = (mpsi_quad)((mpsi_mask)b->w[n] & across);
   }
-  give_rows(dim, spline, b, s, true, w[0], worker->tile, worker->force);
-  if (mpsi_some(b->across != 0))
-    give_rows(dim, spline, b, s, true, w[1], worker->across_tile, worker->across_force);
+  add_stencil(dim, spline, b, s, true, w[0], worker->tile, worker->force);
+  if (mpsi_any_lane(b->across != 0))
+    add_stencil(dim, spline, b, s, true, w[1], worker->across_tile, worker->across_force);
 }
 
 MPSI_INLINE void scatter(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_run *run,
@@ -124,33 +129,34 @@ MPSI_INLINE void scatter(const mpsi_grid *grid, const mpsi_columns *p, const mps
                          bool thin, const mpsi_cut *b) {
   mpsi_source s;
   find_source(grid, p, def, dim, b, &s);
-  const mpsi_mask keeps = mpsi_keeps_spin(grid, b);
+  const mpsi_mask keeps = mpsi_conserves_spin(grid, b);
   const bool turns =
-      run->moments && mpsi_some(keeps) && mpsi_give_spin(grid, dim, spline, b, keeps, &s);
+      run->moments && mpsi_any_lane(keeps) && mpsi_add_rotation(grid, dim, spline, b, keeps, &s);
   if (thin) {
     if (!turns) memset(s.by_weight, 0, sizeof s.by_weight);
-    give_parted(worker, dim, spline, b, &s);
+    add_two_sided(worker, dim, spline, b, &s);
   } else if (turns) {
-    give_rows(dim, spline, b, &s, true, b->w, worker->tile, worker->force);
+    add_stencil(dim, spline, b, &s, true, b->w, worker->tile, worker->force);
   } else {
-    give_rows(dim, spline, b, &s, false, b->w, worker->tile, worker->force);
+    add_stencil(dim, spline, b, &s, false, b->w, worker->tile, worker->force);
   }
 }
 
 /* ---- variants for comparison ----------------------------------------------------------------- */
 
-/* What a particle gives besides mass: momentum m (v + L dx), force by phi and by its gradient. */
-typedef struct one_source {
+/* Contributions of one particle besides mass: momentum m (v + L dx), forces by phi and by its
+ * gradient. */
+typedef struct particle_source {
   mpsi_quad v, L[3];   /* 1, v; 0, h dv/ds */
   mpsi_quad body;      /* 0, force by phi */
   mpsi_quad stress[3]; /* 0, -V sigma by the derivative along each axis */
-} one_source;
+} particle_source;
 
-static one_source source_of(const mpsi_grid *grid, const mpsi_columns *c, const mps_mpm_def *def,
-                            int dim, int64_t p) {
+static particle_source source_of(const mpsi_grid *grid, const mpsi_columns *c,
+                                 const mps_mpm_def *def, int dim, int64_t p) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const double u = c->u ? c->u[p] : 0.0;
-  one_source out = {.v = {1.0}};
+  particle_source out = {.v = {1.0}};
   for (int a = 0; a < dim; a++) {
     out.v[1 + a] = c->v[a][p];
     out.body[1 + a] = c->m[p] * def->gravity[a];
@@ -165,11 +171,12 @@ static one_source source_of(const mpsi_grid *grid, const mpsi_columns *c, const 
   return out;
 }
 
-/* One particle by its shape functions: momentum by them or by the weights. */
+/* Adds one particle to the tiles by its shape functions, its momentum by these or by the
+ * weights. */
 MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
                              int64_t p, const mpsi_cut *b, int lane, const mpsi_shape_values *f) {
   const double m = mpm->p.m[p];
-  const one_source s = source_of(&mpm->grid, &mpm->p, &mpm->def, dim, p);
+  const particle_source s = source_of(&mpm->grid, &mpm->p, &mpm->def, dim, p);
   MPSI_FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;
@@ -192,7 +199,7 @@ MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int 
   }
 }
 
-/* All that is to be done for each particle by itself. */
+/* Work done particle by particle: variants for comparison, and penalty contact. */
 MPSI_APART void scatter_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                              int dim, int spline, bool variant, const mpsi_cut *b) {
   mpsi_support at;
@@ -203,16 +210,17 @@ MPSI_APART void scatter_each(mps_mpm *mpm, const mpsi_cell_block *cells, const m
     mpsi_values_of(&mpm->grid, dim, spline, b, lane, &f);
     if (variant) scatter_one(mpm, worker, dim, spline, p, b, lane, &f);
     for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
-      if (mpsi_holds_some(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
+      if (mpsi_contains_node(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
         mpsi_scatter_contact(mpm, cells, worker, dim, spline, p, b, &at, &f, q);
   }
 }
 
 /* ---- full supports --------------------------------------------------------------------------- */
 
-/* Keeps the fit of particles p, p + 1, ... with a full support: see shape.h. */
-MPSI_INLINE void keep_full(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim, int spline,
-                           int64_t p, int particles) {
+/* Stores the fit of a full support, M^-1 = diag(1, 1/m2, ...), for particles p, p + 1, ...: see
+ * shape.h. */
+MPSI_INLINE void store_full_fits(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
+                                 int spline, int64_t p, int particles) {
   const int64_t slot = cells->first_fit + (p - cells->begin);
   mpsi_kept_fit fit = {.q = {1.0}};
   int count = 0;
@@ -226,7 +234,8 @@ MPSI_INLINE void keep_full(const mpsi_grid *grid, const mpsi_cell_block *cells, 
   }
 }
 
-/* Nodes in bodies cut no support where particles may use all of them. */
+/* Whether the supports of particles [begin, end) are full although some of their nodes lie in
+ * bodies; stores the fits if so. */
 MPSI_INLINE bool find_full(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                            int dim, int spline, const mpsi_places *places, int64_t chunk, int begin,
                            int end) {
@@ -236,7 +245,7 @@ MPSI_INLINE bool find_full(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
     mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, 0, &b);
     if (!mpsi_is_full(mpm, cells, worker, dim, spline, &b)) return false;
   }
-  keep_full(&mpm->grid, cells, dim, spline, chunk + begin, end - begin);
+  store_full_fits(&mpm->grid, cells, dim, spline, chunk + begin, end - begin);
   return true;
 }
 
@@ -246,14 +255,14 @@ MPSI_INLINE void scatter_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const m
                              int dim, int spline, bool thin, mpsi_cut *b) {
   const bool variant = mpm->grid.standard || mpm->grid.by_weight;
   if (!mpm->grid.standard) mpsi_make_fit(mpm, cells, worker, dim, spline, thin, b);
-  for (int l = 0; l < b->lanes && thin; l++) /* for the way back */
+  for (int l = 0; l < b->lanes && thin; l++) /* for the gather */
     mpm->contact.across[b->first + l] =
         (mpsi_parted){(uint64_t)b->across[l], (uint64_t)b->parted[l]};
   if (!variant) scatter(&mpm->grid, &mpm->p, &mpm->run, &mpm->def, worker, dim, spline, thin, b);
   if (variant || b->held & MPSI_PENALTY) scatter_each(mpm, cells, worker, dim, spline, variant, b);
 }
 
-/* Beside thin bodies no support counts as full. */
+/* Adds a segment beside thin bodies, where no support counts as full. */
 MPSI_INLINE bool scatter_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, uint32_t held, const mpsi_places *places,
                               int64_t chunk, int begin, int end) {
@@ -265,6 +274,7 @@ MPSI_INLINE bool scatter_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   return true;
 }
 
+/* Adds a segment beside bodies or sides of the domain; false if its supports are full (loops.h). */
 MPSI_INLINE bool scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, uint32_t held, const mpsi_places *places,
                               int64_t chunk, int begin, int end) {

@@ -1,6 +1,7 @@
-/* g2p.c - nodes to particles, Nakamura (41)-(43), (48), one block of cells at a time, and then,
- * while its particles are in the cache, their law and the speeds that bound the time step, (49),
- * (50). Particles with a cut support: cut_gather.c. Compiled once for each instruction set.
+/* g2p.c - nodes to particles (G2P): velocity, velocity gradient and position of the particles of a
+ * block of cells, Nakamura (41)-(43), (48); then, while the particles are in the cache, their
+ * constitutive law and the speed c + |v| that bounds the time step, (49), (50). Particles with a
+ * cut support: cut_gather.c. Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wall_support.h"
 
@@ -9,7 +10,7 @@ MPSI_INLINE int64_t find_node(const mpsi_grid *grid, const mpsi_cell_block *cell
   return across ? mpsi_node_across(grid, cells, i, j, k) : mpsi_node_under(grid, cells, i, j, k);
 }
 
-/* Copies the nodes under a tile, or those across thin bodies under the second one. */
+/* Copies the nodes under a tile; `across`: their values across thin bodies, for the second tile. */
 MPSI_INLINE void gather_tile(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
                              mpsi_node *tile) {
   const int low = cells->low[0], high = cells->high[0];
@@ -24,13 +25,13 @@ MPSI_INLINE void gather_tile(const mpsi_grid *grid, const mpsi_cell_block *cells
     }
 }
 
-/* What all particles of a stencil take of a row of nodes along y, at each of its places along x and
- * in each of its planes across z: with f the place along y from the second node, the nodes times
- * their B-splines are term[0] + term[1] f + term[2] f^2 + term[3] f^3. Its derivative by f is
- * theirs, and its last coefficient, the third (quadratic: second) one, is their difference of
- * mpsi_excess over spline!. */
+/* Values of the nodes of a stencil as polynomials along y, one for each place along x and plane
+ * across z, which serve all particles of the stencil. With f the distance along y from the second
+ * node (cells), the sum of the nodes' values times B-splines is term[0] + term[1] f + term[2] f^2 +
+ * term[3] f^3; its derivative by f is that of the B-splines. The highest coefficient is the
+ * difference of mpsi_difference over spline! (the factor of mpsi_excess). */
 typedef struct polynomials {
-  mpsi_node term[4][4][4] MPSI_LINE; /* by plane, place along x, power */
+  mpsi_node term[4][4][4] MPSI_LINE; /* [plane][place along x][power] */
   int32_t first;                     /* lowest node of the stencil */
 } polynomials;
 
@@ -58,12 +59,13 @@ MPSI_INLINE void find_polynomials(int dim, int spline, int32_t first, const mpsi
     }
 }
 
-/* Sums over the nodes of a row along y, for one component, and what they grow by. */
+/* Sums over the nodes of a row along y, for one component of the velocity. */
 typedef struct row_sums {
-  mpsi_lanes value, growth; /* by w; by its derivative, or at a wall by w s */
+  mpsi_lanes value, growth; /* weighted by w; by dw/df, or at a wall by w s */
 } row_sums;
 
-/* By the polynomials of the stencil; f: along y from the second node. */
+/* Sums of a row by the polynomials of the stencil; f: distance along y from the second node,
+ * cells. */
 MPSI_INLINE row_sums sum_splines(int spline, const mpsi_node *term, int lane, mpsi_lanes f) {
   const double top = term[spline][lane];
   mpsi_lanes value = top * f + term[spline - 1][lane], growth = top * f + value;
@@ -74,7 +76,7 @@ MPSI_INLINE row_sums sum_splines(int spline, const mpsi_node *term, int lane, mp
   return (row_sums){value * f + term[0][lane], growth};
 }
 
-/* By any weights: at a wall. */
+/* Sums of a row by any weights, at a wall. */
 MPSI_INLINE row_sums sum_weights(int spline, const mpsi_places *places, int k,
                                  const mpsi_node *node, int lane) {
   row_sums out = {{0.0}, {0.0}};
@@ -86,16 +88,18 @@ MPSI_INLINE row_sums sum_weights(int spline, const mpsi_places *places, int k,
   return out;
 }
 
-/* Sums over the nodes across x, for one component at one place along x: by w of y and z, by the
- * growth of y, w s of z, and by the differences of y, of z. */
-typedef struct across {
+/* Sums over the plane of nodes at one place along x, for one component of the velocity: weighted by
+ * w_y w_z; `slope` by the derivatives along y (as row_sums.growth) and z (w s); `rise` by
+ * mpsi_difference along y and z. */
+typedef struct plane_sums {
   mpsi_lanes value, slope[2], rise[2];
-} across;
+} plane_sums;
 
-MPSI_INLINE across sum_across(int dim, int spline, bool at_wall, const mpsi_places *places, int k,
-                              const mpsi_node *node, int lane, const polynomials *rows, int i) {
+MPSI_INLINE plane_sums sum_plane(int dim, int spline, bool at_wall, const mpsi_places *places,
+                                 int k, const mpsi_node *node, int lane, const polynomials *rows,
+                                 int i) {
   const mpsi_lanes f = mpsi_get_lanes(places->t[1] + k) - 1.0;
-  across out = {{0.0}, {{0.0}}, {{0.0}}};
+  plane_sums out = {{0.0}, {{0.0}}, {{0.0}}};
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
     const mpsi_node *term = rows->term[plane][i];
     const row_sums row =
@@ -103,7 +107,7 @@ MPSI_INLINE across sum_across(int dim, int spline, bool at_wall, const mpsi_plac
                 : sum_splines(spline, term, lane, f);
     const double rise = term[spline][lane];
     if (dim == 2) {
-      out = (across){row.value, {row.growth}, {rise + out.rise[0]}};
+      out = (plane_sums){row.value, {row.growth}, {rise + out.rise[0]}};
       continue;
     }
     const mpsi_lanes w = mpsi_get_lanes(places->w[2][plane] + k);
@@ -118,9 +122,9 @@ MPSI_INLINE across sum_across(int dim, int spline, bool at_wall, const mpsi_plac
 
 #define EVERY_AXIS 3
 
-/* Particles from `k` of `places`, all of one stencil (what is behind them comes to nothing),
- * to `out` from `to` on: sums of the rows by their weights across, and at last along x.
- * The derivative along `plain` (-1: none) is the slope. */
+/* Velocities, slopes and derivatives of MPSI_LANES particles from `k` of `places` on, which share a
+ * stencil, to `out` from `to` on: sums over planes, then along x. Lanes beyond the last particle
+ * get zeros. The derivative along the axis `plain` (-1: none) is the slope of the fit. */
 MPSI_INLINE void gather_body(const mps_mpm *mpm, int dim, int spline, bool at_wall,
                              const mpsi_places *places, int k, const mpsi_node *tile,
                              const polynomials *rows, int plain, mpsi_gathered *out, int to) {
@@ -135,8 +139,8 @@ MPSI_INLINE void gather_body(const mps_mpm *mpm, int dim, int spline, bool at_wa
   for (int c = 0; c < dim; c++) {
     mpsi_lanes v = {0.0}, slope[3] = {{0.0}}, rise[3] = {{0.0}};
     MPSI_UNROLL for (int i = 0; i <= spline; i++) {
-      const across sum =
-          sum_across(dim, spline, at_wall, places, k, node, MPSI_VECTOR + c, rows, i);
+      const plane_sums sum =
+          sum_plane(dim, spline, at_wall, places, k, node, MPSI_VECTOR + c, rows, i);
       const mpsi_lanes w = mpsi_get_lanes(places->w[0][i] + k);
       v += w * sum.value;
       slope[0] += mpsi_get_lanes(places->ws[0][i] + k) * sum.value;
@@ -157,7 +161,8 @@ MPSI_INLINE void gather_body(const mps_mpm *mpm, int dim, int spline, bool at_wa
   }
 }
 
-/* The same at the wall across `axis`, where the laws see the slope across it; `n` particles. */
+/* Velocities, slopes and derivatives of the `n` particles from `k` on at the wall across `axis`,
+ * where the derivative across the wall is the slope of the fit. */
 MPSI_INLINE void gather_wall_body(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                   int spline, const mpsi_places *places, int axis, int k, int n,
                                   const mpsi_node *tile, const polynomials *rows,
@@ -179,7 +184,7 @@ MPSI_INLINE void gather_wall_body(const mps_mpm *mpm, const mpsi_cell_block *cel
     }
 }
 
-/* Both as functions, so that each stands once in the code of a block. */
+/* Not inlined: each variant exists once in the code of a block. */
 #define DEFINE_GATHER(dim, spline)                                                                 \
   MPSI_APART void gather_lanes_##dim##_##spline(                                                   \
       const mps_mpm *mpm, const mpsi_places *places, int k, const mpsi_node *tile,                 \
@@ -195,7 +200,7 @@ DEFINE_GATHER(2, 2)
 DEFINE_GATHER(2, 3)
 DEFINE_GATHER(3, 2)
 DEFINE_GATHER(3, 3)
-/* That of a dimension and spline, which are literal. */
+/* The variant for a dimension and a degree of the spline, which are literal. */
 #define OF_KIND(name, dim, spline)                                                                 \
   ((dim) == 2 ? (spline) == 2 ? name##_2_2 : name##_2_3 : (spline) == 2 ? name##_3_2 : name##_3_3)
 
@@ -208,19 +213,20 @@ MPSI_INLINE void store_some(double *to, mpsi_quad v, int n) {
   for (int i = 0; i < n; i++) to[i] = v[i];
 }
 
-/* Velocities and gradients to the particles' columns; the particles move. Returns whether one is
- * then `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils
- * would leave the tile. */
+/* Whether a particle that has moved is `outside` the domain or not finite; or has `left` its block
+ * by more than a cell, so that its stencil would leave the tile. */
 typedef struct moved {
   bool outside, left;
 } moved;
 
-/* Four particles from `at`, of which `n` are there; `from` number k on. */
+/* Writes velocities and gradients of the `n` (at most 4) particles from index `at` on, gathered in
+ * `from` from number k on, and advances their positions, x += dt v. Sets the lanes that are outside
+ * the domain or have left the block. */
 MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
                            int64_t at, int n, const mpsi_gathered *from, int k, mpsi_mask *outside,
                            mpsi_mask *left) {
   const int dim = mpsi_dim_of(geometry);
-  const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
+  const double first = spline == 3 ? 1.0 : 0.5; /* least distance from the lowest node, cells */
   const mpsi_columns *p = &mpm->p;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
@@ -245,7 +251,7 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry,
                        int64_t begin, int n, const mpsi_gathered *from) {
   mpsi_mask outside = {0}, left = {0};
   for (int k = 0; k < n; k += 4) {
-    if (n - k >= 4) /* apart: without questions */
+    if (n - k >= 4) /* four lanes: no test in the loop */
       move_four(mpm, cells, geometry, spline, begin + k, 4, from, k, &outside, &left);
     else
       move_four(mpm, cells, geometry, spline, begin + k, n - k, from, k, &outside, &left);
@@ -254,21 +260,21 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry,
                  (left[0] | left[1] | left[2] | left[3]) != 0};
 }
 
-/* FLIP: what the particles keep of their own velocities. */
-static void add_own(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int n,
-                    const mpsi_gathered *from) {
+/* Adds the FLIP part of the velocities. */
+static void add_flip_part(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int n,
+                          const mpsi_gathered *from) {
   for (int c = 0; c < grid->dim; c++)
     for (int k = 0; k < n; k++) p->v[c][begin + k] += from->own[c][k];
 }
 
-/* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
- * particle that is pressed on it passes it by a little in time. At a mirror it does not. */
-#define BEYOND 0.1 /* cells: a particle so far behind a wall is moved back to it */
+/* Nodes on a wall have its velocity, but the velocity fitted over them need not be zero at the wall
+ * itself: a particle pressed against it slowly passes it. At a mirror it does not. */
+#define BEYOND 0.1 /* cells: particles up to this far behind a wall are moved back to it */
 
-/* Looks after particles [begin, end), one of which is outside the domain: the first that is too far
- * beyond a wall, or not a number; -1 where there is none. Those beyond an open side leave after the
- * step. Nothing is put back on the axis: there
- * the hoop strain has no end. */
+/* For particles [begin, end), some of which are outside the domain: moves those slightly beyond a
+ * wall back to it and marks the block (`gone`) for those beyond an open side, which are removed
+ * after the step. Returns the first that is too far beyond a wall or not finite, or -1. No particle
+ * is moved back to the axis of symmetry, where its hoop strain would be infinite. */
 static int64_t keep_inside(const mpsi_grid *grid, const mpsi_columns *p,
                            const mpsi_boundaries *boundaries, mpsi_cell_block *cells, int64_t begin,
                            int64_t end) {
@@ -295,8 +301,8 @@ static int64_t keep_inside(const mpsi_grid *grid, const mpsi_columns *p,
   return bad;
 }
 
-/* The largest (c + |v|)^2 of some, at most a chunk, with room for three more; false where one is
- * not a number or infinite. */
+/* Largest of `n` values (c + |v|)^2, at most a chunk, in an array with room for three more; false
+ * where one is not finite. */
 MPSI_INLINE bool find_largest(int n, double *square, double *out) {
   mpsi_quad largest = {0.0};
   mpsi_mask good = {-1, -1, -1, -1};
@@ -311,10 +317,11 @@ MPSI_INLINE bool find_largest(int n, double *square, double *out) {
   return (good[0] & good[1] & good[2] & good[3]) != 0;
 }
 
-#define FASTEST 1e100 /* m/s: kinetic energies are numbers */
+#define FASTEST 1e100 /* m/s: limit that keeps kinetic energies finite */
 
-/* c + |v| of particles [begin, begin + n), at most a chunk, as c^2 + v^2 + 2 c |v|: a root less. A
- * NaN, infinity or speed beyond FASTEST, and a negative volume, is a bad particle. */
+/* Largest c + |v| of particles [begin, begin + n), at most a chunk, to cells->speed; from the
+ * square c^2 + v^2 + 2 c |v|, which takes one root less. A particle with a negative volume, or a
+ * speed that is not finite or beyond FASTEST, becomes cells->bad. */
 MPSI_INLINE void find_speed(const mpsi_columns *p, const mps_mpm_def *def, mpsi_cell_block *cells,
                             int dim, int64_t begin, int n, const double *moduli) {
   const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
@@ -346,13 +353,15 @@ MPSI_INLINE void speed_chunk(const mpsi_grid *grid, const mpsi_columns *p, mpsi_
   find_speed(p, def, cells, dim, begin, n, moduli);
 }
 
-/* What the nodes give to particles [begin, begin + n). Those of a stencil are neighbours. */
+/* Velocities and gradients of particles [begin, begin + n), one segment (particles of one stencil)
+ * after the other. */
 MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, int64_t begin, int n, mpsi_gathered *out) {
   const mpsi_node *tile = (const mpsi_node *)worker->tile;
   mpsi_places places;
   polynomials rows;
-  mpsi_find_places(mpm, cells, dim, spline, 5, 5, begin, n, &places); /* along y: polynomials */
+  /* weights of x and z; the sums along y are polynomials */
+  mpsi_find_places(mpm, cells, dim, spline, 5, 5, begin, n, &places);
   mpsi_pad_places(dim, spline, 5, n, &places);
   if (mpm->p.stencil)
     memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
@@ -391,7 +400,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
   if (mpm->energy.counts)
     mpsi_mpm_energy_moved(&mpm->grid, &mpm->p, &mpm->energy, &mpm->def, mpm->run.dt, cells, begin,
                           begin + n);
-  if (mpm->grid.flip > 0.0) add_own(&mpm->grid, &mpm->p, begin, n, &from);
+  if (mpm->grid.flip > 0.0) add_flip_part(&mpm->grid, &mpm->p, begin, n, &from);
   if (m.left) cells->left = true;
   if (m.outside) {
     const int64_t bad = keep_inside(&mpm->grid, &mpm->p, &mpm->boundaries, cells, begin, begin + n);
@@ -399,12 +408,13 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
   }
   if (mpm->energy.counts)
     mpsi_mpm_energy_after(&mpm->grid, &mpm->p, &mpm->energy, cells, begin, begin + n);
-  if (!mpm->p.laws.at_once) return; /* the laws wait for the means */
+  if (!mpm->p.laws.at_once) return; /* the laws need means of volumetric.c or filter.c first */
   mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL, law);
   speed_chunk(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, cells, dim, begin, n);
 }
 
-/* Whether some node under the block keeps momentum that its particles are to have: blocks.h. */
+/* Whether some node under the block retains momentum that is returned to its particles:
+ * MPSI_LEAST_MASS in blocks.h. */
 static bool is_light(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   bool any = false;
   for (int q = 0; q < 1 << grid->dim; q++) {

@@ -1,13 +1,14 @@
-/* least_squares.h - the weighted least-squares fit over the active nodes of cut supports, Nakamura
- * (5), (6): M = sum w P P^T with P = [1, s], phi = w (M^-1 P)_0, its gradient the other rows; by
- * particle in the lanes of a vector. Kept from the scatter of a step to its gather, and to the
- * contact between. SPDX-License-Identifier: BSD-3-Clause */
+/* least_squares.h - weighted least-squares fit of a linear function over the active nodes of cut
+ * supports: moment matrix M = sum w P P^T with P = [1, s], shape functions phi = w (M^-1 P)_0,
+ * their gradient by the other rows, Nakamura (5), (6). Each particle is a lane of a vector. The
+ * scatter of a step stores the fits for its gather and for the contact stage between.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_LEAST_SQUARES_H
 #define MPSI_MPM_LEAST_SQUARES_H
 
 #include "support.h"
 
-/* The upper half of sum w P P^T, P = [1, s]. */
+/* Upper half of the moment matrix M = sum w P P^T, P = [1, s]. */
 MPSI_INLINE void mpsi_moments(int dim, int spline, const mpsi_cut *b, const mpsi_quad *w,
                               mpsi_quad m[4][4]) {
   for (int r = 0; r < 4; r++)
@@ -29,8 +30,8 @@ MPSI_INLINE void mpsi_moments(int dim, int spline, const mpsi_cut *b, const mpsi
     }
 }
 
-/* Inverses of symmetric positive definite matrices, given by their upper halves, by Gauss
- * and Jordan; returns the determinants. */
+/* Inverts symmetric positive definite matrices, given by their upper halves, by Gauss-Jordan
+ * elimination; returns the determinants. */
 MPSI_INLINE mpsi_quad mpsi_invert_lanes(int n, mpsi_quad m[4][4]) {
   mpsi_quad determinant = {1.0, 1.0, 1.0, 1.0};
   for (int i = 0; i < n; i++)
@@ -50,14 +51,14 @@ MPSI_INLINE mpsi_quad mpsi_invert_lanes(int n, mpsi_quad m[4][4]) {
   return determinant;
 }
 
-/* A linear function of s, q[0] + q[1] s_x + ..., at a row of nodes along x, but for what is by s_x.
- */
-MPSI_INLINE mpsi_quad mpsi_across(int dim, const mpsi_cut *b, const mpsi_quad *q, int j, int k) {
+/* Value of the linear function q[0] + q[1] s_x + q[2] s_y + q[3] s_z at s_x = 0 on row (j, k) of
+ * nodes along x. */
+MPSI_INLINE mpsi_quad mpsi_row_value(int dim, const mpsi_cut *b, const mpsi_quad *q, int j, int k) {
   const mpsi_quad sum = q[0] + q[2] * b->s[1][j];
   return dim == 3 ? sum + q[3] * b->s[2][k] : sum;
 }
 
-/* From the inverse of M, whose upper half is that of `upper`. */
+/* Stores M^-1, given by its upper half, in b->q, with the rows of the gradient divided by h. */
 MPSI_INLINE void mpsi_finish_fit(const mpsi_grid *grid, int dim, mpsi_quad upper[4][4],
                                  mpsi_cut *b) {
   for (int r = 0; r <= dim; r++)
@@ -67,7 +68,7 @@ MPSI_INLINE void mpsi_finish_fit(const mpsi_grid *grid, int dim, mpsi_quad upper
     }
 }
 
-/* ---- kept from the scatter to the gather ----------------------------------------------------- */
+/* ---- fits stored by the scatter for the gather ----------------------------------------------- */
 
 MPSI_INLINE void mpsi_keep_fit(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                int spline, const mpsi_cut *b, mpsi_quad q[4][4]) {
@@ -94,7 +95,7 @@ MPSI_INLINE void mpsi_keep_fit(const mpsi_grid *grid, const mpsi_cell_block *cel
   }
 }
 
-/* Takes the fits that mpsi_make_fit has kept. */
+/* Reads the fits that mpsi_make_fit has stored and recomputes the weights of the active nodes. */
 MPSI_INLINE void mpsi_take_fit(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                int spline, mpsi_cut *out) {
   const int n = out->lanes;
@@ -123,7 +124,7 @@ MPSI_INLINE void mpsi_take_fit(const mpsi_grid *grid, const mpsi_cell_block *cel
     }
 }
 
-/* Whether all have been kept in this step. */
+/* Whether the scatter of this step has stored the fits of all particles of the batch. */
 MPSI_INLINE bool mpsi_has_fits(const mpsi_grid *grid, const mpsi_cell_block *cells,
                                const mpsi_cut *b) {
   bool kept = cells->first_fit >= 0 && !cells->thin;
@@ -132,7 +133,8 @@ MPSI_INLINE bool mpsi_has_fits(const mpsi_grid *grid, const mpsi_cell_block *cel
   return kept;
 }
 
-/* The inverse of M in `upper`, then the fit; returns det M / M00^(dim + 1). */
+/* M^-1 for the weights b->w, its upper half in `upper`, and the fit in b->q; returns det M /
+ * M00^(dim + 1), 0 for a singular M. */
 MPSI_INLINE mpsi_quad mpsi_invert_fit(const mpsi_grid *grid, int dim, int spline,
                                       mpsi_quad upper[4][4], mpsi_cut *b) {
   mpsi_moments(dim, spline, b, b->w, upper);
@@ -142,7 +144,7 @@ MPSI_INLINE mpsi_quad mpsi_invert_fit(const mpsi_grid *grid, int dim, int spline
   return determinant / (dim == 3 ? mass * mass * mass * mass : mass * mass * mass);
 }
 
-/* A fit for itself. */
+/* Active nodes and fit of a batch, without storing them; returns det M / M00^(dim + 1). */
 MPSI_INLINE mpsi_quad mpsi_find_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                     const mpsi_worker *worker, int dim, int spline, bool thin,
                                     bool known, mpsi_cut *b) {
@@ -151,7 +153,7 @@ MPSI_INLINE mpsi_quad mpsi_find_fit(const mps_mpm *mpm, const mpsi_cell_block *c
   return mpsi_invert_fit(&mpm->grid, dim, spline, upper, b);
 }
 
-/* The fit of the scatter, kept where the block keeps fits. */
+/* Active nodes and fit of a batch in the scatter, stored if the block stores fits. */
 MPSI_INLINE void mpsi_make_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                const mpsi_worker *worker, int dim, int spline, bool thin,
                                mpsi_cut *b) {
@@ -161,14 +163,14 @@ MPSI_INLINE void mpsi_make_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
   if (!thin && cells->first_fit >= 0) mpsi_keep_fit(&mpm->grid, cells, dim, spline, b, upper);
 }
 
-/* phi of node n, which is (i, j, k). */
+/* Shape function phi of node n = 16 k + 4 j + i. */
 MPSI_INLINE mpsi_quad mpsi_phi(int dim, const mpsi_cut *b, int n, int i, int j, int k) {
-  return b->w[n] * (mpsi_across(dim, b, b->q[0], j, k) + b->q[0][1] * b->s[0][i]);
+  return b->w[n] * (mpsi_row_value(dim, b, b->q[0], j, k) + b->q[0][1] * b->s[0][i]);
 }
 
-/* ---- one of the particles -------------------------------------------------------------------- */
+/* ---- one particle of a batch ----------------------------------------------------------------- */
 
-/* The standard scheme's shape functions: the spline and its derivatives, whatever lies in the
+/* Shape functions of standard MPM: B-splines and their derivatives, not changed by what cuts the
  * support. */
 MPSI_INLINE void mpsi_take_splines(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
                                    int lane, mpsi_shape_values *out) {
@@ -184,6 +186,8 @@ MPSI_INLINE void mpsi_take_splines(const mpsi_grid *grid, int dim, int spline, c
   }
 }
 
+/* Weights, shape functions and gradients (1/m) of the particle in a lane, at all nodes of its
+ * stencil. */
 MPSI_INLINE void mpsi_values_of(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
                                 int lane, mpsi_shape_values *out) {
   out->across = (uint64_t)b->across[lane];
@@ -203,7 +207,7 @@ MPSI_INLINE void mpsi_values_of(const mpsi_grid *grid, int dim, int spline, cons
   }
 }
 
-/* Particle `p` by itself, as mpsi_places of one. */
+/* Batch of the single particle `p`. */
 MPSI_INLINE void mpsi_place_one(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                 int spline, int64_t p, mpsi_cut *out) {
   mpsi_places one;
@@ -211,7 +215,8 @@ MPSI_INLINE void mpsi_place_one(const mps_mpm *mpm, const mpsi_cell_block *cells
   mpsi_place_cut(dim, spline, &one, 0, p, 1, 0, out);
 }
 
-/* The function `body` with dimension and spline as literal arguments; of the solver's kind. */
+/* Calls `body` with the solver's dimension and degree of the spline as literal arguments, for which
+ * the compiler specialises it. */
 #define MPSI_CHOOSE(body, ...)                                                                     \
   (mpm->grid.dim == 2      ? mpm->grid.spline == 2 ? body(mpm, cells, worker, 2, 2, __VA_ARGS__)   \
                                                    : body(mpm, cells, worker, 2, 3, __VA_ARGS__)   \

@@ -1,27 +1,27 @@
-/* p2g.c - particles to nodes, Nakamura (23)-(25), (39), one block of cells at a time, for particles
- * with a full support or at one wall; the others go to cut_scatter.c. Compiled once for each
- * instruction set.
+/* p2g.c - particles to nodes (P2G): mass, momentum and forces of a block of cells, Nakamura
+ * (23)-(25), (39), for particles with a full support or at one wall; those with other cut supports
+ * are in cut_scatter.c. Compiled once for each instruction set.
  *
  * Consecutive particles with the same stencil, a segment, are summed in registers before they are
- * added to the tile: particles are sorted by their stencils, and nearly sorted ones do as well.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * added to the tile. Particles are sorted by stencil; an order that is only nearly sorted gives
+ * shorter segments and the same sums. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall_support.h"
 
-/* What particles give to their nodes, w (part 0 + part 1 s_x + part 2 s_y + part 3 s_z): columns
- * of the four values of a node. */
-typedef double columns[4][4][MPSI_CHUNK] MPSI_LINE; /* part, value, particle */
+/* Contributions of particles to their nodes, w (part 0 + part 1 s_x + part 2 s_y + part 3 s_z), for
+ * each of the four values of a node. */
+typedef double columns[4][4][MPSI_CHUNK] MPSI_LINE; /* [part][value][particle] */
 typedef struct parts {
   columns sum;   /* mass, momentum */
-  columns force; /* 0, force: of split blocks */
+  columns force; /* 0, force; only in split blocks */
 } parts;
 
-/* The same of four particles. */
+/* Contributions of four particles. */
 typedef struct quad_parts {
   mpsi_quad sum[4][4], force[4][4];
 } quad_parts;
 
-/* Of the particles from `at` on. Together `sum` has dt times the force with the momentum; else
- * (split) they are apart. */
+/* Contributions of the four particles from index `at` on. `split`: momentum in `sum`, force in
+ * `force`; else `sum` has momentum + dt force. */
 MPSI_INLINE void find_quad_parts(const mpsi_grid *grid, const mpsi_columns *p,
                                  const mps_mpm_def *def, double step, int geometry, int spline,
                                  bool split, int64_t at, quad_parts *out) {
@@ -31,7 +31,7 @@ MPSI_INLINE void find_quad_parts(const mpsi_grid *grid, const mpsi_columns *p,
   const double dt = split ? 1.0 : step;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
   const mpsi_quad mh = m * h, Vs = V * stiff, u = p->u ? mpsi_get(p->u + at) : zero;
-  out->sum[0][MPSI_MASS] = m + zero; /* of a mere copy gcc makes a slow `rep movs` */
+  out->sum[0][MPSI_MASS] = m + zero; /* gcc compiles a plain copy to a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int to = MPSI_VECTOR + c;
@@ -68,7 +68,8 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
   }
 }
 
-/* The weights along x, the four nodes of a row side by side. */
+/* Transposes the weights along x of four particles: for each the four nodes of a row side by
+ * side. */
 MPSI_INLINE void find_row(int spline, double (*from)[MPSI_COLUMN], int k, double (*to)[4]) {
   mpsi_quad w[4] = {{0.0}};
   MPSI_UNROLL for (int i = 0; i <= spline; i++) w[i] = mpsi_get(from[i] + k);
@@ -83,9 +84,9 @@ MPSI_INLINE void find_rows(int spline, bool slopes, mpsi_places *places, int n, 
   }
 }
 
-/* Particles in the plane: what each gives to its rows along x, w (value + slope s_x). */
+/* Contributions in 2D: of each particle to each of its rows along x, w (value + slope s_x). */
 typedef struct row_parts {
-  double mass[4][MPSI_CHUNK] MPSI_LINE; /* by row; it has no slope */
+  double mass[4][MPSI_CHUNK] MPSI_LINE; /* [row]; constant along a row */
   double value[4][2][MPSI_CHUNK], slope[4][2][MPSI_CHUNK];
 } row_parts;
 
@@ -103,10 +104,10 @@ MPSI_INLINE void find_row_parts(int spline, const mpsi_places *places, int n, co
     }
 }
 
-/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
+/* Adds particles [begin, end) of a chunk, which share a stencil, to the tile in 2D. */
 MPSI_INLINE void add_in_plane(int spline, const mpsi_places *places, const mpsi_rows *rows,
                               int begin, int end, const row_parts *part, mpsi_node *tile) {
-  mpsi_quad sum[4][4] = {{{0.0}}}; /* row, value of a node: the four nodes */
+  mpsi_quad sum[4][4] = {{{0.0}}}; /* [row][value]; lanes: the four nodes of the row */
   for (int k = begin; k < end; k++) {
     const mpsi_quad w = mpsi_get(rows->w[k]), ws = mpsi_get(rows->ws[k]);
     MPSI_UNROLL for (int j = 0; j <= spline; j++) {
@@ -124,12 +125,12 @@ MPSI_INLINE void add_in_plane(int spline, const mpsi_places *places, const mpsi_
   }
 }
 
-/* Particles in space: the four values of a node side by side. */
+/* Contributions in 3D: [particle][part], the four values of a node side by side. */
 typedef struct node_parts {
   double of[MPSI_CHUNK][4][4] MPSI_LINE;
 } node_parts;
 
-/* Those of four particles from `k` on. */
+/* Stores the contributions of the four particles from `k` on. */
 MPSI_INLINE void put_nodes(mpsi_quad from[4][4], int k, node_parts *to) {
   MPSI_UNROLL for (int d = 0; d < 4; d++) {
     mpsi_quad a[4];
@@ -149,11 +150,11 @@ MPSI_INLINE void find_node_parts(int n, columns part, node_parts *out) {
   }
 }
 
-/* The same, by any weights. What they give is spread along x once, and from there to each row by
- * that row's weights alone. */
+/* Adds particles [begin, end) of a chunk, which share a stencil, to the tile in 3D, by any weights:
+ * multiplied by the weights along x once, and then by those of each row. */
 MPSI_INLINE void add_in_space(int spline, const mpsi_places *places, const mpsi_rows *rows,
                               int begin, int end, const node_parts *part, mpsi_node *tile) {
-  mpsi_vec along[MPSI_SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
+  mpsi_vec along[MPSI_SEGMENT][3][MPSI_ROW]; /* factors of w_y w_z, (w s)_y w_z, w_y (w s)_z */
   for (int k = begin; k < end; k++) {
     mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], a[4];
     for (int v = 0; v < MPSI_ROW; v++) {
@@ -175,7 +176,7 @@ MPSI_INLINE void add_in_space(int spline, const mpsi_places *places, const mpsi_
         const mpsi_vec value = wz * along[k - begin][0][v] + wzs * along[k - begin][2][v];
         const mpsi_vec slope = wz * along[k - begin][1][v];
         MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-          sum[j][v] += places->w[1][j][k] * value; /* apart: each is one fused operation */
+          sum[j][v] += places->w[1][j][k] * value; /* apart: each is one fused multiply-add */
           sum[j][v] += places->ws[1][j][k] * slope;
         }
       }
@@ -192,7 +193,7 @@ MPSI_INLINE void add_in_space(int spline, const mpsi_places *places, const mpsi_
 
 /* ---- full supports in space ------------------------------------------------------------------ */
 
-/* The weights of the rows of a stencil, w_j w_k of row 4 k + j. */
+/* Weights w_j w_k of the rows 4 k + j of a stencil. */
 typedef struct row_weights {
   double w[MPSI_STENCIL / 4][MPSI_COLUMN] MPSI_LINE;
 } row_weights;
@@ -205,8 +206,8 @@ MPSI_INLINE void find_row_weights(int spline, const mpsi_places *places, int n, 
     }
 }
 
-/* Parts about the second node of the stencil: to all particles of it, nodes then have the same
- * distances, whole numbers. */
+/* Moves the origin of the linear functions from the particle to the second node of the stencil. The
+ * distances of the nodes are then integers, the same for all particles of the stencil. */
 MPSI_INLINE void shift_parts(const mpsi_places *places, int k, mpsi_quad part[4][4]) {
   MPSI_UNROLL for (int d = 0; d < 3; d++) {
     const mpsi_quad f = mpsi_get(places->t[d] + k) - 1.0;
@@ -229,7 +230,7 @@ MPSI_INLINE void find_full_parts(const mps_mpm *mpm, int spline, bool split,
   }
 }
 
-/* What nodes from number i of a row on are distant from the second. */
+/* Distances (cells) of the nodes from number i of a row on to the second node. */
 MPSI_INLINE mpsi_vec find_distances(int i) {
 #if MPSI_WIDE == 2
   const double a = i - 1.0, b = i;
@@ -239,7 +240,7 @@ MPSI_INLINE mpsi_vec find_distances(int i) {
 #endif
 }
 
-/* Planes of a stencil whose rows are summed at once: as many as the registers hold. */
+/* Planes of a stencil that are summed at once: as many as fit in the registers. */
 #if MPSI_LEVEL == 4
 #define PLANES(spline) ((spline) + 1)
 #elif MPSI_LEVEL == 3
@@ -248,8 +249,9 @@ MPSI_INLINE mpsi_vec find_distances(int i) {
 #define PLANES(spline) 1
 #endif
 
-/* Adds one particle's values, `value` at the second node of the first plane, to the sums of rows.
- */
+/* Adds one particle's contribution to the rows of `planes` planes from number `first` on: `value`
+ * at the second row of the first plane, with the increments by_y from row to row and by_z from
+ * plane to plane. */
 MPSI_INLINE void add_rows(int spline, int first, int planes, const row_weights *weights, int k,
                           mpsi_vec value, mpsi_vec by_y, mpsi_vec by_z, mpsi_vec (*sum)[4]) {
   const mpsi_vec twice = by_y + by_y;
@@ -263,7 +265,7 @@ MPSI_INLINE void add_rows(int spline, int first, int planes, const row_weights *
   }
 }
 
-/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
+/* Adds particles [begin, end) of a chunk, which share a full stencil, to the tile in 3D. */
 MPSI_INLINE void add_full(int spline, const mpsi_places *places, const mpsi_rows *rows,
                           const row_weights *weights, int begin, int end, const node_parts *part,
                           mpsi_node *tile) {
@@ -292,7 +294,7 @@ MPSI_INLINE void add_full(int spline, const mpsi_places *places, const mpsi_rows
 /* ---- full supports in the plane, two rows in a vector ---------------------------------------- */
 
 #if MPSI_WIDE == 2
-/* By component: about the stencil's second nodes, by x, by y. */
+/* Contributions by component: value at the stencil's second nodes, slope along x, slope along y. */
 typedef struct pair_parts {
   double mass[MPSI_CHUNK] MPSI_LINE, of[2][3][MPSI_CHUNK];
 } pair_parts;
@@ -324,7 +326,8 @@ MPSI_INLINE void find_pair_parts(const mps_mpm *mpm, int geometry, int spline, b
 
 MPSI_INLINE mpsi_vec make_pair(double a, double b) { return (mpsi_vec){a, a, a, a, b, b, b, b}; }
 
-/* Adds the sums of two rows, by value, to the nodes from `to` on; `both`: the second is there. */
+/* Adds the sums of two rows ([value], lanes: nodes) to the tile nodes from `to` on; not `both`: the
+ * second row does not exist. */
 MPSI_INLINE void add_pair(int spline, bool both, const mpsi_vec *sum, mpsi_node *to) {
   const mpsi_vec p = MPSI_SHUFFLE_WIDE(sum[0], sum[1], 0, 8, 2, 10, 4, 12, 6, 14);
   const mpsi_vec q = MPSI_SHUFFLE_WIDE(sum[0], sum[1], 1, 9, 3, 11, 5, 13, 7, 15);
@@ -368,17 +371,17 @@ MPSI_INLINE void add_pairs(int spline, const mpsi_places *places, const mpsi_row
 
 /* ---- at walls, and in the plane -------------------------------------------------------------- */
 
-/* The parts as they are added: of any kind. */
-typedef union added_parts {
+/* Contributions in the layout of the loop that adds them. */
+typedef union arranged_parts {
   row_parts row;
   node_parts node;
 #if MPSI_WIDE == 2
   pair_parts pair;
 #endif
-} added_parts;
+} arranged_parts;
 
-MPSI_INLINE void find_added(int dim, int spline, const mpsi_places *places, int n, columns part,
-                            added_parts *out) {
+MPSI_INLINE void arrange_parts(int dim, int spline, const mpsi_places *places, int n, columns part,
+                               arranged_parts *out) {
   if (dim == 2)
     find_row_parts(spline, places, n, part, &out->row);
   else
@@ -386,15 +389,16 @@ MPSI_INLINE void find_added(int dim, int spline, const mpsi_places *places, int 
 }
 
 MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, const mpsi_rows *rows,
-                             int begin, int end, const added_parts *part, mpsi_node *tile) {
+                             int begin, int end, const arranged_parts *part, mpsi_node *tile) {
   if (dim == 2)
     add_in_plane(spline, places, rows, begin, end, &part->row, tile);
   else
     add_in_space(spline, places, rows, begin, end, &part->node, tile);
 }
 
-/* The same where a wall across `axis` cuts the stencil: momentum to the tile, force and excess mass
- * (see mpsi_node) to the tile of forces. Weights of the derivatives differ across and along it. */
+/* Adds particles [begin, end) at the wall across `axis`: mass and momentum to the tile, force and
+ * excess mass (see mpsi_node) to the tile of forces. Derivatives across the wall and along it have
+ * different weights: hence three passes. */
 MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int geometry, int spline,
                              const mpsi_places *places, int axis, int64_t chunk, int begin,
@@ -404,10 +408,10 @@ MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
   mpsi_wall wall;
   parts part;
   columns other = {{{0.0}}};
-  added_parts added;
+  arranged_parts added;
   find_parts(mpm, geometry, spline, true, chunk + begin, n, &part);
   mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_VALUE, &wall);
-  find_added(dim, spline, &wall.places, n, part.sum, &added);
+  arrange_parts(dim, spline, &wall.places, n, part.sum, &added);
   add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->tile);
   for (int k = 0; k < n; k++) {
     other[0][MPSI_EXCESS][k] = part.sum[0][MPSI_MASS][k] * wall.mass[k];
@@ -419,10 +423,10 @@ MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
     memset(part.force[1 + d], 0, bytes);
   }
   mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_SLOPE, &wall);
-  find_added(dim, spline, &wall.places, n, part.force, &added);
+  arrange_parts(dim, spline, &wall.places, n, part.force, &added);
   add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
   mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_ALONG, &wall);
-  find_added(dim, spline, &wall.places, n, other, &added);
+  arrange_parts(dim, spline, &wall.places, n, other, &added);
   add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
 }
 
@@ -433,14 +437,14 @@ MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
         mpsi_put(tile[mpsi_tile_index(i, j, k)], (mpsi_quad){0.0});
 }
 
-/* Adds a tile, and that of forces, to the block of nodes g under its corner q. */
+/* Adds the tile, and the tile of forces, to the block of nodes g under corner q of the tile. */
 MPSI_INLINE void flush(const mpsi_grid *grid, double dt, const mpsi_cell_block *cells, int q,
                        int32_t g, const mpsi_node *tile, const mpsi_node *forces) {
   const mpsi_node_block *nodes = &grid->nodes[g];
   mpsi_node *node = grid->node + mpsi_first_node(grid, g);
   mpsi_node *side = nodes->side >= 0 ? grid->side + mpsi_first_node(grid, nodes->side) : NULL;
   int low[3], high[3];
-  for (int c = 0; c < 3; c++) { /* of the tile */
+  for (int c = 0; c < 3; c++) { /* range of the tile's nodes over that block */
     const int first = q >> c & 1 ? MPSI_SIDE : 0;
     low[c] = cells->low[c] > first ? cells->low[c] : first;
     high[c] = first || cells->high[c] < MPSI_SIDE ? cells->high[c] : MPSI_SIDE;
@@ -467,11 +471,11 @@ MPSI_INLINE void flush(const mpsi_grid *grid, double dt, const mpsi_cell_block *
     }
 }
 
-/* What the particles of a chunk give by full supports, in either dimension. */
+/* Contributions and weights of a chunk of particles with full supports. */
 typedef struct chunk {
   mpsi_rows rows;
-  row_weights weights; /* in space */
-  added_parts sum, force;
+  row_weights weights; /* in 3D */
+  arranged_parts sum, force;
 } chunk;
 
 MPSI_INLINE void find_chunk(const mps_mpm *mpm, int geometry, int spline, bool split,
@@ -488,13 +492,13 @@ MPSI_INLINE void find_chunk(const mps_mpm *mpm, int geometry, int spline, bool s
 #else
   parts part;
   find_parts(mpm, geometry, spline, split, begin, n, &part);
-  find_added(dim, spline, places, n, part.sum, &out->sum);
-  if (split) find_added(dim, spline, places, n, part.force, &out->force);
+  arrange_parts(dim, spline, places, n, part.sum, &out->sum);
+  if (split) arrange_parts(dim, spline, places, n, part.force, &out->force);
 #endif
 }
 
 MPSI_INLINE void add_chunk(int dim, int spline, const mpsi_places *places, const chunk *from,
-                           const added_parts *part, int begin, int end, mpsi_node *tile) {
+                           const arranged_parts *part, int begin, int end, mpsi_node *tile) {
   if (dim == 2)
 #if MPSI_WIDE == 2
     add_pairs(spline, places, &from->rows, begin, end, &part->pair, tile);
@@ -534,8 +538,8 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
   }
 }
 
-/* Prefetches the columns of a chunk. In the plane the few particles of a block end before the
- * processor has seen that it reads on, and the next block of the colour is elsewhere. */
+/* Prefetches the columns of a chunk. In 2D a block has too few particles for the processor to
+ * detect the sequential access, and the next block of the colour is elsewhere in memory. */
 MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end && k < begin + MPSI_CHUNK; k += 8) {
     for (int c = 0; c < 2; c++) __builtin_prefetch(p->x[c] + k), __builtin_prefetch(p->v[c] + k);
@@ -545,8 +549,9 @@ MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t en
   }
 }
 
-/* Nodes across thin bodies. Particles whose supports these do not cut write nothing of it, but need
- * it in the transfer back where some node keeps momentum (give_back of cut_gather.c). */
+/* Clears the second tiles, for values across thin bodies, and the sets of nodes that these separate
+ * from particles. Particles with a full support write no set, but the gather reads it where nodes
+ * retain momentum (return_momentum of cut_gather.c). */
 static void begin_across(const mpsi_contacts *contacts, const mpsi_cell_block *cells,
                          mpsi_worker *worker) {
   const size_t count = (size_t)(cells->end - cells->begin);
@@ -555,7 +560,8 @@ static void begin_across(const mpsi_contacts *contacts, const mpsi_cell_block *c
   memset(contacts->across + cells->begin, 0, count * sizeof *contacts->across);
 }
 
-/* What the particles of a block give, into the tile. */
+/* First half of P2G: sums the contributions of the particles of block b in the worker's tiles. Sets
+ * the loads of penalty contact, stored fits and impulses of mirrors of the block to zero before. */
 MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
@@ -583,6 +589,7 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
   if (cells->mirrors) mpsi_mpm_fold(mpm, cells, worker);
 }
 
+/* Second half of P2G: adds the worker's tiles to the blocks of nodes. */
 MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *from = &mpm->grid.workers[number];

@@ -1,14 +1,17 @@
-/* spin.h - the moment of momentum of particles beside bodies. The nodes give a particle, besides
- * its velocity, the moment m sum phi_i (x_i - x_p) x v_i of their momenta about it. Where the
- * support is full that is m times the spin of the slope L by the second moment of the weights,
+/* spin.h - conservation of angular momentum in the transfer beside bodies. The nodes transfer to a
+ * particle, besides its velocity, the angular momentum m sum phi_i (x_i - x_p) x v_i about its
+ * position. With a full support this is m times the antisymmetric part of the velocity gradient L
+ * times the second moment of the weights,
  *
  *   sum phi_i s_a s_b = m2 h^2 delta_ab,   moment_ab = m m2 h^2 (L_ba - L_ab),
  *
- * and so is what the particle gives back: nothing is lost. Where bodies cut it, the two moments
- * sum phi_i s_a s_b of the step that gathers and the step that scatters differ from that and from
- * each other, and the velocities of the nodes have a moment that no slope has. There the spin of L
- * is set such that the same formula holds, and on the way back to the nodes the particle turns so
- * much faster or slower that it gives just that moment. The laws see the derivatives, not L.
+ * and the particle transfers the same back to the nodes: angular momentum is conserved. In a
+ * support that bodies cut, the second moments sum phi_i s_a s_b of the gather and of the next
+ * scatter differ from m2 h^2 and from each other, and the velocities of the nodes have an angular
+ * momentum that no gradient represents. There the gather sets the antisymmetric part of L such that
+ * the formula above is true, and the scatter adds a rigid rotation to the particle's velocities
+ * such that the nodes get just this angular momentum. Constitutive laws see the derivatives of the
+ * velocity, not L.
  *
  * For files that are compiled for several instruction sets, after loops.h. Lengths in cells;
  * particles in the lanes of a vector. SPDX-License-Identifier: BSD-3-Clause */
@@ -17,40 +20,42 @@
 
 #include "least_squares.h"
 
-#define MPSI_LEAST_INERTIA 0.1 /* of a full support: below, turning would take too large a spin */
+/* Fraction of a full support's inertia below which the rotation would be too fast. */
+#define MPSI_LEAST_INERTIA 0.1
 
-/* Lanes of particles that keep their moment: those with nodes in bodies in their stencil, or parted
- * from them by thin ones; but not in axisymmetry, where particles are rings, nor with penalty
- * contact, which is as published. */
-MPSI_INLINE mpsi_mask mpsi_keeps_spin(const mpsi_grid *grid, const mpsi_cut *b) {
+/* Lanes with conserved angular momentum: particles whose stencil has nodes in bodies with contact
+ * by impulses, or inactive ones behind thin bodies. Not in axisymmetry, where a particle is a ring;
+ * penalty contact stays as published. */
+MPSI_INLINE mpsi_mask mpsi_conserves_spin(const mpsi_grid *grid, const mpsi_cut *b) {
   const mpsi_mask all = {-1, -1, -1, -1};
   if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC || grid->by_weight) return ~all;
   return b->held & MPSI_IMPULSE ? all : b->parted != 0;
 }
 
-MPSI_INLINE bool mpsi_some(mpsi_mask lanes) {
+MPSI_INLINE bool mpsi_any_lane(mpsi_mask lanes) {
   return (lanes[0] | lanes[1] | lanes[2] | lanes[3]) != 0;
 }
 
 /* ---- particles to nodes ---------------------------------------------------------------------- */
 
-/* What the particles give to node i: its share w P_0 = phi of mass and momentum, and force by w:
- * all of these are linear functions of s, 1, s_x, s_y, s_z side by side. */
+/* Contributions of the particles to node i. Each is a linear function of s, given by its
+ * coefficients of 1, s_x, s_y, s_z, times phi_i or w_i; the mass is m phi_i. */
 typedef struct mpsi_source {
   mpsi_quad m;
-  mpsi_quad momentum[3][4];  /* kg m/s, by phi; by component */
-  mpsi_quad turn[3][3];      /* kg m2/s, by the derivative along each axis: see spin.h */
-  mpsi_quad by_weight[3][4]; /* kg m/s, what `turn` gives, by w */
-  mpsi_quad force[3][4];     /* N, by w */
+  mpsi_quad momentum[3][4]; /* kg m/s, times phi_i; by component */
+  mpsi_quad turn[3][3]; /* kg m2/s, times the derivative of phi_i along each axis: angular momentum
+                           that no rotation carries */
+  mpsi_quad by_weight[3][4]; /* kg m/s, times w_i: the momentum turn . grad phi_i */
+  mpsi_quad force[3][4];     /* N, times w_i */
 } mpsi_source;
 
-/* sum phi s s^T. */
+/* Second moments K = sum phi s s^T of the shape functions. */
 MPSI_INLINE void mpsi_find_second(int dim, int spline, const mpsi_cut *b, mpsi_quad K[3][3]) {
   for (int r = 0; r < 3; r++)
     for (int c = 0; c < 3; c++) K[r][c] = (mpsi_quad){0.0};
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
-      const mpsi_quad value = mpsi_across(dim, b, b->q[0], j, k), y = b->s[1][j];
+      const mpsi_quad value = mpsi_row_value(dim, b, b->q[0], j, k), y = b->s[1][j];
       mpsi_quad one = {0.0}, by_x = {0.0};
       for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
         const mpsi_quad x = b->s[0][i], phi = b->w[n] * (value + b->q[0][1] * x);
@@ -65,8 +70,8 @@ MPSI_INLINE void mpsi_find_second(int dim, int spline, const mpsi_cut *b, mpsi_q
     for (int c = 0; c < r; c++) K[r][c] = K[c][r];
 }
 
-/* Which lanes turn without giving by the derivative, and by how much about each axis. `lack` is
- * what is missing of their moments. */
+/* Rotation `spin` about each axis that supplies the missing angular momentum `lack`; returns the
+ * lanes whose inertia is large enough for it. `full`: second moment of a full support. */
 MPSI_INLINE mpsi_mask mpsi_find_spin(int dim, double full, mpsi_quad K[3][3], const mpsi_quad *lack,
                                      mpsi_quad *spin) {
   const mpsi_quad trace = dim == 2 ? K[0][0] + K[1][1] : K[0][0] + K[1][1] + K[2][2];
@@ -85,11 +90,11 @@ MPSI_INLINE mpsi_mask mpsi_find_spin(int dim, double full, mpsi_quad K[3][3], co
   return turns;
 }
 
-/* The rotation by which the particles of `keeps` give their moments; or, where the inertia is too
- * small for that, the momentum s->turn . grad phi besides, which gives nodes the same. Returns
- * whether there are such. */
-MPSI_INLINE bool mpsi_give_spin(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
-                                mpsi_mask keeps, mpsi_source *s) {
+/* Completes the angular momentum of the lanes `keeps`: adds a rotation to their momenta; or, where
+ * the inertia is too small for that, the momentum s->turn . grad phi, which has the same angular
+ * momentum. Returns whether any lane has the latter. */
+MPSI_INLINE bool mpsi_add_rotation(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
+                                   mpsi_mask keeps, mpsi_source *s) {
   const double full = 1.0 / mpsi_inverse_moment(spline);
   mpsi_quad K[3][3], lack[3] = {{0.0}}, spin[3] = {{0.0}};
   mpsi_find_second(dim, spline, b, K);
@@ -114,15 +119,15 @@ MPSI_INLINE bool mpsi_give_spin(const mpsi_grid *grid, int dim, int spline, cons
       s->by_weight[a][c] = (mpsi_quad){0.0};
       for (int d = 0; d < dim; d++) s->by_weight[a][c] += s->turn[a][d] * b->q[1 + d][c];
     }
-  return mpsi_some(keeps & ~turns);
+  return mpsi_any_lane(keeps & ~turns);
 }
 
 /* ---- nodes to particles ---------------------------------------------------------------------- */
 
-/* Sets the spin of the slopes L[component][axis] (1/s) of the particles of `keeps`, by sum phi s v
- * of the nodes, moment[component][axis]. */
-MPSI_INLINE void mpsi_take_spin(int dim, int spline, double inverse, mpsi_mask keeps,
-                                mpsi_quad (*moment)[3], mpsi_quad (*L)[3]) {
+/* Sets the antisymmetric part of the velocity gradients L[component][axis] (1/s) of the lanes
+ * `keeps`, from the angular momentum of the nodes, moment[component][axis] = sum phi s v. */
+MPSI_INLINE void mpsi_set_spin(int dim, int spline, double inverse, mpsi_mask keeps,
+                               mpsi_quad (*moment)[3], mpsi_quad (*L)[3]) {
   const double scale = mpsi_inverse_moment(spline) * inverse;
   for (int a = 0; a < dim; a++)
     for (int b = a + 1; b < dim; b++) {

@@ -1,10 +1,12 @@
-/* support.h - cut supports: which nodes particles take part with whose stencil bodies, edges of the
- * domain or thin bodies cut. Up to four particles of one stencil at once, each a lane of a vector.
+/* support.h - cut supports: the active nodes of particles whose stencil is cut by bodies, sides of
+ * the domain or thin bodies. Particles are processed in batches of up to four that share a stencil,
+ * each in a lane of a vector.
  *
- * Active are, of the stencil's nodes in the domain: those in no body; the corners of the particle's
- * own cell; and corners of other cells that hold particles, if they lie on the particle's side of
- * the surface, n . (x_p - x_i) > 0. Without the corners M can be singular; without the test of the
- * side momentum passes through thin walls. SPDX-License-Identifier: BSD-3-Clause */
+ * Active for a particle are the nodes of its stencil in the domain that lie outside all bodies; the
+ * corners of its own cell; and corners of other cells that hold particles, if they are on the
+ * particle's side of the surface, n . (x_p - x_i) > 0. Without the corners of its own cell the
+ * moment matrix M can be singular; without the test of the side momentum passes through thin walls.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_SUPPORT_H
 #define MPSI_MPM_SUPPORT_H
 
@@ -12,36 +14,38 @@
 
 #define MPSI_HELD (MPSI_IMPULSE | MPSI_PENALTY)
 
-/* Particles of one stencil; lanes without one have the place of the first, and no mass. */
+/* Up to four particles of one stencil. A lane without a particle repeats the position of lane 0,
+ * with no mass. */
 typedef struct mpsi_cut {
-  int at[3];                      /* lowest node in the tile */
-  int lanes;                      /* with a particle, 1 to 4; */
-  int64_t first;                  /* that of lane 0 */
-  uint32_t held;                  /* MPSI_HELD bits of the bodies that hold any of the nodes */
-  mpsi_mask across, parted;       /* bit n: node n takes part with its values across a thin body, or
-                                     not at all (thin_bodies.h) */
-  mpsi_quad s[3][4], along[3][4]; /* cells, to the nodes of each axis; weights */
-  mpsi_quad w[MPSI_STENCIL];      /* of the active nodes, else 0 */
-  mpsi_quad q[4][4];              /* inverse of M; rows from 1 on over h */
+  int at[3];                /* lowest node of the stencil, in the tile */
+  int lanes;                /* lanes with a particle, 1 to 4 */
+  int64_t first;            /* index of the particle in lane 0 */
+  uint32_t held;            /* MPSI_HELD bits of the bodies that contain any node of the stencil */
+  mpsi_mask across, parted; /* bit n: of node n the values across a thin body are used; node n is
+                               inactive (thin_bodies.h) */
+  mpsi_quad s[3][4], along[3][4]; /* (x_i - x_p)/h along each axis; B-spline weights */
+  mpsi_quad w[MPSI_STENCIL];      /* weights of the active nodes, else 0 */
+  mpsi_quad q[4][4];              /* M^-1; the rows from 1 on divided by h */
 } mpsi_cut;
 
-/* All nodes n of a stencil, with their indices i, j, k. */
+/* Loop over the nodes n = 16 k + 4 j + i of a stencil. */
 #define MPSI_FOR_NODES(dim, spline)                                                                \
   for (int k = 0; k <= ((dim) == 3 ? (spline) : 0); k++)                                           \
     for (int j = 0; j <= (spline); j++)                                                            \
       for (int i = 0, n = 16 * k + 4 * j; i <= (spline); i++, n++)
 
-/* ---- nodes under a stencil ------------------------------------------------------------------- */
+/* ---- nodes of a stencil ---------------------------------------------------------------------- */
 
-/* Where in the blocks of nodes the nodes of a stencil are. */
+/* Indices of a stencil's nodes in the blocks of nodes. A ghost beyond a mirror has those of its
+ * image, the node as far inside (mirror.h). */
 typedef struct mpsi_support {
-  int corner[3][4], local[3][4]; /* which block under the tile, and the node's number in it: sums;
-                                    of a ghost beyond a mirror those of its partner (mirror.h) */
-  bool ghost[3][4];              /* which are, along each axis; */
-  bool folds[3][4], any_folds;   /* and which are folded, on the mirror or beyond */
+  int corner[3][4], local[3][4]; /* block under the tile; the node's number in that block */
+  bool ghost[3][4];              /* nodes beyond a mirror, by axis */
+  bool folds[3][4], any_folds;   /* nodes on a mirror or beyond it */
 } mpsi_support;
 
-/* The partner of tile node t along axis c, or -1: t is inside. */
+/* Image of tile node t along axis c in a mirror, itself where it is on the mirror; -1 inside the
+ * domain. */
 MPSI_INLINE int mpsi_partner_of(const mpsi_grid *grid, const mpsi_cell_block *cells, int c, int t) {
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
   if (cells->mirrors >> (2 * c) & 1 && t <= grid->low[c] - first)
@@ -51,7 +55,7 @@ MPSI_INLINE int mpsi_partner_of(const mpsi_grid *grid, const mpsi_cell_block *ce
   return -1;
 }
 
-/* Of the stencil whose lowest node in the tile is `at`. */
+/* Indices of the stencil whose lowest node in the tile is `at`. */
 MPSI_INLINE void mpsi_make_support(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                    const int *at, mpsi_support *out) {
   out->any_folds = false;
@@ -68,7 +72,7 @@ MPSI_INLINE void mpsi_make_support(const mpsi_grid *grid, const mpsi_cell_block 
     }
 }
 
-/* Block of nodes of a node of the stencil, and the node in it. */
+/* Block that holds node (i, j, k) of the stencil, and the node's number in that block. */
 MPSI_INLINE int32_t mpsi_support_block(const mpsi_cell_block *cells, const mpsi_support *s, int i,
                                        int j, int k) {
   return cells->to[s->corner[0][i] | s->corner[1][j] | s->corner[2][k]];
@@ -82,8 +86,8 @@ MPSI_INLINE bool mpsi_is_folded(const mpsi_support *s, int i, int j, int k) {
   return s->any_folds && (s->folds[0][i] || s->folds[1][j] || s->folds[2][k]);
 }
 
-/* The force of a contact on a node that is folded, or its slip; `impulse` times what that
- * changes the walls give. */
+/* Reflects the contact force on a folded node, or its slip, to the node's image; `impulse` times
+ * the change of `vector` is added to the impulse of the walls. */
 static inline void mpsi_reflect_at(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                    const mpsi_cut *b, int i, int j, int k, double *vector,
                                    double impulse) {
@@ -91,8 +95,9 @@ static inline void mpsi_reflect_at(const mps_mpm *mpm, const mpsi_cell_block *ce
   mpsi_mpm_reflect(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, at, vector, impulse);
 }
 
-/* The normal of the next body that holds the node `local` of a block, which is MPSI_REACHED, from
- * its pair *pair on, which begins as nodes->first_pair; NULL behind the last. */
+/* Surface normal, at node `local` of a block, of the next body that contains the node, which is
+ * MPSI_REACHED; NULL after the last. *pair starts as nodes->first_pair and counts the pairs of
+ * block and body. */
 MPSI_INLINE const double *mpsi_next_normal(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                            const mpsi_node_block *nodes, int local, int32_t *pair) {
   if (nodes->near < 0) return NULL;
@@ -105,7 +110,8 @@ MPSI_INLINE const double *mpsi_next_normal(const mpsi_grid *grid, const mpsi_con
 
 /* ---- active nodes ---------------------------------------------------------------------------- */
 
-/* Particles [k, k + n) of a chunk, n at most 4, which begin with particle p. */
+/* Batch of particles [k, k + n) of a chunk, n at most 4; p is the index of the first. Sets
+ * distances and weights by axis, not yet the active nodes. */
 MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_places *places, int k, int64_t p,
                                 int n, uint32_t held, mpsi_cut *out) {
   out->first = p, out->lanes = n, out->held = held;
@@ -118,8 +124,8 @@ MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_places *places, 
   }
 }
 
-/* Which nodes of each axis are corners of the particles' own cells; on the upper side of the domain
- * those of the last cell. */
+/* Lanes for which a node, by axis, is a corner of the particle's own cell; on the upper side of the
+ * domain that is the last cell. */
 MPSI_INLINE void mpsi_find_corners(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                    int spline, const mpsi_cut *b, mpsi_mask (*corner)[4]) {
   for (int c = 0; c < dim; c++) {
@@ -134,8 +140,8 @@ MPSI_INLINE void mpsi_find_corners(const mpsi_grid *grid, const mpsi_cell_block 
   }
 }
 
-/* mpsi_contact_same_side for all bodies that hold the node. A ghost beyond a mirror has the normals
- * of its partner, the other way across the mirror. */
+/* Lanes whose particles lie on the outer side, n . (x_p - x_i) > 0, of all bodies that contain node
+ * (i, j, k). A ghost has the normals of its image with the component across the mirror reversed. */
 MPSI_INLINE mpsi_mask mpsi_same_side(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                      const mpsi_cell_block *cells, int dim, const mpsi_cut *b,
                                      int i, int j, int k) {
@@ -159,7 +165,7 @@ MPSI_INLINE mpsi_mask mpsi_same_side(const mpsi_grid *grid, const mpsi_contacts 
   return same;
 }
 
-/* Whether particles may use a node that lies in a body. */
+/* Lanes for which node (i, j, k) is active although it lies in a body. */
 MPSI_INLINE mpsi_mask mpsi_is_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                      uint8_t state, int dim, const mpsi_cut *b,
                                      mpsi_mask (*corner)[4], int i, int j, int k) {
@@ -170,8 +176,8 @@ MPSI_INLINE mpsi_mask mpsi_is_active(const mps_mpm *mpm, const mpsi_cell_block *
   return active | mpsi_same_side(&mpm->grid, &mpm->contact, cells, dim, b, i, j, k);
 }
 
-/* Which nodes thin bodies part from each particle, as found in this step (`known`) or now. Those of
- * them that it does not use are never corners of its cell. */
+/* Nodes that thin bodies separate from each particle: as stored by the scatter of this step
+ * (`known`), or found here. Corners of the particle's own cell stay active. */
 MPSI_INLINE void mpsi_find_parted(const mpsi_grid *grid, const mpsi_columns *points,
                                   const mpsi_contacts *contacts, const mpsi_cell_block *cells,
                                   int dim, int spline, bool known, mpsi_mask (*corner)[4],
@@ -194,12 +200,13 @@ MPSI_INLINE void mpsi_find_parted(const mpsi_grid *grid, const mpsi_columns *poi
   for (int l = b->lanes; l < 4; l++) b->across[l] = b->across[0], b->parted[l] = b->parted[0];
 }
 
-/* Of node n, in the lanes of `bits`. */
+/* Lanes in whose set `bits` node n is. */
 MPSI_INLINE mpsi_mask mpsi_has_node(mpsi_mask bits, int n) {
   return (bits & (int64_t)(UINT64_C(1) << n)) != 0;
 }
 
-/* Weights of the active nodes; `thin`: thin bodies may part some from particles. */
+/* Weights of the active nodes, 0 at the others. `thin`: nodes may be inactive because of thin
+ * bodies. */
 MPSI_INLINE void mpsi_find_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                   const mpsi_worker *worker, int dim, int spline, bool thin,
                                   bool known, mpsi_cut *b) {
@@ -229,8 +236,9 @@ MPSI_INLINE void mpsi_find_active(const mps_mpm *mpm, const mpsi_cell_block *cel
   }
 }
 
-/* Whether particles of the stencil from tile node `first` may all have a full support: nothing but
- * bodies has any of its nodes, and those are corners of cells with particles. */
+/* Whether the stencil from tile node `first` may be full for its particles: its nodes are in the
+ * domain, not beside thin bodies nor in bodies with penalty contact, and those in other bodies are
+ * corners of cells with particles. */
 MPSI_INLINE bool mpsi_may_be_full(const mpsi_worker *worker, int dim, int spline, int32_t first) {
   const uint32_t in = spline == 3 ? 0x01010101u : 0x00010101u;
   uint32_t other = 0;
@@ -239,14 +247,15 @@ MPSI_INLINE bool mpsi_may_be_full(const mpsi_worker *worker, int dim, int spline
       uint32_t row;
       memcpy(&row, worker->state + first + mpsi_tile_index(0, j, k), sizeof row);
       row &= in * 0xffu;
-      other |= row & ~(in * (MPSI_INSIDE | MPSI_REACHED | MPSI_IMPULSE)); /* outside, ... */
+      other |= row & ~(in * (MPSI_INSIDE | MPSI_REACHED |
+                             MPSI_IMPULSE)); /* outside the domain, thin, penalty */
       other |= (row / MPSI_INSIDE ^ row / MPSI_REACHED) & in;
     }
   return other == 0;
 }
 
-/* Whether all particles of the batch may use all nodes of their stencil, of which mpsi_may_be_full.
- */
+/* Whether all nodes of the stencil are active for all particles of the batch; mpsi_may_be_full is
+ * known to be true. */
 MPSI_INLINE bool mpsi_is_full(const mps_mpm *mpm, const mpsi_cell_block *cells,
                               const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b) {
   mpsi_mask corner[3][4];

@@ -1,34 +1,38 @@
-/* wall_support.h - particles whose support nothing but one wall of the domain cuts, across one
- * axis: sides that are no mirrors (mirror.h). Their fit, Nakamura (5), (6), falls apart into one
- * along each axis: along the others the stencil is full, and across the wall, with the moments M0,
- * M1, M2 of w over its active nodes, phi = w (M2 - M1 s)/D,  dphi/ds = w (M0 s - M1)/D,  D = M0 M2
- * - M1^2. The shape function is phi times the w of the other axes, and its derivative along the
- * wall's axis likewise; derivatives along the others are w s/m2 there times w/M0 here. So the loops
- * for full supports serve, with other weights, where cut_scatter.c would take a fit of all nodes.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* wall_support.h - particles whose support is cut by one side of the domain alone, a side that is
+ * not a mirror (mirror.h). Their least-squares fit, Nakamura (5), (6), is a product of fits along
+ * the axes: along the wall the stencil is full; across it, with the moments M0, M1, M2 of w over
+ * the active nodes,
+ *
+ *   phi = w (M2 - M1 s)/D,  dphi/ds = w (M0 s - M1)/D,  D = M0 M2 - M1^2.
+ *
+ * The shape function is this phi times the w of the other axes, and likewise its derivative across
+ * the wall; its derivative along the wall is w s/m2 of that axis times w/M0 across. So the loops
+ * for full supports are used with these weights, instead of a fit over all nodes as in
+ * cut_scatter.c. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_WALL_H
 #define MPSI_MPM_WALL_H
 
 #include "mpm/base/loops.h"
 
-/* What stands for w and w s across the wall. */
+/* What replaces the weights w and w s across the wall. */
 typedef enum mpsi_wall_part {
-  MPSI_WALL_VALUE, /* phi, phi s: mass and momentum */
-  MPSI_WALL_SLOPE, /* phi, m2 dphi/ds: value, and derivative across the wall */
-  MPSI_WALL_ALONG  /* w/M0, 0: derivatives along it */
+  MPSI_WALL_VALUE, /* phi, phi s: for mass and momentum */
+  MPSI_WALL_SLOPE, /* phi, m2 dphi/ds: for values and derivatives across the wall */
+  MPSI_WALL_ALONG  /* w/M0, 0: for derivatives along the wall */
 } mpsi_wall_part;
 
-/* A segment at a wall: weights as of mpsi_places, from 0 on. */
+/* Weights, as in mpsi_places but from index 0 on, of a segment (particles of one stencil) at a
+ * wall. */
 typedef struct mpsi_wall {
   int axis;
   mpsi_places places;
   mpsi_rows rows;
-  double mass[MPSI_SEGMENT]; /* M0 */
+  double mass[MPSI_SEGMENT]; /* M0 of each particle */
 } mpsi_wall;
 
-/* The axis of the wall, where the stencil from tile node `first`, whose nodes have the states
- * `state` together, is cut by nothing but one; else -1. Momentum by weights goes with
- * cut_scatter.c. */
+/* Axis across the one wall that cuts the stencil from tile node `first`; -1 if anything else cuts
+ * it or if momentum is transferred by weights (cut_scatter.c). `state`: bits of all its nodes
+ * together. */
 MPSI_INLINE int mpsi_wall_axis(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
                                int spline, uint32_t state, int32_t first) {
   int place[3], axis = -1;
@@ -43,14 +47,16 @@ MPSI_INLINE int mpsi_wall_axis(const mpsi_grid *grid, const mpsi_cell_block *cel
   return axis;
 }
 
-/* Whether this particle's node i across the wall is in the domain. */
+/* Whether node i of the stencil, counted along axis c from the tile's node `place`, is in the
+ * domain. */
 MPSI_INLINE bool mpsi_wall_active(const mpsi_grid *grid, const mpsi_cell_block *cells, int c,
                                   int place, int i) {
   const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place + i;
   return node >= grid->use_low[c] && node <= grid->use_high[c];
 }
 
-/* The weights of particle k of the chunk across the wall; returns M0. */
+/* Weights across the wall of a particle t cells from the lowest node of its stencil, of the kind
+ * `part`; returns M0. */
 MPSI_INLINE double mpsi_wall_weights(const mpsi_grid *grid, const mpsi_cell_block *cells,
                                      int spline, int axis, int32_t first, double t,
                                      mpsi_wall_part part, double *value, double *slope) {
@@ -75,7 +81,8 @@ MPSI_INLINE double mpsi_wall_weights(const mpsi_grid *grid, const mpsi_cell_bloc
   return M0;
 }
 
-/* Particles [begin, end) of a chunk, all of one stencil that the wall across `axis` cuts. */
+/* Weights of particles [begin, end) of a chunk, which share a stencil cut by the wall across
+ * `axis`. */
 MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                   int spline, const mpsi_places *from, int begin, int end, int axis,
                                   mpsi_wall_part part, mpsi_wall *out) {
