@@ -280,6 +280,7 @@ static void the_front_leaves_drops_behind(void **state) {
   mps_context *context = NULL;
   mps_particles *set = NULL;
   mps_particles_def def = mps_particles_defaults();
+  const mpm_heap_def measure = {.g = 10.0, .band = 0.2};
   mpm_heap heap;
   app a = {0};
   mpm_model m = {.a = &a};
@@ -292,7 +293,7 @@ static void the_front_leaves_drops_behind(void **state) {
   assert_int_equal(mps_particles_set(set, "volume", 0, 0.02), MPS_OK);
   assert_int_equal(mps_particles_set(set, "velocity", 1, -2.0), MPS_OK);
   m.particles = set;
-  assert_int_equal(mpm_heap_measure(&m, 10.0, 0.2, &heap), MPS_OK);
+  assert_int_equal(mpm_heap_measure(&m, &measure, &heap), MPS_OK);
   mps_assert_near(heap.front, 2.0, 1e-12);
   mps_assert_near(heap.top, 1.0, 1e-12);
   mps_assert_near(heap.height, 21 * 0.02 / 0.2, 1e-12);
@@ -302,7 +303,7 @@ static void the_front_leaves_drops_behind(void **state) {
   mps_assert_near(heap.potential, 3.0 * 10.0 * (200 * 0.5 + 0.05 + 4.0), 1e-9);
   mps_assert_near(heap.volume_ratio, 2.0, 1e-12);
   assert_int_equal(mps_particles_fill_box(set, lump[0], lump[1], NULL), MPS_OK);
-  assert_int_equal(mpm_heap_measure(&m, 10.0, 0.2, &heap), MPS_OK);
+  assert_int_equal(mpm_heap_measure(&m, &measure, &heap), MPS_OK);
   mps_assert_near(heap.front, 6.0, 1e-12);
   mps_particles_destroy(&set);
   mps_context_destroy(&context);
