@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 /* Spacings between ground and body: more than the radius of the weights. */
-#define BEDDING 3.2
+#define BEDDING (FLUME_ROCK_RADIUS + 0.1)
 
 static bool is_whole(double length, double spacing) {
   return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
@@ -197,7 +197,7 @@ static int check_body(const options_program *program, const flume *m) {
           at[0] <= fmax(m->ground[j][0], m->ground[j + 1][0]))
         return refuse(
             program, m, "caisson", at,
-            "must be 3.2 times --spacing above the bed: one that stands on it is a structure");
+            "must be 3.7 times --spacing above the bed: one that stands on it is a structure");
   }
   return check_sides(program, m, "caisson", p->body, true, p->body_point);
 }
