@@ -227,6 +227,10 @@ static int check_shapes(const options_program *program, flume *m) {
   if (code < 0) code = check_structure(program, m);
   if (code >= 0) return code;
   flume_make_ground(m);
+  double lowest = 0.0;
+  for (int k = 0; k < m->grounds; k++) lowest = fmin(lowest, m->ground[k][1]);
+  if (m->outlet * (m->s.depth - lowest) / (m->s.spacing * m->s.spacing) > 2e6)
+    return options_refuse(program, "--spacing gives more than 2 million particles");
   code = check_body(program, m);
   if (code < 0) code = check_rock(program, m);
   if (code < 0) code = check_probes(program, m);
