@@ -26,7 +26,7 @@ static mps_body *make_wedge(double angle) {
 }
 
 /* Mean of F/(rho V^3 t) between two depths of the tip by the impulses there, for the force scatters
- * by half of itself from step to step as rows of particles meet the face; V t is the depth. */
+ * by half of itself from step to step as rows of particles reach the face; V t is the depth. */
 static double enter(const entry *e, double from, double to) {
   tank t = tank_make(context, 2.0 * HALF, DEPTH, L0, NULL, NAN);
   mps_body *body = make_wedge(e->angle);
