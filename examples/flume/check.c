@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 /* Spacings between ground and body: more than the radius of the weights. */
-#define BEDDING 3.2
+#define BEDDING (FLUME_ROCK_RADIUS + 0.1)
 
 static bool is_whole(double length, double spacing) {
   return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
@@ -197,7 +197,7 @@ static int check_body(const options_program *program, const flume *m) {
           at[0] <= fmax(m->ground[j][0], m->ground[j + 1][0]))
         return refuse(
             program, m, "caisson", at,
-            "must be 3.2 times --spacing above the bed: one that stands on it is a structure");
+            "must be 3.7 times --spacing above the bed: one that stands on it is a structure");
   }
   return check_sides(program, m, "caisson", p->body, true, p->body_point);
 }
@@ -227,6 +227,10 @@ static int check_shapes(const options_program *program, flume *m) {
   if (code < 0) code = check_structure(program, m);
   if (code >= 0) return code;
   flume_make_ground(m);
+  double lowest = 0.0;
+  for (int k = 0; k < m->grounds; k++) lowest = fmin(lowest, m->ground[k][1]);
+  if (m->outlet * (m->s.depth - lowest) / (m->s.spacing * m->s.spacing) > 2e6)
+    return options_refuse(program, "--spacing gives more than 2 million particles");
   code = check_body(program, m);
   if (code < 0) code = check_rock(program, m);
   if (code < 0) code = check_probes(program, m);

@@ -56,7 +56,8 @@ static bool is_taken(const flume *m, const double *x) {
   return site(m, near[0], near[1]) && hypot(x[0] - near[0], x[1] - near[1]) < APART * l0;
 }
 
-/* Whole columns and rows between the sides of the rock's box, up to the level of the water. */
+/* Whole rows between bottom and top of the rock's box, up to the level of the water, and as many
+ * whole columns as its water needs. */
 static void fill_rock(filling *f, int number) {
   const flume *m = f->m;
   const flume_rock *r = &m->shape.rock[number];
@@ -67,8 +68,9 @@ static void fill_rock(filling *f, int number) {
       lower[c] = fmin(lower[c], r->corner[k][c]), upper[c] = fmax(upper[c], r->corner[k][c]);
   lower[0] = fmax(lower[0], 0.0), upper[0] = fmin(upper[0], m->outlet);
   lower[1] = fmax(lower[1], m->cells.lower), upper[1] = fmin(upper[1], m->s.depth);
-  for (int c = 0; c < 2; c++) {
-    const double wanted = m->s.spacing / sqrt(r->porosity);
+  const double area = m->s.spacing * m->s.spacing / r->porosity; /* of a particle */
+  for (int c = 1; c >= 0; c--) {
+    const double wanted = c ? sqrt(area) : area / pitch[1];
     cells[c] = (int64_t)fmax(round((upper[c] - lower[c]) / wanted), 0.0);
     pitch[c] = (upper[c] - lower[c]) / (double)(cells[c] > 0 ? cells[c] : 1);
   }

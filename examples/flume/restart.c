@@ -1,9 +1,8 @@
 /* restart.c - a run of mps-flume in a file: the state of the fluid, of the pistons, the samples,
- * the water at the largest force and of the animation, and the shapes of the model file, which must
+ * the water at the largest force and of the animation, and the probes of the model file, which must
  * be those of the run (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,38 +38,16 @@ static void pass_look(resume_bytes *b, flume_look *look) {
   resume_pass(b, look->face, 3 * (size_t)n.faces * sizeof *look->face);
 }
 
-/* A number for each coordinate: a struct may have bytes between its members. */
-static void pass_points(resume_bytes *b, int count, const double (*point)[2], bool *same) {
-  for (int k = 0; k < 2 * count; k++) {
-    double x = point[k / 2][k % 2];
-    resume_pass(b, &x, sizeof x);
-    *same = *same && x == point[k / 2][k % 2];
-  }
-}
-
-static void pass_shapes(flume *m, resume_bytes *b) {
-  const flume_shapes *p = &m->shape;
-  int32_t count[5] = {p->bed, p->structure, p->body, p->rocks, p->probes};
-  const int32_t now[5] = {p->bed, p->structure, p->body, p->rocks, p->probes};
-  resume_pass(b, count, sizeof count);
-  bool same = memcmp(count, now, sizeof now) == 0;
-  if (same) {
-    pass_points(b, p->bed, p->bed_point, &same);
-    pass_points(b, p->structure, p->structure_point, &same);
-    pass_points(b, p->body, p->body_point, &same);
-    pass_points(b, p->probes, p->probe, &same);
-  }
-  for (int k = 0; k < p->rocks && same; k++) {
-    const flume_rock *r = &p->rock[k];
-    const double value[4][2] = {{r->corners, r->porosity},
-                                {r->diameter, r->alpha},
-                                {r->beta, isnan(r->KC) ? 0.0 : r->KC},
-                                {r->gamma, 0.0}};
-    pass_points(b, 4, value, &same);
-    if (same) pass_points(b, r->corners, r->corner, &same);
-  }
+/* Bed, structure, body and rock the library compares with those of its file. */
+static void pass_probes(flume *m, resume_bytes *b) {
+  int64_t count = m->shape.probes;
+  double then[FLUME_PROBES][2] = {{0.0}};
+  memcpy(then, m->shape.probe, sizeof then);
+  resume_pass(b, &count, sizeof count);
+  resume_pass(b, then, sizeof then);
+  const bool same = count == m->shape.probes && memcmp(then, m->shape.probe, sizeof then) == 0;
   if (resume_wrong(b, !same) && !same)
-    snprintf(m->why, sizeof m->why, "%.150s was made with other shapes than those of %.150s",
+    snprintf(m->why, sizeof m->why, "%.150s was made with other probes than those of %.150s",
              m->s.restart, m->s.model ? m->s.model : "the options");
 }
 
@@ -82,7 +59,7 @@ static void pass(void *user, resume_bytes *b) {
   n.samples = m->samples, n.frames = m->frames, n.report = m->report;
   if (m->maker) good = good && mps_absorber_get_memory(m->maker, n.maker) == MPS_OK;
   if (m->end) good = good && mps_absorber_get_memory(m->end, n.end) == MPS_OK;
-  pass_shapes(m, b);
+  pass_probes(m, b);
   resume_pass(b, &n, sizeof n);
   good = good && n.samples >= 0 && n.samples <= m->capacity && n.frames >= 0 &&
          n.frames <= m->frame_room;

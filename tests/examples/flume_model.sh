@@ -47,7 +47,11 @@ if [ -f "$work/waves/checkpoint.h5" ]; then
   sed 's/\[4.4, 0.1\]/[4.5, 0.1]/' "$2/caisson.yaml" >"$work/here.yaml"
   ! "$flume" $short --duration 0.3 --restart "$work/short/checkpoint.h5" --out "$work/g" 2>"$work/log" ||
     fail "a restart with other rock"
-  has "$work/log" "other shapes than those of $work/here.yaml"
+  has "$work/log" "rock0/corner2/x is 4.4"
+  sed 's/\[4.06, 0.1\]/[4.07, 0.1]/' "$2/caisson.yaml" >"$work/here.yaml"
+  ! "$flume" $short --duration 0.3 --restart "$work/short/checkpoint.h5" --out "$work/g" 2>"$work/log" ||
+    fail "a restart with another probe"
+  has "$work/log" "other probes than those of $work/here.yaml"
 fi
 
 # Rock by options: the file's and these agree in the water at rest.
@@ -87,7 +91,7 @@ refuse "line 2: structure 4,0 must be the last corner of the bed" \
   'bed: [[0, 0], [3, 0]]\nstructure: [[4, 0], [5, 0.6], [5.2, 0.6]]\n'
 refuse "structure 3,0.6 lies before the toe" 'structure: [[4, 0], [5, 0.6], [3, 0.6]]\n'
 refuse "--wall must be none" 'structure: [[4, 0], [5, 0.6], [5.2, 0.6]]\nwall: slope\n'
-refuse "caisson 4,0 must be 3.2 times --spacing above the bed" \
+refuse "caisson 4,0 must be 3.7 times --spacing above the bed" \
   'caisson: [[4, 0], [4, 0.6], [4.3, 0.6], [4.3, 0]]\nlength: 8\n'
 refuse "probe 4,0.2 is more than half a --spacing from all faces" 'probe: [[4, 0.2]]\nlength: 8\n'
 refuse "--length is that to the toe" 'structure: [[4, 0], [5, 0.6], [6, 0.6]]\nlength: 8\n'
