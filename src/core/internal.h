@@ -4,7 +4,9 @@
 #ifndef MPSI_INTERNAL_H
 #define MPSI_INTERNAL_H
 
+#ifndef MPSI_LEVEL /* inner loops read no definitions: a new one does not compile them again */
 #include "core/context/released_sizes.h"
+#endif
 
 #include <mps/context.h>
 
