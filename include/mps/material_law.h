@@ -58,7 +58,7 @@ static inline mps_material_block mps_material_block_defaults(void) {
   return block;
 }
 
-/* ---- laws of the caller's own -----------------------------------------------------------------
+/* ---- laws of the caller's own ---------------------------------------------------------------- */
 
 /** A user's law. Called once a block, by several threads at once; reads `gradient` and writes
  *  `stress`, `history` and `flags` (zero on entry). `deformation` and `volume_ratio` are those of

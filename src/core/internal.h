@@ -114,8 +114,7 @@ mps_status mpsi_out_check(mps_context *context, const char *function, const void
 mps_status mpsi_def_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);
 
-/* ---- threads and instruction level
- * --------------------------------------------------------------------------------- */
+/* ---- threads and instruction level ----------------------------------------------------------- */
 
 /* x86-64 level of the inner loops: 1 (plain), 3 or 4. Selects the loops of solvers and laws. */
 int32_t mpsi_context_level(const mps_context *context);
