@@ -232,14 +232,46 @@ static bool note_body(void *user, mps_mpm *mpm) {
   return true;
 }
 
+typedef struct soil {
+  mps_particles *set;
+  mps_material *law;
+  mps_mpm *mpm;
+} soil;
+
+static void make_set(app *a, soil *s) {
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = 0.025;
+  mps_assert_ok(a->context, mps_particles_create(a->context, &def, &s->set));
+}
+
+static void solve(app *a, soil *s, const mps_mpm_def *def) {
+  mps_assert_ok(a->context, mps_particles_set(s->set, "density", 0, 1600.0));
+  mps_assert_ok(a->context, mps_material_create_linear_elastic(a->context, 1e6, 0.3, &s->law));
+  mps_assert_ok(a->context, mps_mpm_create(a->context, s->set, s->law, def, &s->mpm));
+}
+
+static void drop(app *a, soil *s, mps_body **body) {
+  mps_mpm_destroy(&s->mpm);
+  mps_body_destroy(body);
+  mps_material_destroy(&s->law);
+  mps_particles_destroy(&s->set);
+  mps_context_destroy(&a->context);
+}
+
+static const rigid_def solid = {.config = PRECICE_CONFIG,
+                                .name = "Solid",
+                                .mesh = "Solid-Mesh",
+                                .displacement = "Displacement",
+                                .force = "Force",
+                                .count = 4,
+                                .x = corner,
+                                .dt = 1.0};
+
 /* A body of 480 kg falls onto the edge of an elastic block and tilts; free, or by a coupling. */
 static faller run_fall(int repetitions) {
   static const double lo[2] = {0.0, 0.0}, hi[2] = {0.85, 0.5};
   app a;
-  mps_particles *set = NULL;
-  mps_material *law = NULL;
-  mps_mpm *mpm = NULL;
-  mps_particles_def particles = mps_particles_defaults();
+  soil s = {NULL, NULL, NULL};
   mps_mpm_def def = mps_mpm_defaults();
   mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
   mps_body_def body = mps_body_defaults();
@@ -247,15 +279,12 @@ static faller run_fall(int repetitions) {
   participant_result result;
   assert_true(app_start(&a, "test", 1));
   faller f = {.a = &a};
-  particles.spacing = 0.025;
   def.cell = 0.05, def.dt = step_of_soil, def.gravity[1] = -9.81;
   def.lower[0] = def.lower[1] = 0.0;
-  mps_assert_ok(a.context, mps_particles_create(a.context, &particles, &set));
-  mps_assert_ok(a.context, mps_particles_fill_box(set, lo, hi, NULL));
-  mps_assert_ok(a.context, mps_particles_set(set, "density", 0, 1600.0));
-  mps_assert_ok(a.context, mps_material_create_linear_elastic(a.context, 1e6, 0.3, &law));
-  mps_assert_ok(a.context, mps_mpm_create(a.context, set, law, &def, &mpm));
-  mps_assert_ok(a.context, mps_mpm_set_boundary(mpm, 2, &side)); /* the floor is held */
+  make_set(&a, &s);
+  mps_assert_ok(a.context, mps_particles_fill_box(s.set, lo, hi, NULL));
+  solve(&a, &s, &def);
+  mps_assert_ok(a.context, mps_mpm_set_boundary(s.mpm, 2, &side)); /* the floor is held */
   if (repetitions == 0) {
     body.motion = MPS_BODY_MOTION_FREE;
     body.mass = mass, body.inertia[2] = inertia, body.gravity[1] = -9.81;
@@ -263,17 +292,9 @@ static faller run_fall(int repetitions) {
   for (int c = 0; c < 2; c++) body.position[c] = start[c];
   contact.friction = 0.3;
   mps_assert_ok(a.context, mps_body_create_box(a.context, &body, 0.3, 0.2, &f.body));
-  mps_assert_ok(a.context, mps_mpm_add_contact(mpm, f.body, &contact, NULL));
-  const rigid_def coupling = {.config = PRECICE_CONFIG,
-                              .name = "Solid",
-                              .mesh = "Solid-Mesh",
-                              .displacement = "Displacement",
-                              .force = "Force",
-                              .count = 4,
-                              .x = corner,
-                              .dt = 1.0,
-                              .each = note_body,
-                              .user = &f};
+  mps_assert_ok(a.context, mps_mpm_add_contact(s.mpm, f.body, &contact, NULL));
+  rigid_def coupling = solid;
+  coupling.each = note_body, coupling.user = &f;
   mock = (mock_def){.window = step_of_soil,
                     .windows = falls,
                     .repetitions = repetitions,
@@ -281,20 +302,16 @@ static faller run_fall(int repetitions) {
                     .take = receive,
                     .user = &f};
   if (repetitions > 0) {
-    assert_true(rigid_run(&a, mpm, f.body, &coupling, &result));
+    assert_true(rigid_run(&a, s.mpm, f.body, &coupling, &result));
     if (mock_was.wrong) fail_msg("preCICE refuses: %s", mock_was.wrong);
     assert_int_equal(result.windows, falls);
     assert_int_equal(result.repeats, falls * (repetitions - 1));
   } else
     for (int k = 0; k < falls; k++) {
-      mps_assert_ok(a.context, mps_mpm_step(mpm, 1));
-      assert_true(note_body(&f, mpm));
+      mps_assert_ok(a.context, mps_mpm_step(s.mpm, 1));
+      assert_true(note_body(&f, s.mpm));
     }
-  mps_mpm_destroy(&mpm);
-  mps_body_destroy(&f.body);
-  mps_material_destroy(&law);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&a.context);
+  drop(&a, &s, &f.body);
   return f;
 }
 
@@ -335,51 +352,35 @@ static void stretch(void *user, const char *data, double t, int right, int size,
 static void deformed_bodies_are_refused(void **state) {
   (void)state;
   app a;
-  mps_particles *set = NULL;
-  mps_material *law = NULL;
-  mps_mpm *mpm = NULL;
+  soil s = {NULL, NULL, NULL};
   mps_body *box = NULL;
-  mps_particles_def particles = mps_particles_defaults();
   mps_mpm_def def = mps_mpm_defaults();
   mps_body_def body = mps_body_defaults();
   const double at[2] = {0.1, 0.1};
   participant_result result;
   faller unused = {.a = &a};
   assert_true(app_start(&a, "test", 1));
-  particles.spacing = 0.025, def.cell = 0.05;
-  mps_assert_ok(a.context, mps_particles_create(a.context, &particles, &set));
-  mps_assert_ok(a.context, mps_particles_append(set, 1, at));
-  mps_assert_ok(a.context, mps_particles_set(set, "density", 0, 1600.0));
-  mps_assert_ok(a.context, mps_material_create_linear_elastic(a.context, 1e6, 0.3, &law));
-  mps_assert_ok(a.context, mps_mpm_create(a.context, set, law, &def, &mpm));
+  def.cell = 0.05;
+  make_set(&a, &s);
+  mps_assert_ok(a.context, mps_particles_append(s.set, 1, at));
+  solve(&a, &s, &def);
   for (int c = 0; c < 2; c++) body.position[c] = start[c];
   mps_assert_ok(a.context, mps_body_create_box(a.context, &body, 0.3, 0.2, &box));
-  mps_assert_ok(a.context, mps_mpm_add_contact(mpm, box, NULL, NULL));
-  rigid_def coupling = {.config = PRECICE_CONFIG,
-                        .name = "Solid",
-                        .mesh = "Solid-Mesh",
-                        .displacement = "Displacement",
-                        .force = "Force",
-                        .count = 4,
-                        .x = corner,
-                        .dt = 1.0};
+  mps_assert_ok(a.context, mps_mpm_add_contact(s.mpm, box, NULL, NULL));
+  rigid_def coupling = solid;
   mock = (mock_def){.window = step_of_soil,
                     .windows = 3,
                     .repetitions = 1,
                     .give = stretch,
                     .take = receive,
                     .user = &unused};
-  assert_false(rigid_run(&a, mpm, box, &coupling, &result));
+  assert_false(rigid_run(&a, s.mpm, box, &coupling, &result));
   assert_int_equal(result.steps, 0);
   coupling.displacement = "Pressure"; /* a number a vertex */
-  assert_false(rigid_run(&a, mpm, box, &coupling, &result));
+  assert_false(rigid_run(&a, s.mpm, box, &coupling, &result));
   coupling.displacement = "Displacement", coupling.config = "nowhere.xml";
-  assert_false(rigid_run(&a, mpm, box, &coupling, &result));
-  mps_mpm_destroy(&mpm);
-  mps_body_destroy(&box);
-  mps_material_destroy(&law);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&a.context);
+  assert_false(rigid_run(&a, s.mpm, box, &coupling, &result));
+  drop(&a, &s, &box);
 }
 
 int main(void) {
