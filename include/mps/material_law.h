@@ -167,12 +167,21 @@ typedef struct mps_material_umat_def {
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
  *  this library. */
 MPS_API mps_status mps_material_user_def_init(mps_material_user_def *def, size_t size);
+static inline mps_material_user_def mps_material_user_defaults(void) {
+  mps_material_user_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_material_user_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
  *  this library. */
 MPS_API mps_status mps_material_umat_def_init(mps_material_umat_def *def, size_t size);
-
-MPS_MATERIAL_DEFAULTS(user)
-MPS_MATERIAL_DEFAULTS(umat)
+static inline mps_material_umat_def mps_material_umat_defaults(void) {
+  mps_material_umat_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_material_umat_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
 
 /** A law by the caller's function. Names and constants are copied. MPS_ERROR_ARGUMENT: `update`
  *  NULL, a name that is not allowed, or a constant out of range; MPS_ERROR_MEMORY. */
