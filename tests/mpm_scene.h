@@ -117,6 +117,18 @@ static inline mps_view mpm_scene_view(mpm_scene *s, const char *name) {
   return view;
 }
 
+/* The largest difference of stresses over the largest stress of `a`, in the plane. */
+static inline double mpm_scene_stress_difference(mpm_scene *a, mpm_scene *b) {
+  mps_view s[2] = {mpm_scene_view(a, "stress"), mpm_scene_view(b, "stress")};
+  double apart = 0.0, largest = 0.0;
+  for (int64_t k = 0; k < s[0].shape[0]; k++)
+    for (int c = 0; c < 4; c++) {
+      apart = fmax(apart, fabs(*mps_view_f64(&s[0], k, c) - *mps_view_f64(&s[1], k, c)));
+      largest = fmax(largest, fabs(*mps_view_f64(&s[0], k, c)));
+    }
+  return apart / largest;
+}
+
 static inline mps_edit mpm_scene_edit(mpm_scene *s, const char *name) {
   mps_edit edit;
   mps_assert_ok(s->context, mps_particles_edit(s->particles, name, &edit));
@@ -125,6 +137,33 @@ static inline mps_edit mpm_scene_edit(mpm_scene *s, const char *name) {
 
 static inline void mpm_scene_commit(mpm_scene *s, mps_edit *edit) {
   mps_assert_ok(s->context, mps_particles_commit(s->particles, edit));
+}
+
+/* Gives the particles the stress of their weight (`unit`, N/m3) below the surface y = `height` (m),
+ * with K0 of it sideways. */
+static inline void mpm_scene_weigh(mpm_scene *s, double unit, double K0, double height) {
+  mps_assert_ok(s->context, mps_particles_add_field(s->particles, "stress", 0));
+  const mps_view x = mpm_scene_view(s, "position");
+  mps_edit stress = mpm_scene_edit(s, "stress");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double yy = -unit * (height - *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = K0 * yy;
+    *mps_edit_f64(&stress, k, 1) = yy;
+  }
+  mpm_scene_commit(s, &stress);
+}
+
+/* Largest relative error of the vertical stress against that weight, away from the surface, which
+ * has half-filled cells, and from the base. */
+static inline double mpm_scene_weight_error(mpm_scene *s, double unit, double height) {
+  const mps_view x = mpm_scene_view(s, "position"), stress = mpm_scene_view(s, "stress");
+  double worst = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double depth = height - *mps_view_f64(&x, k, 1);
+    if (depth < 0.15 * height || depth > 0.85 * height) continue;
+    worst = fmax(worst, fabs(*mps_view_f64(&stress, k, 1) / (-unit * depth) - 1.0));
+  }
+  return worst;
 }
 
 /* Gives all particles the velocity v0 + L x with its gradient. `L` by rows of dim values. */

@@ -74,8 +74,7 @@ static bool same_options(app *a, const char *here, const char *there) {
   return true;
 }
 
-/* ---- the block
- * ----------------------------------------------------------------------------------- */
+/* ---- the block ------------------------------------------------------------------------------- */
 
 void *restart_pack(const results_so_far *r, int64_t *size) {
   const receivers *q = r->record;

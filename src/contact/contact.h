@@ -1,8 +1,8 @@
 /* contact.h - contact of particles with rigid bodies, whatever the solver: the normal force on a
  * particle, Nakamura (27), (28); Coulomb friction at a node, (31)-(34); which nodes of a grid a
  * particle at a surface may use, Nakamura 5.1; and the force on the body. How a solver finds what
- * is near a body, and keeps sums at its nodes, is its own: WLS-MPM does so in mpm/pairs.c and
- * inside.c. Vectors have three components, of which the last is 0 in 2D.
+ * is near a body, and keeps sums at its nodes, is its own: WLS-MPM does so in mpm/contact/pairs.c
+ * and inside.c. Vectors have three components, of which the last is 0 in 2D.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_CONTACT_H
 #define MPSI_CONTACT_H

@@ -4,7 +4,9 @@
 #ifndef MPSI_INTERNAL_H
 #define MPSI_INTERNAL_H
 
+#ifndef MPSI_LEVEL /* inner loops read no definitions: a new one does not compile them again */
 #include "core/context/released_sizes.h"
+#endif
 
 #include <mps/context.h>
 
@@ -112,8 +114,7 @@ mps_status mpsi_out_check(mps_context *context, const char *function, const void
 mps_status mpsi_def_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);
 
-/* ---- threads and instruction level
- * --------------------------------------------------------------------------------- */
+/* ---- threads and instruction level ----------------------------------------------------------- */
 
 /* x86-64 level of the inner loops: 1 (plain), 3 or 4. Selects the loops of solvers and laws. */
 int32_t mpsi_context_level(const mps_context *context);

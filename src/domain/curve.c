@@ -76,8 +76,8 @@ typedef struct curve_cut {
   const int64_t *key, *weight;
   int32_t ranks;
   int64_t *below; /* [count + 1] weight of the keys before each */
-  int64_t *least; /* by cut: is too low a key */
-  int64_t *most;  /* by cut: is high enough */
+  int64_t *least; /* by cut: the largest key known to be too low */
+  int64_t *most;  /* by cut: the smallest key known to be high enough */
   int64_t *probe; /* [cut][probes] */
   int32_t probes; /* for each cut and reduction */
   int64_t all;    /* weight over all ranks */

@@ -134,7 +134,6 @@ static double wall_discharge(const mps_eurotop_def *d, double n, int32_t *formul
 mps_status mps_eurotop_evaluate_sized(mps_context *context, const mps_eurotop_def *user_def,
                                       mps_eurotop *out, size_t size) {
   if (!context) return MPS_ERROR_ARGUMENT;
-  if (!user_def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   mps_eurotop_def d = defaults;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_eurotop_def, user_def, &d);
   if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);

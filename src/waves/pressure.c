@@ -92,7 +92,6 @@ static void triangle(double top, double bed, double *force, double *moment) {
 mps_status mps_sainflou_evaluate_sized(mps_context *context, const mps_sainflou_def *user_def,
                                        mps_sainflou *out, size_t size) {
   if (!context) return MPS_ERROR_ARGUMENT;
-  if (!user_def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   mps_sainflou_def d = sainflou_defaults;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_sainflou_def, user_def, &d);
   if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
@@ -196,7 +195,6 @@ static void find_pressures(const mps_goda_def *d, mps_goda *r) {
 mps_status mps_goda_evaluate_sized(mps_context *context, const mps_goda_def *user_def,
                                    mps_goda *out, size_t size) {
   if (!context) return MPS_ERROR_ARGUMENT;
-  if (!user_def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   mps_goda_def d = goda_defaults;
   mps_status status = MPSI_DEF_READ(context, __func__, mps_goda_def, user_def, &d);
   if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);

@@ -27,7 +27,7 @@
 #include "waves_private.h"
 
 #define ROW 40   /* evanescent modes of one component with the progressive one of the other */
-#define SQUARE 8 /* and with one another */
+#define SQUARE 8 /* evanescent modes of both with one another */
 
 /* A component of a pair: conjugated for the difference. */
 typedef struct side {
@@ -135,7 +135,8 @@ static void push_narrow(mps_waves *w) {
     }
 }
 
-/* Free wave number of a bin; 0: beyond the range of the dispersion relation, where no wave goes. */
+/* Free wave number of a bin; 0: beyond the range of the dispersion relation: no progressive wave.
+ */
 static double free_number(const mps_waves *w, int64_t bin) {
   const double omega = bin_omega(w, bin), y = omega * omega * w->def.depth / w->def.gravity;
   if (y > MPSI_WAVES_DEEPEST) return 0.0;

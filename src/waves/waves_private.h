@@ -16,7 +16,7 @@ typedef struct mpsi_wave {
   int64_t bin;      /* its frequency is bin/repeat */
   double omega;     /* rad/s */
   double k;         /* rad/m */
-  double far, near; /* transfer of the piston: mps_waves_find_piston */
+  double far, near; /* transfer functions of the piston: mps_waves_find_piston */
   double complex a; /* A, m */
 } mpsi_wave;
 

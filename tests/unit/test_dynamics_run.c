@@ -50,6 +50,13 @@ static mps_context *hooked(hooks *h) {
   return own;
 }
 
+/* What a test has made; `own` NULL: it used the common context. */
+static void drop(mps_dynamics **d, mps_particles **set, mps_context **own) {
+  mps_dynamics_destroy(d);
+  mps_particles_destroy(set);
+  mps_context_destroy(own);
+}
+
 /* A block of 6 x 6 particles, D = 1 m, shaken by smooth initial velocities; damping ratios
  * about h. */
 static mps_dynamics *shaken(mps_context *own, const mps_dynamics_def *def, double h,
@@ -124,9 +131,7 @@ static void a_run_calls_its_callback_at_start_every_and_end(void **state) {
   mps_assert_ok(own, mps_dynamics_run(d, 12.5 * DT, 100, NULL, NULL)); /* three shorter steps */
   assert_int_equal(mps_dynamics_steps(d), 13);
   assert_true(mps_dynamics_time(d) == 12.5 * DT);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  drop(&d, &set, &own);
 }
 
 static void progress_rises_to_one_in_a_hundred_reports(void **state) {
@@ -146,9 +151,7 @@ static void progress_rises_to_one_in_a_hundred_reports(void **state) {
   assert_int_equal(h.progress, 50);
   assert_true(h.rising);
   mps_assert_near(h.fraction, 1.0, 1e-12);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  drop(&d, &set, &own);
 }
 
 static void the_cancel_hook_stops_a_run_which_can_go_on(void **state) {
@@ -169,9 +172,7 @@ static void the_cancel_hook_stops_a_run_which_can_go_on(void **state) {
   assert_memory_equal(x, again, sizeof x);
   mps_assert_ok(own, mps_dynamics_run(d, 50.0 * DT, 1000, NULL, NULL));
   assert_int_equal(mps_dynamics_steps(d), 50);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  drop(&d, &set, &own);
 }
 
 static void the_callback_stops_a_run_with_its_own_status(void **state) {
@@ -186,9 +187,7 @@ static void the_callback_stops_a_run_with_its_own_status(void **state) {
                    "the callback of mps_dynamics_run returned status 5");
   assert_int_equal(mps_context_error(own)->step, 8);
   assert_int_equal(mps_dynamics_steps(d), 8);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  drop(&d, &set, &own);
 }
 
 /* Tries all that a callback must not do. */
@@ -233,8 +232,7 @@ static void a_callback_may_only_read(void **state) {
   mps_assert_fails(context, mps_dynamics_run(d, 10.0 * DT, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
                    "not before the present time");
   mps_assert_ok(context, mps_dynamics_step(d, 1)); /* the guard is open again */
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
 }
 
 static void step_asks_the_cancel_hook(void **state) {
@@ -248,9 +246,7 @@ static void step_asks_the_cancel_hook(void **state) {
   mps_assert_fails(own, mps_dynamics_step(d, 5), MPS_ERROR_CANCELLED, "cancel hook at step 0");
   assert_int_equal(mps_dynamics_steps(d), 0);
   mps_assert_ok(own, mps_dynamics_step(d, 5));
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  drop(&d, &set, &own);
 }
 
 /* The accelerations after a look ahead are those that the next step starts from; all else stays. */
@@ -326,8 +322,7 @@ static void a_bad_state_cannot_be_restarted_from(void **state) {
   mpsi_particles_column(set, "spin", 0)[mps_particles_index(set, 11)] = NAN;
   mps_assert_fails(context, mps_dynamics_restart(d, 0.0), MPS_ERROR_ARGUMENT, "particle 11");
   assert_int_equal(mps_dynamics_steps(d), 4);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
 }
 
 /* A driven, damped body goes back to a snapshot, also after other steps, a divergence and another
@@ -411,8 +406,7 @@ static void a_dt_given_later_survives_new_boundaries(void **state) {
   mps_assert_ok(context, mps_dynamics_set_dt(d, DT));
   mps_assert_ok(context, soil_add_held(d, MPS_DOF_X, 1, &id));
   mps_assert_near(mps_dynamics_dt(d), DT, 0.0);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
 }
 
 static void the_library_chooses_courant_times_the_limit(void **state) {
@@ -445,13 +439,11 @@ static void where_nothing_limits_dt_it_must_be_given(void **state) {
   mps_assert_ok(context, mps_dynamics_set_dt(d, 1.0));
   mps_assert_ok(context, mps_dynamics_step(d, 3));
   mps_assert_near(soil_value(context, set, "displacement", 7, 0), 0.0, 0.0);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
   const mps_dynamics_def euler = def_of(MPS_DYNAMICS_INTEGRATOR_EULER, NAN);
   d = shaken(context, &euler, 0.0, &set);
   mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_ARGUMENT, "Euler without damping");
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
 }
 
 /* ---- warnings and divergence ----------------------------------------------------------------- */
@@ -464,8 +456,7 @@ static void a_step_above_the_limit_is_warned_of(void **state) {
   mps_dynamics_linear_limit limit;
   mps_dynamics *d = shaken(own, NULL, 0.0, &set);
   mps_assert_ok(own, mps_dynamics_find_limit(d, 0.0, &limit));
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
   const double factor[4] = {0.5, 0.999, 1.001, 1.5};
   for (int k = 0; k < 4; k++) {
     const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, factor[k] * limit.dt);
@@ -493,9 +484,7 @@ static void a_step_above_the_limit_is_warned_of(void **state) {
   mps_assert_ok(own, mps_dynamics_step(d, 1));
   assert_int_equal(h.warnings, 1);
   assert_non_null(strstr(h.text, "Euler without damping"));
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  drop(&d, &set, &own);
 }
 
 /* Particles closer than the spacing are stiffer than any lattice. */
@@ -520,9 +509,7 @@ static void the_warning_is_right_off_a_lattice(void **state) {
   assert_true(limit.dt < 0.1 * DT);
   mps_assert_ok(own, mps_dynamics_step(d, 1));
   assert_int_equal(h.warnings, 1);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
-  mps_context_destroy(&own);
+  drop(&d, &set, &own);
 }
 
 static void divergence_names_step_time_and_particle(void **state) {
@@ -580,8 +567,7 @@ static void no_step_is_no_time_step(void **state) {
   mps_assert_ok(context, mps_dynamics_set_dt(d, 1e-12));
   mps_assert_fails(context, mps_dynamics_run(d, 1e6, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
                    "t_end is");
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
 }
 
 static void an_infinite_acceleration_passes_no_limit(void **state) {
@@ -594,8 +580,7 @@ static void an_infinite_acceleration_passes_no_limit(void **state) {
   x[14] = 1e200; /* a = 1e205 or so: its square is not finite either */
   mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
   assert_int_equal(mps_dynamics_step(d, 1), MPS_ERROR_DIVERGED);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
+  drop(&d, &set, NULL);
 }
 
 int main(void) {

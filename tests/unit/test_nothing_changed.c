@@ -45,6 +45,16 @@ static void make_set(scene *s, double spacing, double height) {
   OK(mps_material_create_linear_elastic(s->own, 2e6, 0.25, &s->second));
 }
 
+/* Calls that add and change a load on some particles. */
+#define LOADS(S)                                                                                   \
+  static mps_status S##_load(scene *s, bool add) {                                                 \
+    mps_##S##_load_def def = mps_##S##_load_defaults();                                            \
+    def.ids = some, def.id_count = 3;                                                              \
+    return add ? mps_##S##_add_load(s->S, &def, NULL) : mps_##S##_set_load(s->S, 0, &def);         \
+  }                                                                                                \
+  static mps_status S##_add_load(scene *s) { return S##_load(s, true); }                           \
+  static mps_status S##_set_load(scene *s) { return S##_load(s, false); }
+
 /* ---- WLS-MPM --------------------------------------------------------------------------------- */
 
 static void make_mpm(scene *s) {
@@ -110,16 +120,7 @@ static mps_status mpm_set_side(scene *s) {
   def.kind = MPS_BOUNDARY_FREE;
   return mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_X_UPPER, &def);
 }
-static mps_status mpm_add_load(scene *s) {
-  mps_mpm_load_def def = mps_mpm_load_defaults();
-  def.ids = some, def.id_count = 3;
-  return mps_mpm_add_load(s->mpm, &def, NULL);
-}
-static mps_status mpm_set_load(scene *s) {
-  mps_mpm_load_def def = mps_mpm_load_defaults();
-  def.ids = some, def.id_count = 3;
-  return mps_mpm_set_load(s->mpm, 0, &def);
-}
+LOADS(mpm)
 static mps_status mpm_add_contact(scene *s) {
   return mps_mpm_add_contact(s->mpm, s->other, NULL, NULL);
 }
@@ -290,16 +291,7 @@ static mps_status dynamics_set_boundary(scene *s) {
 static mps_status dynamics_remove_boundary(scene *s) {
   return mps_dynamics_remove_boundary(s->dynamics, s->number);
 }
-static mps_status dynamics_add_load(scene *s) {
-  mps_dynamics_load_def def = mps_dynamics_load_defaults();
-  def.ids = some, def.id_count = 3;
-  return mps_dynamics_add_load(s->dynamics, &def, NULL);
-}
-static mps_status dynamics_set_load(scene *s) {
-  mps_dynamics_load_def def = mps_dynamics_load_defaults();
-  def.ids = some, def.id_count = 3;
-  return mps_dynamics_set_load(s->dynamics, 0, &def);
-}
+LOADS(dynamics)
 static mps_status dynamics_set_material(scene *s) {
   return mps_dynamics_set_material(s->dynamics, s->second, 2, some);
 }
@@ -476,16 +468,7 @@ static mps_status fluid_set_boundary(scene *s) {
   def.point[0] = -0.1, def.normal[0] = 1.0;
   return mps_fluid_set_boundary(s->fluid, 1, &def);
 }
-static mps_status fluid_add_load(scene *s) {
-  mps_fluid_load_def def = mps_fluid_load_defaults();
-  def.ids = some, def.id_count = 3;
-  return mps_fluid_add_load(s->fluid, &def, NULL);
-}
-static mps_status fluid_set_load(scene *s) {
-  mps_fluid_load_def def = mps_fluid_load_defaults();
-  def.ids = some, def.id_count = 3;
-  return mps_fluid_set_load(s->fluid, 0, &def);
-}
+LOADS(fluid)
 static mps_status fluid_set_material(scene *s) {
   return mps_fluid_set_material(s->fluid, s->second, 0, NULL);
 }

@@ -345,8 +345,9 @@ static void a_set_in_use_does_not_grow_and_outlives_its_destruction(void **state
   mps_particles *set = make_five();
   const double lo[2] = {0, 0}, hi[2] = {1, 1}, triangle[] = {0, 0, 1, 0, 0, 1};
   const int64_t order[] = {1, 0, 2, 3, 4};
-  mps_particles *pinned = mpsi_particles_pin(set);
-  assert_ptr_equal(pinned, set);
+  mps_particles *held = set;
+  mpsi_holder solver = {.name = "a solver", .kind = MPSI_USE_FIX}, second = solver;
+  mps_assert_ok(context, mpsi_particles_hold(set, __func__, &solver));
   assert_ptr_equal(mpsi_particles_context(set), context);
   mps_assert_fails(context, mps_particles_append(set, 1, lo), MPS_ERROR_STATE, "held by a solver");
   mps_assert_fails(context, mps_particles_fill_box(set, lo, hi, NULL), MPS_ERROR_STATE, "held by");
@@ -356,16 +357,16 @@ static void a_set_in_use_does_not_grow_and_outlives_its_destruction(void **state
                    "held by");
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 1.0)); /* fields may be added */
   mps_assert_ok(context, mpsi_particles_permute(set, __func__, order));
-  mpsi_particles_pin(set);
+  mps_assert_ok(context, mpsi_particles_hold(set, __func__, &second));
   mps_assert_fails(context, mpsi_particles_permute(set, "mps_x_create", order), MPS_ERROR_STATE,
                    "2 solvers");
   assert_string_equal(mps_context_error(context)->function, "mps_x_create");
-  mpsi_particles_unpin(set);
+  mpsi_particles_release(set, &second);
   mps_particles_destroy(&set);
   assert_null(set);
-  assert_int_equal(mps_particles_count(pinned), 5);
-  mpsi_particles_unpin(pinned); /* the last: a leak here is a finding of the sanitizer */
-  mpsi_particles_unpin(NULL);
+  assert_int_equal(mps_particles_count(held), 5);
+  mpsi_particles_release(held, &solver); /* the last: a leak here is a finding of the sanitizer */
+  mpsi_particles_release(NULL, &solver);
 }
 
 /* All that allocates, once through; stops at the first failure, which must be of memory. */

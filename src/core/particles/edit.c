@@ -31,11 +31,10 @@ mps_status mpsi_particles_check_hold(const mps_particles *p, const char *functio
   const mps_status status = mpsi_particles_ready(p, function);
   if (status != MPS_OK) return status;
   const mpsi_holder *other = holder_in_the_way(p, kind);
-  const bool unnamed = kind == MPSI_USE_MOVE && p->pins > 0;
-  if (!other && !unnamed) return MPS_OK;
+  if (!other) return MPS_OK;
   return mpsi_fail(p->context, function, MPS_ERROR_STATE,
                    "the particle set is held by %s: destroy that first, or use a set of its own",
-                   other ? other->name : "a solver");
+                   other->name);
 }
 
 mps_status mpsi_particles_hold(mps_particles *p, const char *function, mpsi_holder *holder) {

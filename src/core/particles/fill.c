@@ -137,9 +137,11 @@ static void put_sites(mps_particles *p, const mpsi_site_runs *fresh, mpsi_slab *
   }
 }
 
-/* The calling fill: its function, and the arguments of the shape. */
+/* The calling fill: its function, and the arguments of the shape; what chooses its sites. */
 typedef struct filler {
   const char *function, *shape;
+  mps_particles_predicate_fn inside; /* NULL: all */
+  void *user;
 } filler;
 
 /* Adds the particles of `count` free sites, or this rank's part of them. */
@@ -231,10 +233,10 @@ static bool append_row(const mps_particles *p, const site_box *box, int64_t j, i
   return row.begin >= row.end || append_run(p->context, out, row);
 }
 
-/* The sites of a row at which `inside` gives 1. `*complete` is false where memory was refused. */
-static mps_status append_wanted(const mps_particles *p, const char *function, const site_box *box,
-                                int64_t j, int64_t k, mps_particles_predicate_fn inside, void *user,
-                                mpsi_site_runs *out, bool *complete) {
+/* The sites of a row that the caller's predicate chooses. `*complete` is false where memory was
+ * refused. */
+static mps_status append_wanted(const mps_particles *p, filler by, const site_box *box, int64_t j,
+                                int64_t k, mpsi_site_runs *out, bool *complete) {
   for (int64_t i = box->begin[0]; i < box->end[0] && *complete; i++) {
     const double x[3] = {centre(p, 0, i), centre(p, 1, j), centre(p, 2, k)};
     const mpsi_site_run site = {.begin = i, .end = i + 1, .j = j, .k = k};
@@ -242,23 +244,22 @@ static mps_status append_wanted(const mps_particles *p, const char *function, co
     mpsi_guard guard = {0};
     mpsi_guard_enter(&guard, p->context, "the predicate of the fill");
     const mps_status status =
-        mpsi_guard_leave(&guard, p->context, function, inside(user, x, &wanted));
+        mpsi_guard_leave(&guard, p->context, by.function, by.inside(by.user, x, &wanted));
     if (status != MPS_OK) return status;
     if (wanted) *complete = append_run(p->context, out, site);
   }
   return MPS_OK;
 }
 
-/* The runs of a box, restricted to sites at which `inside` gives 1 (NULL: all). */
-static mps_status box_runs(const mps_particles *p, const char *function, const site_box *box,
-                           mps_particles_predicate_fn inside, void *user, mpsi_site_runs *out,
-                           bool *complete) {
+/* The runs of a box, restricted to sites that the predicate chooses, if there is one. */
+static mps_status box_runs(const mps_particles *p, filler by, const site_box *box,
+                           mpsi_site_runs *out, bool *complete) {
   mps_status status = MPS_OK;
   *complete = true;
   for (int64_t k = box->begin[2]; k < box->end[2]; k++)
     for (int64_t j = box->begin[1]; j < box->end[1] && status == MPS_OK && *complete; j++)
-      if (inside)
-        status = append_wanted(p, function, box, j, k, inside, user, out, complete);
+      if (by.inside)
+        status = append_wanted(p, by, box, j, k, out, complete);
       else
         *complete = append_row(p, box, j, k, out);
   return status;
@@ -266,8 +267,7 @@ static mps_status box_runs(const mps_particles *p, const char *function, const s
 
 /* Only if `status`, of the caller's arguments, is MPS_OK. */
 static mps_status fill_box(mps_particles *p, filler by, mps_status status, const double *lo,
-                           const double *hi, mps_particles_predicate_fn inside, void *user,
-                           int64_t *added) {
+                           const double *hi, int64_t *added) {
   const char *function = by.function;
   site_box box;
   mpsi_site_runs runs = {0};
@@ -276,14 +276,14 @@ static mps_status fill_box(mps_particles *p, filler by, mps_status status, const
   if (busy != MPS_OK) return busy;
   if (status == MPS_OK) status = mpsi_particles_check_free(p, function);
   if (status == MPS_OK) status = read_box(p, by, lo, hi, &box);
-  if (status == MPS_OK) status = box_runs(p, function, &box, inside, user, &runs, &complete);
+  if (status == MPS_OK) status = box_runs(p, by, &box, &runs, &complete);
   return put_runs(p, by, status, &runs, complete, added);
 }
 
 mps_status mps_particles_fill_box(mps_particles *particles, const double *lo, const double *hi,
                                   int64_t *added) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  return fill_box(particles, (filler){__func__, "lo, hi"}, MPS_OK, lo, hi, NULL, NULL, added);
+  return fill_box(particles, (filler){__func__, "lo, hi", NULL, NULL}, MPS_OK, lo, hi, added);
 }
 
 mps_status mps_particles_fill_where(mps_particles *particles, const double *lo, const double *hi,
@@ -292,7 +292,7 @@ mps_status mps_particles_fill_where(mps_particles *particles, const double *lo, 
   mps_status status = MPS_OK;
   if (!inside)
     status = mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "inside is NULL");
-  return fill_box(particles, (filler){__func__, "lo, hi"}, status, lo, hi, inside, user, added);
+  return fill_box(particles, (filler){__func__, "lo, hi", inside, user}, status, lo, hi, added);
 }
 
 typedef struct ball {
@@ -337,7 +337,7 @@ mps_status mps_particles_fill_ball(mps_particles *particles, const double *centr
     lo[c] = b.centre[c] - radius;
     hi[c] = b.centre[c] + radius;
   }
-  return fill_box(particles, (filler){__func__, "centre, radius"}, status, lo, hi, in_ball, &b,
+  return fill_box(particles, (filler){__func__, "centre, radius", in_ball, &b}, status, lo, hi,
                   added);
 }
 
@@ -434,5 +434,5 @@ mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices
   status = mpsi_particles_check_free(particles, __func__);
   if (status == MPS_OK) status = check_polygon(particles, __func__, &shape);
   if (status == MPS_OK) status = fill_shape(particles, __func__, &shape, &runs, &complete);
-  return put_runs(particles, (filler){__func__, "xy"}, status, &runs, complete, added);
+  return put_runs(particles, (filler){__func__, "xy", NULL, NULL}, status, &runs, complete, added);
 }

@@ -75,7 +75,7 @@ mps_status mps_particles_create(mps_context *context, const mps_particles_def *d
 }
 
 void mpsi_particles_free_if_unused(mps_particles *p) {
-  if (!p->owned && p->pins == 0 && !p->holders) free_set(p);
+  if (!p->owned && !p->holders) free_set(p);
 }
 
 void mps_particles_destroy(mps_particles **particles) {
@@ -84,17 +84,6 @@ void mps_particles_destroy(mps_particles **particles) {
   *particles = NULL;
   p->owned = false;
   mpsi_particles_free_if_unused(p);
-}
-
-mps_particles *mpsi_particles_pin(mps_particles *particles) {
-  particles->pins++;
-  return particles;
-}
-
-void mpsi_particles_unpin(mps_particles *particles) {
-  if (!particles) return;
-  particles->pins--;
-  mpsi_particles_free_if_unused(particles);
 }
 
 mps_context *mpsi_particles_context(const mps_particles *particles) { return particles->context; }
@@ -180,11 +169,10 @@ static void index_chunk(void *data, int64_t chunk, int32_t worker) {
 
 mps_status mpsi_particles_permute_in(mps_particles *p, const char *function, const int64_t *order,
                                      void *const *scratch, int32_t columns) {
-  bool mover = false;
-  for (const mpsi_holder *h = p->holders; h; h = h->next) mover = mover || h->kind == MPSI_USE_MOVE;
-  if (p->pins + mover > 1)
+  const int32_t solvers = mpsi_particles_solvers(p);
+  if (solvers > 1)
     return mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                     "the set cannot be sorted: it is held by %d solvers", p->pins + mover);
+                     "the set cannot be sorted: it is held by %d solvers", solvers);
   permutation m = {.order = order, .count = p->count};
   m.chunks = (p->count + PERMUTE_CHUNK - 1) / PERMUTE_CHUNK;
   for (int32_t k = 0; k < columns; k++) m.sorted[k] = scratch[k];

@@ -26,9 +26,9 @@ mps_status mpsi_particles_check_ids_or_all(const mps_particles *particles, const
                                            int64_t count, const int64_t *ids);
 
 /* Reorders all fields: new index k holds what index order[k] held. `order` is a permutation of
- * [0, count). Columns stay where they are; the epoch changes. A solver that sorts holds its own
- * pin; when another one holds a pin too, this is MPS_ERROR_STATE. Errors (that one, or memory)
- * are recorded for `function` on the set's context, and nothing has changed. */
+ * [0, count). Columns stay where they are; the epoch changes. Where more than one solver holds the
+ * set this is MPS_ERROR_STATE. Errors (that one, or memory) are recorded for `function` on the
+ * set's context, and nothing has changed. */
 mps_status mpsi_particles_permute(mps_particles *particles, const char *function,
                                   const int64_t *order);
 /* The same without allocating, on the context's threads: `scratch` are 1 to MPSI_PERMUTE_COLUMNS
@@ -140,10 +140,6 @@ mps_status mpsi_particles_ready(const mps_particles *particles, const char *func
 mps_status mpsi_particles_outside_callbacks(const mps_particles *particles, const char *function);
 mps_status mpsi_particles_writable(const mps_particles *particles, const char *function);
 
-/* As MPSI_USE_FIX without a name: no particle can be added or removed. Each pin needs its unpin.
- */
-mps_particles *mpsi_particles_pin(mps_particles *particles); /* returns `particles` */
-void mpsi_particles_unpin(mps_particles *particles);         /* accepts NULL */
 
 /* ---- rollback -------------------------------------------------------------------------------- */
 

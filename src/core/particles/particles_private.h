@@ -52,7 +52,6 @@ struct mps_particles {
                                 moved: their former memory; else NULL */
   int64_t former_capacity;
   mpsi_holder *holders; /* in the order of addition, the last first */
-  int32_t pins;         /* number of holders without a record (pins) */
   bool owned;           /* not yet destroyed by the caller */
   int32_t open_edits;   /* fields that the caller is editing */
   int32_t field_count;
@@ -128,5 +127,12 @@ typedef struct mpsi_slab {
 bool mpsi_slab_cut(const mps_particles *particles, const mpsi_site_runs *sites, mpsi_slab *out);
 /* Of each run in turn: the sites *begin to *end - 1 are in it. */
 void mpsi_slab_next(mpsi_slab *slab, const mpsi_site_run *run, int64_t *begin, int64_t *end);
+
+/* Solvers that hold the set. */
+static inline int32_t mpsi_particles_solvers(const mps_particles *p) {
+  int32_t count = 0;
+  for (const mpsi_holder *h = p->holders; h; h = h->next) count += h->kind != MPSI_USE_LOOK;
+  return count;
+}
 
 #endif

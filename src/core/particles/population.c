@@ -24,7 +24,7 @@ static void clear_tail(mps_particles *p, int64_t count) {
 mps_status mpsi_particles_check_free(const mps_particles *p, const char *function) {
   const mps_status status = mpsi_particles_writable(p, function);
   if (status != MPS_OK) return status;
-  const char *holder = p->pins > 0 ? "a solver" : NULL;
+  const char *holder = NULL;
   for (const mpsi_holder *h = p->holders; h && !holder; h = h->next)
     if (!h->insert && h->kind != MPSI_USE_LOOK) holder = h->name;
   if (!holder) return MPS_OK;
@@ -292,7 +292,7 @@ void mpsi_particles_admit(mps_particles *p, int64_t arriving) {
 
 static mps_status check_holders(const mps_particles *p, const char *function, int64_t count,
                                 const int64_t *ids) {
-  const char *holder = p->pins > 0 ? "a solver" : NULL;
+  const char *holder = NULL;
   for (const mpsi_holder *h = p->holders; h && !holder; h = h->next)
     if (!h->remove && h->kind != MPSI_USE_LOOK) holder = h->name;
   if (holder)

@@ -162,9 +162,10 @@ static mps_status check_particles(const mps_particles *p, const char *function,
   mps_status status = next ? check_ids(p, function, from, id, *(const int64_t *)next->data)
                            : check_same(p, function, from, id);
   if (status == MPS_OK && next) status = check_sites(p, function, from);
-  if (status == MPS_OK && p->pins > 1 && !same_order(p, from, id))
-    status = mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                       "the set cannot be sorted: it is held by %d solvers", p->pins);
+  if (status == MPS_OK && mpsi_particles_solvers(p) > 1 && !same_order(p, from, id))
+    status =
+        mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                  "the set cannot be sorted: it is held by %d solvers", mpsi_particles_solvers(p));
   return status;
 }
 

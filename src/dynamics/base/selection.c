@@ -142,6 +142,23 @@ mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mp
   return status;
 }
 
+mps_status mpsi_dynamics_reserve_slot(mps_dynamics *dynamics, const char *function, int32_t slot,
+                                      void **slots, int32_t *room) {
+  const int32_t wanted = slot + 8;
+  if (slot < *room) return MPS_OK;
+  if (!mpsi_grow(dynamics->context, slots, *room, wanted, sizeof(void *)))
+    return mpsi_fail_memory(dynamics->context, function, (size_t)wanted * sizeof(void *));
+  *room = wanted;
+  return MPS_OK;
+}
+
+mps_status mpsi_dynamics_check_there(const mps_dynamics *dynamics, const char *function,
+                                     const char *what, bool there, int32_t number) {
+  if (there) return MPS_OK;
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT, "there is no %s number %d",
+                   what, number);
+}
+
 void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part) {
   bool sorted = true;
   part->count = 0;

@@ -45,6 +45,12 @@ mps_status mpsi_dynamics_agree_definition(mps_dynamics *dynamics, const char *fu
 /* Collective, as all definitions of boundaries and loads; `status` is that of this rank so far. */
 mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mps_status status,
                                 const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out);
+/* Room for `slot` in an array of pointers to boundaries or loads, of which there are `room`. */
+mps_status mpsi_dynamics_reserve_slot(mps_dynamics *dynamics, const char *function, int32_t slot,
+                                      void **slots, int32_t *room);
+/* MPS_ERROR_ARGUMENT where `what` (boundary, load) of a number is not there. */
+mps_status mpsi_dynamics_check_there(const mps_dynamics *dynamics, const char *function,
+                                     const char *what, bool there, int32_t number);
 /* Finds its particles in the present set. */
 void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part);
 void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part);

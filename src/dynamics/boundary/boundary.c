@@ -75,8 +75,6 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
                        mpsi_dynamics_boundary **out) {
   mps_dynamics_boundary_def def = boundary_defaults;
   *out = NULL;
-  if (status == MPS_OK && !user_def)
-    status = mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   if (status == MPS_OK)
     status = MPSI_DEF_READ(dynamics->context, function, mps_dynamics_boundary_def, user_def, &def);
   if (status == MPS_OK) status = check_def(dynamics, function, &def);
@@ -359,28 +357,21 @@ static mps_status exchange(mps_dynamics *dynamics, const char *function, int32_t
   return MPS_OK;
 }
 
-static mps_status check_number(mps_dynamics *dynamics, const char *function, int32_t number) {
-  if (number >= 0 && number < dynamics->boundary_room && dynamics->boundary[number]) return MPS_OK;
-  return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
-                   "there is no boundary number %d", number);
+static mps_status check_number(const mps_dynamics *dynamics, const char *function, int32_t number) {
+  const bool there = number >= 0 && number < dynamics->boundary_room && dynamics->boundary[number];
+  return mpsi_dynamics_check_there(dynamics, function, "boundary", there, number);
 }
 
 mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics, const mps_dynamics_boundary_def *def,
                                      int32_t *number) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  mps_context *context = dynamics->context;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
   int32_t at = 0;
   while (at < dynamics->boundary_room && dynamics->boundary[at]) at++;
-  if (at == dynamics->boundary_room) {
-    void *array = dynamics->boundary;
-    if (mpsi_grow(context, &array, at, at + 8, sizeof *dynamics->boundary))
-      dynamics->boundary_room = at + 8;
-    else
-      status = mpsi_fail_memory(context, __func__, (size_t)(at + 8) * sizeof *dynamics->boundary);
-    dynamics->boundary = array;
-  }
+  void *slots = dynamics->boundary;
+  status = mpsi_dynamics_reserve_slot(dynamics, __func__, at, &slots, &dynamics->boundary_room);
+  dynamics->boundary = slots;
   mpsi_dynamics_boundary *boundary = NULL;
   status = make(dynamics, __func__, status, at, def, &boundary);
   if (status == MPS_OK) status = exchange(dynamics, __func__, at, &boundary);
@@ -424,11 +415,7 @@ mps_status mps_dynamics_remove_boundary(mps_dynamics *dynamics, int32_t number) 
 mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics, int32_t number,
                                            mps_reaction *out, size_t size) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  const bool there = number >= 0 && number < dynamics->boundary_room && dynamics->boundary[number];
-  mps_status status = MPS_OK;
-  if (!there)
-    status = mpsi_fail(dynamics->context, "mps_dynamics_get_reaction", MPS_ERROR_ARGUMENT,
-                       "there is no boundary number %d", number);
+  mps_status status = check_number(dynamics, "mps_dynamics_get_reaction", number);
   status = mpsi_domain_agree_same(dynamics->domain, "mps_dynamics_get_reaction", status, "number",
                                   number);
   if (status != MPS_OK) return status;

@@ -212,8 +212,7 @@ void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool outp
   }
 }
 
-/* ---- held and driven
- * ----------------------------------------------------------------------------- */
+/* ---- held and driven ------------------------------------------------------------------------- */
 
 void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output) {
   const mpsi_dynamics_state *s = &dynamics->state;

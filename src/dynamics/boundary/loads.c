@@ -23,8 +23,7 @@ mps_status mps_dynamics_load_def_init(mps_dynamics_load_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_dynamics_load_def, def, size, &load_defaults);
 }
 
-/* ---- definitions
- * ---------------------------------------------------------------------------------- */
+/* ---- definitions ----------------------------------------------------------------------------- */
 
 static mps_status check_def(mps_dynamics *dynamics, const char *function,
                             const mps_dynamics_load_def *def) {
@@ -60,8 +59,6 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
                        mpsi_dynamics_load **out) {
   mps_dynamics_load_def def = load_defaults;
   *out = NULL;
-  if (status == MPS_OK && !user_def)
-    status = mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   if (status == MPS_OK)
     status = MPSI_DEF_READ(dynamics->context, function, mps_dynamics_load_def, user_def, &def);
   if (status == MPS_OK) status = check_def(dynamics, function, &def);
@@ -96,10 +93,9 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
   return status;
 }
 
-static mps_status check_number(mps_dynamics *dynamics, const char *function, int32_t number) {
-  if (number >= 0 && number < dynamics->load_room && dynamics->load[number]) return MPS_OK;
-  return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT, "there is no load number %d",
-                   number);
+static mps_status check_number(const mps_dynamics *dynamics, const char *function, int32_t number) {
+  const bool there = number >= 0 && number < dynamics->load_room && dynamics->load[number];
+  return mpsi_dynamics_check_there(dynamics, function, "load", there, number);
 }
 
 /* Columns for the sum of all loads, at the first one. */
@@ -117,19 +113,13 @@ static mps_status reserve_forces(mps_dynamics *dynamics, const char *function) {
 mps_status mps_dynamics_add_load(mps_dynamics *dynamics, const mps_dynamics_load_def *def,
                                  int32_t *number) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  mps_context *context = dynamics->context;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
   int32_t at = 0;
   while (at < dynamics->load_room && dynamics->load[at]) at++;
-  if (at == dynamics->load_room) {
-    void *array = dynamics->load;
-    if (mpsi_grow(context, &array, at, at + 8, sizeof *dynamics->load))
-      dynamics->load_room = at + 8;
-    else
-      status = mpsi_fail_memory(context, __func__, (size_t)(at + 8) * sizeof *dynamics->load);
-    dynamics->load = array;
-  }
+  void *slots = dynamics->load;
+  status = mpsi_dynamics_reserve_slot(dynamics, __func__, at, &slots, &dynamics->load_room);
+  dynamics->load = slots;
   if (status == MPS_OK) status = reserve_forces(dynamics, __func__);
   mpsi_dynamics_load *load = NULL;
   status = make(dynamics, __func__, status, at, def, &load);
@@ -172,8 +162,7 @@ void mpsi_dynamics_free_loads(mps_dynamics *dynamics) {
   mpsi_free(dynamics->context, dynamics->force[0]);
 }
 
-/* ---- in a step
- * ------------------------------------------------------------------------------------ */
+/* ---- in a step ------------------------------------------------------------------------------- */
 
 mps_status mpsi_dynamics_evaluate_loads(mps_dynamics *dynamics, const char *function, double now) {
   for (int32_t k = 0; k < dynamics->load_room; k++) {

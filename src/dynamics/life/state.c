@@ -89,8 +89,7 @@ static const mpsi_state_table bounds_table = {MPSI_STATE_F64, BOUND, count_bound
 static const mpsi_state_table dashpots_table = {MPSI_STATE_F64, 1,    count_dashpots,
                                                 get_dashpots,   NULL, set_dashpots};
 
-/* ---- the list
- * ------------------------------------------------------------------------------------ */
+/* ---- the list -------------------------------------------------------------------------------- */
 
 static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
   const mps_dynamics_def *def = &dynamics->def;
@@ -197,8 +196,7 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
                          .steps = dynamics->steps};
 }
 
-/* ---- what the caller does
- * ------------------------------------------------------------------------ */
+/* ---- what the caller does -------------------------------------------------------------------- */
 
 /* A state is kept between steps only, not of a run that has diverged, and of a set without an open
  * edit, on all ranks. The guard is checked on each rank alone, since a callback may run on one
@@ -270,8 +268,7 @@ mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_ch
   return agree_on_restore(dynamics, __func__, mpsi_checkpoint_restore(&of, __func__, path, info));
 }
 
-/* ---- the step to come
- * ---------------------------------------------------------------------------- */
+/* ---- the step to come ------------------------------------------------------------------------ */
 
 /* After a run that has diverged, accelerations may not be finite. */
 static mps_status check_kept(mps_dynamics *dynamics, const char *function, const double *kept) {

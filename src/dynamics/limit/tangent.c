@@ -21,27 +21,34 @@ typedef struct sums {
   double fx[MPSI_DYN_BLOCK], fy[MPSI_DYN_BLOCK], moment[MPSI_DYN_BLOCK], div[MPSI_DYN_BLOCK];
 } sums;
 
-/* One pair of the first pass; i and j are added to where ti and tj are not negative. */
-static inline void shear_pair(const tangent *t, int64_t i, int64_t j, int64_t ti, int64_t tj,
-                              double r0x, double r0y, double kf, double kc, sums *s) {
-  const int64_t n = t->dynamics->count + t->dynamics->ghosts;
+/* A pair of particles; i and j are added to at ti and tj of the block, where these are >= 0. */
+typedef struct pair {
+  int64_t i, j, ti, tj;
+  double r0x, r0y; /* m, from i to j at the start */
+  double kf, kc;   /* factors of force and divergence */
+} pair;
+
+/* One pair of the first pass. */
+static inline void shear_pair(const tangent *t, pair q, sums *s) {
+  const int64_t n = t->dynamics->count + t->dynamics->ghosts, i = q.i, j = q.j;
   const double *x = t->x, *mu = t->dynamics->state.mu;
   const double dx = x[j] - x[i], dy = x[n + j] - x[n + i];
   const double mean = 0.5 * (x[2 * n + i] + x[2 * n + j]);
   const double weight = t->weight ? 0.5 * (t->weight[i] + t->weight[j]) : 1.0;
-  const double stiff = weight * kf * (mu[i] + mu[j]);
-  const double fx = stiff * (dx + mean * r0y), fy = stiff * (dy - mean * r0x);
-  const double moment = 0.5 * (r0x * fy - r0y * fx);
-  const double div = kc * (r0x * dx + r0y * dy) / sqrt(r0x * r0x + r0y * r0y);
-  if (ti >= 0) s->fx[ti] += fx, s->fy[ti] += fy, s->moment[ti] += moment, s->div[ti] += div;
-  if (tj >= 0) s->fx[tj] -= fx, s->fy[tj] -= fy, s->moment[tj] += moment, s->div[tj] += div;
+  const double stiff = weight * q.kf * (mu[i] + mu[j]);
+  const double fx = stiff * (dx + mean * q.r0y), fy = stiff * (dy - mean * q.r0x);
+  const double moment = 0.5 * (q.r0x * fy - q.r0y * fx);
+  const double div = q.kc * (q.r0x * dx + q.r0y * dy) / sqrt(q.r0x * q.r0x + q.r0y * q.r0y);
+  if (q.ti >= 0)
+    s->fx[q.ti] += fx, s->fy[q.ti] += fy, s->moment[q.ti] += moment, s->div[q.ti] += div;
+  if (q.tj >= 0)
+    s->fx[q.tj] -= fx, s->fy[q.tj] -= fy, s->moment[q.tj] += moment, s->div[q.tj] += div;
 }
 
-static inline void pressure_pair(const tangent *t, int64_t i, int64_t j, int64_t ti, int64_t tj,
-                                 double r0x, double r0y, double kc, sums *s) {
-  const double f = (t->p[i] + t->p[j]) * kc / sqrt(r0x * r0x + r0y * r0y);
-  if (ti >= 0) s->fx[ti] -= f * r0x, s->fy[ti] -= f * r0y;
-  if (tj >= 0) s->fx[tj] += f * r0x, s->fy[tj] += f * r0y;
+static inline void pressure_pair(const tangent *t, pair q, sums *s) {
+  const double f = (t->p[q.i] + t->p[q.j]) * q.kc / sqrt(q.r0x * q.r0x + q.r0y * q.r0y);
+  if (q.ti >= 0) s->fx[q.ti] -= f * q.r0x, s->fy[q.ti] -= f * q.r0y;
+  if (q.tj >= 0) s->fx[q.tj] += f * q.r0x, s->fy[q.tj] += f * q.r0y;
 }
 
 /* All pairs of a block but free-field ghosts; pressure: which of the two passes. */
@@ -53,21 +60,35 @@ static void block_pairs(const tangent *t, const mpsi_dynamics_block *block, bool
     const mpsi_dynamics_pair_run *run = &mesh->run[r];
     for (int64_t k = 0; k < run->count; k++) {
       const int64_t i = run->i0 + k, j = run->j0 + k;
-      const int64_t ti = run->own_i ? i - begin : -1, tj = run->own_j ? j - begin : -1;
+      const pair q = {.i = i,
+                      .j = j,
+                      .ti = run->own_i ? i - begin : -1,
+                      .tj = run->own_j ? j - begin : -1,
+                      .r0x = run->r0x,
+                      .r0y = run->r0y,
+                      .kf = run->kf,
+                      .kc = run->kc};
       if (pressure)
-        pressure_pair(t, i, j, ti, tj, run->r0x, run->r0y, run->kc, s);
+        pressure_pair(t, q, s);
       else
-        shear_pair(t, i, j, ti, tj, run->r0x, run->r0y, run->kf, run->kc, s);
+        shear_pair(t, q, s);
     }
   }
   const mpsi_dynamics_scattered *list = &mesh->scattered;
   for (int64_t k = block->scattered_begin; k < block->scattered_end; k++) {
     const int64_t i = list->i[k], j = list->j[k];
-    const int64_t ti = list->ti[k] == i ? i - begin : -1, tj = list->tj[k] == j ? j - begin : -1;
+    const pair q = {.i = i,
+                    .j = j,
+                    .ti = list->ti[k] == i ? i - begin : -1,
+                    .tj = list->tj[k] == j ? j - begin : -1,
+                    .r0x = list->r0x[k],
+                    .r0y = list->r0y[k],
+                    .kf = list->kf[k],
+                    .kc = list->kc[k]};
     if (pressure)
-      pressure_pair(t, i, j, ti, tj, list->r0x[k], list->r0y[k], list->kc[k], s);
+      pressure_pair(t, q, s);
     else
-      shear_pair(t, i, j, ti, tj, list->r0x[k], list->r0y[k], list->kf[k], list->kc[k], s);
+      shear_pair(t, q, s);
   }
 }
 

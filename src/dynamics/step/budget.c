@@ -110,8 +110,7 @@ mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, 
   return status;
 }
 
-/* ---- works of a step
- * ------------------------------------------------------------------------------ */
+/* ---- works of a step ------------------------------------------------------------------------- */
 
 void mpsi_dynamics_note_velocities(mps_dynamics *dynamics, int64_t block) {
   const mpsi_dynamics_block *b = &dynamics->mesh.block[block];
@@ -152,8 +151,7 @@ void mpsi_dynamics_count_works(mpsi_dynamics_account *account) {
   }
 }
 
-/* ---- totals
- * --------------------------------------------------------------------------------------- */
+/* ---- totals ---------------------------------------------------------------------------------- */
 
 enum { MASS, LINEAR_X, LINEAR_Y, ANGULAR, MOMENTA, LOADS = MOMENTA, BOUNDARIES, DAMPING, SUMS };
 

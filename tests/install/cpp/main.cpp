@@ -1,7 +1,7 @@
 // main.cpp - a C++ program on mps/mps.hpp: a block of sand falls freely, its values against theory;
 // handles that move and end, errors as exceptions, an exception out of a callback, stale arrays.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <mps/mps.hpp>
+#include "block.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,23 +11,10 @@
 #include <numeric>
 #include <stdexcept>
 
-static int failures = 0;
-#define EXPECT(condition)                                                                          \
-  do {                                                                                             \
-    if (!(condition)) {                                                                            \
-      std::printf("line %d: not so: %s\n", __LINE__, #condition);                                  \
-      failures++;                                                                                  \
-    }                                                                                              \
-  } while (0)
-
-static mps::particles block(const mps::context &context) {
-  mps_particles_def def = mps_particles_defaults();
-  def.spacing = 0.1;
-  mps::particles sand = mps::create(context, mps_particles_create, def);
-  const double lo[2] = {0.0, 5.0}, hi[2] = {1.0, 6.0};
-  mps::call(sand, mps_particles_fill_box, lo, hi, nullptr);
+static mps::particles ground(const mps::context &context) {
+  mps::particles sand = block(context);
   mps::call(sand, mps_particles_set, "density", 0, 1800.0);
-  return sand; // moves
+  return sand;
 }
 
 static mps::mpm falling(const mps::context &context, const mps::particles &sand) {
@@ -40,7 +27,7 @@ static mps::mpm falling(const mps::context &context, const mps::particles &sand)
 }
 
 static void free_fall(const mps::context &context) {
-  const mps::particles sand = block(context);
+  const mps::particles sand = ground(context);
   const mps::mpm solver = falling(context, sand);
   EXPECT(mps_mpm_particles(solver) == sand.get());
   int calls = 0;
@@ -67,7 +54,7 @@ static void free_fall(const mps::context &context) {
 }
 
 static void writing(const mps::context &context) {
-  const mps::particles sand = block(context);
+  const mps::particles sand = ground(context);
   const mps::array<int64_t> ids = mps::view<int64_t>(sand, "id");
   {
     mps::call(sand, mps_particles_add_field, "velocity", 0);
@@ -107,7 +94,7 @@ static void writing(const mps::context &context) {
 }
 
 static void ranges(const mps::context &context) {
-  const mps::particles sand = block(context);
+  const mps::particles sand = ground(context);
   mps::call(sand, mps_particles_add_field, "velocity", 0);
   {
     mps::edit v(sand, "velocity");
@@ -129,7 +116,7 @@ static void ranges(const mps::context &context) {
 }
 
 static void errors(const mps::context &context) {
-  const mps::particles sand = block(context);
+  const mps::particles sand = ground(context);
   mps::mpm solver = falling(context, sand);
   try {
     (void)falling(context, sand);
@@ -165,7 +152,7 @@ static void errors(const mps::context &context) {
 // Laws, signals and hooks that throw, on one thread and on two: the exception comes out, the solver
 // is as it was and goes on.
 static void callbacks(const mps::context &context) {
-  const mps::particles sand = block(context);
+  const mps::particles sand = ground(context);
   bool bad = true;
   const mps::callback<mps_material_fn> update(context, [&](const mps_material_block *block) {
     if (bad) throw std::out_of_range("a law");
@@ -248,7 +235,7 @@ static void kept_callbacks() {
   int ended = 0;
   {
     const mps::context context = mps::create_context();
-    const mps::particles sand = block(context);
+    const mps::particles sand = ground(context);
     const mps::mpm solver = with_bound_law(context, sand, &ended, 125.0);
     mps::call(solver, mps_mpm_step, 2);
     for (double s : mps::view(sand, "stress").column(0)) EXPECT(s == -125.0);
@@ -273,7 +260,7 @@ static void progress() {
     if (++calls == 3) throw std::runtime_error("progress");
   });
   mps_context_set_progress(context, hook.function(), hook.user());
-  const mps::particles sand = block(context);
+  const mps::particles sand = ground(context);
   const mps::mpm solver = falling(context, sand);
   for (int with = 0; with < 2; with++) {
     if (with) {
@@ -301,7 +288,7 @@ static void forgotten() {
     const mps::context context = mps::create_context();
     same = context.get() == address;
     address = context.get();
-    (void)block(context); // throws what is left of the former
+    (void)ground(context); // throws what is left of the former
     const auto &signal = mps::keep<mps_signal_fn>(
         context, [](double, double *) { throw std::runtime_error("of a former context"); });
     const mps::signal s =

@@ -1,31 +1,11 @@
 // ranges.cpp - fields as ranges, in C++17 and in C++20: rows against positions in closed form,
 // writing by rows, an empty set, standard algorithms, views. SPDX-License-Identifier: BSD-3-Clause
-#include <mps/mps.hpp>
+#include "block.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
-
-static int failures = 0;
-#define EXPECT(condition)                                                                          \
-  do {                                                                                             \
-    if (!(condition)) {                                                                            \
-      std::printf("line %d: not so: %s\n", __LINE__, #condition);                                  \
-      failures++;                                                                                  \
-    }                                                                                              \
-  } while (0)
-
-// 10 x 10 squares of 0.1 m, from x = 0 and y = 5.
-static mps::particles block(const mps::context &context) {
-  mps_particles_def def = mps_particles_defaults();
-  def.spacing = 0.1;
-  mps::particles sand = mps::create(context, mps_particles_create, def);
-  const double lo[2] = {0.0, 5.0}, hi[2] = {1.0, 6.0};
-  mps::call(sand, mps_particles_fill_box, lo, hi, nullptr);
-  mps::call(sand, mps_particles_add_field, "velocity", 0);
-  return sand;
-}
 
 static void reading(const mps::particles &sand) {
   const mps::array<double> x = mps::view(sand, "position");
@@ -129,6 +109,7 @@ int main() {
   try {
     const mps::context context = mps::create_context();
     const mps::particles sand = block(context);
+    mps::call(sand, mps_particles_add_field, "velocity", 0);
     reading(sand);
     writing(sand);
     nothing(context);
