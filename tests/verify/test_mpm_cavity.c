@@ -1,9 +1,9 @@
 /* test_mpm_cavity.c - a cylindrical cavity that is opened further in undrained modified Cam-Clay.
- * Volume is kept, so that r^2 - r0^2 is the same for all r and each particle follows the path of pure
- * shear in plane strain with the strain ln(r/r0); equilibrium gives the total pressure in the cavity,
- *   p_a = p_R + integral from a to R of (s_r - s_t)(ln(r/r0)) dr/r,
- * with s_r - s_t of one point (verify/material_cam_clay compares its paths with closed forms), and,
- * far from first yield, s_r - s_t = 2 su. SPDX-License-Identifier: BSD-3-Clause */
+ * Volume is kept, so that r^2 - r0^2 is the same for all r and each particle follows the path of
+ * pure shear in plane strain with the strain ln(r/r0); equilibrium gives the total pressure in the
+ * cavity, p_a = p_R + integral from a to R of (s_r - s_t)(ln(r/r0)) dr/r, with s_r - s_t of one
+ * point (verify/material_cam_clay compares its paths with closed forms), and, far from first yield,
+ * s_r - s_t = 2 su. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 
 #include "clay_points.h"
@@ -96,8 +96,8 @@ static mps_body *add_wall(mpm_scene *s) {
   mps_signal *signal = NULL;
   def.position[0] = A0;
   mps_assert_ok(context, mps_body_create_half_plane(context, &def, out, &wall));
-  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v,
-                                                 &signal));
+  mps_assert_ok(context,
+                mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &signal));
   mps_assert_ok(context, mps_body_drive(wall, 0, signal, 1.0));
   mps_signal_destroy(&signal);
   mpm_scene_contact(s, wall, 0.0);
