@@ -104,9 +104,9 @@ typedef enum kind {
   SMALL_STRAIN,
   KINDS
 } kind;
-static const char *const kind_name[KINDS] = {"elastic",   "two",     "mixed",    "body",
-                                             "drucker-prager", "undrained", "seepage",
-                                             "cam-clay",  "small-strain"};
+static const char *const kind_name[KINDS] = {"elastic",        "two",       "mixed",   "body",
+                                             "drucker-prager", "undrained", "seepage", "cam-clay",
+                                             "small-strain"};
 
 /* In the plane the body is that of MIXED. */
 static int is_there(const options *o, int dim, kind k) {
@@ -366,7 +366,8 @@ int main(int argc, char **argv) {
     fprintf(
         stderr,
         "usage: bench-mpm [--dim 2|3] [--spline 2|3] [--rounds N] [--particles N]\n"
-        "    [--only elastic|two|mixed|body|drucker-prager|undrained|seepage|cam-clay|small-strain]\n"
+        "    [--only "
+        "elastic|two|mixed|body|drucker-prager|undrained|seepage|cam-clay|small-strain]\n"
         "    [--instruction-level 0|1|3|4]\n"
         "N particles, 1e3 to 2e7; by default 1e4, 1e5 and 1e6.\n"
         "Other work on the machine disturbs two threads most: OMP_WAIT_POLICY=passive helps.\n");
@@ -382,7 +383,8 @@ int main(int argc, char **argv) {
       "# smal: small strain; memory in bytes: fields a particle, grid a particle, grid a node\n"
       "# ns, then ratios to the anchor, then memory\n"
       "#dim spline particles  anchor elastic    two    mixed    body     d-p    undr    seep "
-      "   clay    smal elasti    two  mixed   body    d-p   undr   seep   clay   smal fields   grid    "
+      "   clay    smal elasti    two  mixed   body    d-p   undr   seep   clay   smal fields   "
+      "grid    "
       "node\n",
       o.rounds);
   const int64_t sizes[] = {10000, 100000, 1000000};

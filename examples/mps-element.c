@@ -58,9 +58,10 @@ int main(int argc, char **argv) {
                   "CSV of stages instead: increments of strain exx, eyy, ezz, gxy, gzx, gyz or of "
                   "stress sxx, syy, szz, sxy, szx, syz (Pa), tension positive, and steps; an empty "
                   "cell is no strain"),
-      OPTION_NUMBER("strain", "1", OPTION_ABOVE_TO(0.0, 10.0), &s->strain,
-                    "logarithmic, at the end: axial, of the volume (iso), gamma (shear), or its amplitude "
-                    "(cyclic)"),
+      OPTION_NUMBER(
+          "strain", "1", OPTION_ABOVE_TO(0.0, 10.0), &s->strain,
+          "logarithmic, at the end: axial, of the volume (iso), gamma (shear), or its amplitude "
+          "(cyclic)"),
       OPTION_INTEGER("steps", "N", OPTION_FROM_TO(1.0, 1e6), &s->steps,
                      "steps of the path, or of a loop of the cyclic one"),
       OPTION_INTEGER("cycles", "N", OPTION_FROM_TO(1.0, 400.0), &s->cycles, "cyclic: loops"),
@@ -71,7 +72,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("k0", "1", OPTION_FROM_TO(0.1, 10.0), &s->k0,
                     "first horizontal over vertical effective stress"),
       OPTION_HEADING("Law"),
-      OPTION_CHOICE("law", ELEMENT_LAWS, &s->law, "law; mcc: modified Cam-Clay; smallstrain: Hardin and Drnevich"),
+      OPTION_CHOICE("law", ELEMENT_LAWS, &s->law,
+                    "law; mcc: modified Cam-Clay; smallstrain: Hardin and Drnevich"),
       OPTION_NUMBER("M", "1", OPTION_FROM_TO(0.05, 2.9), &s->M, "mcc: critical q/p in compression"),
       OPTION_NUMBER("lambda", "1", OPTION_FROM_TO(1e-4, 5.0), &s->lambda,
                     "mcc: slope of virgin compression in e - ln p"),
@@ -81,15 +83,17 @@ int main(int argc, char **argv) {
                     "first void ratio; default of mcc 1.4"),
       OPTION_NUMBER("ocr", "1", OPTION_FROM_TO(1.0, 1000.0), &s->ocr,
                     "mcc: size of the yield surface over that through the first stress"),
-      OPTION_NUMBER("shear-modulus", "Pa", OPTION_MODULUS, &s->shear_modulus,
-                    "mcc: constant G, default by Poisson's ratio; smallstrain: G at zero strain, default "
-                    "by Young's modulus"),
+      OPTION_NUMBER(
+          "shear-modulus", "Pa", OPTION_MODULUS, &s->shear_modulus,
+          "mcc: constant G, default by Poisson's ratio; smallstrain: G at zero strain, default "
+          "by Young's modulus"),
       OPTION_NUMBER("reference-strain", "1", OPTION_FROM_TO(1e-7, 1.0), &s->reference_strain,
                     "smallstrain: gamma at which half of G is left"),
       OPTION_NUMBER("curvature", "1", OPTION_FROM_TO(0.5, 1.0), &s->curvature,
                     "smallstrain: exponent of the backbone"),
-      OPTION_NUMBER("strength", "Pa", OPTION_STRENGTH, &s->strength,
-                    "smallstrain: largest sqrt(J2); default, with curvature 1: that of the backbone"),
+      OPTION_NUMBER(
+          "strength", "Pa", OPTION_STRENGTH, &s->strength,
+          "smallstrain: largest sqrt(J2); default, with curvature 1: that of the backbone"),
 
       OPTION_FLAG("lode", &s->lode, "mcc: M follows the Lode angle"),
       COMMON_NUMBER("young", &s->young, NULL),

@@ -9,8 +9,18 @@
 
 #include <mps/soil.h>
 
-enum { ELASTIC, NEO_HOOKEAN, VON_MISES, TRESCA, DRUCKER_PRAGER, MOHR_COULOMB, NEWTONIAN, CAM_CLAY,
-       SMALL_STRAIN, LAWS };
+enum {
+  ELASTIC,
+  NEO_HOOKEAN,
+  VON_MISES,
+  TRESCA,
+  DRUCKER_PRAGER,
+  MOHR_COULOMB,
+  NEWTONIAN,
+  CAM_CLAY,
+  SMALL_STRAIN,
+  LAWS
+};
 #define ELEMENT_LAWS                                                                               \
   "elastic|neohookean|vonmises|tresca|druckerprager|mohrcoulomb|newtonian|mcc|smallstrain"
 enum { ISO, OEDOMETER, CU, CD, PS_UNDRAINED, EXTENSION, SHEAR, CYCLIC, FROM_FILE };

@@ -46,9 +46,9 @@ static const struct {
 
 static const char *check_uses(const settings *s, const option *table) {
   static char text[160];
-  static const char *const names[] = {"elastic",       "neohookean",  "vonmises",  "tresca",
-                                      "druckerprager", "mohrcoulomb", "newtonian", "mcc",
-                                      "smallstrain"};
+  static const char *const names[] = {"elastic",   "neohookean",    "vonmises",
+                                      "tresca",    "druckerprager", "mohrcoulomb",
+                                      "newtonian", "mcc",           "smallstrain"};
   for (size_t k = 0; k < sizeof uses / sizeof *uses; k++) {
     if (!options_given(table, uses[k].option) || uses[k].laws[s->law] != ' ') continue;
     char list[100] = "";

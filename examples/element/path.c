@@ -10,7 +10,8 @@
 
 /* ---- by name --------------------------------------------------------------------------------- */
 
-/* To one side, then loops to the other and back, a quarter of the steps each way from the middle. */
+/* To one side, then loops to the other and back, a quarter of the steps each way from the middle.
+ */
 static int cyclic_path(const settings *s, stage *g) {
   const int64_t quarter = (s->steps + 3) / 4;
   int n = 0;

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char *const law_names[] = {"linear elastic", "neo-Hookean",      "von Mises",
-                                        "Tresca",         "Drucker-Prager",   "Mohr-Coulomb",
+static const char *const law_names[] = {"linear elastic", "neo-Hookean",       "von Mises",
+                                        "Tresca",         "Drucker-Prager",    "Mohr-Coulomb",
                                         "Newtonian",      "modified Cam-Clay", "small strain"};
 static const char *const path_names[] = {"isotropic compression",
                                          "oedometer",
@@ -152,9 +152,10 @@ static bool draw_loop(element *x) {
   if (s->path_file || s->path != CYCLIC) return true;
   output f;
   if (!open_picture(x, &f, "loop", "Loops of shear stress and strain")) return false;
-  output_text(&f, "set xlabel 'shear strain (%%)'\nset ylabel 'shear stress (kPa)'\n"
-                  "set key right bottom opaque\nset zeroaxis\nset samples 400\n"
-                  "set xrange [%.9g:%.9g]\nset offsets 0, 0, graph 0.05, graph 0.05\nplot ",
+  output_text(&f,
+              "set xlabel 'shear strain (%%)'\nset ylabel 'shear stress (kPa)'\n"
+              "set key right bottom opaque\nset zeroaxis\nset samples 400\n"
+              "set xrange [%.9g:%.9g]\nset offsets 0, 0, graph 0.05, graph 0.05\nplot ",
               -105.0 * s->strain, 105.0 * s->strain);
   if (s->law == SMALL_STRAIN) {
     const double g0 =

@@ -55,20 +55,20 @@ MPS_API MPS_NODISCARD mps_status mps_material_create_cam_clay(mps_context *conte
 
 /** Stiffness that falls with the shear strain, and rises again where the strain turns: on first
  *  loading tau = G0 gamma/(1 + (gamma/gamma_r)^a) (Hardin and Drnevich 1972 with a = 1, Darendeli
- *  2001) up to the strength, tau = sqrt(J2), gamma = 2 sqrt(J2 of the strain deviator), counted from
- *  the first state, whose stress stays; unloading and reloading by Masing's rules, small loops within
- *  large ones included. Ten layers of elastic, perfectly plastic solids side by side (Iwan 1967):
- *  the curve within 1.2 %, G0 and strength exactly; strains below gamma_r/100 dissipate nothing. K
- *  stays. No friction: the strength does not follow the pressure. Its history is `plastic_strain`,
- *  `dissipated` (J/m3) and the deviators of the layers, 52 columns. The HSsmall threshold gamma_0.7
- *  is 0.385 gamma_r. */
+ *  2001) up to the strength, tau = sqrt(J2), gamma = 2 sqrt(J2 of the strain deviator), counted
+ * from the first state, whose stress stays; unloading and reloading by Masing's rules, small loops
+ * within large ones included. Ten layers of elastic, perfectly plastic solids side by side (Iwan
+ * 1967): the curve within 1.2 %, G0 and strength exactly; strains below gamma_r/100 dissipate
+ * nothing. K stays. No friction: the strength does not follow the pressure. Its history is
+ * `plastic_strain`, `dissipated` (J/m3) and the deviators of the layers, 52 columns. The HSsmall
+ * threshold gamma_0.7 is 0.385 gamma_r. */
 typedef struct mps_material_small_strain_def {
   uint32_t struct_size;
   uint32_t reserved;
   double shear_modulus;    /* Pa, G0 at zero strain; no default */
   double poisson;          /* at zero strain, for K; default 0.3 */
-  double reference_strain; /* gamma_r, engineering shear strain at which G/G0 is 1/2 on the backbone,
-                              1e-7 to 1; no default */
+  double reference_strain; /* gamma_r, engineering shear strain at which G/G0 is 1/2 on the
+                              backbone, 1e-7 to 1; no default */
   double curvature;        /* a, 0.5 to 1; default 1 */
   double strength;         /* Pa, largest tau, from 0.05 G0 gamma_r to the backbone's largest: with
                               curvature 1 G0 gamma_r, else its value at 1000 gamma_r. NaN (default):
@@ -86,10 +86,10 @@ static inline mps_material_small_strain_def mps_material_small_strain_defaults(v
   return def;
 }
 
-/** Small-strain stiffness. Constants are copied. MPS_MATERIAL_FLAG_PLASTIC is set where the strength
- *  is reached. mps_material_wave_modulus and mps_material_get_moduli are those of zero strain, which
- *  limit a solver's step. MPS_ERROR_ARGUMENT: a constant out of range, which the message names;
- *  MPS_ERROR_MEMORY. */
+/** Small-strain stiffness. Constants are copied. MPS_MATERIAL_FLAG_PLASTIC is set where the
+ * strength is reached. mps_material_wave_modulus and mps_material_get_moduli are those of zero
+ * strain, which limit a solver's step. MPS_ERROR_ARGUMENT: a constant out of range, which the
+ * message names; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_small_strain(
     mps_context *context, const mps_material_small_strain_def *def, mps_material **out);
 

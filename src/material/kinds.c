@@ -10,10 +10,9 @@ const char *const mpsi_clay_columns[] = {"plastic_strain", "preconsolidation", "
 
 #define LAYER(i)                                                                                   \
   "layer_" #i "_xx", "layer_" #i "_yy", "layer_" #i "_xy", "layer_" #i "_zx", "layer_" #i "_yz"
-const char *const mpsi_small_columns[] = {"plastic_strain", "dissipated", LAYER(1), LAYER(2),
-                                          LAYER(3),         LAYER(4),     LAYER(5), LAYER(6),
-                                          LAYER(7),         LAYER(8),     LAYER(9), LAYER(10),
-                                          NULL};
+const char *const mpsi_small_columns[] = {
+    "plastic_strain", "dissipated", LAYER(1), LAYER(2), LAYER(3),  LAYER(4), LAYER(5),
+    LAYER(6),         LAYER(7),     LAYER(8), LAYER(9), LAYER(10), NULL};
 _Static_assert(sizeof mpsi_small_columns / sizeof *mpsi_small_columns == MPSI_SMALL_COLUMNS + 1,
                "a name for each column of the small-strain law");
 

@@ -96,9 +96,9 @@ double mpsi_material_rest_modulus(const mps_material *material);
 double mpsi_material_shear(const mps_material *material);
 /* Recoverable part of the work of the law's stresses. */
 typedef enum mpsi_kept {
-  MPSI_KEPT_ALL,     /* elastic; and users' laws, where it is unknown */
-  MPSI_KEPT_ELASTIC, /* change of the stress's energy by Hooke's law: elastic-plastic */
-  MPSI_KEPT_PRESSURE, /* the mean stress times tr(d): fluids */
+  MPSI_KEPT_ALL,         /* elastic; and users' laws, where it is unknown */
+  MPSI_KEPT_ELASTIC,     /* change of the stress's energy by Hooke's law: elastic-plastic */
+  MPSI_KEPT_PRESSURE,    /* the mean stress times tr(d): fluids */
   MPSI_KEPT_UNDISSIPATED /* all but the growth of the column mpsi_material_dissipated, J/m3 */
 } mpsi_kept;
 mpsi_kept mpsi_material_kept(const mps_material *material);

@@ -85,9 +85,7 @@ static mps_status compute_clay(mps_context *own, mps_domain *domain, int what, i
   return status;
 }
 
-static void test_whole(void **state) {
-  (void)state, compare_teams(compute_clay, WHOLE, 80, true);
-}
+static void test_whole(void **state) { (void)state, compare_teams(compute_clay, WHOLE, 80, true); }
 
 static void test_in_parts(void **state) {
   (void)state, compare_teams(compute_clay, IN_PARTS, 80, true);

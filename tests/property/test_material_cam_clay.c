@@ -208,8 +208,9 @@ static void large_strains_are_divided(void **state) {
   }
 }
 
-/* A block is stepped in vectors, a particle alone by cam_clay.c: elastic, yielding, at the apex, with
- * open gaps, in steps that are divided. The same to rounding, and no bit depends on the block. */
+/* A block is stepped in vectors, a particle alone by cam_clay.c: elastic, yielding, at the apex,
+ * with open gaps, in steps that are divided. The same to rounding, and no bit depends on the block.
+ */
 enum { BLOCK = 157 };
 
 typedef struct clay_block {

@@ -1,7 +1,7 @@
-/* test_mpm_small_strain.c - the small-strain law in WLS-MPM: a column in its first shear mode against
- * Vs/(4 H) and the damping of its loops, what it dissipates in the budget of energy, its ten layers
- * in snapshots and checkpoints, factors of each particle.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* test_mpm_small_strain.c - the small-strain law in WLS-MPM: a column in its first shear mode
+ * against Vs/(4 H) and the damping of its loops, what it dissipates in the budget of energy, its
+ * ten layers in snapshots and checkpoints, factors of each particle. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "mpm_scene.h"
 
 #include "test_fixture.h"

@@ -1,7 +1,7 @@
-/* test_material_small_strain.c - the small-strain law at a point: its layers' sum against the backbone
- * of Hardin and Drnevich and Darendeli, loops against Masing's closed form of the damping, and against
- * a one-dimensional stack of springs and sliders with the rules of Masing; energy; strength.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* test_material_small_strain.c - the small-strain law at a point: its layers' sum against the
+ * backbone of Hardin and Drnevich and Darendeli, loops against Masing's closed form of the damping,
+ * and against a one-dimensional stack of springs and sliders with the rules of Masing; energy;
+ * strength. SPDX-License-Identifier: BSD-3-Clause */
 #include "material_paths.h"
 
 #include <mps/soil.h>
@@ -62,10 +62,10 @@ static void first_loading_follows_the_backbone(void **state) {
 static void all_directions_have_one_backbone(void **state) {
   (void)state;
   mps_material *m = make_small(1.0, NAN);
-  static const double direction[3][9] = {{0, 0.5, 0, 0.5, 0, 0, 0, 0, 0},
-                                         {0.5, 0, 0, 0, -0.5, 0, 0, 0, 0},
-                                         {-0.288675134594812882, 0, 0, 0, -0.288675134594812882, 0, 0,
-                                          0, 0.577350269189625765}};
+  static const double direction[3][9] = {
+      {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0},
+      {0.5, 0, 0, 0, -0.5, 0, 0, 0, 0},
+      {-0.288675134594812882, 0, 0, 0, -0.288675134594812882, 0, 0, 0, 0.577350269189625765}};
   for (int k = 0; k < 3; k++) {
     double gradient[9];
     for (int c = 0; c < 9; c++) gradient[c] = direction[k][c] * 3.0 * STRAIN_R;
@@ -181,8 +181,8 @@ static void no_path_gains_energy(void **state) {
   shear(m, &large, 1.0, 1);
   for (int i = 0; i < 10; i++) {
     const double *s = &x.history[FIRST + 5 * i], zz = s[0] + s[1];
-    const double square = s[0] * s[0] + s[1] * s[1] + zz * zz +
-                          2.0 * (s[2] * s[2] + s[3] * s[3] + s[4] * s[4]);
+    const double square =
+        s[0] * s[0] + s[1] * s[1] + zz * zz + 2.0 * (s[2] * s[2] + s[3] * s[3] + s[4] * s[4]);
     const double modulus = tiny.history[FIRST + 5 * i + 2] / 1e-7;
     deviators += square / (4.0 * modulus);
     assert_true(sqrt(0.5 * square) <= large.history[FIRST + 5 * i + 2] * (1.0 + 1e-12));

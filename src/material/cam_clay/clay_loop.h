@@ -88,8 +88,8 @@ MPSI_INLINE void clay_try(const int geometry, const bool lode, const mpsi_law *c
     const double slope = lode ? clay_slope(&law, s, q) : m2;
     const double ratio = (1.0 + half) / (1.0 - half), y = v0 * (1.0 - ratio) * per_swelling;
     const double p = p0 * clay_exp(y), pc = pcs[k];
-    const double square = (d.xx * d.xx + d.yy * d.yy + d.zz * d.zz) +
-                          2.0 * (d.xy * d.xy + d.zx * d.zx + d.yz * d.yz);
+    const double square =
+        (d.xx * d.xx + d.yy * d.yy + d.zz * d.zz) + 2.0 * (d.xy * d.xy + d.zx * d.zx + d.yz * d.yz);
     const bool plain = (gaps[k] == 0.0) & (p0 >= least) & (p >= least) & (pc >= 2.0 * least) &
                        (clay_size(y) <= CLAY_LARGEST) & (square <= CLAY_LONGEST * CLAY_LONGEST);
     const double over = q * q + slope * (p * (p - pc));
@@ -130,8 +130,7 @@ MPSI_INLINE double clay_round(const mpsi_law *law, int64_t n, clay_packed *c) {
     const double p = c->p0[k] * clay_exp(y), pc = clay_exp(plastic), D = 1.0 + rate * g;
     const double per_D = 1.0 / D, cut = c->q2[k] * per_D * per_D, twice = 2.0 * p - pc;
     const double r1 = (c->dv[k] - elastic) - vm * g * twice, r2 = cut + p * (p - pc);
-    const bool done =
-        (clay_size(r1) <= 1e-14 * vm) & (clay_size(r2) <= 1e-13 * (1.0 + p * p));
+    const bool done = (clay_size(r1) <= 1e-14 * vm) & (clay_size(r2) <= 1e-13 * (1.0 + p * p));
     const double yy = -kappa - vm * g * (2.0 * p + fall * pc), yg = -vm * twice;
     const double gy = p * twice + fall * p * pc, gg = -2.0 * cut * rate * per_D;
     const double det = yy * gg - yg * gy;
@@ -227,8 +226,7 @@ MPSI_INLINE mps_status cam_clay_loop(const int geometry, const mpsi_law *law,
       clay_try(geometry, true, law, block, begin, count, &t);
     const int64_t n = clay_pack(block, begin, count, &t, &c);
     double works = (double)n;
-    for (int round = 0; round < CLAY_ROUNDS && works > 0.0; round++)
-      works = clay_round(law, n, &c);
+    for (int round = 0; round < CLAY_ROUNDS && works > 0.0; round++) works = clay_round(law, n, &c);
     clay_unpack(law, block, begin, n, &c, &t);
     clay_finish(geometry, law, block, begin, count, &t);
   }

@@ -1,21 +1,20 @@
-/* backbone.c - the definition of the small-strain law, and the layers whose sum follows its backbone
- *   tau = G0 gamma/(1 + (gamma/gamma_r)^a)
- * (Hardin & Drnevich 1972 with a = 1; Darendeli 2001) up to the strength: straight pieces between
- * points that lie above the curve by a fraction e, and whose chords lie below it by e at most. A
- * chord over dx of the curve t(x), x = gamma/gamma_r, errs by -t'' dx^2/8; so the points are evenly
- * spaced in the integral W of sqrt(-t''/t) dx, and with n points the fraction is
- * e = (W/(n - 1))^2/16. The first point is where the line of G0 leaves (1 + e) t(x), the last where
- * that reaches the strength. A layer yields at each point, where the slope falls.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* backbone.c - the definition of the small-strain law, and the layers whose sum follows its
+ * backbone tau = G0 gamma/(1 + (gamma/gamma_r)^a) (Hardin & Drnevich 1972 with a = 1; Darendeli
+ * 2001) up to the strength: straight pieces between points that lie above the curve by a fraction
+ * e, and whose chords lie below it by e at most. A chord over dx of the curve t(x), x =
+ * gamma/gamma_r, errs by -t'' dx^2/8; so the points are evenly spaced in the integral W of
+ * sqrt(-t''/t) dx, and with n points the fraction is e = (W/(n - 1))^2/16. The first point is where
+ * the line of G0 leaves (1 + e) t(x), the last where that reaches the strength. A layer yields at
+ * each point, where the slope falls. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
 #include "material/constants.h"
 
 #include <mps/soil.h>
 
-enum { TABLE = 4000 };      /* intervals of ln x in the integral */
+enum { TABLE = 4000 }; /* intervals of ln x in the integral */
 #define LEAST_CURVATURE 0.5
-#define LEAST_SHARE 0.05    /* of G0 gamma_r: least strength */
-#define FARTHEST 1000.0     /* x at which the largest strength of a curve without a limit is taken */
+#define LEAST_SHARE 0.05 /* of G0 gamma_r: least strength */
+#define FARTHEST 1000.0  /* x at which the largest strength of a curve without a limit is taken */
 
 /* ---- the curve ------------------------------------------------------------------------------- */
 
@@ -95,8 +94,8 @@ static void set_layers(mpsi_law *law, double a, double share, double strain) {
     const double after = last ? 0.0 : (next - now) / (p.x[i + 1] - p.x[i]);
     /* the last layer makes up the sums to the last bits */
     law->layer_shear[i] = last ? law->shear - left : (slope - after) * law->shear;
-    law->layer_strength[i] = last ? share * strain * law->shear - borne
-                                  : law->layer_shear[i] * p.x[i] * strain;
+    law->layer_strength[i] =
+        last ? share * strain * law->shear - borne : law->layer_shear[i] * p.x[i] * strain;
     left += law->layer_shear[i];
     borne += law->layer_strength[i];
     slope = after;
@@ -147,7 +146,6 @@ mps_status mpsi_define_small_strain(mps_context *context, const char *function, 
   if (status != MPS_OK) return status;
   *law = mpsi_law_elastic(2.0 * d->shear_modulus * (1.0 + d->poisson), d->poisson);
   const double unit = d->shear_modulus * d->reference_strain;
-  set_layers(law, d->curvature, isnan(d->strength) ? 1.0 : d->strength / unit,
-             d->reference_strain);
+  set_layers(law, d->curvature, isnan(d->strength) ? 1.0 : d->strength / unit, d->reference_strain);
   return MPS_OK;
 }

@@ -1,7 +1,8 @@
-/* layers.h - one step of the small-strain law on a block: von Mises layers side by side (Iwan 1967),
- * all with the strain of the particle. Each layer keeps its deviator, which turns with the particle;
- * the stress changes by the sum of the changes of the layers, so that a first stress stays and the
- * backbone begins there. Unloading follows Masing's rules because the layers do, one by one.
+/* layers.h - one step of the small-strain law on a block: von Mises layers side by side (Iwan
+ * 1967), all with the strain of the particle. Each layer keeps its deviator, which turns with the
+ * particle; the stress changes by the sum of the changes of the layers, so that a first stress
+ * stays and the backbone begins there. Unloading follows Masing's rules because the layers do, one
+ * by one.
  *
  * A layer bears five numbers a particle, its deviator's xx, yy, xy, zx, yz; zz is -(xx + yy). In 2D
  * zx and yz stay 0. Included by laws.c alone, which compiles it for each instruction set.
@@ -112,8 +113,7 @@ MPSI_INLINE mps_status small_strain_loop(const int geometry, const mpsi_law *law
     const int64_t left = block->count - begin, count = left < LAYER_CHUNK ? left : LAYER_CHUNK;
     layer_sums sums;
     memset(&sums, 0, sizeof sums);
-    for (int i = 0; i < MPSI_LAYERS; i++)
-      layer_step(geometry, law, i, block, begin, count, &sums);
+    for (int i = 0; i < MPSI_LAYERS; i++) layer_step(geometry, law, i, block, begin, count, &sums);
     layer_finish(geometry, law, block, begin, count, &sums);
   }
   return MPS_OK;
