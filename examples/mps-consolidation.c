@@ -56,7 +56,9 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("cells", "1", OPTION_FROM_TO(2.0, MOST_CELLS), &s->cells,
                     "along H, a or B, a whole number; default 20, mandel 10, strip 4"),
       OPTION_CHOICE("scheme", "explicit|implicit", &s->scheme,
-                    "pressures in time; implicit is not there yet"),
+                    "pressures in time: explicit, or by the solution of a system in each step, "
+                    "which may then "
+                    "be longer"),
       OPTION_NUMBER("mass-damping", "1/s", OPTION_FROM_TO(0.0, 1e6), &s->damping,
                     "viscous; default half a wave velocity over H; strip none"),
       OPTION_HEADING("Run"),

@@ -1,5 +1,6 @@
 /* mps/pore_water.h - water in the pores of the ground of a WLS-MPM solver: undrained by the bulk
- * modulus of the water, or partly drained by Darcy's law (the u-p formulation, explicit).
+ * modulus of the water, or partly drained by Darcy's law (the u-p formulation), explicit or with
+ * implicit pressures.
  *
  * The laws then act on the effective stress: the field `stress` is effective, tension positive, and
  * forces come from stress - pore_pressure 1. Mass and density are those of grains and water
@@ -31,9 +32,14 @@ MPS_EXTERN_C_BEGIN
 
 #define MPS_PORE_GRAVITY 9.80665 /* m/s2, of the weight of water that permeabilities refer to */
 
+typedef enum mps_pore_scheme {
+  MPS_PORE_SCHEME_EXPLICIT = 0, /* waves in the water and its flow limit the step (default) */
+  MPS_PORE_SCHEME_IMPLICIT = 1  /* neither does: each step solves for the pressures */
+} mps_pore_scheme;
+
 typedef struct mps_pore_water_def {
   uint32_t struct_size;
-  int32_t reserved;
+  int32_t scheme;      /* mps_pore_scheme, of pressures in time; IMPLICIT in one process only */
   double porosity;     /* n in (0, 1) of all particles. NaN (default): the field `porosity` */
   double permeability; /* k, m/s, > 0 and at most 1, of all particles at their present porosity.
                           NaN (default): the field `permeability`, > 0 everywhere, where the set has
@@ -60,10 +66,12 @@ static inline mps_pore_water_def mps_pore_water_defaults(void) {
 /** Saturates the ground of `mpm`, once and before its first step, with the pressures of the field
  *  `pore_pressure` (where the set has none: 0). The limit of the step follows at once: waves with
  *  K + 4G/3 + K_w/n, and where water flows 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever
- *  `courant`. `def` NULL: the defaults. MPS_ERROR_ARGUMENT: a member of `def` or a field out of
- *  range (the message names the particle), a density below that of the water in the pores, a law
- *  without a modulus at rest and no `bulk`, or a fixed dt above the new limit; MPS_ERROR_STATE: the
- *  solver has taken steps or has water already; MPS_ERROR_UNSUPPORTED: the energy budget;
+ *  `courant`; with implicit pressures it is that of dry ground, and steps may fail with
+ *  MPS_ERROR_NUMERIC where these are not found. `def` NULL: the defaults. MPS_ERROR_ARGUMENT: a
+ * member of `def` or a field out of range (the message names the particle), a density below that of
+ * the water in the pores, a law without a modulus at rest and no `bulk`, or a fixed dt above the
+ * new limit; MPS_ERROR_STATE: the solver has taken steps or has water already;
+ * MPS_ERROR_UNSUPPORTED: the energy budget, or implicit pressures on several ranks;
  *  MPS_ERROR_MEMORY. On an error the solver is as before. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_pore_water(mps_mpm *mpm,
                                                         const mps_pore_water_def *def);

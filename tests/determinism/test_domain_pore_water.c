@@ -207,13 +207,14 @@ static void test_refused_memory(void **state) {
   (void)state, refuse_memory(compute_wet, LAYERS, 8, 9);
 }
 
-enum { OTHER_BULK, BAD_POROSITY, OTHER_FACE, OTHER_LEVEL, OTHER_NUMBER, TROUBLES };
+enum { OTHER_BULK, BAD_POROSITY, OTHER_FACE, OTHER_LEVEL, OTHER_NUMBER, IMPLICIT, TROUBLES };
 
 static const trouble_case trouble[TROUBLES] = {
     [OTHER_BULK] = {MPS_ERROR_ARGUMENT, "bulk is "},
     [BAD_POROSITY] = {MPS_ERROR_ARGUMENT, "rank 1: porosity is -1"},
     [OTHER_FACE] = {MPS_ERROR_ARGUMENT, "pressure is "},
     [OTHER_LEVEL] = {MPS_ERROR_ARGUMENT, "point is "},
+    [IMPLICIT] = {MPS_ERROR_UNSUPPORTED, "scheme is 1"},
     [OTHER_NUMBER] = {MPS_ERROR_ARGUMENT, "number is "},
 };
 
@@ -230,6 +231,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_mpm_create(own, s.set, s.material[0], &solver, &s.mpm));
   TRY(mps_particles_set(s.set, "permeability", 0, 1e-4));
   def.porosity = what == BAD_POROSITY && rank == 1 ? -1.0 : 0.4;
+  if (what == IMPLICIT) def.scheme = MPS_PORE_SCHEME_IMPLICIT;
   if (what == OTHER_BULK) def.bulk = 1e7 * (1 + rank);
   face.pressure = what == OTHER_FACE ? rank : 0.0;
   TRY(mps_mpm_add_pore_water(s.mpm, &def));

@@ -25,6 +25,23 @@ run mandel --cells 5 --stiffness 50 --times 0.05,0.2
 within mandel 0.03 0
 run cryer --cells 8 --stiffness 20 --times 0.05,0.1 --nu 0
 within cryer 0.1 0.1
+run mcc --cells 8 --stiffness 20 --times 0.2,0.5
+within mcc 0.05 0.02
+[ "$(value mcc left_kg)" != "$(value mcc drained_kg)" ] || fail "mcc: left_kg is drained_kg"
+run mcc --scheme implicit --cells 20 --times 0.1,0.2
+within mcc 0.03 0.02
+run terzaghi --scheme implicit --cells 20
+within terzaghi 0.012 0.02
+run mandel --scheme implicit --cells 5 --stiffness 50 --times 0.05,0.2
+within mandel 0.03 0
+refused() {
+  if "$programs/mps-consolidation" --out "$work/refused" "$@" 2>"$work/log"; then fail "$* is not refused"; fi
+}
+refused --M 1
+refused --case strip --scheme implicit
+refused --case mcc --young 1MPa
+refused --case mcc --kappa 0.3
+refused --case mcc --load 1e8
 run strip --cells 2
 within strip 0.03 0
 exit 0

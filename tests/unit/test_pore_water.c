@@ -44,7 +44,9 @@ static void definitions_are_checked(void **state) {
   refused(&c, &def, MPS_ERROR_ARGUMENT, "'density' of particle");
   def.density = 1000.0, def.exponent = -1.0;
   refused(&c, &def, MPS_ERROR_ARGUMENT, "exponent");
-  def.exponent = 0.0, def.ratio_slope = 0.0;
+  def.exponent = 0.0, def.scheme = 2;
+  refused(&c, &def, MPS_ERROR_ARGUMENT, "scheme");
+  def.scheme = MPS_PORE_SCHEME_EXPLICIT, def.ratio_slope = 0.0;
   refused(&c, &def, MPS_ERROR_ARGUMENT, "ratio_slope");
   def.ratio_slope = INFINITY;
   double number;
@@ -109,7 +111,7 @@ static void faces_are_checked(void **state) {
 /* ---- the same bits --------------------------------------------------------------------------- */
 
 /* A block of ground that falls on a corner of the domain, so that surfaces cross cells. */
-static mpm_scene block(mps_context *where) {
+static mpm_scene block(mps_context *where, int32_t scheme) {
   mpm_scene s = mpm_scene_begin(where, 0.01, 0.0, 0.03, 1e5);
   mpm_scene_box(&s, 0.1, 0.03, 0.9, 0.73);
   mps_mpm_def def = mps_mpm_defaults();
@@ -118,6 +120,7 @@ static mpm_scene block(mps_context *where) {
   def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
   mps_pore_water_def water = mps_pore_water_defaults();
+  water.scheme = scheme;
   water.porosity = 0.4, water.permeability = 1e-4, water.exponent = 2.0, water.ratio_slope = 0.5;
   mps_assert_ok(where, mps_mpm_add_pore_water(s.mpm, &water));
   return s;
@@ -138,33 +141,39 @@ static void assert_same(mpm_scene *a, mpm_scene *b) {
   assert_true(p == q);
 }
 
-static void threads_change_no_bit(void **state) {
-  (void)state;
+static void compare_threads(int32_t scheme, int64_t steps) {
   mps_context *many = test_context(MPS_CONTEXT_EXECUTOR_OPENMP, 3);
-  mpm_scene one = block(context), three = block(many);
-  mps_assert_ok(context, mps_mpm_step(one.mpm, 200));
-  mps_assert_ok(many, mps_mpm_step(three.mpm, 200));
+  mpm_scene one = block(context, scheme), three = block(many, scheme);
+  mps_assert_ok(context, mps_mpm_step(one.mpm, steps));
+  mps_assert_ok(many, mps_mpm_step(three.mpm, steps));
   assert_same(&one, &three);
   mpm_scene_end(&one);
   mpm_scene_end(&three);
   mps_context_destroy(&many);
 }
 
-static void restarts_change_no_bit(void **state) {
+static void threads_change_no_bit(void **state) {
   (void)state;
-  mpm_scene whole = block(context), cut = block(context), other = block(context);
+  compare_threads(MPS_PORE_SCHEME_EXPLICIT, 200);
+  compare_threads(MPS_PORE_SCHEME_IMPLICIT, 10);
+}
+
+/* Cut at `steps`, with some steps back in time, and on for half as many. */
+static void compare_restarts(int32_t scheme, int64_t steps) {
+  mpm_scene whole = block(context, scheme), cut = block(context, scheme);
+  mpm_scene other = block(context, scheme);
   mps_snapshot *shot = NULL;
-  mps_assert_ok(context, mps_mpm_step(whole.mpm, 150));
-  mps_assert_ok(context, mps_mpm_step(cut.mpm, 100));
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, steps + steps / 2));
+  mps_assert_ok(context, mps_mpm_step(cut.mpm, steps));
   mps_assert_ok(context, mps_mpm_snapshot(cut.mpm, &shot));
   const mps_status saved = mps_mpm_save(cut.mpm, "pore_water.h5", NULL);
-  mps_assert_ok(context, mps_mpm_step(cut.mpm, 30));
+  mps_assert_ok(context, mps_mpm_step(cut.mpm, 3));
   mps_assert_ok(context, mps_mpm_rollback(cut.mpm, shot));
-  mps_assert_ok(context, mps_mpm_step(cut.mpm, 50));
+  mps_assert_ok(context, mps_mpm_step(cut.mpm, steps / 2));
   assert_same(&whole, &cut);
   if (saved == MPS_OK) {
     mps_assert_ok(context, mps_mpm_restore(other.mpm, "pore_water.h5", NULL));
-    mps_assert_ok(context, mps_mpm_step(other.mpm, 50));
+    mps_assert_ok(context, mps_mpm_step(other.mpm, steps / 2));
     assert_same(&whole, &other);
     (void)remove("pore_water.h5");
   } else {
@@ -176,10 +185,32 @@ static void restarts_change_no_bit(void **state) {
   mpm_scene_end(&other);
 }
 
+static void restarts_change_no_bit(void **state) {
+  (void)state;
+  compare_restarts(MPS_PORE_SCHEME_EXPLICIT, 100);
+  compare_restarts(MPS_PORE_SCHEME_IMPLICIT, 10);
+}
+
+/* Implicit pressures leave the step that dry ground has, and there is no settling with them. */
+static void implicit_steps_are_long(void **state) {
+  (void)state;
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
+  const double dry = mps_mpm_limit(c.s.mpm);
+  mps_pore_water_def def = mps_pore_water_defaults();
+  def.porosity = 0.4, def.permeability = 1e-4, def.scheme = MPS_PORE_SCHEME_IMPLICIT;
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &def));
+  mps_assert_near(mps_mpm_limit(c.s.mpm), dry, 1e-12 * dry);
+  assert_int_equal(mps_mpm_settle(c.s.mpm, NULL, NULL), MPS_ERROR_UNSUPPORTED);
+  assert_non_null(strstr(mps_context_error(context)->message, "scheme"));
+  mps_assert_ok(context, mps_mpm_get_pore_water(c.s.mpm, &def));
+  assert_int_equal(def.scheme, MPS_PORE_SCHEME_IMPLICIT);
+  mpm_scene_end(&c.s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(definitions_are_checked), cmocka_unit_test(fields_are_checked),
-      cmocka_unit_test(faces_are_checked), cmocka_unit_test(threads_change_no_bit),
-      cmocka_unit_test(restarts_change_no_bit)};
+      cmocka_unit_test(faces_are_checked),       cmocka_unit_test(threads_change_no_bit),
+      cmocka_unit_test(restarts_change_no_bit),  cmocka_unit_test(implicit_steps_are_long)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

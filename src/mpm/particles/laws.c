@@ -139,9 +139,9 @@ static void raise_to_viscous(const mpsi_grid *grid, const mpsi_columns *p, const
     moduli[k - begin] = fmax(moduli[k - begin], v * v * p->V[k] / p->m[k]);
 }
 
-/* Waves go through the water too. Where it flows, its pressures have the limit
- * 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever the fraction of the limit that a step takes:
- * cells at a surface, half full, need that. */
+/* Waves go through the water too, unless its pressures are implicit. Where it flows, its pressures
+ * have the limit 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever the fraction of the limit that
+ * a step takes: cells at a surface, half full, need that. */
 static void stiffen_by_water(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *pores,
                              const mps_mpm_def *def, int64_t begin, int64_t end, double *moduli) {
   const mps_pore_water_def *water = &pores->def;
@@ -176,5 +176,6 @@ void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wat
     }
     raise_to_viscous(grid, p, law, k, next, moduli + (k - begin));
   }
-  if (water) stiffen_by_water(grid, p, water, def, begin, end, moduli);
+  if (water && water->def.scheme == MPS_PORE_SCHEME_EXPLICIT)
+    stiffen_by_water(grid, p, water, def, begin, end, moduli);
 }

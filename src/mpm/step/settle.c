@@ -24,6 +24,10 @@ mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
 
 static mps_status check_still(mps_context *context, const mpsi_contacts *contacts,
                               mpsi_water *water, const char *function) {
+  if (water && water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "pressures of the pore water are implicit (scheme is 1), and settling needs "
+                     "explicit ones (0)");
   if (water && water->flows)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the solver has pore water that flows, and no time passes while the particles "

@@ -9,6 +9,7 @@
  * opposite faces, so that it is exact for a parabola at a surface and for layers of different
  * permeability; at an impervious face it is that of water at rest.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "implicit.h"
 #include "layers.h"
 #include "water.h"
 
@@ -17,8 +18,8 @@
 /* Slope (Pa/m) of p along the axis of a face, on the cell's side of it, at a distance (m, from the
  * cell's centre); flux (m3/s) into the cell. */
 typedef struct face_flow {
-  double slope, distance, flux;
-  bool known; /* else there is no condition at the face */
+  double slope, distance, flux, conductance; /* the latter, m3/(s Pa): flux per difference */
+  bool known;                                /* else there is no condition at the face */
 } face_flow;
 
 static double weight_of_water(mpsi_water *water) { return water->def.density * MPS_PORE_GRAVITY; }
@@ -58,6 +59,7 @@ static face_flow to_drained(const mps_mpm *mpm, const mpsi_pore_cell *cell, int 
   return (face_flow){.slope = sign * slope,
                      .distance = 0.5 * distance,
                      .flux = area * cell->k / weight_of_water(mpm->water) * (slope - sign * still),
+                     .conductance = area * cell->k / weight_of_water(mpm->water) / distance,
                      .known = true};
 }
 
@@ -73,6 +75,7 @@ static face_flow to_cell(const mpsi_grid *grid, mpsi_water *water, const mps_mpm
   return (face_flow){.slope = sign * drive * own + still,
                      .distance = 0.5 * distance,
                      .flux = area * own * cell->k / weight_of_water(water) * drive,
+                     .conductance = area * own * cell->k / weight_of_water(water) / distance,
                      .known = true};
 }
 
@@ -198,17 +201,25 @@ static void squeeze(const mpsi_grid *grid, mpsi_water *water, double dt, int64_t
   let_out(water, g, mpsi_pore_edge_of(water, cell)->face[d], -cell->gain);
 }
 
-static double flux_into(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell) {
+/* By the pressures at the beginning or the end of the step. */
+static double flux_into(mps_mpm *mpm, int64_t g, int k, bool end, const mpsi_pore_cell *cell) {
   const mpsi_pore_cell *behind;
   double x[3], flux = 0.0;
   const double X = centre_of(&mpm->grid, mpm->water, g, k, cell, x);
   for (int d = 0; d < 2 * mpm->grid.dim; d++) {
-    const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
+    const face_flow f = at_face(mpm, g, k, d, end, cell, x, X, &behind);
     if (f.known) flux += f.flux;
     if (f.known && behind)
       let_out(mpm->water, g, mpsi_pore_edge_of(mpm->water, behind)->face[d], -f.flux);
   }
   return flux;
+}
+
+/* m3 that stores water, of a cell that is not inside. One less than half full at an impervious
+ * surface: else its steps would be short. */
+static double space_of(const mpsi_pore_edge *edge) {
+  const double filled = edge->fill[0] * edge->fill[1] * edge->fill[2];
+  return fmax(edge->space, 0.5 * edge->space / fmax(1e-3, filled));
 }
 
 static void advance(mps_mpm *mpm, int64_t g, int k, bool whole, mpsi_pore_cell *cell) {
@@ -218,13 +229,8 @@ static void advance(mps_mpm *mpm, int64_t g, int k, bool whole, mpsi_pore_cell *
   double space = mpm->grid.dim == 3 ? h * h * h : h * h;
   if (whole) list_beside(&mpm->grid, water, g, k, beside);
   cell->gain = whole ? flux_among_whole(&mpm->grid, water, &mpm->def, cell, beside)
-                     : flux_into(mpm, g, k, cell);
-  /* a cell less than half full at an impervious surface: else its steps would be short */
-  if (!cell->inside) {
-    const mpsi_pore_edge *edge = mpsi_pore_edge_of(mpm->water, cell);
-    const double filled = edge->fill[0] * edge->fill[1] * edge->fill[2];
-    space = fmax(edge->space, 0.5 * edge->space / fmax(1e-3, filled));
-  }
+                     : flux_into(mpm, g, k, false, cell);
+  if (!cell->inside) space = space_of(mpsi_pore_edge_of(water, cell));
   cell->now = cell->p + water->def.bulk / cell->n * (mpm->run.dt * cell->gain / space) +
               mpsi_pore_squeeze(mpm->water, cell);
 }
@@ -361,12 +367,85 @@ static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
     give_body(&mpm->grid, &mpm->p, mpm->water, &mpm->def, mpm->run.dt, b, 3);
 }
 
-void mpsi_pore_flow(mps_mpm *mpm) {
+/* ---- implicit pressures ---------------------------------------------------------------------- */
+
+/* Storage and fluxes of a cell, and the right-hand side, for implicit.c. */
+static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *cell) {
+  mpsi_water *water = mpm->water;
+  mpsi_pore_system *s = water->system;
+  const int64_t at = cell - water->cell;
+  const double h = mpm->grid.cell, dt = mpm->run.dt, V = cell->volume / mpm->grid.measure;
+  const mpsi_pore_cell *behind;
+  double x[3], flux = 0.0;
+  const double X = centre_of(&mpm->grid, water, g, k, cell, x);
+  const double space = cell->inside ? (mpm->grid.dim == 3 ? h * h * h : h * h)
+                                    : space_of(mpsi_pore_edge_of(water, cell));
+  const double storage = space * cell->n / water->def.bulk;
+  s->scale[at] = sqrt(space / V);
+  s->diagonal[at] = storage;
+  for (int d = 0; d < 2 * mpm->grid.dim; d++) {
+    s->conductance[at][d] = 0.0;
+    if (!water->flows) continue;
+    const face_flow f = at_face(mpm, g, k, d, false, cell, x, X, &behind);
+    if (!f.known) continue;
+    flux += f.flux;
+    if (behind)
+      s->diagonal[at] += dt * f.conductance;
+    else
+      s->conductance[at][d] = f.conductance;
+  }
+  s->residual[at] = dt * flux + storage * mpsi_pore_squeeze(water, cell);
+}
+
+static void find_equations(mps_mpm *mpm, int64_t g, int32_t worker) {
+  mpsi_water *water = mpm->water;
+  const int64_t first = mpsi_first_node(&mpm->grid, g);
+  const mpsi_pore_cell *cell = water->cell + first;
+  (void)worker;
+  memset(water->outflow[g], 0, sizeof water->outflow[g]);
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    water->system->scale[first + k] = 0.0; /* no unknown */
+    water->system->direction[first + k] = 0.0;
+    if (mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin)
+      find_equation(mpm, g, k, &cell[k]);
+  }
+}
+
+/* What flows under the pressures at the end of the step, so that no water is lost. */
+static void find_gains(mps_mpm *mpm, int64_t g, int32_t worker) {
+  mpsi_water *water = mpm->water;
+  mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
+  (void)worker;
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    if (!mpsi_pore_marked(water->block[g].filled, k)) continue;
+    if (cell[k].thin)
+      squeeze(&mpm->grid, water, mpm->run.dt, g, &cell[k]);
+    else
+      cell[k].gain = flux_into(mpm, g, k, true, &cell[k]);
+  }
+}
+
+static mps_status find_implicit(mps_mpm *mpm, const char *function) {
+  const mpsi_pass equations = {.finish = find_equations};
+  const mpsi_pass gains = {.finish = find_gains};
+  mpsi_mpm_run_pass(mpm, &equations);
+  const mps_status status = mpsi_pore_solve(mpm, function);
+  if (status == MPS_OK && mpm->water->flows) mpsi_mpm_run_pass(mpm, &gains);
+  return status;
+}
+
+/* ---- all ------------------------------------------------------------------------------------- */
+
+mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function) {
   const mpsi_pass pressures = {.finish = find_pressures};
   const mpsi_pass particles = {.finish = find_slopes, .gather = give_to_particles};
-  if (mpm->water->flows) {
+  mps_status status = MPS_OK;
+  if (mpm->water->system) {
+    status = find_implicit(mpm, function);
+  } else if (mpm->water->flows) {
     mpsi_mpm_run_pass(mpm, &pressures);
     mpsi_pore_exchange(mpm, MPSI_PORE_NOW);
   }
-  mpsi_mpm_run_pass(mpm, &particles);
+  if (status == MPS_OK) mpsi_mpm_run_pass(mpm, &particles);
+  return status;
 }

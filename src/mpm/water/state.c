@@ -1,5 +1,6 @@
 /* state.c - the water of a solver between steps: values that the caller has written, its mass, and
  * what snapshots and checkpoints keep besides the fields. SPDX-License-Identifier: BSD-3-Clause */
+#include "implicit.h"
 #include "layers.h"
 #include "water.h"
 
@@ -47,6 +48,7 @@ void mpsi_pore_free(mps_mpm *mpm) {
   mpsi_free(mpm->context, mpm->water->former_room.item);
   mpsi_free(mpm->context, mpm->water->place_room.item);
   mpsi_pore_free_layers(mpm->context, &mpm->water->layers);
+  mpsi_pore_free_system(mpm->context, &mpm->water->system);
   mpsi_free(mpm->context, mpm->water);
   mpm->water = NULL;
 }
@@ -57,6 +59,7 @@ void mpsi_pore_list_state(mpsi_state *state, mpsi_water *water) {
   mpsi_state_enter(state, "water");
   mpsi_state_agree_integer(state, "flows", water->flows);
   mpsi_state_agree_integer(state, "faces", water->faces);
+  mpsi_state_agree_integer(state, "scheme", water->def.scheme);
   mpsi_state_i64(state, "start", water->start.limb, MPSI_EXACT_LIMBS);
   mpsi_state_i64(state, "drained", water->drained[0].limb, MPSI_PORE_FACES * MPSI_EXACT_LIMBS);
   mpsi_state_i64(state, "entered", water->entered.limb, MPSI_EXACT_LIMBS);

@@ -1,5 +1,6 @@
 /* update.c - the water's part of a step: what comes before the scatter, and what comes after the
  * particles have moved. SPDX-License-Identifier: BSD-3-Clause */
+#include "implicit.h"
 #include "layers.h"
 #include "water.h"
 
@@ -94,6 +95,9 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   if (!mpm->water) return status;
   status = renew_layers(mpm, function, status);
   if (status == MPS_OK) status = make_room(mpm->context, &mpm->grid, &mpm->p, mpm->water, function);
+  if (status == MPS_OK && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT &&
+      !mpsi_pore_make_system(mpm))
+    status = mpsi_fail_memory(mpm->context, function, 0);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
@@ -126,10 +130,11 @@ static void sum_outflow(const mpsi_grid *grid, mpsi_water *water, double dt) {
   }
 }
 
-void mpsi_pore_update(mps_mpm *mpm) {
-  if (!mpm->water) return;
+mps_status mpsi_pore_update(mps_mpm *mpm, const char *function) {
+  if (!mpm->water) return MPS_OK;
   mpsi_pore_find_cells(mpm);
   mpsi_pore_find_faces(mpm);
-  mpsi_pore_flow(mpm);
-  if (mpm->water->flows) sum_outflow(&mpm->grid, mpm->water, mpm->run.dt);
+  const mps_status status = mpsi_pore_flow(mpm, function);
+  if (status == MPS_OK && mpm->water->flows) sum_outflow(&mpm->grid, mpm->water, mpm->run.dt);
+  return status;
 }

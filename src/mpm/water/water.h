@@ -10,6 +10,7 @@
 #include <mps/pore_water.h>
 
 typedef struct mpsi_pore_layers mpsi_pore_layers; /* layers.h */
+typedef struct mpsi_pore_system mpsi_pore_system; /* implicit.h */
 
 #define MPSI_PORE_FASTEST 1.0 /* m/s, of permeabilities */
 
@@ -75,6 +76,7 @@ struct mpsi_water {
   int32_t (*linked_at)[3];            /* and where they were */
   mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, place_room, linked_room;
   mpsi_pore_layers *layers; /* on several ranks, else NULL */
+  mpsi_pore_system *system; /* where pressures are implicit, else NULL */
 };
 
 /* The part of a tile that its particles may be in after a step. */
@@ -146,13 +148,13 @@ void mpsi_pore_find_cells(mps_mpm *mpm);
  * pressures at the end of the step. */
 void mpsi_pore_find_faces(mps_mpm *mpm);
 /* flow.c: pressures at the end of the step; then their slopes, and what the particles take. */
-void mpsi_pore_flow(mps_mpm *mpm);
+mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function);
 
 /* update.c: before the scatter of a step: room for its cells. On several ranks collective where the
  * blocks are others than in the last step; `status`: of the step so far on this rank. */
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status);
 /* update.c: after a step whose values are numbers. Collective. */
-void mpsi_pore_update(mps_mpm *mpm);
+mps_status mpsi_pore_update(mps_mpm *mpm, const char *function);
 /* state.c: values that the caller has written: MPS_ERROR_ARGUMENT names the particle. */
 mps_status mpsi_pore_check(mps_context *context, const mpsi_columns *p, mpsi_water *water,
                            const char *function);
