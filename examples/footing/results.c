@@ -142,9 +142,8 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_number(&f, "q_exact", c->exact);
   json_number(&f, "q_exact_smooth", c->smooth);
   json_number(&f, "q_exact_rough", c->rough);
-  /* At no settlement, as all of the bearing capacity were that of the surcharge, or of the weight.
-   */
-  const double q = c->undeformed * c->unit, weight = s->density * s->gravity * s->half_width;
+  /* Over the last fifth of the path: N_q, N_gamma where there is nothing else that bears. */
+  const double q = c->last * c->unit, weight = s->density * s->gravity * s->half_width;
   json_number(&f, "q_over_surcharge", s->surcharge > 0.0 ? q / s->surcharge : NAN);
   json_number(&f, "q_over_weight", weight > 0.0 ? q / weight : NAN);
   json_end(&f);
