@@ -259,6 +259,14 @@ static void print(const settings *s, const capacity *c) {
     printf("no bearing capacity: the footing has not settled as far as --settlement\n");
     return;
   }
+  if (s->model == VON_MISES && isnan(c->rough)) {
+    printf("bearing capacity q/c %.3f, c that of the upper layer\n", c->last);
+    return;
+  }
+  if (s->model == VON_MISES && isnan(c->exact) && isnan(c->smooth)) {
+    printf("bearing capacity q/c %.3f (rough base %.3f)\n", c->last, c->rough);
+    return;
+  }
   if (s->model == VON_MISES && isnan(c->exact)) {
     printf("bearing capacity q/c %.3f (smooth base %.2f, rough %.2f)\n", c->last, c->smooth,
            c->rough);
@@ -266,9 +274,10 @@ static void print(const settings *s, const capacity *c) {
   }
   if (s->model == VON_MISES) {
     printf("bearing capacity q/c %.3f (%s %.3f, %+.1f %%)\n", c->last,
-           s->shape == STRIP ? "Prandtl"
-           : s->mu > 0.0     ? "rough base"
-                             : "smooth base",
+           footing_is_thin(s)  ? "thin layer, rough base"
+           : s->shape == STRIP ? "Prandtl"
+           : s->mu > 0.0       ? "rough base"
+                               : "smooth base",
            c->exact, 100.0 * (c->last / c->exact - 1.0));
     return;
   }
