@@ -34,8 +34,8 @@ set key bottom right
 set terminal pngcairo size 1200,820 enhanced font 'DejaVu Sans,11'
 set output 'docs/images/textbook-bearing.png'
 nq = folder('mps-footing_--model_druckerprager_--gravity_0')
-smooth = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--young_100MPa_--domain_3x1.5_--quasi')
-rough = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--young_100MPa_--domain_5x2_--friction_1_--quasi')
+smooth = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--domain_2x0.8')
+rough = folder('mps-footing_--model_druckerprager_--cohesion_1Pa_--domain_3x1.2')
 thin = folder('mps-footing_--half-width_1_--domain_3x0.5')
 set multiplot layout 2,2
 set xlabel 'settlement (mm)'

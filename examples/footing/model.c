@@ -1,5 +1,6 @@
 /* model.c - ground and footing of mps-footing, and the run.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/ranks.h"
 #include "footing.h"
 
 #include <mps/geostatic.h>
@@ -35,6 +36,8 @@ const char *footing_settle(settings *s, const option *table) {
   if (!cone && options_given(table, "surcharge")) return "--surcharge is for --model druckerprager";
   if ((s->top > 0.0) != (s->top_cohesion > 0.0)) return "--top and --top-cohesion need one another";
   if (cone && s->top > 0.0) return "--top and --top-cohesion are for --model vonmises";
+  if (ranks_launched() > 1 && (s->top > 0.0 || s->surcharge > 0.0))
+    return "--top and --surcharge are for one process";
   if (s->top > s->depth - s->h)
     return "--top must leave at least a cell of --h of the ground below";
   if (isnan(s->rate)) s->rate = s->settled ? 1.5e-3 : 0.5e-3;

@@ -142,9 +142,8 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_number(&f, "q_exact", c->exact);
   json_number(&f, "q_exact_smooth", c->smooth);
   json_number(&f, "q_exact_rough", c->rough);
-  /* At no settlement, as all of the bearing capacity were that of the surcharge, or of the weight.
-   */
-  const double q = c->undeformed * c->unit, weight = s->density * s->gravity * s->half_width;
+  /* Over the last fifth of the path: N_q, N_gamma where there is nothing else that bears. */
+  const double q = c->last * c->unit, weight = s->density * s->gravity * s->half_width;
   json_number(&f, "q_over_surcharge", s->surcharge > 0.0 ? q / s->surcharge : NAN);
   json_number(&f, "q_over_weight", weight > 0.0 ? q / weight : NAN);
   json_end(&f);
@@ -260,6 +259,14 @@ static void print(const settings *s, const capacity *c) {
     printf("no bearing capacity: the footing has not settled as far as --settlement\n");
     return;
   }
+  if (s->model == VON_MISES && isnan(c->rough)) {
+    printf("bearing capacity q/c %.3f, c that of the upper layer\n", c->last);
+    return;
+  }
+  if (s->model == VON_MISES && isnan(c->exact) && isnan(c->smooth)) {
+    printf("bearing capacity q/c %.3f (rough base %.3f)\n", c->last, c->rough);
+    return;
+  }
   if (s->model == VON_MISES && isnan(c->exact)) {
     printf("bearing capacity q/c %.3f (smooth base %.2f, rough %.2f)\n", c->last, c->smooth,
            c->rough);
@@ -267,9 +274,10 @@ static void print(const settings *s, const capacity *c) {
   }
   if (s->model == VON_MISES) {
     printf("bearing capacity q/c %.3f (%s %.3f, %+.1f %%)\n", c->last,
-           s->shape == STRIP ? "Prandtl"
-           : s->mu > 0.0     ? "rough base"
-                             : "smooth base",
+           footing_is_thin(s)  ? "thin layer, rough base"
+           : s->shape == STRIP ? "Prandtl"
+           : s->mu > 0.0       ? "rough base"
+                               : "smooth base",
            c->exact, 100.0 * (c->last / c->exact - 1.0));
     return;
   }

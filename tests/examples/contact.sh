@@ -62,6 +62,18 @@ in_range "$work/friction/summary.json" q_exact 36.80 36.82
 in_range "$work/friction/summary.json" q_exact_rough 42.63 42.66
 in_range "$work/friction/summary.json" q_over_c_undeformed 36.81 45.3
 tail -n 1 "$work/log" | grep -q "exact: 36.81 (smooth base)" || fail "last line"
+# N_q of sand without weight on five cells (18.401), and a rough strip on a thin layer (6.1416 by slip lines).
+"$1/mps-footing" --model druckerprager --gravity 0 --cohesion 1Pa --surcharge 10kPa --domain 2x1 \
+  --settlement 1mm --rate 5mm/s --threads 1 --out "$work/surcharge" >/dev/null
+in_range "$work/surcharge/summary.json" q_over_surcharge 17.8 19.3
+"$1/mps-footing" --half-width 1 --domain 3x0.5 --friction 10 --h 0.125 --rate 5mm/s --threads 1 \
+  --out "$work/layer" >/dev/null
+in_range "$work/layer/summary.json" q_exact 6.1415 6.1417
+in_range "$work/layer/summary.json" q_over_c 6.2 7.4
+# Soft clay over stiff clay bears as if all were soft where Prandtl's mechanism ends above the joint.
+"$1/mps-footing" --cohesion 30kPa --top 0.75 --top-cohesion 10kPa --domain 3x2 --rate 5mm/s --threads 1 \
+  --out "$work/layers" >/dev/null
+in_range "$work/layers/summary.json" q_over_c 5.142 5.40
 for name in box/forces disc/motion footing/pressure; do
   picture "$work/$name.png" 1000x640 1f4e8c c0392b
 done
