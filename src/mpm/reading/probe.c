@@ -12,8 +12,7 @@
 #include <string.h>
 
 #define LEAST_FILLED 0.2
-#define SINGULAR 1e-9 /* cells squared: spread of the particles below which no gradient is fitted  \
-                       */
+#define SINGULAR 1e-9 /* cells squared: particles spread less have no gradient */
 #define REACH 2       /* cells: half the width of the weights, rounded up */
 
 /* A particle with its cell. */
