@@ -116,7 +116,8 @@ mps_status mpsi_mpm_agree_on_insertion(void *self, const char *function, mps_sta
                                 "a hash of the particles to add", mpsi_hash_short(hash));
 }
 
-/* Each rank lists particles that it has itself, or all of them list the same. */
+/* Ids of removed particles over all ranks: each rank lists particles that it has, or all ranks the
+ * same list. */
 mps_status mpsi_mpm_find_removed(void *self, const char *function, mps_status status, int64_t count,
                                  const int64_t *ids, int64_t known, int64_t *all) {
   mps_mpm *mpm = self;

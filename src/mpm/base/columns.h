@@ -27,7 +27,7 @@ typedef struct mpsi_columns {
       *f[3]; /* N, forces by body accelerations and loads in the step; NULL where there are none */
   int64_t *law; /* number of each particle's law; NULL: one law */
   mpsi_laws laws;
-  mps_particles *set; /* the caller's, whose fields these are */
+  mps_particles *set; /* the caller's set, in whose fields these columns lie */
   int32_t *stencil;   /* lowest node of the particle's stencil, in its block's tile, in the present
                          step; NULL where volumetric.c and filter.c do not need it */
 } mpsi_columns;

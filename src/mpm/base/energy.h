@@ -38,7 +38,7 @@ typedef struct mpsi_node_energy {
   double jump;     /* half of m |v' - v|^2 */
   double normal;   /* work of the normal forces of bodies */
   double friction; /* work of their friction on the nodes */
-  double surface;  /* the same force times the velocity of the bodies */
+  double surface;  /* friction force times the velocity of the bodies */
   double holds;    /* work of the boundaries' impulses on the nodes */
   double damping;  /* work of damping */
 } mpsi_node_energy;
@@ -82,8 +82,8 @@ void mpsi_mpm_energy_add(mpsi_energy *budget, mpsi_energy_sum which, double ener
 void mpsi_mpm_energy_add_at_once(mpsi_energy *budget, mpsi_energy_sum which, double energy);
 /* Before the step: memory, and the energy of penalty contact. */
 mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
-/* Particles [begin, end) of a block: kinetic energy before and after G2P, the latter before lists
- * of held particles get theirs (walls.c), though with means the laws come later than these. */
+/* Kinetic energy of particles [begin, end) of a block before and after G2P; the latter before
+ * listed particles get their prescribed velocities (walls.c). */
 void mpsi_mpm_energy_before(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
                             const mpsi_cell_block *cells, int64_t begin, int64_t end);
 void mpsi_mpm_energy_after(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,

@@ -1,6 +1,6 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * cut_scatter.c, cut_gather.c, search.c, sweep.c, and loops.h for what they have in
- * common. SPDX-License-Identifier: BSD-3-Clause */
+ * cut_scatter.c, cut_gather.c, search.c, sweep.c; common code is in loops.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H
 

@@ -163,7 +163,7 @@ static void add_wall(const mpsi_grid *grid, const mpsi_columns *p,
 
 /* ---- forces at rest -------------------------------------------------------------------------- */
 
-/* Order of the list: blocks ascend in z, y, x, then come the holds. */
+/* Order of the list: by block, ascending in z, y, x, then by boundary. */
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
   for (int c = 2; c >= 0; c--)
     if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;

@@ -1,4 +1,5 @@
-/* mirror.c - see mirror.h. SPDX-License-Identifier: BSD-3-Clause */
+/* mirror.c - folding of ghosts on mirrors, and their images: see mirror.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/base/mpm_solver.h"
 

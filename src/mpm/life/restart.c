@@ -448,7 +448,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .steps = mpm->run.steps};
 }
 
-/* The lists that are kept must be of the present boundaries. */
+/* The lists in a snapshot must be those of the present boundaries. */
 static mps_status make_whole(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
   if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_apply_edits(mpm, function);

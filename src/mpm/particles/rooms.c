@@ -1,5 +1,5 @@
-/* rooms.c - memory for each particle beside its fields: what the sort, the loads, means of the
- * change of volume and the filter of stresses need. SPDX-License-Identifier: BSD-3-Clause */
+/* rooms.c - memory with an entry for each particle, besides its fields: for the sort, loads, means
+ * of the change of volume and the filter of stresses. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 
 #include <string.h>

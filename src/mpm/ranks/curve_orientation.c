@@ -1,6 +1,7 @@
-/* curve_orientation.c - see curve_orientation.h. The blocks' bounds fill either a cube of a power
- * of two, or, stretched, each axis of it whole: then halves of the curve are halves of the body.
- * The curve's axes may be any permutation of the grid's. SPDX-License-Identifier: BSD-3-Clause */
+/* curve_orientation.c - see curve_orientation.h. The bounds of the blocks fill either a cube whose
+ * side is a power of two or, stretched, each axis of that cube: then halves of the curve are halves
+ * of the body. The axes of the curve may be any permutation of those of the grid.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_orientation.h"
 
 #include "domain/curve.h"
