@@ -1,5 +1,5 @@
-/* access.c - queries of a solver between its steps: whether it may be used, its Courant
- * limit and its step, where it is in time. SPDX-License-Identifier: BSD-3-Clause */
+/* access.c - queries of a solver between its steps: whether it may be used, Courant limit, time
+ * step and time. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 #include "mpm/particles/particles.h"
 
@@ -7,7 +7,7 @@ mps_status mpsi_mpm_between_steps(mps_context *context, const mpsi_run *run, con
   return mpsi_guard_check(&run->guard, context, function);
 }
 
-/* Not after a step that gave no numbers, nor while a field is being edited. */
+/* Refuses after a step with values that are not finite, and while a field is being edited. */
 mps_status mpsi_mpm_check_whole(mps_context *context, const mpsi_columns *p, const mpsi_run *run,
                                 const char *function) {
   if (run->broken)
@@ -28,7 +28,7 @@ double mps_mpm_limit(const mps_mpm *mpm) {
   double speed = mpm->run.speed;
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     speed = fmax(speed, mpsi_contact_speed(mpm->contact.handle[b]));
-  return speed > 0.0 ? mpm->grid.cell / speed : INFINITY; /* there are no particles */
+  return speed > 0.0 ? mpm->grid.cell / speed : INFINITY; /* INFINITY without particles */
 }
 
 double mps_mpm_dt(const mps_mpm *mpm) {

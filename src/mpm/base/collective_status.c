@@ -1,5 +1,5 @@
-/* collective_status.c - one status on all ranks: whether each has succeeded so far, and the largest
- * of what any of them has found. SPDX-License-Identifier: BSD-3-Clause */
+/* collective_status.c - agreement of all ranks: on one status, on equal state and arguments, and on
+ * largest values. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
 bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g) {
@@ -37,7 +37,7 @@ mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition 
   return MPS_OK;
 }
 
-/* What all ranks have: time, step, where bodies are. */
+/* State that is equal on all ranks: time, step, positions of bodies. */
 static void give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
                        mpsi_given *list) {
   mpsi_given_begin(list);
@@ -47,7 +47,7 @@ static void give_state(const mpsi_contacts *contacts, const mpsi_run *run, const
   for (int32_t b = 0; b < contacts->bodies; b++) mpsi_body_give_state(list, contacts->body[b]);
 }
 
-/* What signals say of the step to be made. */
+/* Values of the signals in the step to be made. */
 static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
                          const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
                          const mpsi_settling *settling, mpsi_given *list) {
@@ -86,7 +86,7 @@ mps_status mpsi_mpm_agree(mpsi_partition *partition, const char *function, mps_s
 mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
                               mpsi_partition *partition, const char *function, mps_status status,
                               int64_t count, const int64_t *ids) {
-  int64_t found[2] = {0, p->count}; /* of the list; particles */
+  int64_t found[2] = {0, p->count}; /* found of the list; particles */
   status = mpsi_mpm_agree(partition, function, status);
   if (status != MPS_OK) return status;
   if (!partition) return mpsi_particles_check_ids(p->set, function, count, ids);
@@ -116,7 +116,8 @@ mps_status mpsi_mpm_agree_on_insertion(void *self, const char *function, mps_sta
                                 "a hash of the particles to add", mpsi_hash_short(hash));
 }
 
-/* Each rank lists particles that it has itself, or all of them list the same. */
+/* Ids of removed particles over all ranks: each rank lists particles that it has, or all ranks the
+ * same list. */
 mps_status mpsi_mpm_find_removed(void *self, const char *function, mps_status status, int64_t count,
                                  const int64_t *ids, int64_t known, int64_t *all) {
   mps_mpm *mpm = self;

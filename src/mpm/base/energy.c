@@ -1,4 +1,4 @@
-/* energy.c - see energy.h. Within a block sums go in their order, over blocks they are exact.
+/* energy.c - see energy.h. Sums within a block are in order, sums over blocks exact.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/contact/particle.h"
@@ -64,9 +64,9 @@ void mpsi_mpm_energy_moved(const mpsi_grid *grid, const mpsi_columns *p, const m
   of_cells(grid, energy, cells)->stresses += dt * stresses;
 }
 
-void mpsi_mpm_energy_given_back(const mpsi_grid *grid, const mpsi_columns *p,
-                                const mpsi_energy *energy, const mps_mpm_def *def, double dt,
-                                const mpsi_cell_block *cells, int64_t particle, const double *v) {
+void mpsi_mpm_energy_returned(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mpsi_energy *energy, const mps_mpm_def *def, double dt,
+                              const mpsi_cell_block *cells, int64_t particle, const double *v) {
   double power = 0.0;
   for (int a = 0; a < grid->dim; a++)
     power += (p->m[particle] * def->gravity[a] + (p->f[a] ? p->f[a][particle] : 0.0)) * v[a];
@@ -81,8 +81,8 @@ static const double *dissipated_column(const mpsi_law_use *law) {
   return law->history[mpsi_material_dissipated()];
 }
 
-void mpsi_mpm_energy_keep(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end,
-                          mpsi_before_law *out) {
+void mpsi_mpm_energy_before_law(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin,
+                                int64_t end, mpsi_before_law *out) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
   for (int c = 0; c < 2 * grid->dim; c++) memcpy(out->stress[c], p->s[c] + begin, bytes);
   memcpy(out->volume, p->V + begin, bytes);
@@ -100,8 +100,8 @@ static double elastic_energy(const double *s, double bulk, double shear) {
   return trace * mean / (6.0 * bulk) + square / (4.0 * shear);
 }
 
-/* sum of V sigma_ab d_ab over the step, trapezoidal in V sigma; `trace`: that of its mean stress.
- */
+/* Work dt sum V sigma_ab d_ab of a step, trapezoidal in V sigma; `trace`: that of the mean
+ * stress. */
 static double stress_work(const mps_material_block *block, int64_t k, const double *s0,
                           const double *s1, double V0, double V1, double *trace) {
   double mean[6], work = 0.0, rate = 0.0;
@@ -120,7 +120,7 @@ void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mps
                          const mpsi_cell_block *cells, const mpsi_law_use *law,
                          const mps_material_block *block, const mpsi_before_law *before,
                          int64_t begin) {
-  const mpsi_kept warm = mpsi_material_kept(law->material);
+  const mpsi_kept stored = mpsi_material_kept(law->material);
   const double shear = mpsi_material_shear(law->material), bulk = law->modulus - 4.0 / 3.0 * shear;
   const double *dissipated = dissipated_column(law);
   mpsi_cell_energy *sum = of_cells(grid, energy, cells);
@@ -132,15 +132,15 @@ void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mps
     sum->seen += stress_work(block, k, s0, s0, V0, V0, &trace);
     const double work = stress_work(block, k, s0, s1, V0, V1, &trace);
     double stays = work;
-    if (warm == MPSI_KEPT_PRESSURE)
+    if (stored == MPSI_KEPT_PRESSURE)
       stays = trace;
     else if (dissipated)
       stays = work - 0.5 * (V0 + V1) * (dissipated[begin + k] - before->dissipated[k]);
-    else if (warm == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
+    else if (stored == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
       stays = 0.5 * (V0 + V1) *
               (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear)) /
               mpsi_mpm_stiffness(p, begin + k);
-    sum->warm += stays;
+    sum->stored += stays;
     sum->spent += work - stays;
   }
 }
@@ -163,7 +163,7 @@ void mpsi_mpm_energy_smoothed(const mpsi_grid *grid, const mpsi_columns *p,
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
-/* Work of all bodies on node k with the velocity v. */
+/* Work of all bodies in penalty contact on node k with the velocity v. */
 static void count_contact(const mpsi_grid *grid, const mpsi_contacts *contacts, double dt,
                           const mpsi_node_block *nodes, int k, const double *v,
                           mpsi_node_energy *out) {
@@ -208,8 +208,8 @@ void mpsi_mpm_energy_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
 
 /* ---- penalty contact ------------------------------------------------------------------------- */
 
-/* Half the normal force times the depth that it comes from, of all particles in penalty contact:
- * `sign` times that is the elastic energy of the contact now, and the bodies' work on it less. */
+/* Elastic energy of penalty contact: half the normal force times the depth, over all particles;
+ * adds `sign` times it, and subtracts it from the work of the bodies. */
 static void add_springs(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
                         mpsi_energy *budget, const mps_mpm_def *def, double sign) {
   for (int32_t b = 0; b < contacts->bodies; b++) {
@@ -255,15 +255,16 @@ static void add_cells(const mpsi_grid *grid, mpsi_energy *energy) {
     if (grid->cells[b].ghost) continue;
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic + e->returned);
-    mpsi_mpm_energy_add(energy, MPSI_ENERGY_KEPT, e->warm - e->smoothed);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_KEPT, e->stored - e->smoothed);
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_SPENT, e->spent + e->smoothed);
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_LOADS, e->loads);
-    mpsi_mpm_energy_add(energy, MPSI_ENERGY_STEPPING, e->seen - e->warm - e->spent);
+    mpsi_mpm_energy_add(energy, MPSI_ENERGY_STEPPING, e->seen - e->stored - e->spent);
     mpsi_mpm_energy_add(energy, MPSI_ENERGY_STRAIN, e->stresses - e->seen);
   }
 }
 
-/* Of the bodies' work that is not by friction or on nodes, penalty contact stores some. */
+/* Adds the energies of the nodes. The part of the bodies' work that is not done at nodes or by
+ * friction is stored in penalty contact. */
 static void add_nodes(const mpsi_grid *grid, mpsi_partition *partition, mpsi_energy *energy) {
   for (int64_t g = 0; g < mpsi_all_nodes(grid); g++) {
     const mpsi_node_energy *e = &energy->nodes[g];
@@ -278,7 +279,7 @@ static void add_nodes(const mpsi_grid *grid, mpsi_partition *partition, mpsi_ene
 
 void mpsi_mpm_energy_end(mps_mpm *mpm) {
   mpsi_energy *e = &mpm->energy;
-  const double bodies = e->bodies; /* all ranks know it: one counts it */
+  const double bodies = e->bodies; /* equal on all ranks: one counts it */
   e->work_bodies += bodies;
   e->bodies = 0.0;
   if (!e->counts) return;

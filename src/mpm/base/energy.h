@@ -1,18 +1,17 @@
-/* energy.h - the energy budget of WLS-MPM: what each part of a step does to the energy, measured
- * where it happens, so that the sum is a check. With nodes i, particles p, the velocities v before
- * and v' after a step, and J the impulses on a node,
+/* energy.h - the energy budget of WLS-MPM: changes of energy in each part of a step, measured where
+ * they happen, so that the sum is a check. With nodes i, particles p, the velocities v before and
+ * v' after a step, and J the impulses on a node,
  *
  *   sum m_i (v'_i - v_i) . v'_i = sum J_i . v'_i,
  *
  * so all works are those of the velocity at the end, with which particles move. The left side is
  * the change of kinetic energy of the nodes and half of sum m |v' - v|^2, which an explicit step
- * loses. On the right the works of stresses and loads are found at the particles (G2P is the
- * adjoint of P2G), those of contacts and boundaries at the nodes. What the transfers take is the
+ * dissipates. On the right the works of stresses and loads are found at the particles (G2P is the
+ * adjoint of P2G), those of contacts and boundaries at the nodes. The loss of the transfers is the
  * kinetic energy of the particles less that of the nodes, before and after.
  *
  * Sums over blocks, particles and ranks are exact: they do not depend on the partition. On several
- * ranks each has its part of them.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * ranks each has its part of them. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_ENERGY_H
 #define MPSI_MPM_ENERGY_H
 
@@ -21,25 +20,25 @@
 #include "core/base/exact.h"
 #include "core/base/room.h"
 
-/* J, of the step being made, of the particles of a block of cells. */
+/* Energies of the particles of a block of cells in the step being made, J. */
 typedef struct mpsi_cell_energy {
   double kinetic_before, kinetic;
   double loads;    /* work of gravity, loads and fields of forces */
-  double returned; /* its part by the velocities that light nodes give back (cut_gather.c) */
+  double returned; /* part of it by momentum returned from light nodes (cut_gather.c) */
   double stresses; /* work of the nodes against the stresses at the beginning of the step */
-  double seen;     /* the same by the gradient that the laws see */
-  double warm;     /* work against the mean stresses of the step that the laws keep */
-  double spent;    /* the rest of that: plasticity, viscosity */
-  double smoothed; /* elastic energy that the filter of frictional stresses takes */
+  double seen;     /* the same by the derivatives that the laws take */
+  double stored;   /* stored part of the work against the mean stresses of the step */
+  double spent;    /* dissipated part of that work: plasticity, viscosity */
+  double smoothed; /* elastic energy removed by the filter of frictional stresses */
 } mpsi_cell_energy;
 
-/* Likewise of a block of nodes. */
+/* Energies of a block of nodes in the step being made, J. */
 typedef struct mpsi_node_energy {
   double kinetic_before, kinetic;
   double jump;     /* half of m |v' - v|^2 */
   double normal;   /* work of the normal forces of bodies */
   double friction; /* work of their friction on the nodes */
-  double surface;  /* the same force times the velocity of the bodies */
+  double surface;  /* friction force times the velocity of the bodies */
   double holds;    /* work of the boundaries' impulses on the nodes */
   double damping;  /* work of damping */
 } mpsi_node_energy;
@@ -66,25 +65,26 @@ typedef struct mpsi_energy {
   mpsi_cell_energy *cells;
   mpsi_node_energy *nodes;
   mpsi_exact sum[MPSI_ENERGY_SUMS];
-  mpsi_exact step[MPSI_ENERGY_SUMS]; /* of the step being made, which may fail */
+  mpsi_exact step[MPSI_ENERGY_SUMS]; /* sums of the step being made, which may fail */
   double work_bodies;                /* J, since creation, the same on all ranks; */
-  double bodies;                     /* and of the step being made */
+  double bodies;                     /* J, of the step being made */
   mpsi_room cells_room, nodes_room;
 } mpsi_energy;
 
-/* What mpsi_mpm_energy_law needs of a run of particles from before their law. */
+/* State of particles before their law, for mpsi_mpm_energy_law. */
 typedef struct mpsi_before_law {
   double stress[6][64], volume[64];
   double dissipated[64]; /* J/m3; set where the law counts it */
 } mpsi_before_law;
 
-/* With a budget: to the step being made, or (at once) to what has been. */
+/* If there is a budget: adds to the sums of the step being made, or (at_once) to those of the
+ * past. */
 void mpsi_mpm_energy_add(mpsi_energy *budget, mpsi_energy_sum which, double energy);
 void mpsi_mpm_energy_add_at_once(mpsi_energy *budget, mpsi_energy_sum which, double energy);
-/* Before the step: room, and the energy of penalty contact. */
+/* Before the step: memory, and the energy of penalty contact. */
 mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
-/* Particles [begin, end) of a block: kinetic energy before and after G2P, the latter before lists
- * of held particles get theirs (walls.c), though with means the laws come later than these. */
+/* Kinetic energy of particles [begin, end) of a block before and after G2P; the latter before
+ * listed particles get their prescribed velocities (walls.c). */
 void mpsi_mpm_energy_before(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
                             const mpsi_cell_block *cells, int64_t begin, int64_t end);
 void mpsi_mpm_energy_after(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
@@ -93,29 +93,29 @@ void mpsi_mpm_energy_after(const mpsi_grid *grid, const mpsi_columns *p, const m
 void mpsi_mpm_energy_moved(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
                            const mps_mpm_def *def, double dt, const mpsi_cell_block *cells,
                            int64_t begin, int64_t end);
-/* Of a particle: `v`, the part of its new velocity that light nodes give back. The nodes' forces do
- * no work by it, as the fit knows nothing of it. */
-void mpsi_mpm_energy_given_back(const mpsi_grid *grid, const mpsi_columns *p,
-                                const mpsi_energy *energy, const mps_mpm_def *def, double dt,
-                                const mpsi_cell_block *cells, int64_t particle, const double *v);
-/* Particles of one law, at most 64 of them: before it, and after. */
-void mpsi_mpm_energy_keep(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int64_t end,
-                          mpsi_before_law *out);
+/* Work of loads by momentum returned from light nodes, with `v` the part of a particle's new
+ * velocity by it. Forces at the nodes do no work with it, as the fit does not represent it. */
+void mpsi_mpm_energy_returned(const mpsi_grid *grid, const mpsi_columns *p,
+                              const mpsi_energy *energy, const mps_mpm_def *def, double dt,
+                              const mpsi_cell_block *cells, int64_t particle, const double *v);
+/* State of at most 64 particles of one law before it; works after it. */
+void mpsi_mpm_energy_before_law(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin,
+                                int64_t end, mpsi_before_law *out);
 void mpsi_mpm_energy_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
                          const mpsi_cell_block *cells, const mpsi_law_use *law,
                          const mps_material_block *block, const mpsi_before_law *before,
                          int64_t begin);
-/* Frictional particles from `begin` on, as many, whose stresses were filtered after their law
- * (filter.c) and had been those of `before`: what their elastic energy loses is spent. */
+/* Elastic energy, counted as dissipated, of frictional particles [begin, end) whose stresses
+ * `before` were filtered after their law (filter.c). */
 void mpsi_mpm_energy_smoothed(const mpsi_grid *grid, const mpsi_columns *p,
                               const mpsi_energy *energy, const mpsi_cell_block *cells,
                               const mpsi_before_law *before, int64_t begin, int64_t end);
-/* Nodes of block g, all forces known: `held` has their velocities before the boundaries, `damped`
- * those before damping. */
+/* Works at the nodes of block g, after all forces: `held` has their velocities before the
+ * boundaries, `damped` those before damping. */
 void mpsi_mpm_energy_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
                            const mpsi_energy *energy, double dt, int64_t g, const mpsi_node *held,
                            const mpsi_node *damped);
-/* After the step: adds it to the sums. */
+/* After the step: adds its energies to the sums. */
 void mpsi_mpm_energy_end(mps_mpm *mpm);
 
 #endif

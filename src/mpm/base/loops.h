@@ -1,12 +1,11 @@
-/* loops.h - what the inner loops share: vectors of nodes, tiles, and chunks of particles. For the
- * files that are compiled once for each instruction set, with MPSI_LEVEL set.
+/* loops.h - common code of the inner loops: vectors of nodes, tiles, and chunks of particles. For
+ * the files that are compiled once for each instruction set, with MPSI_LEVEL set.
  *
  * A node is four doubles {m, x, y, z}. A row of a stencil, its four nodes along x, is one array of
- * vectors of MPSI_WIDE nodes each. A particle gives its nodes a linear function of s, which along a
- * row is w_j w_k w_i (B + s_i D) with B and D common to the row: two multiply-adds a node and all
- * four quantities at once (they are fused where the processor can: these files, unlike the others,
- * allow it).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * vectors of MPSI_WIDE nodes each. A particle contributes to its nodes a linear function of s,
+ * which along a row is w_j w_k w_i (B + s_i D) with B and D constant on the row: two multiply-adds
+ * a node for all four quantities at once (fused where the processor can: these files, unlike the
+ * others, allow it). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_LOOPS_H
 #define MPSI_MPM_LOOPS_H
 
@@ -20,7 +19,8 @@
 #define MPSI_SIMD _Pragma("omp simd")
 #define MPSI_UNROLL _Pragma("GCC unroll 4")
 #if defined(__GNUC__) || defined(__clang__)
-#define MPSI_APART static __attribute__((noinline)) /* large, and called from several places */
+/* not inlined: large, and called from several places */
+#define MPSI_APART static __attribute__((noinline))
 #else
 #define MPSI_APART static
 #endif
@@ -49,14 +49,14 @@ typedef double mpsi_vec_any __attribute__((vector_size(64), aligned(8), may_alia
 typedef mpsi_quad mpsi_vec;
 typedef mpsi_quad_any mpsi_vec_any;
 #endif
-#define MPSI_ROW (4 / MPSI_WIDE) /* vectors in a row */
+#define MPSI_ROW (4 / MPSI_WIDE) /* number of vectors in a row of nodes */
 
 MPSI_INLINE mpsi_quad mpsi_get(const double *from) { return *(const mpsi_quad_any *)from; }
 MPSI_INLINE void mpsi_put(double *to, mpsi_quad v) { *(mpsi_quad_any *)to = v; }
 MPSI_INLINE mpsi_vec mpsi_get_row(const double *from) { return *(const mpsi_vec_any *)from; }
 MPSI_INLINE void mpsi_put_row(double *to, mpsi_vec v) { *(mpsi_vec_any *)to = v; }
 
-typedef int64_t mpsi_mask __attribute__((vector_size(32))); /* of comparisons: 0 or -1 */
+typedef int64_t mpsi_mask __attribute__((vector_size(32))); /* result of comparisons: 0 or -1 */
 #ifdef __clang__
 #define MPSI_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #define MPSI_SHUFFLE_WIDE MPSI_SHUFFLE
@@ -66,7 +66,7 @@ typedef int64_t mpsi_mask_wide __attribute__((vector_size(64)));
 #define MPSI_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (mpsi_mask){__VA_ARGS__})
 #endif
 
-/* Rows to columns. */
+/* Transposes a 4 x 4 matrix. */
 MPSI_INLINE void mpsi_transpose(mpsi_quad *a) {
   const mpsi_quad p = MPSI_SHUFFLE(a[0], a[1], 0, 4, 2, 6),
                   q = MPSI_SHUFFLE(a[0], a[1], 1, 5, 3, 7);
@@ -78,7 +78,7 @@ MPSI_INLINE void mpsi_transpose(mpsi_quad *a) {
   a[3] = MPSI_SHUFFLE(q, s, 2, 3, 6, 7);
 }
 
-/* The same node values for every node of a vector. */
+/* Copies the values of a node to every node of a vector. */
 MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
 #if MPSI_WIDE == 2
   return (mpsi_vec){a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3]};
@@ -87,7 +87,8 @@ MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
 #endif
 }
 
-/* c[i], and c[i + 1], ..., for all values of the nodes from i in a vector. */
+/* Coefficients c[i], c[i + 1] of the nodes in a vector, from node i on, each for all values of its
+ * node. */
 MPSI_INLINE mpsi_vec mpsi_by_node(const double *c, int i) {
 #if MPSI_WIDE == 2
   return (mpsi_vec){c[i], c[i], c[i], c[i], c[i + 1], c[i + 1], c[i + 1], c[i + 1]};
@@ -96,7 +97,7 @@ MPSI_INLINE mpsi_vec mpsi_by_node(const double *c, int i) {
 #endif
 }
 
-/* As many particles of a stencil at once. */
+/* Particles of a stencil that G2P processes at once. */
 #if MPSI_LEVEL == 4
 #define MPSI_LANES 8
 #else
@@ -107,9 +108,9 @@ typedef double mpsi_lanes_any __attribute__((vector_size(8 * MPSI_LANES), aligne
 MPSI_INLINE mpsi_lanes mpsi_get_lanes(const double *from) { return *(const mpsi_lanes_any *)from; }
 MPSI_INLINE void mpsi_put_lanes(double *to, mpsi_lanes v) { *(mpsi_lanes_any *)to = v; }
 
-/* The derivative of a B-spline is the fit's slope w s/m2 and, times `excess`, the difference of
- * second (quadratic) or third order (cubic) of the nodes of its stencil: sums of differences serve
- * all particles of a stencil. t as of mpsi_weights. */
+/* The derivative of a B-spline is the slope of the fit, w s/m2, plus `excess` times the difference
+ * of second (quadratic) or third order (cubic) of the nodes of its stencil: so the sums of
+ * differences are common to all particles of a stencil. t as in mpsi_weights. */
 MPSI_INLINE mpsi_lanes mpsi_excess(int spline, mpsi_lanes t) {
   const mpsi_lanes f = t - 1.0, g = 2.0 - t;
   return spline == 3 ? 0.5 * (f * f) * (g * g) : 2.0 * f * (f * f - 0.25);
@@ -123,27 +124,28 @@ MPSI_INLINE double mpsi_difference(int spline, int i) {
 
 /* ---- chunks of particles --------------------------------------------------------------------- */
 
-#define MPSI_SEGMENT 16 /* particles of one stencil at most that are summed at once */
+#define MPSI_SEGMENT 16 /* most particles of one stencil that are summed at once */
 
-#define MPSI_COLUMN (MPSI_CHUNK + 8) /* some from any particle of a chunk on are there */
-/* Of what lies on the stack: where it lands depends on the callers, and a vector that crosses the
- * end of a cache line takes twice as long. */
+/* a vector may be read or written from any particle of a chunk on */
+#define MPSI_COLUMN (MPSI_CHUNK + 8)
+/* For arrays on the stack: without it their alignment depends on the callers, and a vector that
+ * crosses the end of a cache line takes twice as long. */
 #define MPSI_LINE __attribute__((aligned(64)))
 
-/* Where the particles of a chunk are in the tile. */
+/* Positions in the tile, in cells, and weights of the particles of a chunk. */
 typedef struct mpsi_places {
-  double t[3][MPSI_COLUMN] MPSI_LINE;                 /* from the lowest node */
-  double w[3][4][MPSI_COLUMN], ws[3][4][MPSI_COLUMN]; /* w, w s of each axis */
-  int32_t first[MPSI_CHUNK];                          /* lowest node */
+  double t[3][MPSI_COLUMN] MPSI_LINE; /* distance from the lowest node of the stencil */
+  double w[3][4][MPSI_COLUMN], ws[3][4][MPSI_COLUMN]; /* w and w s, by axis and node */
+  int32_t first[MPSI_CHUNK]; /* lowest node of the stencil, index in the tile */
 } mpsi_places;
 
-/* The weights along x of each particle, of the four nodes of a row side by side. */
+/* Weights along x of each particle, the four nodes of a row side by side. */
 typedef struct mpsi_rows {
   double w[MPSI_CHUNK][4] MPSI_LINE, ws[MPSI_CHUNK][4];
 } mpsi_rows;
 
-/* The first `n` values (at least 1), if fewer than four with the first again: what comes after may
- * be at work elsewhere, and 0 may be far from the block. */
+/* The first `n` values (at least 1); the first one again in further lanes: memory behind them may
+ * be written by another thread, and zeros could be a position far from the block. */
 MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
   if (n >= 4) return mpsi_get(from);
   mpsi_quad out = {from[0], from[0], from[0], from[0]};
@@ -151,13 +153,13 @@ MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
   return out;
 }
 
-/* Cells from the block's first node to four particles at x, along axis c. */
+/* Distance (cells) from the block's first node, along axis c, of four particles at x. */
 MPSI_INLINE mpsi_quad mpsi_from_block(const mpsi_grid *grid, const mpsi_cell_block *cells, int c,
                                       mpsi_quad x) {
   return (x - grid->origin[c]) * grid->inverse - (double)cells->at[c] * MPSI_SIDE;
 }
 
-/* Weights of four particles along one axis. */
+/* B-spline weights of four particles along one axis. */
 MPSI_INLINE void mpsi_lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
   const mpsi_quad f = t - 1.0, g = 2.0 - t;
   if (spline == 3) {
@@ -172,15 +174,15 @@ MPSI_INLINE void mpsi_lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
   }
 }
 
-/* Their weights along the axes of `weights`, a bit each, and times s along those of `slopes`, which
- * have weights too; both literal. */
+/* Positions of particles [begin, begin + n) in the tile, their weights along the axes of `weights`
+ * (a bit each), and weights times s along those of `slopes`, a subset of these; both literal. */
 MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                   int spline, int weights, int slopes, int64_t begin, int n,
                                   mpsi_places *out) {
   for (int k = 0; k < n; k += 4) {
     mpsi_index first = {0};
     for (int c = 0, stride = 1; c < dim; c++, stride *= MPSI_TILE_SIDE) {
-      /* counted from the block: not negative, so that truncation is floor */
+      /* from the block's first node: not negative, so that truncation is floor */
       const mpsi_quad X =
           mpsi_from_block(&mpm->grid, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
       const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
@@ -200,8 +202,8 @@ MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cel
   }
 }
 
-/* Zeros behind the `n` particles, for loops over MPSI_LANES of them: what happens to lie there can
- * be a denormal number, as a pointer is, and its product then takes a hundred times as long. */
+/* Zeros behind the `n` particles, for loops over MPSI_LANES of them: other contents can be denormal
+ * numbers, whose products take a hundred times as long. */
 MPSI_INLINE void mpsi_pad_places(int dim, int spline, int weights, int n, mpsi_places *out) {
   const mpsi_lanes zero = {0.0};
   for (int c = 0; c < dim; c++) {
@@ -213,7 +215,7 @@ MPSI_INLINE void mpsi_pad_places(int dim, int spline, int weights, int n, mpsi_p
   }
 }
 
-/* The states of the nodes of the stencil from tile node `first`, all bits together: 0 where none is
+/* States of the nodes of the stencil from tile node `first`, all bits together: 0 where none is
  * outside the domain or in a body. */
 MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int spline,
                                         int32_t first) {
@@ -227,21 +229,21 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
   return (any | any >> 8 | any >> 16 | (spline == 3 ? any >> 24 : 0)) & 0xff;
 }
 
-/* What the nodes give to the particles of a chunk: columns. A velocity's derivative of component c
- * by axis d is number dim c + d, as in the columns L of the set. */
+/* Velocities of a chunk of particles from the nodes, as columns. The derivative of component c
+ * along axis d is number dim c + d, as in the columns L of the set. */
 typedef struct mpsi_gathered {
   double v[3][MPSI_COLUMN] MPSI_LINE,
-      own[3][MPSI_COLUMN];           /* m/s; FLIP: what a particle keeps of its own */
-  double slope[9][MPSI_COLUMN];      /* 1/s, of the fit, which the transfer takes */
-  double derivative[9][MPSI_COLUMN]; /* 1/s, which the laws see */
+      own[3][MPSI_COLUMN];           /* m/s; FLIP part of the particle's velocity */
+  double slope[9][MPSI_COLUMN];      /* 1/s, slope of the fit, for the next P2G */
+  double derivative[9][MPSI_COLUMN]; /* 1/s, derivative for the laws */
 } mpsi_gathered;
 
 /* ---- cut_scatter.c, cut_gather.c: particles whose support is cut ----------------------------- */
 
-/* Give particles [begin, end) of a chunk (that begins with particle `chunk`), all of one stencil,
- * to the tiles, at bodies also the sums of penalty contact, and keep their fits; then take what the
- * nodes give them. False: nothing is done, their supports are full and they are as all others, but
- * the laws see the slopes of the fit. */
+/* P2G and G2P of particles [begin, end) of a chunk (whose first particle is `chunk`), all of one
+ * stencil, with a cut support. P2G also sums penalty contact and stores fits. They do nothing and
+ * return false if all supports are full: such particles are treated as others with full supports,
+ * except that the laws take the slopes of the fit. */
 bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                          const mpsi_worker *worker, const mpsi_places *places,
                                          int64_t chunk, int begin, int end);
@@ -249,7 +251,7 @@ bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(mps_mpm *mpm, const mpsi_cell_block *cel
                                         const mpsi_worker *worker, const mpsi_places *places,
                                         int64_t chunk, int begin, int end, mpsi_gathered *out);
 
-/* The fit by itself; the largest speed of a block: see mpsi_kernels. */
+/* The functions of mpsi_kernels. */
 void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                  const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
                                  mpsi_shape_values *out);

@@ -1,4 +1,4 @@
-/* mpm_solver.h - the WLS-MPM solver, put together from its parts: each has a header of its own.
+/* mpm_solver.h - the WLS-MPM solver structure, composed of parts that have a header each.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_SOLVER_H
 #define MPSI_MPM_SOLVER_H
@@ -20,16 +20,16 @@
 struct mpsi_kernels;
 struct mpsi_water;
 
-/* Memory for each particle. */
+/* Memory with an entry for each particle. */
 typedef struct mpsi_rooms {
   mpsi_room radix, stencil;
-  mpsi_room strain; /* of the columns D */
+  mpsi_room strain; /* memory of the columns D */
   mpsi_room rough;
-  mpsi_room gone;  /* marks of what leaves at the end of a step; none where nothing can */
-  mpsi_room force; /* of the columns f; none without loads */
+  mpsi_room gone;  /* marks of particles to remove; none where none can be removed */
+  mpsi_room force; /* memory of the columns f; none without loads */
 } mpsi_rooms;
 
-/* The handle of mps/grid.h: lent, a part of the solver. */
+/* The handle of mps/grid.h, which the solver owns. */
 struct mps_grid {
   mps_mpm *mpm;
 };
@@ -37,10 +37,10 @@ struct mps_grid {
 struct mps_mpm {
   struct mps_grid reader;
   mps_context *context;
-  mpsi_holder holder; /* of the particles */
+  mpsi_holder holder; /* as a holder of the set of particles */
   mps_mpm_def def;
   const struct mpsi_kernels *kernels;
-  mps_kernel *weights; /* for queries of the caller */
+  mps_kernel *weights; /* weight function, for queries of the caller */
   mpsi_columns p;
   mpsi_rooms rooms;
   mpsi_grid grid;
@@ -52,12 +52,12 @@ struct mps_mpm {
   mpsi_undo undo;
   mpsi_energy energy;
   mpsi_settling settling;
-  struct mpsi_water *water;  /* in the pores: water/water.h; NULL: none */
-  mpsi_identity *identity;   /* of its snapshots */
-  mpsi_partition *partition; /* of several ranks; NULL: there is but one */
+  struct mpsi_water *water;  /* pore water (water/water.h); NULL: none */
+  mpsi_identity *identity;   /* identity of its snapshots */
+  mpsi_partition *partition; /* parts on several ranks; NULL: one rank */
 };
 
-/* Whether each node needs its velocity before the forces: all blocks are split then. */
+/* Whether each node needs its velocity before the forces, so that all blocks are split. */
 static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settling *settling,
                                      const mps_mpm_def *def) {
   return energy->counts || settling->on || def->local_damping > 0.0;
@@ -67,7 +67,7 @@ static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t par
   return &p->laws.law[p->law ? p->law[particle] : 0];
 }
 
-/* Factor of the moduli of a particle's law. */
+/* Factor of the elastic moduli of a particle's law. */
 static inline double mpsi_mpm_stiffness(const mpsi_columns *p, int64_t particle) {
   const double *factor = mpsi_law_of(p, particle)->stiffness;
   return factor && factor[particle] > 0.0 ? factor[particle] : 1.0;
@@ -96,11 +96,11 @@ static inline bool mpsi_mpm_passes(const mpsi_grid *grid, const mpsi_boundaries 
          (boundaries->open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
 }
 
-/* Nodes of a stencil beyond its lowest, as the loops take them: rows along x are read and written
- * four nodes at a time whatever the spline. */
+/* Number of nodes of a stencil beyond its lowest along axis c, as the loops read and write them:
+ * four nodes along x whatever the spline. */
 static inline int32_t mpsi_reach(const mpsi_grid *grid, int c) { return c == 0 ? 3 : grid->spline; }
 
-/* Memory of one worker. */
+/* Bytes of scratch memory of one worker. */
 static inline size_t mpsi_worker_bytes(const mpsi_grid *grid) {
   return (size_t)grid->tile_nodes * (2 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
 }
@@ -109,7 +109,7 @@ static inline int64_t mpsi_first_node(const mpsi_grid *grid, int64_t g) {
   return mpsi_grid_first_node(grid, g);
 }
 
-/* Position x[3] of the node `local` of the block at `at`. */
+/* Position x[3] (m) of the node with the coordinates `local` in the block at `at`. */
 static inline void mpsi_node_position(const mpsi_grid *grid, const int32_t *at, const double *local,
                                       double *x) {
   for (int c = 0; c < 3; c++)
@@ -117,7 +117,7 @@ static inline void mpsi_node_position(const mpsi_grid *grid, const int32_t *at, 
         c < grid->dim ? grid->origin[c] + grid->cell * ((double)at[c] * MPSI_SIDE + local[c]) : 0.0;
 }
 
-/* The same of node k of the block of nodes at `at`. */
+/* Position x[3] (m) of node k of the block of nodes at `at`. */
 static inline void mpsi_node_place(const mpsi_grid *grid, const int32_t *at, int k, double *x) {
   int place[3];
   mpsi_unravel(k, MPSI_SIDE, place);
@@ -125,7 +125,7 @@ static inline void mpsi_node_place(const mpsi_grid *grid, const int32_t *at, int
   mpsi_node_position(grid, at, local, x);
 }
 
-/* Block of nodes under the node (i, j, k) of a tile, and the node's number in it. */
+/* Block of nodes under the node (i, j, k) of a tile; number of the node in it. */
 static inline int32_t mpsi_block_under(const mpsi_cell_block *cells, int i, int j, int k) {
   return cells->to[(i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE)];
 }
@@ -140,7 +140,7 @@ static inline int64_t mpsi_node_under(const mpsi_grid *grid, const mpsi_cell_blo
   return mpsi_first_node(grid, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
 }
 
-/* The same of the tile for what thin bodies part from the nodes. */
+/* Node of the grid with the values across thin bodies under the node (i, j, k) of a tile. */
 static inline int64_t mpsi_node_across(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
                                        int j, int k) {
   const int32_t across = grid->nodes[mpsi_block_under(cells, i, j, k)].across;

@@ -1,9 +1,9 @@
 /* shape.h - shape functions of one particle: B-spline weights, Nakamura (35), (36), and the
  * weighted least-squares fit of a linear function over the active nodes, (5), (6), (37), (38).
  *
- * Lengths are in cells here: s = (x_i - x_p)/h, so that the moment matrix M = sum w P P^T with
- * P = [1, s] is well scaled. Where all nodes of the stencil take part M is diagonal, diag(1, m2,
- * m2, m2) with m2 = 1/3 (cubic) or 1/4 (quadratic), and phi = w, grad phi = w s/(m2 h).
+ * Lengths are in cells here: s = (x_i - x_p)/h, so that the moment matrix M = sum w P P^T with P =
+ * [1, s] is well scaled. Where all nodes of the stencil are active M is diagonal, diag(1, m2, m2,
+ * m2) with m2 = 1/3 (cubic) or 1/4 (quadratic), and phi = w, grad phi = w s/(m2 h).
  *
  * `dim` and `spline` are literal arguments wherever speed counts.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -13,34 +13,35 @@
 #include "mpm_solver.h"
 
 #define MPSI_STENCIL                                                                               \
-  64 /* nodes 16 k + 4 j + i; quadratic stencils leave out the fours, 2D k > 0                     \
-      */
+  64 /* nodes 16 k + 4 j + i; in 2D k = 0, quadratic stencils have i, j, k below 3 */
 
 typedef struct mpsi_stencil {
-  int at[3];               /* lowest node in the tile */
-  int own[3];              /* first corner of the particle's cell, within the stencil */
-  double w[3][4], s[3][4]; /* of each axis; w is 0 where there is no node */
+  int at[3];  /* lowest node of the stencil, in the tile */
+  int own[3]; /* first corner of the particle's cell, within the stencil */
+  double w[3][4],
+      s[3][4]; /* weights and distances of the nodes, by axis; w is 0 where there is no node */
 } mpsi_stencil;
 
 typedef struct mpsi_shape_values {
-  double w[MPSI_STENCIL], phi[MPSI_STENCIL]; /* 0 where a node does not take part */
+  double w[MPSI_STENCIL], phi[MPSI_STENCIL]; /* 0 at inactive nodes */
   double gradient[3][MPSI_STENCIL];          /* of phi, 1/m */
   double determinant;                        /* det M / M00^(dim + 1) */
-  uint64_t across; /* nodes whose values across take part: thin_bodies.h */
+  uint64_t across; /* nodes whose values across thin bodies are used: thin_bodies.h */
 } mpsi_shape_values;
 
-/* phi + grad phi . d at the nodes of a stencil whose lowest is tile node `at`: what a particle's
- * shape functions are, prolonged linearly, at the distance d (m) from it. */
+/* psi = phi + grad phi . d at the nodes of a stencil whose lowest is tile node `at`: the shape
+ * functions of a particle, extrapolated linearly to the distance d (m) from it. */
 typedef struct mpsi_foot_weights {
   int at[3];
-  uint64_t active, across; /* bit n: node n takes part, and with its value across (thin_bodies.h) */
-  double psi[MPSI_STENCIL]; /* of the former */
+  uint64_t active,
+      across; /* bit n: node n is active; its values across thin bodies are used (thin_bodies.h) */
+  double psi[MPSI_STENCIL]; /* psi of the active nodes */
 } mpsi_foot_weights;
 
 /* Inverse of the second moment of a full stencil. */
 MPSI_INLINE double mpsi_inverse_moment(int spline) { return spline == 3 ? 3.0 : 4.0; }
 
-/* Weights along one axis of a particle t cells from the lowest node. */
+/* B-spline weights along one axis of a particle t cells from the lowest node. */
 MPSI_INLINE void mpsi_weights(int spline, double t, double *w) {
   const double f = t - 1.0;
   if (spline == 3) {
@@ -57,7 +58,7 @@ MPSI_INLINE void mpsi_weights(int spline, double t, double *w) {
   }
 }
 
-/* Derivatives of the weights by t: by the particle's place in cells. */
+/* Derivatives of the weights by t, the particle's position in cells. */
 MPSI_INLINE void mpsi_slopes(int spline, double t, double *slope) {
   const double f = t - 1.0;
   if (spline == 3) {

@@ -1,15 +1,15 @@
-/* absorb.c - absorbing walls of the WLS-MPM grid: the dashpots of Lysmer and Kuhlemeyer, traction
- * R - rho c_p v across the wall and R - rho c_s v along it.
+/* absorb.c - absorbing walls of the WLS-MPM grid: the dashpots of Lysmer and Kuhlemeyer, traction R
+ * - rho c_p v across the wall and R - rho c_s v along it.
  *
- * A dashpot acts on each node of the wall. Its coefficient rho c A is shared out by the particles
- * in the cells at the wall: each stands for the area V/h and gives rho c V/h = c m/h to the wall's
+ * A dashpot acts on each node of the wall. Its coefficient rho c A is distributed by the particles
+ * in the cells at the wall: each represents the area V/h and adds rho c V/h = c m/h to the wall's
  * nodes by the least-squares shape functions of that plane, which are those of the masses there
- * (Nakamura (5), (6) with one axis less). So a wall covered in part has the right force in sum, and
- * its nodes the right ratio of damping to mass. The particles of a block are summed by themselves:
- * on several ranks such sums come from others (dashpots.c).
+ * (Nakamura (5), (6) with one axis less). So a wall covered in part has the right total force, and
+ * its nodes the right ratio of damping to mass. The particles of a block are summed separately: on
+ * several ranks such sums are received from others (dashpots.c).
  *
- * R carries the stress at rest. It is the mean of the force that holds the node while the wall
- * settles, or what balances the first step's forces.
+ * R is the traction by the stress at rest: the mean of the force on the node while the wall is held
+ * and settles, or what balances the forces of the first step.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/shape.h"
 
@@ -58,7 +58,7 @@ static void fit_along(const mpsi_grid *grid, int c, double X, int64_t *base, dou
     m0 += w[i], m1 += w[i] * s[i], m2 += w[i] * s[i] * s[i];
   }
   for (int i = 0; i < 4; i++) phi[i] = w[i] * (m2 - m1 * s[i]) / (m0 * m2 - m1 * m1);
-  for (int i = 0; i < 4; i++) { /* ghosts of a mirror beside the wall: to their partners */
+  for (int i = 0; i < 4; i++) { /* ghosts of a mirror beside the wall are added to their partners */
     const int64_t n = *base + i;
     const int64_t wall = n < grid->low[c] ? grid->low[c] : grid->high[c];
     if ((n >= grid->low[c] && n <= grid->high[c]) || phi[i] == 0.0) continue;
@@ -67,8 +67,8 @@ static void fit_along(const mpsi_grid *grid, int c, double X, int64_t *base, dou
   }
 }
 
-static mpsi_dashpot *dash_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
-                             int32_t number, int64_t node) {
+static mpsi_dashpot *dashpot_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                                int32_t number, int64_t node) {
   const mpsi_node_block *nodes = &grid->nodes[node / grid->block_nodes];
   int32_t t = nodes->first_held;
   while (boundaries->held[t].hold != number) t++;
@@ -77,12 +77,12 @@ static mpsi_dashpot *dash_of(const mpsi_grid *grid, const mpsi_boundaries *bound
                                                (int)(node % grid->block_nodes))];
 }
 
-/* Node of the plane across `axis`, of those under the tile. */
+/* Index, in the plane across `axis`, of tile node `at`. */
 static int tile_plane_index(int axis, const int *at) {
   return at[axis == 2 ? 1 : 2] * MPSI_TILE_SIDE + at[axis == 0 ? 1 : 0];
 }
 
-/* A particle in a cell at the wall. */
+/* Adds the coefficients of a particle in a cell at the wall. */
 static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
                          const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
                          int32_t number, int64_t k, double (*tile)[2]) {
@@ -114,7 +114,8 @@ bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
                            const mpsi_boundaries *boundaries, const mpsi_cell_block *cells,
                            int32_t number, double (*tile)[2]) {
   const int c = boundaries->hold[number].axis;
-  const int64_t layer = boundaries->hold[number].first[c] - number % 2; /* of cells */
+  /* layer of cells at the wall */
+  const int64_t layer = boundaries->hold[number].first[c] - number % 2;
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
   if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
   memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
@@ -134,13 +135,13 @@ static void add_tile(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
     at[axis] = (int)(hold->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
     if (tile[2 * k] == 0.0 && tile[2 * k + 1] == 0.0) continue;
     mpsi_dashpot *dashpot =
-        dash_of(grid, boundaries, number, mpsi_node_under(grid, cells, at[0], at[1], at[2]));
+        dashpot_of(grid, boundaries, number, mpsi_node_under(grid, cells, at[0], at[1], at[2]));
     dashpot->across += tile[2 * k];
     dashpot->along += tile[2 * k + 1];
   }
 }
 
-/* What has come of a block for a side, or NULL. */
+/* Received sums of a block for a side, or NULL. */
 static const double *parcel_of(const mpsi_dashpot_parcels *parcels, const mpsi_cell_block *cells,
                                int32_t side) {
   if (!parcels || cells->parcel < 0) return NULL;
@@ -162,7 +163,7 @@ static void add_wall(const mpsi_grid *grid, const mpsi_columns *p,
 
 /* ---- forces at rest -------------------------------------------------------------------------- */
 
-/* Order of the list: blocks ascend in z, y, x, then come the holds. */
+/* Order of the list: by block, ascending in z, y, x, then by boundary. */
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
   for (int c = 2; c >= 0; c--)
     if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;
@@ -182,7 +183,7 @@ void mpsi_mpm_place_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
     const mpsi_held *held = &boundaries->held[t];
     if (held->dashpot < 0) continue;
     mpsi_dashpot *dashpot = boundaries->dashpot + held->dashpot;
-    for (int k = 0; k < plane; k++) { /* a fit can give a node less than nothing */
+    for (int k = 0; k < plane; k++) { /* the shape functions of a fit can be negative */
       dashpot[k].across = fmax(dashpot[k].across, 0.0);
       dashpot[k].along = fmax(dashpot[k].along, 0.0);
     }

@@ -1,5 +1,5 @@
-/* boundaries.c - which boundaries the caller has: the sides of the domain, boxes of nodes, lists of
- * particles; their definitions and reactions. At work: walls.c, absorb.c.
+/* boundaries.c - the boundaries of a solver: sides of the domain, boxes of nodes, lists of
+ * particles; their definitions and reactions. Their action in a step: walls.c, absorb.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/particles.h"
 
@@ -10,8 +10,8 @@
 
 #include <string.h>
 
-#define ON_NODE 1e-6 /* cells: the edge of a box this close to a node holds it */
-#define ROUGHEST 1e3 /* friction */
+#define ON_NODE 1e-6 /* cells: a node this close to the edge of a box belongs to it */
+#define ROUGHEST 1e3 /* largest coefficient of friction */
 
 static const mps_mpm_boundary_def boundary_defaults = {.struct_size = sizeof(mps_mpm_boundary_def),
                                                        .kind = MPS_BOUNDARY_HELD,
@@ -162,7 +162,7 @@ static mps_status check_prescribed(mps_context *context, const mpsi_grid *grid,
   return mpsi_mpm_check_ids(context, p, partition, function, status, def->id_count, def->ids);
 }
 
-/* ---- putting in place ------------------------------------------------------------------------ */
+/* ---- changing boundaries --------------------------------------------------------------------- */
 
 static void place_side(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int32_t number,
                        int32_t kind) {
@@ -183,7 +183,7 @@ static void place_side(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
   hold->kind = kind == MPS_BOUNDARY_FREE ? MPSI_BOUNDARY_NONE : kind;
 }
 
-/* Sums of a new boundary, from 0; memory of a number stays. */
+/* Memory for the sums of a boundary, which stays with its number. */
 static bool make_sums(mps_context *context, mpsi_boundary *hold) {
   if (!hold->sums) hold->sums = mpsi_alloc(context, 1, sizeof *hold->sums);
   return hold->sums != NULL;
@@ -245,7 +245,7 @@ void mpsi_mpm_drop_boundaries(mps_context *context, const mpsi_boundaries *bound
   mpsi_free(context, boundaries->hold_room.item);
 }
 
-/* Number of the next boundary, the lowest free one, for which there is memory then. */
+/* Number of the next boundary, the lowest free one, and memory for it. */
 static mps_status find_number(mps_context *context, mpsi_boundaries *b, const char *function,
                               int32_t *number) {
   int32_t at = MPSI_SIDES;
@@ -259,8 +259,8 @@ static mps_status find_number(mps_context *context, mpsi_boundaries *b, const ch
   return MPS_OK;
 }
 
-/* A box or list, in place of what the boundary was. */
-static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t number,
+/* Makes the boundary `number` one of a box or a list of particles. */
+static mps_status make_prescribed(mps_mpm *mpm, const char *function, int32_t number,
                                   const mps_mpm_boundary_def *def) {
   mpsi_boundary *hold = &mpm->boundaries.hold[number];
   mpsi_boundary made = {.kind = MPS_BOUNDARY_DRIVEN,
@@ -304,7 +304,7 @@ static mps_status read_def(mps_context *context, const char *function,
   return MPSI_DEF_READ(context, function, mps_mpm_boundary_def, user, def);
 }
 
-/* All ranks give the same boundary (`number` -1: a new one). */
+/* Checks that all ranks give the same boundary (`number` -1: a new one). */
 static mps_status compare_ranks(const mpsi_grid *grid, mpsi_partition *partition,
                                 const char *function, mps_status status, int32_t number,
                                 const mps_mpm_boundary_def *def) {
@@ -328,7 +328,7 @@ static mps_status compare_ranks(const mpsi_grid *grid, mpsi_partition *partition
   return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
-/* ---- the calls ------------------------------------------------------------------------------- */
+/* ---- public functions ------------------------------------------------------------------------ */
 
 mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
@@ -339,11 +339,12 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
   if (status == MPS_OK) status = find_number(mpm->context, &mpm->boundaries, __func__, &at);
   status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, -1, &def);
   if (status != MPS_OK) return status;
-  status = take_prescribed(mpm, __func__, at, &def);
+  status = make_prescribed(mpm, __func__, at, &def);
   if (status != MPS_OK) return status;
   mpsi_boundary *hold = &mpm->boundaries.hold[at];
-  mpsi_exact_merge(&mpm->boundaries.work,
-                   &hold->sums->all[MPSI_BOUNDARY_WORK]); /* of a former one */
+  mpsi_exact_merge(
+      &mpm->boundaries.work,
+      &hold->sums->all[MPSI_BOUNDARY_WORK]); /* work of a former boundary with this number */
   mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->step[MPSI_BOUNDARY_WORK]);
   memset(hold->sums, 0, sizeof *hold->sums);
   hold->count = hold->removed = 0;
@@ -378,7 +379,7 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
   status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, number, &def);
   if (status != MPS_OK) return status;
   mpsi_boundary *hold = &mpm->boundaries.hold[number];
-  if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, number, &def);
+  if (number >= MPSI_SIDES) return make_prescribed(mpm, __func__, number, &def);
   status = mpsi_mpm_agree(
       mpm->partition, __func__,
       check_side(mpm->context, &mpm->grid, &mpm->run, &mpm->def, __func__, number, &def));
@@ -428,7 +429,7 @@ void mpsi_mpm_boundary_add_works(const mpsi_boundaries *boundaries, mpsi_exact *
   }
 }
 
-/* All ranks together: the last step, and since it was made. */
+/* Sums over all ranks: of the last step, and since the boundary was made. */
 static mps_status sum_ranks(mpsi_partition *partition, const char *function,
                             const mpsi_boundary *hold, mpsi_boundary_sums *out, int64_t *counts) {
   *out = *hold->sums;

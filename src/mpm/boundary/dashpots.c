@@ -1,6 +1,6 @@
-/* dashpots.c - dashpots of absorbing sides (absorb.c) on several ranks: the sums of the ranks' own
- * blocks come with messages as tiles do, and forces at rest go to the ranks that have come to share
- * a block of nodes. Both only where the lists are rebuilt, after a sort.
+/* dashpots.c - dashpots of absorbing sides (absorb.c) on several ranks: coefficients of the ranks'
+ * own blocks are exchanged as tiles are, and forces at rest are sent to ranks that newly have a
+ * block of nodes. Both only when the lists are rebuilt, after a sort.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
@@ -27,9 +27,9 @@ static void sum_border(const mpsi_grid *grid, const mpsi_columns *p,
     }
 }
 
-static mps_status swap_sums(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
-                            const mpsi_boundaries *boundaries, mpsi_partition *partition,
-                            const char *function, mpsi_dashpot_parcels *parcels) {
+static mps_status exchange_sums(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                const mpsi_boundaries *boundaries, mpsi_partition *partition,
+                                const char *function, mpsi_dashpot_parcels *parcels) {
   const int64_t item = MPSI_SIDES * plane_doubles(grid);
   parcels->out = mpsi_alloc(context, partition->borders * item, sizeof *parcels->out);
   parcels->in = mpsi_alloc(context, partition->ghosts * item, sizeof *parcels->in);
@@ -49,15 +49,15 @@ static mps_status swap_sums(mps_context *context, const mpsi_grid *grid, const m
 
 /* ---- forces at rest -------------------------------------------------------------------------- */
 
-/* Of the dashpots of a block of nodes: a record is this and the forces of its plane. */
+/* Head of a record of the dashpots of a block of nodes; the forces at rest of its plane follow. */
 typedef struct place {
   int32_t at[3], hold;
 } place;
 
-typedef struct parting {
+typedef struct sending {
   int64_t held;
   int32_t rank;
-} parting;
+} sending;
 
 static int64_t plane_nodes(const mpsi_grid *grid) { return grid->block_nodes / MPSI_SIDE; }
 
@@ -66,14 +66,14 @@ static int64_t record_bytes(const mpsi_grid *grid) {
 }
 
 static int by_rank(const void *left, const void *right) {
-  const parting *a = left, *b = right;
+  const sending *a = left, *b = right;
   if (a->rank != b->rank) return a->rank < b->rank ? -1 : 1;
   return (a->held > b->held) - (a->held < b->held);
 }
 
-/* Whom the forces are for: the other ranks that may have blocks of cells over these nodes. */
-static int64_t list_partings(const mpsi_grid *grid, mpsi_partition *partition, const mpsi_held *old,
-                             int64_t old_count, parting *out) {
+/* Receivers of forces at rest: the other ranks that may have blocks of cells over these nodes. */
+static int64_t list_sendings(const mpsi_grid *grid, mpsi_partition *partition, const mpsi_held *old,
+                             int64_t old_count, sending *out) {
   const int32_t rank = mps_domain_rank(partition->domain);
   int64_t count = 0;
   for (int64_t t = 0; t < old_count; t++) {
@@ -85,7 +85,7 @@ static int64_t list_partings(const mpsi_grid *grid, mpsi_partition *partition, c
       const int32_t owner = mpsi_mpm_block_owner(grid, partition, at);
       int64_t k = first;
       while (k < count && out[k].rank != owner) k++;
-      if (owner != rank && k == count) out[count++] = (parting){t, owner};
+      if (owner != rank && k == count) out[count++] = (sending){t, owner};
     }
   }
   qsort(out, (size_t)count, sizeof *out, by_rank);
@@ -121,7 +121,7 @@ static void read_record(const mpsi_grid *grid, const mpsi_boundaries *b, const c
 }
 
 typedef struct rests {
-  parting *parting;
+  sending *sending;
   char *mail;
   mps_domain_message *message;
   mpsi_mailbox box;
@@ -132,24 +132,24 @@ static mps_status write_rests(mps_context *context, const mpsi_grid *grid,
                               int64_t old_count, const mpsi_dashpot *old_dashpot, rests *r,
                               int32_t *messages) {
   const int64_t record = record_bytes(grid);
-  r->parting = mpsi_alloc(context, old_count << grid->dim, sizeof *r->parting);
+  r->sending = mpsi_alloc(context, old_count << grid->dim, sizeof *r->sending);
   r->message = mpsi_alloc(context, mps_domain_size(partition->domain), sizeof *r->message);
   const int64_t count =
-      r->parting && r->message ? list_partings(grid, partition, old, old_count, r->parting) : 0;
+      r->sending && r->message ? list_sendings(grid, partition, old, old_count, r->sending) : 0;
   r->mail = mpsi_alloc(context, count, (size_t)record);
-  if (!r->parting || !r->message || !r->mail)
+  if (!r->sending || !r->message || !r->mail)
     return mpsi_fail_memory(context, function, (size_t)(count * record));
   for (int64_t k = 0; k < count; k++) {
     char *to = r->mail + k * record;
-    write_record(grid, &old[r->parting[k].held], old_dashpot, to);
-    if (k == 0 || r->parting[k].rank != r->parting[k - 1].rank)
-      r->message[(*messages)++] = (mps_domain_message){.rank = r->parting[k].rank, .data = to};
+    write_record(grid, &old[r->sending[k].held], old_dashpot, to);
+    if (k == 0 || r->sending[k].rank != r->sending[k - 1].rank)
+      r->message[(*messages)++] = (mps_domain_message){.rank = r->sending[k].rank, .data = to};
     r->message[*messages - 1].bytes += record;
   }
   return MPS_OK;
 }
 
-/* Into the new list. */
+/* Sends the forces at rest of the old list and stores received ones in the new list. */
 static mps_status send_rests(mps_context *context, const mpsi_grid *grid,
                              const mpsi_boundaries *boundaries, mpsi_partition *partition,
                              const char *function, const mpsi_held *old, int64_t old_count,
@@ -166,7 +166,7 @@ static mps_status send_rests(mps_context *context, const mpsi_grid *grid,
     for (int64_t at = 0; at < r.box.mail[m].bytes; at += record_bytes(grid))
       read_record(grid, boundaries, (const char *)r.box.mail[m].data + at);
   mpsi_domain_free_mail(&r.box);
-  mpsi_free(context, r.parting);
+  mpsi_free(context, r.sending);
   mpsi_free(context, r.mail);
   mpsi_free(context, r.message);
   return status;
@@ -178,7 +178,7 @@ mps_status mpsi_mpm_exchange_dashpots(mps_context *context, const mpsi_grid *gri
                                       const mpsi_held *old, int64_t old_count,
                                       const mpsi_dashpot *old_dashpot) {
   mpsi_dashpot_parcels parcels = {.doubles = plane_doubles(grid)};
-  mps_status status = swap_sums(context, grid, p, boundaries, partition, function, &parcels);
+  mps_status status = exchange_sums(context, grid, p, boundaries, partition, function, &parcels);
   if (status == MPS_OK)
     mpsi_mpm_place_dashpots(grid, p, boundaries, &parcels, old, old_count, old_dashpot);
   mpsi_free(context, parcels.out);
@@ -190,7 +190,7 @@ mps_status mpsi_mpm_exchange_dashpots(mps_context *context, const mpsi_grid *gri
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* A row on its way: its place, and the dashpots of its plane as numbers. */
+/* Order of rows: position of the block, then the dashpots of its plane. */
 static int by_place(const void *left, const void *right) {
   mpsi_held a = {0}, b = {0};
   place p, q;
@@ -249,7 +249,7 @@ mps_status mpsi_mpm_gather_dashpots(mps_context *context, const mpsi_grid *grid,
 /* A block of nodes under a block of cells of the file. */
 typedef struct under {
   int32_t at[3];
-  bool own; /* these are this rank's */
+  bool own; /* some of these blocks of cells are this rank's */
 } under;
 
 static int by_block(const void *left, const void *right) {
@@ -263,7 +263,7 @@ static int64_t list_under(const mpsi_grid *grid, mpsi_partition *partition,
                           const mpsi_value *blocks, under *out) {
   const mpsi_block *block = blocks->data;
   const int32_t rank = mps_domain_rank(partition->domain);
-  int64_t count = 0, warm = 0;
+  int64_t count = 0, kept = 0;
   for (int64_t b = 0; b < blocks->rows; b++) {
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
@@ -273,12 +273,12 @@ static int64_t list_under(const mpsi_grid *grid, mpsi_partition *partition,
   }
   qsort(out, (size_t)count, sizeof *out, by_block);
   for (int64_t k = 0; k < count; k++) {
-    if (warm > 0 && by_block(&out[warm - 1], &out[k]) == 0)
-      out[warm - 1].own = out[warm - 1].own || out[k].own;
+    if (kept > 0 && by_block(&out[kept - 1], &out[k]) == 0)
+      out[kept - 1].own = out[kept - 1].own || out[k].own;
     else
-      out[warm++] = out[k];
+      out[kept++] = out[k];
   }
-  return warm;
+  return kept;
 }
 
 mps_status mpsi_mpm_take_dashpots(mps_context *context, const mpsi_grid *grid,

@@ -1,12 +1,13 @@
-/* mirror.c - see mirror.h. SPDX-License-Identifier: BSD-3-Clause */
+/* mirror.c - folding of ghosts on mirrors, and their images: see mirror.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 
-enum { LAYERS = 2 }; /* of ghosts: the second only by what arithmetic rounds */
+enum { LAYERS = 2 }; /* layers of ghosts: round-off alone puts particles in reach of the second */
 
-/* ---- which ----------------------------------------------------------------------------------- */
+/* ---- sides that are mirrors ------------------------------------------------------------------ */
 
 static bool is_mirror(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                       const mps_mpm_def *def, int32_t k) {
@@ -77,7 +78,7 @@ int mpsi_mpm_mirror_partner(const mpsi_grid *grid, const mpsi_cell_block *cells,
 typedef struct side {
   const mpsi_cell_block *cells;
   int axis;
-  int wall, inwards;  /* tile nodes across: the wall's, and +1 or -1 */
+  int wall, inwards;  /* tile node of the wall along the axis; +1 or -1 */
   double keeps[3];    /* the diagonal of R */
   double velocity[3]; /* m/s, (I - R) v_w */
   mpsi_mirror *mirror;
@@ -107,9 +108,9 @@ static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
   return out;
 }
 
-/* A ghost and its partner, with places in m. */
+/* A ghost and its partner, with positions in m. */
 typedef struct couple {
-  int ghost, partner, place; /* tile nodes; in the plane */
+  int ghost, partner, place; /* tile nodes; index in the plane of the tile */
   double x_ghost[3], x_partner[3];
 } couple;
 
@@ -142,7 +143,7 @@ static void for_couples(const mps_mpm *mpm, const side *s, couple_fn work, void 
   }
 }
 
-/* To the wall's impulse: `after` at x_after in place of `before` at x_before. */
+/* Adds to the wall's impulse the change from `before` at x_before to `after` at x_after. */
 static void add_change(mpsi_mirror *to, const double *x_after, const double *after,
                        const double *x_before, const double *before) {
   for (int c = 0; c < 3; c++) {
@@ -153,7 +154,8 @@ static void add_change(mpsi_mirror *to, const double *x_after, const double *aft
   }
 }
 
-/* What is folded and mirrored back: a block's tile, or its second one (thin_bodies.h). */
+/* The tiles that are folded and mirrored back: a block's own, or the second ones
+ * (thin_bodies.h). */
 typedef struct tiles {
   mpsi_node *tile, *force;
   bool across;
@@ -253,8 +255,8 @@ static bool is_folded(const side *s, const int *at) {
   return (at[s->axis] - s->wall) * s->inwards <= 0;
 }
 
-/* What is left of component c at tile node `at`: a node on the wall is its own image. */
-static double share_of(const side *s, const int *at, int c) {
+/* Factor of component c in the image of tile node `at`: a node on the wall is its own image. */
+static double reflection_of(const side *s, const int *at, int c) {
   return at[s->axis] == s->wall && s->keeps[c] < 0.0 ? 0.0 : s->keeps[c];
 }
 
@@ -265,7 +267,7 @@ static void reflect_by(const mpsi_grid *grid, const side *s, int *at, double *ve
   mpsi_node_position(grid, s->cells->at, from, x_before);
   for (int c = 0; c < 3; c++) {
     before[c] = impulse * vector[c];
-    vector[c] *= share_of(s, at, c);
+    vector[c] *= reflection_of(s, at, c);
     after[c] = impulse * vector[c];
   }
   at[s->axis] = 2 * s->wall - at[s->axis];
@@ -309,8 +311,8 @@ bool mpsi_mpm_find_image(const mpsi_grid *grid, const mpsi_boundaries *boundarie
     if (!is_folded(&s, at)) continue;
     any = true;
     for (int c = 0; c < 3; c++) {
-      carried[c] += 0.5 * keeps[c] * (1.0 - share_of(&s, at, c)) * s.velocity[c];
-      keeps[c] *= share_of(&s, at, c);
+      carried[c] += 0.5 * keeps[c] * (1.0 - reflection_of(&s, at, c)) * s.velocity[c];
+      keeps[c] *= reflection_of(&s, at, c);
     }
     at[s.axis] = 2 * s.wall - at[s.axis];
   }

@@ -1,19 +1,20 @@
-/* walls.c - boundaries at work: the nodes of the domain's sides, boxes of nodes and lists of
- * particles with prescribed velocity. What they do to the velocity of a node, after all other
- * forces, is an impulse; the sums of these are the reactions of mps_mpm_get_reaction.
+/* walls.c - action of the boundaries on the nodes of the domain's sides, boxes of nodes and lists
+ * of particles with prescribed velocity. Each changes the velocity of a node after all other
+ * forces, by an impulse; the sums of these impulses are the reactions of mps_mpm_get_reaction.
  *
- * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse across the wall is
- * known once the velocity into it has been taken away, so the impulse along it is the smaller of
- * that times mu and what stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
+ * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse normal to the side
+ * removes the velocity into it; the impulse along the side is the smaller of mu times that and the
+ * impulse that stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 
-/* ---- which nodes ----------------------------------------------------------------------------- */
+/* ---- lists of nodes -------------------------------------------------------------------------- */
 
-/* Lists what holds which block; false where there is no room, `count` says how much is needed. */
-static bool list(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
-                 mpsi_partition *partition, int64_t *count, int64_t *dashpots) {
+/* Lists the boundary conditions of each block of nodes; false where there is no memory, `count` is
+ * the number needed. */
+static bool list_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                      mpsi_partition *partition, int64_t *count, int64_t *dashpots) {
   mpsi_held *held = boundaries->held_room.item;
   *count = *dashpots = 0;
   for (int64_t g = 0; g < grid->node_count; g++) {
@@ -47,7 +48,7 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
   *b = old;
 }
 
-/* A new list, in other memory than the old one, which stays where there is none. */
+/* Makes a new list in other memory than the old one, which stays valid if there is no memory. */
 static mps_status make_list(mps_mpm *mpm, const char *function) {
   int64_t count, dashpots;
   mpm->boundaries.outdated = true;
@@ -56,11 +57,11 @@ static mps_status make_list(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
   swap_rooms(&mpm->boundaries.dashpot_room, &mpm->boundaries.old_dashpot_room);
-  bool good = list(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
+  bool good = list_held(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
   if (!good) {
     good = mpsi_room_ensure(mpm->context, &mpm->boundaries.held_room, count,
                             sizeof *mpm->boundaries.held);
-    if (good) list(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
+    if (good) list_held(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
   }
   good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dashpot_room, dashpots,
                                   sizeof *mpm->boundaries.dashpot);
@@ -131,7 +132,7 @@ void mpsi_mpm_keep_dashpots(mpsi_boundaries *boundaries, int64_t count,
   boundaries->warm = count;
 }
 
-mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_restore_dashpots(mps_mpm *mpm, const char *function) {
   if (!mpm->partition || !mpm->partition->outdated) return MPS_OK;
   const bool stale = mpm->run.stale;
   mps_status status = mpsi_mpm_partition_find_ghosts(mpm, function);
@@ -144,22 +145,23 @@ mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function) {
   return status;
 }
 
-/* ---- a node ---------------------------------------------------------------------------------- */
+/* ---- boundary conditions of a node ----------------------------------------------------------- */
 
-#define BLOCK (MPSI_SIDE * MPSI_SIDE * MPSI_SIDE) /* nodes at most */
+#define BLOCK (MPSI_SIDE * MPSI_SIDE * MPSI_SIDE) /* most nodes of a block */
 
-/* A block at work. */
+/* A block of nodes whose boundary conditions are applied. */
 typedef struct block {
   mps_mpm *mpm;
   mpsi_node *node, *side; /* side: NULL where the block has none */
-  uint8_t *held;          /* bit c: nothing else moves component c */
-  bool again;             /* across thin bodies: nodes that have been counted already */
-  double normal_impulse[MPSI_SIDES][BLOCK]; /* N s, of frictional sides at their nodes */
+  uint8_t *held;          /* bit c: a boundary alone determines component c */
+  bool again;             /* values across thin bodies, whose nodes have been counted already */
+  double normal_impulse[MPSI_SIDES]
+                       [BLOCK]; /* N s, normal impulses of frictional sides at their nodes */
 } block;
 
 typedef void (*hold_fn)(block *b, const mpsi_boundary *hold, mpsi_held *held, int k);
 
-/* Gives component c of node k the velocity v, by an impulse of the boundary that moves with
+/* Sets component c of the velocity of node k to v, by an impulse of the boundary, which moves with
  * hold->v. */
 static void set(block *b, const mpsi_boundary *hold, mpsi_held *held, int k, int c, double v) {
   double *at = &b->node[k][MPSI_VECTOR + c];
@@ -189,7 +191,7 @@ static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) 
     if (!(b->held[k] >> c & 1)) set(b, hold, held, k, c, v[c]);
 }
 
-/* Takes away the velocity into a frictional side. */
+/* Removes the velocity into a frictional side. */
 static void stop_inward(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   const int c = hold->axis, number = held->hold;
   const double into = (b->node[k][MPSI_VECTOR + c] - hold->v[c]) * (number % 2 ? 1.0 : -1.0);
@@ -215,14 +217,14 @@ static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held,
     if (slip[c] != 0.0) set(b, hold, held, k, c, hold->v[c] + left * slip[c]);
 }
 
-/* All components of a fixed side, prescribed ones of a box. */
+/* Prescribes all components at a fixed side, the chosen ones in a box. */
 static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   for (int c = 0; c < b->mpm->grid.dim; c++)
     if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);
   b->held[k] |= (uint8_t)hold->dofs;
 }
 
-/* ---- a block --------------------------------------------------------------------------------- */
+/* ---- boundary conditions of a block ---------------------------------------------------------- */
 
 static void for_range(block *b, const mpsi_boundary *hold, mpsi_held *held, hold_fn work) {
   mpsi_range r;
@@ -241,7 +243,7 @@ static void for_range(block *b, const mpsi_boundary *hold, mpsi_held *held, hold
 
 static void begin_block(mps_mpm *mpm, int64_t g, uint8_t *fixed, block *b) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  b->mpm = mpm; /* push is written before it is read */
+  b->mpm = mpm; /* normal_impulse is written before it is read */
   b->node = mpm->grid.node + mpsi_first_node(&mpm->grid, g);
   b->side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(&mpm->grid, nodes->side) : NULL;
   b->held = fixed;
@@ -278,8 +280,8 @@ void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g) {
       if (fixed[k] >> c & 1) b.side[k][MPSI_VECTOR + c] = b.node[k][MPSI_VECTOR + c];
 }
 
-/* What acts across walls comes before friction: where two walls join, that of one must not move a
- * node into the other. */
+/* Boundaries that act normal to walls come before friction: where two walls join, friction along
+ * one must not move a node into the other. */
 void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
   static const struct {
     int32_t kind;
@@ -306,7 +308,7 @@ void mpsi_mpm_begin_boundaries(const mpsi_boundaries *boundaries, double dt) {
     if (boundaries->hold[k].finds) boundaries->hold[k].found += dt;
 }
 
-/* What the step before has added is part of all. */
+/* Adds the sums of the step before to those of all steps. */
 static void begin_sums(mpsi_boundary *hold) {
   if (!hold->sums) return;
   for (int k = 0; k < MPSI_BOUNDARY_MASS; k++)
@@ -336,7 +338,7 @@ void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-/* The block that particle k is sorted to. */
+/* Block of cells that particle k is sorted to. */
 static mpsi_cell_block *block_of(const mpsi_grid *grid, int64_t k) {
   int64_t low = 0, high = grid->cell_count;
   while (high - low > 1) {
@@ -349,7 +351,7 @@ static mpsi_cell_block *block_of(const mpsi_grid *grid, int64_t k) {
   return &grid->cells[low];
 }
 
-/* Notes, as G2P does, where the particle has left its block's tile or the domain. */
+/* Marks the block, as G2P does, where the particle has left the block's tile or the domain. */
 static void check_place(const mpsi_grid *grid, const mpsi_columns *p,
                         const mpsi_boundaries *boundaries, int64_t k) {
   mpsi_cell_block *cells = block_of(grid, k);
@@ -367,7 +369,7 @@ static void check_place(const mpsi_grid *grid, const mpsi_columns *p,
   }
 }
 
-/* The velocity of the particle is prescribed; m dv is the impulse. */
+/* Prescribes the velocity of a particle; m dv is the impulse. */
 static void drive_particle(const mpsi_grid *grid, const mpsi_columns *p,
                            const mpsi_boundaries *boundaries, mpsi_energy *energy, double dt,
                            mpsi_boundary *hold, int64_t k) {

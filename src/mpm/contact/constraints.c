@@ -171,7 +171,8 @@ static void find_in_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
 }
 
-/* Room for as many candidates as there are particles in the blocks near each body. */
+/* Divides the list of candidates among the pairs: as many places as there are particles in the
+ * blocks near each body. */
 static int64_t share_candidates(const mpsi_grid *grid, const mpsi_contacts *contacts) {
   int64_t count = 0;
   for (int64_t t = 0; t < contacts->cell_pair_count; t++) {

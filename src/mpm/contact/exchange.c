@@ -1,7 +1,7 @@
 /* exchange.c - see exchange.h. A message has one entry for each block of cells with constraints or
- * areas: its head, the nodes that the constraints use, each once, the constraints, each followed by
+ * areas: its head; the nodes that the constraints use, each once; the constraints, each followed by
  * the numbers of its nodes in that list and by its weights, one or (in blocks at mirrors) three a
- * node, and the areas that its particles stand for (area.c).
+ * node; and the areas that its particles represent (area.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 

@@ -1,5 +1,5 @@
-/* sweep.c - a projected Gauss-Seidel update of each contact constraint of a block, see impulses.c.
- * Node by node the four values are one vector, and so are the weights. Compiled once for each
+/* sweep.c - projected Gauss-Seidel update of each contact constraint of a block, see impulses.c.
+ * The four values of a node are one vector, and so are its weights. Compiled once for each
  * instruction set. SPDX-License-Identifier: BSD-3-Clause */
 #include "contact/update.h"
 #include "mpm/base/loops.h"

@@ -7,8 +7,8 @@
 
 enum { MPSI_SWEEP_CHANGED, MPSI_SWEEP_IMPULSES, MPSI_SWEEP_SUMS };
 
-/* (N s)2, the largest sums of squares over a block of cells of this rank, of changes and of
- * impulses: their maxima over all ranks are the same on any number of these. */
+/* Largest sums over a block of cells of this rank of the squares of changes and of impulses, (N
+ * s)2. Their maxima over all ranks do not depend on the number of ranks. */
 void mpsi_mpm_sweep_sums(const mpsi_contacts *contacts, double *most);
 /* Root of the change over the impulses; 0 without a change. */
 double mpsi_mpm_relative_change(const double *most);

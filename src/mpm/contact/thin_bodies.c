@@ -1,4 +1,5 @@
-/* thin_bodies.c - see thin_bodies.h. SPDX-License-Identifier: BSD-3-Clause */
+/* thin_bodies.c - nodes that thin bodies separate from particles: see thin_bodies.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/base/mpm_solver.h"
 

@@ -1,32 +1,36 @@
-/* pass.c - see pass.h. Each thread has a lane: its share of the blocks of cells, one after the
- * other in their order, which lie side by side, so that nodes go from one processor's cache to
- * another's only where lanes border (with one queue for all, in which neighbours went to any
- * thread, the same work took a fourth more time). Blocks that are ready stand in the queue of their
+/* pass.c - see pass.h. Each thread has a lane: its part of the blocks of cells, consecutive in
+ * their order. These lie side by side, so that nodes move from one processor's cache to another's
+ * only at the borders of lanes (with one queue for all, from which any thread took neighbouring
+ * blocks, the same work took a fourth more time). Blocks that are ready are in the queue of their
  * lane, from which its thread claims some at a time; the thread that completes a block's last
  * dependency enqueues it. Blocks that became ready precede blocks that were ready from the start:
  * their particles and nodes are still in the cache. A thread whose lane is empty, or waits for
- * long, takes from the others'. One that finds nothing ready spins for some microseconds and then
- * sleeps for a moment; under a caller's executor, which may run the units one after the other, it
- * leaves. All is done when all have left, since the thread that makes a block ready polls the
- * queues after that. One thread alone goes over the blocks in their order and does for each what it
- * depends on. On several ranks the caller's thread, which alone may call the transport, receives
- * the ghosts' tiles when it finds nothing else to do, while the others work on.
+ * long, claims from other lanes. A thread that finds nothing ready spins for some microseconds and
+ * then sleeps briefly; under a caller's executor, which may run the units one after the other, it
+ * returns. The pass is complete when all threads have returned, since a thread that makes a block
+ * ready polls the queues after that.
+ *
+ * A single thread goes over the blocks in their order and completes the dependencies of each first.
+ * On several ranks the caller's thread, the only one that may call the transport, receives the
+ * ghosts' tiles when it finds nothing else to do, while the others continue.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <stdatomic.h>
 
 #define SMALL_SET 2048 /* particles: below, sharing the work costs more than it gains */
-#define ROUNDS 4       /* of a thread of a caller's executor: it may leave and come back so often */
+/* units for each thread of a caller's executor, which may return and come again */
+#define ROUNDS 4
 #define MOST_CLAIMED 8
-#define PATIENCE 100 /* looks at its own lane before a thread takes of another's */
+#define PATIENCE 100 /* polls of its own lane before a thread claims from another one */
 
-/* Which coordinates of a block of nodes are odd, bit by bit. */
+/* Parities of the coordinates of a block of nodes, a bit each. */
 static int parity_of(const mpsi_node_block *nodes) {
   return (nodes->at[0] & 1) | (nodes->at[1] & 1) << 1 | (nodes->at[2] & 1) << 2;
 }
 
-/* Whether the nodes, those of cells b, concern this rank: see partition.h. */
+/* Whether this rank updates the block of nodes g, or gathers the block of cells b: see
+ * partition.h. */
 static bool has_nodes(const mpsi_grid *grid, const mpsi_pass *pass, int64_t g) {
   return pass->ghosts || !grid->nodes[g].foreign;
 }
@@ -35,19 +39,18 @@ static bool has_cells(const mpsi_grid *grid, const mpsi_pass *pass, int64_t b) {
   return pass->ghosts || !grid->cells[b].ghost;
 }
 
-/* What one thread is to do: its share of the blocks of cells, one after the other in their order,
- * so that their nodes stay in its cache but where shares border on each other. Entries of the
- * queue: scatter of b is b, gather of b is cells + b, and 2 cells + g is the update of g where
- * there is no scatter, else its end after `between`. */
+/* Work of one thread on its part of the blocks of cells. Entries of the queue: b is the scatter of
+ * block of cells b, cells + b its gather, and 2 cells + g the update of block of nodes g where
+ * there is no scatter, else its finish after `between`. */
 typedef struct mpsi_lane {
-  _Atomic int32_t *queue;     /* first those ready from the start; EMPTY where there is none yet */
-  int64_t starts, entries;    /* ready from the start; that there will be, all in all */
-  _Atomic int64_t begun;      /* of the former, claimed or more */
-  _Atomic int64_t head, tail; /* of the others: next to claim, next to fill */
-  char apart[2 * 64];         /* from the next in another thread's cache */
+  _Atomic int32_t *queue;     /* those ready from the start, then others; EMPTY: not ready yet */
+  int64_t starts, entries;    /* number of those ready from the start; of all */
+  _Atomic int64_t begun;      /* number of the former that are claimed, or more */
+  _Atomic int64_t head, tail; /* of the others: next to claim, next to write */
+  char apart[2 * 64];         /* keeps the next lane in other cache lines */
 } lane;
 
-/* The room of a pass: the lanes, and behind these the counters of blocks and the queues. */
+/* Length of the lanes in the memory of a pass; counters of blocks and queues follow. */
 static int64_t lane_counters(const mpsi_grid *grid) {
   return grid->worker_count * (int64_t)(sizeof(lane) / sizeof(_Atomic int32_t));
 }
@@ -67,23 +70,24 @@ static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, in
   pass->scatter(mpm, b, worker);
 }
 
-/* What has been done. */
+/* A pass by one thread, with the stages completed so far. */
 typedef struct wave {
   mps_mpm *mpm;
   const mpsi_pass *pass;
-  _Atomic int32_t *given, *done; /* by blocks of cells; of nodes: UPDATED or FINISHED */
+  _Atomic int32_t *scattered,
+      *done; /* by block of cells: 1 after its scatter; by block of nodes: UPDATED or FINISHED */
 } wave;
 enum { UPDATED = 1, FINISHED = 2 };
 
-/* Whether it was not yet so far. */
-static bool mark(_Atomic int32_t *done, int32_t stage) {
+/* Advances a block to `stage`; false if it has reached it before. */
+static bool advance(_Atomic int32_t *done, int32_t stage) {
   const bool before = atomic_load_explicit(done, memory_order_relaxed) < stage;
   if (before) atomic_store_explicit(done, stage, memory_order_relaxed);
   return before;
 }
 
-/* The block that gives to the block of nodes g just before the one at its corner q, or -1. */
-static int32_t giver_before(const mpsi_grid *grid, int32_t g, int q) {
+/* Block of cells that adds to the block of nodes g just before the one at its corner q, or -1. */
+static int32_t added_before(const mpsi_grid *grid, int32_t g, int q) {
   const mpsi_node_block *nodes = &grid->nodes[g];
   const int parity = parity_of(nodes);
   for (int colour = (q ^ parity) - 1; colour >= 0; colour--)
@@ -91,29 +95,29 @@ static int32_t giver_before(const mpsi_grid *grid, int32_t g, int q) {
   return -1;
 }
 
-/* Lets block b give, after the blocks that have to precede it: it calls itself as often as there
- * are colours, at most. */
-static void give_in_turn(wave *w, int32_t b) {
+/* Scatters block b, after the blocks that must precede it. The depth of the recursion is at most
+ * the number of colours. */
+static void scatter_in_turn(wave *w, int32_t b) {
   const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
-  if (!mark(&w->given[b], 1)) return;
+  if (!advance(&w->scattered[b], 1)) return;
   for (int q = 0; q < 1 << w->mpm->grid.dim; q++) {
-    const int32_t before = giver_before(&w->mpm->grid, cells->to[q], q);
-    if (before >= 0) give_in_turn(w, before);
+    const int32_t before = added_before(&w->mpm->grid, cells->to[q], q);
+    if (before >= 0) scatter_in_turn(w, before);
   }
   clear_and_scatter(w->mpm, w->pass, b, 0);
 }
 
 static void update_in_turn(wave *w, int32_t g) {
   const mpsi_node_block *nodes = &w->mpm->grid.nodes[g];
-  if (!mark(&w->done[g], UPDATED)) return;
+  if (!advance(&w->done[g], UPDATED)) return;
   for (int q = 0; q < 1 << w->mpm->grid.dim && w->pass->scatter; q++)
-    if (nodes->from[q] >= 0) give_in_turn(w, nodes->from[q]);
+    if (nodes->from[q] >= 0) scatter_in_turn(w, nodes->from[q]);
   if (w->pass->update) w->pass->update(w->mpm, g, 0);
 }
 
 static void finish_in_turn(wave *w, int32_t g) {
   update_in_turn(w, g);
-  if (mark(&w->done[g], FINISHED) && w->pass->finish) w->pass->finish(w->mpm, g, 0);
+  if (advance(&w->done[g], FINISHED) && w->pass->finish) w->pass->finish(w->mpm, g, 0);
 }
 
 /* Whether some node under the block waits for ghosts (partition.h). */
@@ -123,7 +127,7 @@ static bool is_late(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   return late;
 }
 
-/* The blocks that wait for ghosts, or the others. */
+/* Gathers the blocks that wait for ghosts (`late`), or the others, after finishing their nodes. */
 static void gather_in_turn(wave *w, bool late) {
   const mpsi_grid *grid = &w->mpm->grid;
   for (int64_t b = 0; b < grid->cell_count; b++) {
@@ -134,9 +138,9 @@ static void gather_in_turn(wave *w, bool late) {
   }
 }
 
-/* Each block gathers as soon as its nodes are done, while its particles are in the cache since they
- * gave: of a large set they would have to come from the memory twice. What waits for ghosts comes
- * last, but gives what it can while their message is on its way. */
+/* A pass by one thread. Each block gathers as soon as its nodes are finished, while its particles
+ * are in the cache from the scatter: a large set would be read from memory twice otherwise. Blocks
+ * that wait for ghosts are last, but scatter while the ghosts' message is on its way. */
 static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
   const mpsi_grid *grid = &mpm->grid;
   _Atomic int32_t *room = counters_of(grid);
@@ -149,21 +153,22 @@ static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
   gather_in_turn(&w, false);
   if (!mpm->partition) return;
   for (int32_t b = 0; pass->scatter && b < grid->cell_count; b++)
-    if (!grid->cells[b].late) give_in_turn(&w, b);
+    if (!grid->cells[b].late) scatter_in_turn(&w, b);
   if (pass->arrive) pass->arrive(mpm);
   gather_in_turn(&w, true);
 }
 
-/* ---- several --------------------------------------------------------------------------------- */
+/* ---- several threads ------------------------------------------------------------------------- */
 
 typedef struct flow {
   mps_mpm *mpm;
   const mpsi_pass *pass;
   int32_t cells, nodes, lanes;
   lane *lane;
-  _Atomic int32_t *scatter_waits, *gather_waits; /* of each block of cells: for how many nodes */
-  _Atomic int32_t held;                          /* blocks of nodes to update before `between` */
-  _Atomic bool arrived;                          /* what ghosts give, or none is waited for */
+  _Atomic int32_t *scatter_waits,
+      *gather_waits;    /* of each block of cells: number of blocks of nodes that it waits for */
+  _Atomic int32_t held; /* blocks of nodes to update before `between` */
+  _Atomic bool arrived; /* the sums of ghosts are received, or none are expected */
 } flow;
 enum { EMPTY = -1 };
 
@@ -171,7 +176,7 @@ static lane *lane_of_cells(const flow *f, int32_t b) {
   return &f->lane[(int64_t)b * f->lanes / f->cells];
 }
 
-/* That of the first cells that give to them. */
+/* Lane of the first block of cells that covers the nodes. */
 static lane *lane_of_nodes(const flow *f, int32_t g) {
   const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
   int q = 0;
@@ -179,12 +184,14 @@ static lane *lane_of_nodes(const flow *f, int32_t g) {
   return lane_of_cells(f, nodes->from[q]);
 }
 
+/* Enqueues an entry in its lane. */
 static void put(lane *l, int32_t entry) {
   const int64_t at = atomic_fetch_add_explicit(&l->tail, 1, memory_order_relaxed);
   atomic_store_explicit(&l->queue[at], entry, memory_order_release);
 }
 
-/* Whether that was the last. The work of all counted threads is then visible. */
+/* Decrements a counter; returns whether it was the last time. The work of all threads that have
+ * decremented it is then visible. */
 static bool count_down(_Atomic int32_t *count) {
   return atomic_fetch_sub_explicit(count, 1, memory_order_acq_rel) == 1;
 }
@@ -235,13 +242,14 @@ static void work_on(flow *f, int32_t entry, int32_t worker) {
     update_nodes(f, entry - 2 * f->cells, worker);
 }
 
-/* How many to claim of so many: few, for the last ones are to be shared. */
+/* Number of entries to claim of `waiting` ones: few, so that the last ones are divided among the
+ * threads. */
 static int64_t portion(const flow *f, int64_t waiting) {
   const int64_t most = waiting / (2 * f->lanes);
   return most < 1 ? 1 : most > MOST_CLAIMED ? MOST_CLAIMED : most;
 }
 
-/* Claims some entries that became ready one behind the other; returns how many. */
+/* Claims consecutive entries that became ready; returns their number. */
 static int32_t claim_next(const flow *f, lane *l, int32_t *entry) {
   int64_t head = atomic_load_explicit(&l->head, memory_order_relaxed);
   for (;;) {
@@ -258,7 +266,7 @@ static int32_t claim_next(const flow *f, lane *l, int32_t *entry) {
   }
 }
 
-/* The same for blocks that were ready from the start. */
+/* Claims entries that were ready from the start; returns their number. */
 static int32_t claim_start(const flow *f, lane *l, int32_t *entry) {
   const int64_t left = l->starts - atomic_load_explicit(&l->begun, memory_order_relaxed);
   if (left <= 0) return 0;
@@ -286,7 +294,8 @@ static bool is_all_claimed(const flow *f) {
   return all;
 }
 
-/* Of the thread's own lane; of the others' when that has no more, or waits for long. */
+/* Claims entries of the thread's own lane; of other lanes when that has no more, or waits for
+ * long. */
 static int32_t claim(const flow *f, int32_t worker, int32_t look, int32_t *entry) {
   lane *own = &f->lane[worker];
   int32_t n = claim_of(f, own, entry);
@@ -296,7 +305,7 @@ static int32_t claim(const flow *f, int32_t worker, int32_t look, int32_t *entry
   return n;
 }
 
-/* On the caller's thread: the messages, and then the ghosts may give. */
+/* Receives the sums of ghosts, on the caller's thread; their blocks are then ready to scatter. */
 static void receive(flow *f) {
   f->pass->arrive(f->mpm);
   for (int32_t b = 0; b < f->cells; b++)
@@ -305,7 +314,8 @@ static void receive(flow *f) {
   atomic_store_explicit(&f->arrived, true, memory_order_release);
 }
 
-/* Worker 0 of the context's own executors is the caller's thread. */
+/* Work of one thread until all entries are claimed. Worker 0 of the context's own executors is the
+ * caller's thread. */
 static void run_worker(void *data, int64_t unit, int32_t worker) {
   flow *f = data;
   const bool own = mpsi_executor_is_own(f->mpm->context), receives = own && worker == 0;
@@ -323,7 +333,7 @@ static void run_worker(void *data, int64_t unit, int32_t worker) {
   }
 }
 
-/* Each lane's part of the queue, and how many entries there will be. */
+/* Divides the memory of the queue among the lanes, by the number of entries of each. */
 static void make_lanes(flow *f, _Atomic int32_t *queue) {
   const mpsi_grid *grid = &f->mpm->grid;
   for (int32_t k = 0; k < f->lanes; k++) f->lane[k] = (lane){.entries = 0};
@@ -340,7 +350,7 @@ static void make_lanes(flow *f, _Atomic int32_t *queue) {
   }
 }
 
-/* What is ready at once. */
+/* Sets the counters of dependencies and enqueues what is ready from the start. */
 static void fill(flow *f) {
   const mpsi_grid *grid = &f->mpm->grid;
   int32_t held = 0;
@@ -390,7 +400,7 @@ void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
   fill(&f);
   mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
   if (atomic_load_explicit(&f.arrived, memory_order_relaxed)) return;
-  receive(&f); /* the caller's executor has done what needs no ghosts */
+  receive(&f); /* the caller's executor has done all that needs no ghosts */
   mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
 }
 
@@ -425,7 +435,7 @@ void mpsi_mpm_link_blocks(const mpsi_grid *grid) {
   }
 }
 
-/* ---- cells by themselves --------------------------------------------------------------------- */
+/* ---- loops over blocks of cells -------------------------------------------------------------- */
 
 typedef struct cell_loop {
   mps_mpm *mpm;

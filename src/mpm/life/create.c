@@ -13,9 +13,10 @@
 #include <string.h>
 
 #define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
-#define FAR 1e9      /* m, m/s2, s: what has a sane size is within */
+#define FAR 1e9      /* m, m/s2, s: largest accepted size */
 #define LEAST_MEASURE 1e-9
-#define FINEST 0.5 /* spacings: cells that are smaller, or larger than COARSEST, are slips */
+/* spacings: smaller cells, or cells larger than COARSEST, are taken for errors */
+#define FINEST 0.5
 #define COARSEST 100.0
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
@@ -37,7 +38,7 @@ static const char create[] = "mps_mpm_create";
 
 static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2; }
 
-/* Of the weights, m. */
+/* Radius of the weights, m. */
 static double radius_of(const mps_mpm_def *d) { return (d->spline == 2 ? 1.5 : 2.0) * d->cell; }
 
 static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
@@ -92,7 +93,7 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   return MPS_OK;
 }
 
-/* The degree of the caller's weights, which must be those of the grid. */
+/* Degree of the caller's weights, which must be those of the grid. */
 static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
   const int32_t kind = mps_kernel_get_kind(d->kernel);
   if (d->spline == 0) d->spline = 3;
@@ -109,7 +110,7 @@ static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
                    wanted / d->cell, d->cell, wanted);
 }
 
-/* The thickness, or the angle of the sector. */
+/* Thickness, or angle of the sector. */
 static mps_status read_measure(mps_context *context, mps_mpm_def *d) {
   const bool ring = d->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC,
              space = d->geometry == MPS_MPM_GEOMETRY_SPACE;
@@ -124,7 +125,7 @@ static mps_status read_measure(mps_context *context, mps_mpm_def *d) {
                           : "a thickness of 1e-9 to 1e9 m in plane strain");
 }
 
-/* A wall's node, or a far one where there is no wall. */
+/* Node of a wall, or MPSI_NO_WALL without a wall. */
 static mps_status read_wall(mps_context *context, const mps_mpm_def *d, int c, bool upper,
                             int64_t *node) {
   const double x = upper ? d->upper[c] : d->lower[c];
@@ -197,10 +198,10 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 
 static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
 
-/* Each rank has been given a part of the set, not all of it. */
+/* Whether each rank has been given a part of the set, not all of it. */
 static bool in_parts(const mpsi_columns *p) { return mpsi_particles_deal(p->set) != NULL; }
 
-/* What has been found of the particles here becomes what all ranks have found of all. */
+/* Largest speed and smallest mass over all ranks. */
 static mps_status join_extremes(mpsi_contacts *contacts, mpsi_run *run, const mps_mpm_def *def,
                                 mps_status status) {
   double most[2] = {run->speed, isnan(contacts->least_mass) ? -INFINITY : -contacts->least_mass};
@@ -221,7 +222,7 @@ static mps_status add_fields(mps_context *context, const mpsi_columns *p) {
   return status;
 }
 
-/* ---- what an error takes back ---------------------------------------------------------------- */
+/* ---- restoring the set after an error -------------------------------------------------------- */
 
 /* Columns that mpsi_mpm_begin_particles writes: volume, mass, V/V0, F and the law's histories. */
 enum { OWN_COLUMNS = 12 };
@@ -237,7 +238,7 @@ static int32_t written_count(const mpsi_columns *p) {
   return OWN_COLUMNS + mps_material_history_count(p->laws.law[0].material);
 }
 
-/* Whether the caller's fields, the first `fields`, are among them. */
+/* Whether the first `fields` fields, those of the caller, are among these columns. */
 static bool writes_given(const mpsi_columns *p, int32_t fields) {
   for (int32_t f = 0; f < fields; f++) {
     mps_particles_field_info info = {.name = ""};
@@ -276,12 +277,12 @@ static mps_status make_workers(mps_context *context, mpsi_grid *grid) {
     if (!memory) return mpsi_fail_memory(context, create, bytes);
     w->tile = (mpsi_node *)memory;
     w->force = w->tile + tile;
-    w->state = (uint8_t *)(w->force + tile); /* and a little more: rows are read as four */
+    w->state = (uint8_t *)(w->force + tile); /* with a margin: rows are read as four */
   }
   return grid->workers ? MPS_OK : mpsi_fail_memory(context, create, sizeof *grid->workers);
 }
 
-/* The greatest speed of the first state; in the set's own order. */
+/* Largest speed of the initial state; in the set's own order. */
 static mps_status find_speed(mps_mpm *mpm) {
   const mpsi_columns *p = &mpm->p;
   double moduli[MPSI_CHUNK];
@@ -304,7 +305,7 @@ static mps_status find_speed(mps_mpm *mpm) {
   return MPS_OK;
 }
 
-/* The first step's size against what the first state allows. */
+/* Checks a given dt against the limit of the initial state. */
 static mps_status check_step(const mps_mpm *mpm) {
   const double dt = mpm->def.dt, limit = mps_mpm_limit(mpm);
   if (isnan(dt) || dt <= limit) return MPS_OK;
@@ -320,7 +321,7 @@ static mps_status make_memory(mps_mpm *mpm) {
   return make_workers(mpm->context, &mpm->grid);
 }
 
-/* The state in which the particles begin, and their order. */
+/* Initial state of the particles, and their order. */
 static mps_status begin(mps_mpm *mpm) {
   mpsi_mpm_begin_particles(&mpm->grid, &mpm->p, &mpm->contact);
   mps_status status = find_speed(mpm);
@@ -330,8 +331,8 @@ static mps_status begin(mps_mpm *mpm) {
   return is_shared(&mpm->def) ? mpsi_mpm_sort_cells(mpm, create) : mpsi_mpm_sort(mpm, create);
 }
 
-/* All that can fail comes before the sort, whose last act is to order the set. On several ranks the
- * caller takes back what an error leaves. */
+/* Builds a solver over the whole set. All that can fail comes before the sort, which orders the set
+ * at its end. On several ranks the caller undoes the changes after an error. */
 static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
                         mpsi_storage **former) {
   const int32_t fields = mps_particles_field_count(mpm->p.set);
@@ -360,9 +361,9 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
   return status;
 }
 
-/* Of a set in parts: particles go to their ranks with the caller's fields alone, and those of the
- * solver are added there. The set is copied, for an error to take back what has been written, only
- * where that is a field of the caller. Every rank comes to each function that is collective. */
+/* Builds a solver over a set in parts: particles are sent to their ranks with the caller's fields
+ * alone, and the solver's fields are added there. The set is copied, to be restored after an error,
+ * only where a field of the caller is written. Every rank calls each collective function. */
 static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status status,
                               mpsi_backup *backup) {
   const int32_t fields = mps_particles_field_count(mpm->p.set);
@@ -436,7 +437,7 @@ static void hold(mps_mpm *mpm, const char *function, bool shared) {
   (void)mpsi_particles_hold(mpm->p.set, function, &mpm->holder);
 }
 
-/* What follows from the definition alone. */
+/* Sets the members that depend on the definition alone. */
 static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
                      const int64_t *high) {
   mpm->def = *def;
@@ -448,7 +449,7 @@ static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
   mpm->energy.counts = def->budget != 0;
   mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
   mpm->p.count = mps_particles_count(mpm->p.set);
-  mpm->p.laws.at_once = true; /* until some law waits for means */
+  mpm->p.laws.at_once = true; /* until some law needs means */
   mpm->grid.inverse = 1.0 / def->cell;
   mpm->grid.spline = def->spline, mpm->grid.cell = def->cell;
   mpm->grid.geometry = (mps_mpm_geometry)def->geometry, mpm->grid.measure = def->measure;
@@ -607,9 +608,9 @@ mps_kernel *mps_mpm_kernel(const mps_mpm *mpm) { return mpm ? mpm->weights : NUL
 
 mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : NULL; }
 
-/* ---- for comparison -------------------------------------------------------------------------- */
+/* ---- variants for comparison ----------------------------------------------------------------- */
 
-/* The variant is chosen before the first step, the same on all ranks. */
+/* Checks that a variant is chosen before the first step, the same on all ranks. */
 static mps_status check_before_steps(mps_context *context, const mpsi_run *run,
                                      const mps_mpm_def *def, const char *function, const char *name,
                                      double value) {

@@ -1,4 +1,4 @@
-/* pore_water.c - the water of a solver as the caller defines it (mps/pore_water.h): checks, fields,
+/* pore_water.c - definition of the pore water of a solver (mps/pore_water.h): checks, fields,
  * faces, budget. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
 #include "mpm/base/kernels.h"
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define STIFF 50.0 /* K_w/n over the wave modulus at rest: settlements are 2 % too large */
-#define SLOW 1e-3  /* m/s, above which the water's own inertia counts */
+#define SLOW 1e-3  /* m/s, permeability above which the inertia of the water matters */
 #define LARGE 1e15 /* Pa */
 
 static const mps_pore_water_def water_defaults = {.struct_size = sizeof(mps_pore_water_def),
@@ -34,7 +34,7 @@ mps_status mps_pore_face_def_init(mps_pore_face_def *def, size_t size) {
 
 static const char add[] = "mps_mpm_add_pore_water";
 
-/* A value that is not from `low` to `high`. */
+/* Error of a value that is not from `low` to `high`. */
 static mps_status refuse(mps_context *context, const char *name, double value, double low,
                          double high, const char *allowed) {
   return mpsi_fail(context, add, MPS_ERROR_ARGUMENT, "%s is %s, must be %s", name,
@@ -83,7 +83,7 @@ static mps_status check_solver(mps_mpm *mpm) {
 
 /* ---- adding ---------------------------------------------------------------------------------- */
 
-/* Adds the field, and gives all particles the value unless it is NaN. */
+/* Adds the field, and sets it to `value` for all particles unless that is NaN. */
 static mps_status fill(mps_context *context, const mpsi_columns *p, const char *field,
                        double value) {
   mps_status status = mpsi_as(context, add, mps_particles_add_field(p->set, field, 0));
@@ -92,7 +92,7 @@ static mps_status fill(mps_context *context, const mpsi_columns *p, const char *
   return status;
 }
 
-/* The least K_w for this rank's particles, by their moduli at rest. */
+/* Least bulk modulus K_w of the water for this rank's particles, from their moduli at rest. */
 static mps_status find_bulk(mps_context *context, const mpsi_columns *p, double *least) {
   for (int64_t k = 0; k < p->count; k++) {
     double wave, shear;
@@ -106,7 +106,7 @@ static mps_status find_bulk(mps_context *context, const mpsi_columns *p, double 
   return MPS_OK;
 }
 
-/* The new limit, and a fixed step against it. */
+/* New limit of the time step, and check of a given dt against it. */
 static mps_status renew_limit(mps_mpm *mpm) {
   mpm->p.laws.one_modulus = false;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
@@ -158,7 +158,7 @@ static void warn(mps_context *context, const mpsi_columns *p) {
              most, SLOW);
 }
 
-/* Columns that fill writes, for an error to restore. */
+/* Copies of the columns that `fill` writes, to restore after an error. */
 typedef struct kept {
   double *values;
   double speed;
@@ -239,7 +239,7 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   return status;
 }
 
-/* ---- questions ------------------------------------------------------------------------------- */
+/* ---- queries --------------------------------------------------------------------------------- */
 
 static mps_status check_water(mps_context *context, mpsi_water *water, const char *function) {
   if (water) return MPS_OK;

@@ -1,4 +1,4 @@
-/* rank_files.c - checkpoints of a body that lies on several ranks. Rank 0 writes what the run
+/* rank_files.c - checkpoints of a body on several ranks. Rank 0 writes the file that the run
  * without a domain would write: particles and blocks in the order of one rank, sums over all ranks.
  * Each rank reads the whole file and keeps its own part, so that a run continues on any number of
  * ranks, or without a domain. SPDX-License-Identifier: BSD-3-Clause */
@@ -7,13 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How the values of a rank and those of the file belong together. */
+/* Relation of the values of a rank to those of the file. */
 typedef enum merging {
-  SAME,   /* on all ranks */
-  EXACT,  /* limbs of exact sums: of all ranks; read, they are rank 0's */
-  COUNT,  /* likewise whole numbers */
-  SIZES,  /* room, which a rank finds by itself */
-  BLOCKS, /* of cells */
+  SAME,   /* equal on all ranks */
+  EXACT,  /* limbs of exact sums, added over the ranks; rank 0 alone restores them */
+  COUNT,  /* whole numbers, likewise */
+  SIZES,  /* sizes of memory, which a rank finds by itself */
+  BLOCKS, /* blocks of cells */
   DASHES  /* dashpots of blocks of nodes */
 } merging;
 
@@ -42,8 +42,8 @@ static int by_place(const void *left, const void *right) {
   return 0;
 }
 
-/* The blocks of all ranks in their order; during the exchange they have the number of particles in
- * place of the first. */
+/* Gathers the blocks of all ranks in order; during the exchange they have the number of particles
+ * in place of the index of the first. */
 static mps_status gather_blocks(const mpsi_columns *p, mpsi_partition *partition,
                                 const char *function, mpsi_value *value) {
   mpsi_block *block = value->data;
@@ -116,27 +116,28 @@ mps_status mpsi_mpm_save_on_ranks(mps_mpm *mpm, const mpsi_state_of *of, const c
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-/* The rows of the file that are this rank's, in their order: those of its blocks, which are left of
- * all. Returns how many. */
+/* Keeps the blocks of this rank and lists their rows of the file, in order; returns the number of
+ * rows. */
 static int64_t take_blocks(const mpsi_grid *grid, mpsi_partition *partition, mpsi_value *blocks,
                            int64_t particles, int64_t *rows) {
   mpsi_block *block = blocks->data;
   const int32_t rank = mps_domain_rank(partition->domain);
-  int64_t warm = 0, count = 0;
+  int64_t target = 0, count = 0;
   for (int64_t b = 0; b < blocks->rows; b++) {
     const int64_t begin = block[b][0], end = b + 1 < blocks->rows ? block[b + 1][0] : particles;
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
     if (mpsi_mpm_block_owner(grid, partition, at) != rank) continue;
-    memmove(block[warm], block[b], sizeof *block); /* kept <= b */
-    block[warm++][0] = count;
+    memmove(block[target], block[b], sizeof *block); /* target <= b */
+    block[target++][0] = count;
     for (int64_t k = begin; k < end; k++) rows[count++] = k;
   }
-  blocks->rows = warm;
+  blocks->rows = target;
   return count;
 }
 
-/* rows[k] >= k: nothing is overwritten too early, and no column reaches the next. */
+/* Keeps the rows of this rank. rows[k] >= k: no row is overwritten before it is read, and no column
+ * reaches the next. */
 static void take_fields(mps_snapshot *values, const int64_t *rows, int64_t count) {
   const int64_t all = values->particles;
   for (int32_t f = 0; f < values->fields.count; f++) {
@@ -180,7 +181,7 @@ mps_status mpsi_mpm_restore_on_ranks(void *solver, const char *function, mps_sta
     const int64_t count = take_blocks(&mpm->grid, mpm->partition, blocks, values->particles, rows);
     take_fields(values, rows, count);
     take_values(mpm->partition, &values->state);
-    mpm->partition->heaviest = 0.0; /* to be cut again at the next sort */
+    mpm->partition->heaviest = 0.0; /* the curve is cut again at the next sort */
   }
   mpsi_free(mpm->context, rows);
   return status;

@@ -1,6 +1,6 @@
 /* restart.c - the state of the WLS-MPM solver (core/state.h): snapshots, rollback, checkpoints.
- * Sums over particles go block by block in the set's order: a run that continues bit for bit needs
- * both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
+ * Sums over particles are taken block by block in the order of the set: a run that continues bit
+ * for bit needs both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
 #include "restart.h"
 
 #include "rank_files.h"
@@ -14,7 +14,7 @@ _Static_assert(sizeof(mpsi_dashpot) == MPSI_DASH * sizeof(double), "kept as numb
 
 /* ---- tables: blocks, their nodes, dashpots --------------------------------------------------- */
 
-/* As mpsi_room_ensure, keeping the contents. */
+/* Memory as by mpsi_room_ensure, keeping the contents. */
 static bool keep_room(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
   if (count <= room->capacity) return true;
   if (!mpsi_grow(context, &room->item, room->capacity, count, size)) return false;
@@ -22,7 +22,7 @@ static bool keep_room(mps_context *context, mpsi_room *room, int64_t count, size
   return true;
 }
 
-/* On several ranks those of this one: ghosts follow. */
+/* Number of blocks of cells; on several ranks of this one's, without ghosts. */
 static int64_t count_blocks(const void *solver) {
   const mpsi_grid *grid = &((const mps_mpm *)solver)->grid;
   int64_t count = 0;
@@ -59,7 +59,8 @@ static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
   return good;
 }
 
-/* The room is there: but where a file lies about it, the solver takes no step. */
+/* Memory is reserved already, unless the sizes in a file are wrong: then the solver is marked as
+ * broken and takes no step. */
 static void set_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   mpm->run.lost = false;
@@ -67,7 +68,7 @@ static void set_blocks(void *solver, int64_t rows, const void *values) {
                                           "restore", rows, (const mpsi_block *)values) != MPS_OK;
 }
 
-/* How much room the lists that follow from the blocks take: blocks of nodes, held ones, dashpots,
+/* Sizes of the lists that depend on the blocks: blocks of nodes, boundaries on these, dashpots,
  * mirrors. */
 enum { SIZES = 4 };
 
@@ -114,7 +115,7 @@ static void set_sizes(void *solver, int64_t rows, const void *values) {
   (void)solver, (void)rows, (void)values;
 }
 
-/* Those of which this rank knows all. */
+/* Number of dashpots on blocks of nodes for which this rank has all particles. */
 static int64_t count_dashes(const void *solver) {
   const mps_mpm *mpm = solver;
   int64_t count = 0;
@@ -136,7 +137,7 @@ static void get_dashes(const void *solver, void *values) {
   }
 }
 
-/* On several ranks they wait for the ghosts: mpsi_mpm_regain_share. */
+/* On several ranks dashpots are restored after the ghosts are found: mpsi_mpm_restore_dashpots. */
 static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   (void)values;
@@ -152,13 +153,13 @@ static void set_dashpots(void *solver, int64_t rows, const void *values) {
     mpm->run.broken = mpsi_mpm_put_dashpots(mpm, "restore", rows, values) != MPS_OK;
 }
 
-/* ---- impulses of the last step, for contact -------------------------------------------------- */
+/* ---- warm-start impulses of contacts --------------------------------------------------------- */
 
-static int64_t count_kept(const void *solver) {
+static int64_t count_warm_start(const void *solver) {
   return ((const mps_mpm *)solver)->contact.impulses.warm_count;
 }
 
-static void get_kept_owners(const void *solver, void *values) {
+static void get_warm_start_owners(const void *solver, void *values) {
   const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
   int64_t *row = values;
   for (int64_t k = 0; k < all->warm_count; k++)
@@ -205,8 +206,8 @@ static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH,        
                                               get_dashes,     reserve_dashpots, set_dashpots};
 
 static const mpsi_state_table kept_owners_table = {
-    MPSI_STATE_I64, 2, count_kept, get_kept_owners, reserve_kept, set_kept_owners};
-static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_kept,
+    MPSI_STATE_I64, 2, count_warm_start, get_warm_start_owners, reserve_kept, set_kept_owners};
+static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_warm_start,
                                             get_kept,       NULL, set_kept};
 
 static void list_setting(mpsi_state *s, const mpsi_grid *grid, const mpsi_loads *all_loads,
@@ -230,7 +231,7 @@ static void list_setting(mpsi_state *s, const mpsi_grid *grid, const mpsi_loads 
   mpsi_state_agree_integer(s, "bodies", contacts->bodies);
 }
 
-/* A call of mps_mpm_settle that was cut. */
+/* State of a cancelled mps_mpm_settle. */
 static void list_settling(mpsi_state *s, mpsi_settling *settling) {
   mpsi_state_enter(s, "settling");
   mpsi_state_bool(s, "cut", &settling->cut);
@@ -241,9 +242,9 @@ static void list_settling(mpsi_state *s, mpsi_settling *settling) {
   mpsi_state_leave(s);
 }
 
-#define FILE_BOUNDARIES 64 /* numbers that every file has */
+#define FILE_BOUNDARIES 64 /* numbers of boundaries that every file has */
 
-/* Numbers of boundaries that a state has: up to the last in use. */
+/* Number of boundaries that a state lists: up to the last in use. */
 static int32_t listed_boundaries(const mpsi_boundaries *boundaries) {
   int32_t count = boundaries->holds;
   while (count > FILE_BOUNDARIES && boundaries->hold[count - 1].kind == MPSI_BOUNDARY_NONE) count--;
@@ -304,11 +305,11 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_add_table(s, "dashpots", &dashes_table);
 }
 
-/* ---- is a file whole? ------------------------------------------------------------------------ */
+/* ---- checks of a file ------------------------------------------------------------------------ */
 
 #define ROUNDED 1e-6 /* cells */
 
-/* The part of the tile in use: within the tile, and wide enough for a stencil. */
+/* Whether the part of the tile in use lies within the tile and is wide enough for a stencil. */
 static bool within_tile(const mpsi_grid *grid, const int64_t *b) {
   for (int c = 0; c < 3; c++) {
     const int64_t low = b[MPSI_BLOCK_LOW + c], high = b[MPSI_BLOCK_HIGH + c];
@@ -326,7 +327,7 @@ static bool orderly(const mpsi_grid *grid, int64_t rows, const mpsi_block *block
   if (rows < 1 || rows > particles || block[0][0] != 0) return false;
   for (int64_t k = 0; k < rows; k++) {
     const int64_t *b = block[k], *next = block[k + 1 < rows ? k + 1 : k];
-    for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
+    for (int c = 0; c < 3; c++) /* far from the limits of 32 bits, for nodes too */
       if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL || (c >= grid->dim && b[1 + c] != 0))
         return false;
     if (!within_tile(grid, b)) return false;
@@ -338,9 +339,9 @@ static bool orderly(const mpsi_grid *grid, int64_t rows, const mpsi_block *block
   return block[rows - 1][0] < particles;
 }
 
-/* Where the particle at X[3], in m, of the file is: 1 in its tile, -1 in no place that a run leads
- * to unless it sorts next, and 0 in between: outside by what the steps' own arithmetic, which has
- * fused products, may round away. */
+/* Place of a particle of the file, with its position in m: 1 in the tile of its block; -1 where no
+ * run can have it, unless it sorts next; 0 in between: outside by no more than the round-off of the
+ * steps' fused products. */
 static int place_of(const mpsi_grid *grid, const int64_t *block, bool stale, const double *x,
                     int64_t stride) {
   const double first = grid->spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
@@ -359,8 +360,8 @@ static int place_of(const mpsi_grid *grid, const int64_t *block, bool stale, con
   return place;
 }
 
-/* A step relies on it that the blocks hold their particles, and these have laws that there are: a
- * stencil outside its tile is memory outside. */
+/* Whether the blocks of a file contain their particles, and the laws of these exist. A step relies
+ * on it: a stencil outside its tile would be memory outside. */
 static bool holds_particles(const mpsi_grid *grid, const mpsi_columns *p, mps_snapshot *from) {
   const mpsi_value *blocks = mpsi_values_find(&from->state, "blocks");
   const mpsi_value *x = mpsi_values_find(&from->fields, "position");
@@ -377,7 +378,7 @@ static bool holds_particles(const mpsi_grid *grid, const mpsi_columns *p, mps_sn
     if (b + 1 < blocks->rows && k == block[b + 1][0]) b++;
     const int place = place_of(grid, block[b], *stale != 0, (const double *)x->data + k, count);
     if (place < 0) return false;
-    if (place == 0) *stale = 1; /* it needs no block then */
+    if (place == 0) *stale = 1; /* the particles are sorted before the next step */
   }
   return true;
 }
@@ -414,14 +415,14 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
   return holds_impulses(&mpm->contact, from);
 }
 
-/* ---- public ---------------------------------------------------------------------------------- */
+/* ---- public functions ------------------------------------------------------------------------ */
 
 static void bind(void *solver) {
   mps_mpm *mpm = solver;
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
 }
 
-/* Snapshots are of a state that has taken up what the caller wrote. */
+/* Marks edits as applied: a snapshot is of such a state. */
 static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
@@ -447,7 +448,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .steps = mpm->run.steps};
 }
 
-/* The lists that are kept must be of the present boundaries. */
+/* The lists in a snapshot must be those of the present boundaries. */
 static mps_status make_whole(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
   if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_apply_edits(mpm, function);
@@ -474,7 +475,7 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
-  return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;
+  return status == MPS_OK ? mpsi_mpm_restore_dashpots(mpm, __func__) : status;
 }
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
@@ -496,5 +497,5 @@ mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info)
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
-  return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;
+  return status == MPS_OK ? mpsi_mpm_restore_dashpots(mpm, __func__) : status;
 }

@@ -3,7 +3,7 @@
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
 
-/* How many particles a list means, NULL being all, and where the i-th of them is. */
+/* Number of particles of a list, NULL being all; index of the i-th of them. */
 static int64_t listed(const mpsi_columns *p, int64_t count, const int64_t *ids) {
   return ids ? count : p->count;
 }
@@ -11,14 +11,15 @@ static int64_t place(const mpsi_columns *p, const int64_t *ids, int64_t i) {
   return ids ? mps_particles_index(p->set, ids[i]) : i;
 }
 
-/* In the list of laws; as many as there are for a new one. */
+/* Number of the law of a material in the list; the length of the list for a new one. */
 static int32_t number_of(const mpsi_columns *p, const mps_material *material) {
   int32_t number = 0;
   while (number < p->laws.count && p->laws.law[number].material != material) number++;
   return number;
 }
 
-/* On several ranks a list is the same on all, or of particles that the rank has. */
+/* Checks a list of particles: on several ranks it is the same on all, or of particles that the rank
+ * has. */
 static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
                              const mps_material *material, int64_t count, const int64_t *ids) {
   int64_t known = 0, all;
@@ -64,7 +65,7 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
   return MPS_OK;
 }
 
-/* The column of the laws' numbers, which a set of one law does without. */
+/* Adds the column of the laws' numbers, which a set with one law lacks. */
 static mps_status number_particles(mpsi_columns *p) {
   if (p->law) return MPS_OK;
   const mps_status status = mps_particles_add_field(p->set, "material", 0);
@@ -74,7 +75,7 @@ static mps_status number_particles(mpsi_columns *p) {
   return MPS_OK;
 }
 
-/* Number of the law in the list, where it is put if it is new. */
+/* Number of the law in the list, to which it is added if it is new. */
 static mps_status list_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                            mpsi_rooms *rooms, const mps_mpm_def *def, const char *function,
                            mps_material *material, int32_t *number) {
@@ -107,12 +108,13 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
   if (status != MPS_OK) return status;
   for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {
     const int64_t k = place(&mpm->p, ids, i);
-    if (k < 0) continue;                    /* another rank's */
-    if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
+    if (k < 0) continue;                    /* particle of another rank */
+    if (mpm->p.law) mpm->p.law[k] = number; /* else there is one law */
     mpsi_mpm_begin_law(&mpm->grid, &mpm->p, &mpm->p.laws.law[number], k);
   }
-  mpm->boundaries.outdated = true; /* the dashpots of absorbing walls follow the laws */
-  if (mpm->run.edited || mpm->run.lost) return MPS_OK; /* waits for what else is new */
+  mpm->boundaries.outdated = true; /* the dashpots of absorbing walls depend on the laws */
+  /* the limit is updated with the other edits */
+  if (mpm->run.edited || mpm->run.lost) return MPS_OK;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   return mpsi_mpm_collect_block_results(mpm, __func__);
 }

@@ -97,7 +97,7 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
   for (int64_t k = begin; law->filtered && k < end; k++)
     p->rough[k] = law->history[law->strain][k]; /* filter.c subtracts it from the new one */
   mpsi_before_law before;
-  if (mpm->energy.counts) mpsi_mpm_energy_keep(&mpm->grid, &mpm->p, begin, end, &before);
+  if (mpm->energy.counts) mpsi_mpm_energy_before_law(&mpm->grid, &mpm->p, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
   apply_law(&mpm->p, cells, law, block, begin);

@@ -49,7 +49,8 @@ static void add_traction(const mpsi_grid *grid, const mpsi_columns *p, const mps
 
 mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
   mpsi_loads *loads = &mpm->loads;
-  for (int c = 0; c < mpm->grid.dim; c++) { /* may be added, and moved, between steps */
+  /* the fields may be added, or their memory moved, between steps */
+  for (int c = 0; c < mpm->grid.dim; c++) {
     loads->body_acceleration[c] = mpsi_particles_column(mpm->p.set, "body_acceleration", c);
     loads->external_force[c] = mpsi_particles_column(mpm->p.set, "external_force", c);
   }
@@ -84,7 +85,7 @@ void mpsi_mpm_drop_loads(mps_context *context, const mpsi_loads *loads) {
   mpsi_free(context, loads->traction);
 }
 
-#define STRONGEST 1e150 /* N: impulses are numbers */
+#define STRONGEST 1e150 /* N: impulses stay finite */
 
 static mps_status check_numbers(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                 mpsi_partition *partition, const char *function,
@@ -140,7 +141,7 @@ static void take_traction(mpsi_traction *load, const mps_mpm_load_def *def) {
   }
 }
 
-/* Copies of the ids and areas. */
+/* Copies the ids and areas. */
 static mps_status copy_list(mps_context *context, const char *function, const mps_mpm_load_def *def,
                             mpsi_traction *out) {
   const size_t bytes = (size_t)def->id_count * 8;
@@ -157,7 +158,7 @@ static mps_status copy_list(mps_context *context, const char *function, const mp
   return MPS_OK;
 }
 
-/* All ranks give the same load (`number` -1: a new one). */
+/* Checks that all ranks give the same load (`number` -1: a new one). */
 static mps_status compare_ranks(const mpsi_grid *grid, mpsi_partition *partition,
                                 const char *function, mps_status status, int32_t number,
                                 const mps_mpm_load_def *def) {
@@ -178,7 +179,7 @@ static mps_status compare_ranks(const mpsi_grid *grid, mpsi_partition *partition
   return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
-/* The lowest free number, with a place in the list. */
+/* Lowest free number, and memory for it in the list. */
 static mps_status find_number(mps_context *context, mpsi_loads *loads, const char *function,
                               int32_t *number) {
   int32_t at = 0;

@@ -14,7 +14,7 @@ typedef struct mpsi_traction {
   double *area; /* NULL: by the spacing */
   double traction[3], factor[3];
   mps_signal *signal[3];
-  double now[3]; /* of the signals, at the beginning of the step being made; 1 without */
+  double now[3]; /* value of the signals at the beginning of the step being made; 1 without */
 } mpsi_traction;
 
 typedef struct mpsi_loads {
@@ -24,7 +24,7 @@ typedef struct mpsi_loads {
   double *external_force[3];    /* N; likewise */
 } mpsi_loads;
 
-/* loads.c: fields of forces and loads of the step to the column f. */
+/* loads.c: sums force fields and loads of the step in the columns f. */
 mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function);
 void mpsi_mpm_drop_loads(mps_context *context, const mpsi_loads *loads);
 

@@ -1,6 +1,5 @@
-/* materials.c - the laws of a solver and the particles that have each: the fields that a law reads
- * and writes, and the state in which it begins.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* materials.c - the laws of a solver and the particles of each: fields that a law reads and writes,
+ * and its initial state. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 
 #include "core/particles/particles_internal.h"
@@ -30,8 +29,9 @@ void mpsi_mpm_bind_law(mpsi_columns *p, mpsi_law_use *law) {
   p->laws.temperature = mpsi_particles_column(set, "temperature", 0);
 }
 
-/* A mean change of volume beside each particle's own pressure does work from nothing where dilation
- * makes pressures rough: volumetric.c. */
+/* Chooses whether the law takes the mean change of volume or the particle's own. A mean, with
+ * forces by each particle's own pressure, does net work in a closed cycle where dilation makes
+ * pressures irregular: volumetric.c. */
 static void choose_volume(const mps_mpm_def *def, mpsi_law_use *law) {
   const mpsi_volume suits = mpsi_material_volume(law->material);
   switch (def->volumetric) {
@@ -105,7 +105,7 @@ void mpsi_mpm_begin_law(const mpsi_grid *grid, const mpsi_columns *p, const mpsi
   mpsi_material_begin(law->material, law->history, k, k + 1);
 }
 
-/* ---- a first state --------------------------------------------------------------------------- */
+/* ---- the initial state ----------------------------------------------------------------------- */
 
 void mpsi_mpm_find_state(const mpsi_columns *p, const mps_material *material,
                          mpsi_first_state *out) {
@@ -116,7 +116,7 @@ void mpsi_mpm_find_state(const mpsi_columns *p, const mps_material *material,
 
 mps_status mpsi_mpm_check_state(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                 const char *function, const mpsi_first_state *first, int64_t k) {
-  enum { MOST = 8 }; /* columns of a law that has a start */
+  enum { MOST = 8 }; /* most history columns of a law with an initial state */
   double stress[6] = {0.0}, history[MOST] = {0.0};
   char reason[200];
   if (!mpsi_material_has_start(first->material)) return MPS_OK;

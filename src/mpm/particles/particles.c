@@ -1,6 +1,5 @@
-/* particles.c - the particles of the set as the solver has them: where their columns lie, the state
- * in which they begin, and what follows where the caller writes a field.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* particles.c - the particles as the solver uses them: columns over the fields of the set, initial
+ * state, and what changes when the caller writes a field. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 
 #include "mpm/contact/particle.h"
@@ -12,7 +11,7 @@
 
 /* ---- columns --------------------------------------------------------------------------------- */
 
-/* NULL without water, though the set may have such fields. */
+/* Columns of pore water; NULL without water, though the set may have such fields. */
 static void bind_water(mps_particles *set, mpsi_columns *p, bool water) {
   p->u = water ? mpsi_particles_column(set, "pore_pressure", 0) : NULL;
   p->n = water ? mpsi_particles_column(set, "porosity", 0) : NULL;
@@ -118,7 +117,7 @@ mps_status mpsi_mpm_check_amounts(mps_context *context, const mpsi_grid *grid,
   return status;
 }
 
-/* The density is that of the present volume. */
+/* Mass of a particle from its density in the present volume. */
 static void set_mass(const mpsi_grid *grid, const mpsi_columns *p, mpsi_contacts *contacts,
                      int64_t k, double density) {
   if (p->V[k] == 0.0) p->V[k] = mpsi_mpm_lattice_volume(grid, p, k);
@@ -138,8 +137,8 @@ void mpsi_mpm_begin_particles(const mpsi_grid *grid, const mpsi_columns *p,
   }
 }
 
-/* The caller has written density or volume: the mass follows in the particles that changed. Added
- * particles have none yet. */
+/* New masses of particles whose density or volume the caller has changed. Added particles have none
+ * yet. */
 static mps_status renew_masses(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                mpsi_contacts *contacts, const char *function, const char *field,
                                const double *former) {
@@ -160,13 +159,14 @@ bool mpsi_mpm_compares(const void *self, const char *field) {
   return strcmp(field, "density") == 0 || strcmp(field, "volume") == 0;
 }
 
-/* Fields read again in each step, so that nothing follows from an edit. */
+/* Whether steps read the field directly, so that an edit needs no update. */
 static bool read_by_steps(const char *field) {
   return strcmp(field, "external_force") == 0 || strcmp(field, "body_acceleration") == 0;
 }
 
-/* The set has checked that the values are finite and in range. Positions must be in the domain, and
- * the particles are sorted again; the limit follows from all else. */
+/* Updates after an edit of a field, whose values the set has checked to be finite and in range.
+ * Positions must be in the domain, and the particles are sorted again; the other fields change the
+ * limit of the time step. */
 mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *field,
                               const double *former) {
   mps_mpm *mpm = self;
@@ -183,7 +183,8 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   mpm->run.edited = true;
   mpm->run.stale = mpm->run.stale || moved;
   if (strcmp(field, "velocity_gradient") == 0) mpm->run.moments = false;
-  if (mpm->water && strcmp(field, "pore_pressure") == 0) /* the slopes were those of before */
+  /* the gradients belong to the former pressures */
+  if (mpm->water && strcmp(field, "pore_pressure") == 0)
     for (int c = 0; c < mpm->grid.dim; c++)
       memset(mpm->p.g[c], 0, (size_t)mpm->p.count * sizeof *mpm->p.g[c]);
   return MPS_OK;

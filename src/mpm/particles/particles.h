@@ -1,4 +1,4 @@
-/* particles.h - the particles of the set as the solver has them (particles.c).
+/* particles.h - columns, checks and memory of the solver's particles (particles.c, rooms.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_PARTICLES_H
 #define MPSI_MPM_PARTICLES_H
@@ -7,20 +7,21 @@
 
 #define MPSI_MPM_MOST_PARTICLES INT32_MAX
 
-/* Columns and number as they are in the set now. */
+/* Sets the columns and the number of particles from the set. */
 void mpsi_mpm_bind(const mpsi_grid *grid, mpsi_columns *p, mpsi_water *water);
-/* Room for what the solver keeps for each particle; false: refused. Of the forces of loads only
- * where there are such, or by the second. */
+/* Memory for what the solver stores for each particle; false: refused. Memory for the forces of
+ * loads is allocated where there are any, or by mpsi_mpm_force_room. */
 bool mpsi_mpm_make_room(void *mpm, int64_t particles);
-/* The same, giving up what there is. */
+/* Memory as by mpsi_mpm_make_room, without the present contents and no larger than needed. */
 bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles);
 bool mpsi_mpm_force_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                          mpsi_rooms *rooms, int64_t particles);
-/* What means of the change of volume and the filter of stresses need, as laws do. */
+/* Memory for means of the change of volume and for the filter of stresses, as the laws need
+ * them. */
 bool mpsi_mpm_volume_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                           mpsi_rooms *r, int64_t particles, bool means, bool filter);
 
-/* Places inside the domain, of particles [first, end). */
+/* Checks that the positions of particles [first, end) are inside the domain. */
 mps_status mpsi_mpm_check_places(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                  const mps_mpm_def *def, const char *function, int64_t first,
                                  int64_t end);
@@ -34,17 +35,18 @@ mps_status mpsi_mpm_check_lost(mps_context *context, const mpsi_grid *grid, cons
 mps_status mpsi_mpm_check_amounts(mps_context *context, const mpsi_grid *grid,
                                   const mpsi_columns *p, const char *function);
 mps_status mpsi_mpm_check_masses(mps_context *context, const mpsi_columns *p, const char *function);
-/* Of the particles whose law reads it: what is turned inside out has no stress. */
+/* Checks the deformation gradient of particles whose law reads it: an inverted one has no
+ * stress. */
 mps_status mpsi_mpm_check_deformations(mps_context *context, const mpsi_grid *grid,
                                        const mpsi_columns *p, const char *function);
 /* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
 void mpsi_mpm_begin_particles(const mpsi_grid *grid, const mpsi_columns *p,
                               mpsi_contacts *contacts);
-/* The volume of a particle that the caller gave none. */
+/* Volume of a particle for which the caller gave none: that of the lattice. */
 double mpsi_mpm_lattice_volume(const mpsi_grid *grid, const mpsi_columns *p, int64_t particle);
 
-/* outflow.c: room for the marks of a step that may take particles out; those that have passed open
- * sides in it. */
+/* outflow.c: memory for the marks of removed particles; removes those that have passed open sides
+ * in the step. */
 mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p, mpsi_boundaries *b,
                                     const mpsi_contacts *contacts, mpsi_rooms *rooms,
                                     const char *function);
@@ -52,7 +54,7 @@ void mpsi_mpm_remove_leaving(const mpsi_grid *grid, const mpsi_columns *p,
                              const mpsi_boundaries *boundaries, mpsi_energy *energy,
                              const mpsi_rooms *rooms);
 
-/* As the holder of the set: see mpsi_holder; insertion.c from the third on. */
+/* Callbacks of the holder of the set: see mpsi_holder; insertion.c from the third on. */
 bool mpsi_mpm_compares(const void *mpm, const char *field);
 mps_status mpsi_mpm_note_edit(void *mpm, const char *function, const char *field,
                               const double *former);
@@ -60,8 +62,8 @@ mps_status mpsi_mpm_insert(void *mpm, const char *function, int64_t first, int64
 mps_status mpsi_mpm_remove(void *mpm, const char *function, int64_t count, const int64_t *ids);
 void mpsi_mpm_renew(void *mpm);
 
-/* ready.c: a call that fails after it has taken up what the caller has written
- * (mpsi_mpm_apply_edits) puts that off again: the step and its limit are those of before. */
+/* ready.c: what mpsi_mpm_apply_edits changes, for a call that fails after it: the speed that limits
+ * the step, and that edits are waiting. */
 typedef struct mpsi_edit_state {
   double speed;
   bool edited;

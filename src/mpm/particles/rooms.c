@@ -1,10 +1,10 @@
-/* rooms.c - memory for each particle beside its fields: what the sort, the loads, means of the
- * change of volume and the filter of stresses need. SPDX-License-Identifier: BSD-3-Clause */
+/* rooms.c - memory with an entry for each particle, besides its fields: for the sort, loads, means
+ * of the change of volume and the filter of stresses. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 
 #include <string.h>
 
-/* So many columns, each over the particles, in one room. */
+/* Columns over the particles, all in one piece of memory. */
 static bool make_columns(mps_context *context, mpsi_room *room, int64_t particles, int32_t columns,
                          double **column) {
   const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
@@ -23,7 +23,8 @@ bool mpsi_mpm_force_room(mps_context *context, const mpsi_grid *grid, mpsi_colum
 
 bool mpsi_mpm_volume_room(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                           mpsi_rooms *r, int64_t particles, bool means, bool filter) {
-  means = means || r->strain.item, filter = filter || r->rough.item; /* G2P writes what is there */
+  /* G2P writes the columns that exist */
+  means = means || r->strain.item, filter = filter || r->rough.item;
   const bool stencil = means || filter;
   const bool good =
       (!stencil || mpsi_room_ensure(context, &r->stencil, particles, sizeof *p->stencil)) &&

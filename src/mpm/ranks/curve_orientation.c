@@ -1,6 +1,7 @@
-/* curve_orientation.c - see curve_orientation.h. The blocks' bounds fill either a cube of a power
- * of two, or, stretched, each axis of it whole: then halves of the curve are halves of the body.
- * The curve's axes may be any permutation of the grid's. SPDX-License-Identifier: BSD-3-Clause */
+/* curve_orientation.c - see curve_orientation.h. The bounds of the blocks fill either a cube whose
+ * side is a power of two or, stretched, each axis of that cube: then halves of the curve are halves
+ * of the body. The axes of the curve may be any permutation of those of the grid.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "curve_orientation.h"
 
 #include "domain/curve.h"
@@ -21,7 +22,8 @@ int64_t mpsi_mpm_curve_key(int32_t dim, const mpsi_curve_orientation *p, const i
   return mpsi_curve_key(dim, place);
 }
 
-/* A way to lay the blocks along the curve, and the owners that follow from it. */
+/* A block's key along the curve. And a trial: an orientation, and the owners that follow from
+ * it. */
 typedef struct weighed {
   int64_t key, cells;
 } weighed;
@@ -32,8 +34,8 @@ typedef struct trial {
   mpsi_curve_orientation orientation;
   int32_t ranks;
   weighed *list;
-  int32_t *owner;   /* of each block */
-  int64_t *foreign; /* pairs of a block of each rank and one of others beside it */
+  int32_t *owner;   /* owner of each block */
+  int64_t *foreign; /* for each rank, pairs of one of its blocks and a neighbour on another rank */
 } trial;
 
 static int compare(const void *left, const void *right) {
@@ -41,7 +43,7 @@ static int compare(const void *left, const void *right) {
   return a < b ? -1 : a > b;
 }
 
-/* As mpsi_curve_cut: the middle of a block's weight determines its part of the whole. */
+/* Owners as by mpsi_curve_cut: the middle of a block's weight determines its part of the whole. */
 static void find_owners(trial *t) {
   int64_t below = 0;
   for (int64_t b = 0; b < t->blocks; b++)
@@ -54,7 +56,7 @@ static void find_owners(trial *t) {
   }
 }
 
-/* Blocks that lie beside one another in the direction `to` and have different owners. */
+/* Counts neighbours in the direction `to` with different owners. */
 static void count_along(trial *t, const int32_t *to) {
   const mpsi_placed *cells = t->block;
   const int64_t count = t->blocks;
@@ -69,7 +71,7 @@ static void count_along(trial *t, const int32_t *to) {
   }
 }
 
-/* Of the rank with most. Of two opposite directions one counts for both. */
+/* Largest number of such pairs on any rank; each pair of opposite directions is counted once. */
 static int64_t count_foreign(trial *t) {
   static const int32_t none[3] = {0};
   const int32_t depth = t->dim == 3;
@@ -86,7 +88,7 @@ static int64_t count_foreign(trial *t) {
   return most;
 }
 
-/* Bounds of the blocks: the first, and how many along each axis. Returns the most. */
+/* Bounds of the blocks: the first, and the number along each axis. Returns the largest number. */
 static int64_t find_bounds(const trial *t, int32_t *low, int64_t *extent) {
   int64_t most = 1;
   for (int c = 0; c < 3; c++) {
@@ -103,8 +105,8 @@ static int64_t find_bounds(const trial *t, int32_t *low, int64_t *extent) {
   return most;
 }
 
-/* Places that differ for any two blocks, and room to move beside them. */
-static mpsi_curve_orientation make_placing(const trial *t, int first, bool stretched) {
+/* An orientation in which no two blocks have the same place, with some margin around them. */
+static mpsi_curve_orientation make_orientation(const trial *t, int first, bool stretched) {
   mpsi_curve_orientation p = {.side = 2};
   int64_t extent[3];
   const int64_t most = find_bounds(t, p.low, extent);
@@ -127,7 +129,7 @@ bool mpsi_mpm_choose_orientation(mps_context *context, int32_t dim, int32_t rank
   t.foreign = mpsi_alloc(context, ranks, sizeof *t.foreign);
   const bool good = t.list && t.owner && t.foreign;
   for (int way = 0; good && way < 2 * dim; way++) {
-    t.orientation = make_placing(&t, way / 2, way % 2 != 0);
+    t.orientation = make_orientation(&t, way / 2, way % 2 != 0);
     if (blocks > 0) find_owners(&t);
     const int64_t foreign = blocks > 0 ? count_foreign(&t) : 0;
     if (least >= 0 && foreign >= least) continue;

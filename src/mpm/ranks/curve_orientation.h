@@ -1,8 +1,8 @@
-/* curve_orientation.h - how the blocks of a body lie along Hilbert's curve (domain/curve.h). The
- * curve halves a cube again and again; the cube's place over the blocks decides how much of the
- * body is at borders of ranks. So several orientations are tried, and the one is taken in which the
- * rank with the most ghosts has the fewest. Results do not depend on it.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* curve_orientation.h - orientation of Hilbert's curve (domain/curve.h) over the blocks of a body.
+ * The curve divides a cube recursively into halves; the position of the cube over the blocks
+ * determines how much of the body is at borders of ranks. So several orientations are tried, and
+ * the one is chosen in which the rank with the most ghosts has the fewest. Results do not depend on
+ * it. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_CURVE_ORIENTATION_H
 #define MPSI_MPM_CURVE_ORIENTATION_H
 
@@ -11,10 +11,11 @@
 #include <stdbool.h>
 
 typedef struct mpsi_curve_orientation {
-  int32_t axis[3]; /* of the grid, along each axis of the curve */
-  int32_t low[3];  /* of the grid: its first block lies `base` places from the curve's beginning, */
+  int32_t axis[3]; /* axis of the grid along each axis of the curve */
+  int32_t
+      low[3]; /* first block of the grid: it lies `base` places from the beginning of the curve */
   int64_t base;
-  int64_t side, extent[3]; /* and so many blocks along `side` places */
+  int64_t side, extent[3]; /* number of blocks, by axis, along `side` places */
 } mpsi_curve_orientation;
 
 /* The key of the block `at`, also beyond the curve's ends. */
@@ -25,7 +26,8 @@ typedef struct mpsi_placed {
   int32_t at[3];
   int64_t particles;
 } mpsi_placed;
-/* For all blocks, in order, of `ranks` ranks; false: memory refused. */
+/* Chooses the orientation for all blocks, in their order, on `ranks` ranks; false: memory
+ * refused. */
 bool mpsi_mpm_choose_orientation(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
                                  const mpsi_placed *block, mpsi_curve_orientation *out);
 

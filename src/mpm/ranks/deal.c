@@ -1,10 +1,10 @@
-/* deal.c - a set in parts becomes one whose particles lie on the ranks of their blocks of cells,
- * before the solver adds its own fields: what travels are the caller's fields alone.
+/* deal.c - sends the particles of a set in parts to the ranks of their blocks of cells, before the
+ * solver adds its own fields: only the caller's fields are sent.
  *
- * Each rank finds the blocks of its part. All ranks learn of all blocks and their numbers of
- * particles, from which each finds the same way to lay the curve over them; the curve is cut from
- * what each has (owners.c). Beyond MOST_BLOCKS the list itself would be large: the curve then lies
- * over the bounds of all blocks. Owners change no results, so neither does that.
+ * Each rank finds the blocks of its part. All ranks receive the blocks of all with their numbers of
+ * particles, from which each finds the same orientation of the curve; the curve is cut by the
+ * numbers of each (owners.c). Beyond MOST_BLOCKS the list itself would be large: the curve is then
+ * laid over the bounds of all blocks. Results do not depend on the owners.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
@@ -31,9 +31,9 @@ static mpsi_placed *list_own(mps_context *context, const mpsi_grid *grid) {
   return list;
 }
 
-/* The blocks of all ranks in one list, in order, each once. */
+/* Joins the blocks of all ranks in one list, in order, each once. */
 static mpsi_placed *join_lists(mps_context *context, const mpsi_mailbox *box, int64_t *blocks) {
-  int64_t count = 0, warm = 0;
+  int64_t count = 0, kept = 0;
   for (int32_t m = 0; m < box->count; m++)
     count += box->mail[m].bytes / (int64_t)sizeof(mpsi_placed);
   mpsi_placed *list = mpsi_alloc(context, count, sizeof *list);
@@ -43,15 +43,15 @@ static mpsi_placed *join_lists(mps_context *context, const mpsi_mailbox *box, in
     memcpy(to, box->mail[m].data, (size_t)box->mail[m].bytes);
   qsort(list, (size_t)count, sizeof *list, compare);
   for (int64_t k = 0; k < count; k++)
-    if (warm > 0 && compare(&list[warm - 1], &list[k]) == 0)
-      list[warm - 1].particles += list[k].particles;
+    if (kept > 0 && compare(&list[kept - 1], &list[k]) == 0)
+      list[kept - 1].particles += list[k].particles;
     else
-      list[warm++] = list[k];
-  *blocks = warm;
+      list[kept++] = list[k];
+  *blocks = kept;
   return list;
 }
 
-/* Every rank's list to every rank. */
+/* Orientation of the curve from the lists of all ranks. */
 static mps_status place_by_list(mps_context *context, const mpsi_grid *grid,
                                 mpsi_partition *partition, const char *function) {
   mps_domain *domain = partition->domain;
@@ -79,7 +79,7 @@ static mps_status place_by_list(mps_context *context, const mpsi_grid *grid,
   return mpsi_domain_agree(domain, function, status);
 }
 
-/* Over the first and the last block along each axis. */
+/* Orientation of the curve over the first and the last block along each axis. */
 static mps_status place_by_bounds(mps_context *context, const mpsi_grid *grid,
                                   mpsi_partition *partition, const char *function) {
   double bound[6];
@@ -101,7 +101,7 @@ static mps_status place_by_bounds(mps_context *context, const mpsi_grid *grid,
 
 static mps_status find_blocks(mps_mpm *mpm, const char *function) {
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
-  mpm->p.laws.ids = mpsi_particles_integers(mpm->p.set, "id"); /* there is no law yet */
+  mpm->p.laws.ids = mpsi_particles_integers(mpm->p.set, "id"); /* laws are added later */
   mpm->grid.worker_count = mps_context_threads(mpm->context);
   const mps_status status =
       mpsi_mpm_check_start(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function);
@@ -112,7 +112,7 @@ static mps_status find_blocks(mps_mpm *mpm, const char *function) {
   return mpsi_mpm_sort_cells(mpm, function);
 }
 
-/* The solver's fields get the room that the caller's have: no more than needed. */
+/* Reduces the memory of fields and solver to what is needed. */
 static mps_status fit(mps_mpm *mpm, const char *function) {
   const mps_status status = mpsi_particles_fit(mpm->p.set, function);
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);

@@ -1,6 +1,6 @@
-/* owners.c - which rank has which block of cells, by Hilbert's curve (domain/curve.h), and
- * particles that go to the ranks of their blocks. The curve is cut again where a rank has more
- * particles than any had after the last cut. Results do not depend on the partition.
+/* owners.c - owners of the blocks of cells, by Hilbert's curve (domain/curve.h), and migration of
+ * particles to the ranks of their blocks. The curve is cut again when a rank has more particles
+ * than any had after the last cut. Results do not depend on the partition.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain/curve.h"
 #include "domain/migrate.h"
@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GROWTH 1.02 /* of the heaviest rank, from which on it is worth a new cut */
+#define GROWTH 1.02 /* factor of the largest number of particles from which on a new cut pays */
 #ifdef NDEBUG
 #define COUNT_IDS false
 #else
-#define COUNT_IDS true /* that no particle is lost or doubled, each time */
+#define COUNT_IDS true /* checks each time that no particle is lost or doubled */
 #endif
 
 /* ---- the curve ------------------------------------------------------------------------------- */
@@ -36,7 +36,7 @@ static int compare(const void *left, const void *right) {
   return a < b ? -1 : a > b;
 }
 
-/* The way that the curve lies over the blocks, all of which are here; false: memory refused. */
+/* Orientation of the curve over the blocks, all of which are here; false: memory refused. */
 static bool place_curve(mps_context *context, const mpsi_grid *grid, mpsi_partition *partition,
                         int32_t ranks) {
   const int64_t blocks = grid->cell_count;
@@ -83,7 +83,7 @@ mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
 
 /* ---- migration ------------------------------------------------------------------------------- */
 
-/* What leaves this rank, by present index, and all columns of the set. */
+/* Particles that leave this rank, by present index, and all columns of the set. */
 typedef struct departure {
   mps_mpm *mpm;
   uint8_t *gone;
@@ -136,9 +136,9 @@ static mps_status list_leaving(departure *d, const char *function) {
   return list_columns(d);
 }
 
-/* All that can fail, on whatever rank, comes before anything has changed on any. */
-static mps_status take_in(departure *d, const char *function, const mpsi_mailbox *box,
-                          int64_t arriving) {
+/* Stores received particles. All that can fail on any rank comes before anything has changed. */
+static mps_status store_received(departure *d, const char *function, const mpsi_mailbox *box,
+                                 int64_t arriving) {
   mps_mpm *mpm = d->mpm;
   const int64_t count = mpm->p.count - d->count + arriving;
   mps_status status = MPS_OK;
@@ -181,7 +181,7 @@ static mps_status send(departure *d, const char *function, mps_status status, bo
                                 .columns = d->columns,
                                 .column = (const void *const *)d->column};
   status = mpsi_migrate(domain, function, &leaving, &box, &arriving);
-  if (status == MPS_OK) status = take_in(d, function, &box, arriving);
+  if (status == MPS_OK) status = store_received(d, function, &box, arriving);
   if (COUNT_IDS && status == MPS_OK)
     status = mpsi_census_check(domain, function, mpm->p.count, ids_of(mpm), &before);
   *moved = status == MPS_OK && (d->count > 0 || arriving > 0);
@@ -189,7 +189,7 @@ static mps_status send(departure *d, const char *function, mps_status status, bo
   return status;
 }
 
-/* Again where a rank has more than any had. */
+/* Cuts the curve again where a rank has more particles than any had after the last cut. */
 static mps_status rebalance(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                             mpsi_partition *partition, const char *function, mps_status status) {
   double most = (double)p->count;

@@ -1,6 +1,5 @@
-/* parcels.c - what goes between ranks in a step for each block of cells at a border, and comes for
- * each ghost: room for it, and sums of one kind, which the caller puts into a tile.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* parcels.c - parcels sent for each block of cells at a border and received for each ghost: memory
+ * for them, and the exchange of other sums in tiles. SPDX-License-Identifier: BSD-3-Clause */
 #include "parcels.h"
 
 #include "mpm/base/mpm_solver.h"
@@ -47,7 +46,7 @@ double *mpsi_mpm_copy_nodes(const mpsi_cell_block *cells, void *tile, size_t siz
   return parcel;
 }
 
-/* Sums of another kind, that `sum` puts into the tiles of a worker. */
+/* Sums other than momenta, which `sum` puts into the tiles of a worker. */
 typedef struct sums {
   mps_mpm *mpm;
   mpsi_mpm_task sum;

@@ -1,7 +1,7 @@
-/* partition.c - which blocks of cells a rank has, and which are its ghosts: see partition.h.
+/* partition.c - blocks of cells of a rank, and its ghosts: see partition.h.
  *
  * All ranks begin with the same set, sort it in the same way and keep their own blocks of it.
- * Ghosts follow from the blocks that exist: each rank sends the list of its blocks to the ranks
+ * Ghosts are found from the blocks that exist: each rank sends the list of its blocks to the ranks
  * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
@@ -13,7 +13,7 @@
 
 /* A block as it is sent to another rank. */
 typedef struct notice {
-  int32_t number; /* among its owner's own ones */
+  int32_t number; /* index among its owner's blocks */
   int32_t at[3], low[3], high[3];
 } notice;
 
@@ -21,13 +21,14 @@ typedef struct notice {
 typedef struct search {
   mps_mpm *mpm;
   const char *function;
-  mpsi_cell_block *own; /* in their order */
+  mpsi_cell_block *own; /* own blocks in order */
   int64_t count;
-  int64_t *range; /* of each rank: lower (3) and upper (3) blocks, and how many */
-  notice *sent;   /* to each rank one after the other */
+  int64_t
+      *range;   /* for each rank: lower (3) and upper (3) bounds of its blocks, and their number */
+  notice *sent; /* blocks sent, rank by rank */
   mps_domain_message *message;
   mpsi_mailbox box;
-  notice *ghost; /* in order of their owners */
+  notice *ghost; /* ghosts in the order of their owners */
   int32_t *rank;
   int64_t *index;
   int64_t ghosts;
@@ -58,8 +59,8 @@ static bool beside_own(const search *s, const int32_t *at) {
   return false;
 }
 
-/* The own blocks without the ghosts among them. */
-static mps_status take_own(search *s) {
+/* Copies the own blocks, without the ghosts in the list. */
+static mps_status copy_own(search *s) {
   const mpsi_grid *grid = &s->mpm->grid;
   mps_context *context = s->mpm->context;
   const int64_t ranks = mps_domain_size(s->mpm->partition->domain);
@@ -81,7 +82,7 @@ static mps_status take_own(search *s) {
   return MPS_OK;
 }
 
-/* May the block be beside one of the rank's? */
+/* Whether the block may be beside one of the rank's. */
 static bool near_range(const int64_t *range, const int32_t *at) {
   if (range[6] == 0) return false;
   for (int c = 0; c < 3; c++)
@@ -149,7 +150,7 @@ static mps_status choose_ghosts(search *s) {
 
 /* ---- lists ----------------------------------------------------------------------------------- */
 
-/* Numbers of ghosts, in the order of blocks. */
+/* Sorts the ghosts in the order of blocks. */
 static void sort_ghosts(const search *s, int64_t *order, int64_t *other) {
   for (int64_t k = 0; k < s->ghosts; k++) order[k] = k;
   for (int64_t width = 1; width < s->ghosts; width *= 2) {
@@ -167,7 +168,7 @@ static void sort_ghosts(const search *s, int64_t *order, int64_t *other) {
   }
 }
 
-/* Own blocks and ghosts in one list; where the own ones are in it. */
+/* Merges own blocks and ghosts in one list; `place`: index of each own block in it. */
 static void merge(const search *s, const int64_t *order, int32_t *place) {
   mpsi_cell_block *cells = s->mpm->grid.cells;
   int64_t own = 0, ghost = 0;
@@ -214,8 +215,8 @@ static bool put_lists(search *s) {
   return good;
 }
 
-/* Blocks that no ghost goes before, directly or not, and nodes to which only such blocks give, need
- * not wait for messages. */
+/* Marks blocks of cells that add after a ghost, directly or not, and nodes to which such blocks
+ * add: these wait for messages. */
 static void mark_blocks(const mpsi_grid *grid) {
   for (int64_t b = 0; b < grid->cell_count; b++) grid->cells[b].late = grid->cells[b].ghost;
   for (int64_t k = 0; k < grid->cell_count; k++) {
@@ -235,7 +236,7 @@ static mps_status find_border(mps_mpm *mpm, const char *function) {
   const int64_t *item;
   partition->borders = mpsi_halo_items(partition->halo, &item);
   for (int64_t k = 0; k < partition->borders;
-       k++) { /* item[k] >= k: none is overwritten too early */
+       k++) { /* item[k] >= k: no entry is overwritten before it is read */
     partition->border[k] = partition->border[item[k]];
     mpm->grid.cells[partition->border[k]].parcel = k;
   }
@@ -275,7 +276,7 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
   mpsi_partition *partition = mpm->partition;
   if (!partition->outdated) return MPS_OK;
   search s = {.mpm = mpm, .function = function, .box.context = mpm->context};
-  mps_status status = mpsi_domain_agree(partition->domain, function, take_own(&s));
+  mps_status status = mpsi_domain_agree(partition->domain, function, copy_own(&s));
   if (status == MPS_OK)
     status = mpsi_domain_sum(partition->domain, function,
                              RANGE * mps_domain_size(partition->domain), s.range);
@@ -307,7 +308,7 @@ mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function) {
 
 /* ---- the first cut --------------------------------------------------------------------------- */
 
-/* The rows of own blocks, which come to lie one behind the other. */
+/* Lists the rows of own blocks, which are moved together. */
 static int64_t take_blocks(mpsi_grid *grid, mpsi_partition *partition, int64_t *rows) {
   mpsi_cell_block *cells = grid->cells;
   const int32_t rank = mps_domain_rank(partition->domain);
@@ -336,7 +337,7 @@ static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **fo
   return mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
 }
 
-/* Are all ranks given the same? */
+/* Checks that all ranks are given the same definition. */
 static mps_status compare_ranks(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *d,
                                 const char *function, mps_status status) {
   mpsi_given given;

@@ -1,11 +1,10 @@
-/* row_order.c - the order in which the rows of all ranks make the whole set (partition.h).
+/* row_order.c - order of the rows of all ranks in the whole set (partition.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
 
 #include <string.h>
 
-/* Rows that no block has are behind the others, by their ids: particles that the caller has added.
- */
+/* Rows of particles that the caller has added, which no block has: behind the others, by id. */
 static int64_t list_added(const mpsi_columns *p, int64_t first, mpsi_row_run *out) {
   const int64_t *id = mpsi_particles_integers(p->set, "id");
   for (int64_t k = first; out && k < p->count; k++)

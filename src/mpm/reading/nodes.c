@@ -1,6 +1,7 @@
-/* nodes.c - the nodes of the grid for a reader (mps/grid.h): the particles' sums of the present
- * state, Nakamura (23)-(25), (29), with the forces apart from the momenta. What is changed on the
- * way is scratch, or what the next step would do first. SPDX-License-Identifier: BSD-3-Clause */
+/* nodes.c - nodes of the grid for a reader (mps/grid.h): mass, momentum and forces of the
+ * particles' present state, Nakamura (23)-(25), (29), with forces apart from momenta. Only scratch
+ * memory changes, or what the next step would change first.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
 #include "mpm/ranks/parcels.h"
@@ -18,7 +19,7 @@ mps_status mps_grid_get_info_sized(const mps_grid *grid, mps_grid_info *out, siz
   return mpsi_out_write(mpm->context, "mps_grid_get_info", out, size, &info, sizeof info);
 }
 
-/* The sums themselves, when all is known. */
+/* P2G with forces apart, after all preparations. */
 static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_penalty};
   if (mpm->partition) {
@@ -31,7 +32,7 @@ static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
   return mpm->partition ? mpm->partition->lost : MPS_OK;
 }
 
-/* The sums, after what the caller has edited. `status`: status of the call so far here. */
+/* P2G after the caller's edits are applied. `status`: of the call so far on this rank. */
 static mps_status find_sums(mps_mpm *mpm, const char *function, mps_status status) {
   status = mpsi_mpm_agree(mpm->partition, function, status);
   if (status == MPS_OK) status = mpsi_mpm_apply_edits(mpm, function);
@@ -65,7 +66,7 @@ typedef struct node {
   double x[3], v[3], f[3], mass;
 } node;
 
-/* Node k of the block g; false where no particle reaches it. */
+/* Values of node k of block g; false where no particle reaches it. */
 static bool read_node(const mpsi_grid *grid, const mpsi_contacts *contacts, int64_t g, int k,
                       node *out) {
   const mpsi_node_block *nodes = &grid->nodes[g];
@@ -122,7 +123,7 @@ mps_status mps_grid_get_nodes(const mps_grid *grid, int64_t capacity, int64_t *c
   return MPS_OK;
 }
 
-/* ---- as a set -------------------------------------------------------------------------------- */
+/* ---- nodes as a set of particles ------------------------------------------------------------- */
 
 static mps_status check_set(const mps_mpm *mpm, const char *function, mps_particles *set) {
   if (!set || mpsi_particles_context(set) != mpm->context ||
@@ -133,7 +134,7 @@ static mps_status check_set(const mps_mpm *mpm, const char *function, mps_partic
   return mpsi_particles_check_hold(set, function, MPSI_USE_MOVE);
 }
 
-/* As many particles as nodes. */
+/* Gives the set as many particles as there are nodes. */
 static mps_status resize(mps_context *context, const mpsi_grid *grid, const char *function,
                          mps_particles *set, int64_t count, const double *x) {
   const int64_t have = mps_particles_count(set);
@@ -159,7 +160,7 @@ static void write_columns(mps_particles *set, const char *name, int64_t count, i
   }
 }
 
-/* The nodes of `grid`, of which there are `count`, to `set`, with `memory` for 10 numbers each. */
+/* Writes the `count` nodes of `grid` to `set`, with `memory` for 10 numbers each. */
 static mps_status fill(mps_grid *grid, const char *function, mps_particles *set, int64_t count,
                        double *memory) {
   mps_mpm *mpm = grid->mpm;

@@ -1,8 +1,8 @@
 /* probe.c - fields of the particles at any points (mps/grid.h): at each a weighted least-squares
  * fit of a linear function, Nakamura (5), (6), with the roles of nodes and particles exchanged. The
- * fit is about the weighted mean of the particles' places, so that it keeps its digits. On several
- * ranks all receive the particles near the points. Sums go by cells and in them by ids.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * fit is about the weighted mean of the particles' positions, which limits round-off. On several
+ * ranks all receive the particles near the points. Sums are in the order of cells, within a cell of
+ * ids. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/particles.h"
 #include "mpm/base/shape.h"
 
@@ -12,12 +12,12 @@
 #include <string.h>
 
 #define LEAST_FILLED 0.2
-#define SINGULAR 1e-9 /* cells squared: spread of the particles, below which there is no slope */
-#define REACH 2       /* cells */
+#define SINGULAR 1e-9 /* cells squared: particles spread less have no gradient */
+#define REACH 2       /* cells: half the width of the weights, rounded up */
 
-/* A particle by its cell. */
+/* A particle with its cell. */
 typedef struct item {
-  int64_t cell[3], id, index; /* index: of the rows below */
+  int64_t cell[3], id, index; /* index: position in the rows */
 } item;
 
 static int compare_cells(const int64_t *a, const int64_t *b) {
@@ -42,7 +42,7 @@ typedef struct row {
 /* Particles near the points, sorted by their cells. */
 typedef struct near {
   mps_mpm *mpm;
-  const double *column[MOST_COLUMNS]; /* of the field */
+  const double *column[MOST_COLUMNS]; /* columns of the field */
   int32_t columns;
   item *item;
   row *row;
@@ -60,7 +60,7 @@ static void fill_row(const near *list, int64_t k, row *out) {
   for (int32_t c = 0; c < list->columns; c++) out->value[ROW_FIELD + c] = list->column[c][k];
 }
 
-/* This rank's; false: no memory. */
+/* Lists this rank's particles near the points; false: no memory. */
 static bool list_own(near *list, int64_t count, const double *points) {
   const mps_mpm *mpm = list->mpm;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -86,7 +86,7 @@ static bool list_own(near *list, int64_t count, const double *points) {
   return true;
 }
 
-/* Those of all ranks in place of this one's. */
+/* Replaces this rank's rows by those of all ranks. */
 static mps_status join_rows(near *list, const char *function, const mpsi_mailbox *box) {
   mps_context *context = list->mpm->context;
   int64_t count = list->count;
@@ -156,7 +156,7 @@ static int64_t first_from(const near *list, const int64_t *cell) {
   return low;
 }
 
-/* The B-spline at s cells. */
+/* B-spline at the distance of s cells. */
 static double spline_at(int32_t degree, double s) {
   s = fabs(s);
   if (degree == 2) return s < 0.5 ? 0.75 - s * s : s < 1.5 ? 0.5 * (1.5 - s) * (1.5 - s) : 0.0;
@@ -167,13 +167,13 @@ static double spline_at(int32_t degree, double s) {
 
 /* ---- one point ------------------------------------------------------------------------------- */
 
-/* Weights of the particles about a point, and moments of their places in cells from it. */
+/* Weighted sums over the particles about a point: positions in cells from it. */
 typedef struct fit {
   const near *list;
   double X[3];
   double weight, filled, mean[3];
-  double inverse[3]
-                [3]; /* of the second moments about the mean; 0 along directions without spread */
+  double inverse[3][3]; /* inverse of the second moments about the mean; 0 along directions without
+                           spread */
 } fit;
 
 typedef void (*particle_fn)(fit *f, int64_t particle, double w, const double *s, void *data);
@@ -218,7 +218,7 @@ static void add_spread(fit *f, int64_t k, double w, const double *s, void *data)
     for (int b = 0; b < 3; b++) spread[a][b] += w * (s[a] - f->mean[a]) * (s[b] - f->mean[b]);
 }
 
-/* By Gauss and Jordan; rows and columns without a pivot become 0. */
+/* Inverse by Gauss-Jordan elimination; rows and columns without a pivot become 0. */
 static void invert(int n, double (*m)[3], double (*out)[3]) {
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) out[a][b] = a == b && a < n ? 1.0 : 0.0;
@@ -250,9 +250,9 @@ static int32_t begin_fit(fit *f) {
   return MPS_GRID_POINT_INSIDE;
 }
 
-/* A column's weighted mean, and its first moment about the mean place. */
+/* Weighted sum of a column, and its first moment about the mean position. */
 typedef struct sums {
-  int32_t column; /* of the rows */
+  int32_t column; /* index in the rows */
   double value, slope[3];
 } sums;
 
@@ -272,7 +272,7 @@ static double value_of(fit *f, int32_t column) {
   return value;
 }
 
-/* ---- the call -------------------------------------------------------------------------------- */
+/* ---- public function ------------------------------------------------------------------------- */
 
 static mps_status check(const mps_mpm *mpm, const char *function, const char *field,
                         int32_t component, int64_t count, const double *points,
@@ -306,7 +306,7 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
   return MPS_OK;
 }
 
-/* Do all ranks ask for the same? Each adds the particles that it has to every point. */
+/* Checks that all ranks ask for the same: each adds its particles to every point. */
 static mps_status agree_on_points(const mpsi_grid *grid, mpsi_partition *partition,
                                   const char *function, mps_status status, const char *field,
                                   int32_t component, int64_t count, const double *points) {
@@ -317,7 +317,7 @@ static mps_status agree_on_points(const mpsi_grid *grid, mpsi_partition *partiti
     mpsi_give_text(&given, "a hash of field", field);
     mpsi_give(&given, "component", component);
     mpsi_give(&given, "count", (double)count);
-    for (int64_t i = 0; i < count; i++) /* in the plane the third coordinate is not read */
+    for (int64_t i = 0; i < count; i++) /* in 2D the third coordinate is not read */
       mpsi_give_vector(&given, "points", grid->dim, points + 3 * i);
   }
   return mpsi_domain_agree_given(partition->domain, function, status, &given);

@@ -54,7 +54,8 @@ static void sum_particles(const mpsi_grid *grid, const mpsi_columns *p, int64_t 
                           mps_totals *t) {
   const int dim = grid->dim;
   const double h = grid->cell, full = h * h / (grid->spline == 3 ? 3.0 : 4.0);
-  const double moment = grid->standard ? 0.0 : full; /* particles without L carry no spin */
+  /* without L particles have no angular momentum of their own */
+  const double moment = grid->standard ? 0.0 : full;
   for (int64_t k = begin; k < end; k++) {
     const double m = p->m[k];
     double x[3] = {0}, v[3] = {0}, L[3][3] = {{0}};
@@ -83,8 +84,8 @@ static void add_part(mpsi_exact *sum, const mps_totals *t) {
   mpsi_exact_add(&sum[KINETIC], t->kinetic);
 }
 
-/* Within blocks in their order, and exactly over blocks; where the caller has written or removed
- * particles since, exactly over these. */
+/* Sums in order within blocks, and exactly over blocks; where the caller has written or removed
+ * particles since, exactly over all particles. */
 static void sum_share(const mpsi_grid *grid, const mpsi_columns *p,
                       const mpsi_boundaries *boundaries, const mpsi_run *run, mpsi_exact *sum) {
   for (int64_t b = 0; !run->edited && b < grid->cell_count; b++) {
@@ -98,12 +99,12 @@ static void sum_share(const mpsi_grid *grid, const mpsi_columns *p,
     sum_particles(grid, p, k, k + 1, &part);
     add_part(sum, &part);
   }
-  for (int64_t k = 0; k < p->count; k++) /* whatever the blocks: it must not change */
-    mpsi_exact_add(&sum[MASS], p->m[k]);
+  /* exact over particles: the total mass must not depend on the blocks */
+  for (int64_t k = 0; k < p->count; k++) mpsi_exact_add(&sum[MASS], p->m[k]);
   mpsi_mpm_boundary_add_works(boundaries, &sum[WORK]);
 }
 
-/* Of all ranks. */
+/* Energies summed over all ranks. */
 static mps_status sum_energies(mpsi_partition *partition, const mpsi_energy *energy,
                                const char *function, double *out) {
   mpsi_exact sum[MPSI_ENERGY_SUMS];

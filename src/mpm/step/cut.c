@@ -160,7 +160,7 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
                                 (size_t)(mpm->contact.node_pair_count * mpm->grid.block_nodes) *
                                     sizeof *mpm->contact.sight);
     if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
-    if (mpm->partition) { /* all ranks, whatever this one's status */
+    if (mpm->partition) { /* collective: also where the status of this rank is an error */
       for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
         mpm->grid.cells[b].thin = near_thin(&mpm->grid, &mpm->contact, &mpm->grid.cells[b]);
       const mps_status lost = mpsi_mpm_exchange_corners(mpm, function, status == MPS_OK);

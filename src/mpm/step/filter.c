@@ -289,7 +289,7 @@ static void filter_stress(mps_mpm *mpm, int64_t b, int32_t number) {
   for (int64_t begin = cells->begin, end; begin < cells->end; begin = end) {
     end = begin + MPSI_CHUNK < cells->end ? begin + MPSI_CHUNK : cells->end;
     mpsi_before_law before;
-    if (mpm->energy.counts) mpsi_mpm_energy_keep(&mpm->grid, &mpm->p, begin, end, &before);
+    if (mpm->energy.counts) mpsi_mpm_energy_before_law(&mpm->grid, &mpm->p, begin, end, &before);
     for (int64_t k = begin; k < end; k++)
       if (is_filtered(&mpm->p, k)) change_stress(&mpm->p, k);
     mpsi_mpm_return_stress(&mpm->grid, &mpm->p, &mpm->run, cells, begin, end);

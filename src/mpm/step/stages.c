@@ -1,4 +1,5 @@
-/* stages.c - see stages.h. SPDX-License-Identifier: BSD-3-Clause */
+/* stages.c - stages of a step common to one process and several ranks: see stages.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "stages.h"
 
 #include "core/particles/particles_internal.h"

@@ -1,6 +1,5 @@
-/* stages.h - parts of a step that are the same in one process (step.c) and on several ranks
- * (step_on_ranks.c), which adds the exchanges between them.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* stages.h - stages of a step common to one process (step.c) and several ranks (step_on_ranks.c,
+ * which adds the exchanges between them). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_STAGES_H
 #define MPSI_MPM_STAGES_H
 

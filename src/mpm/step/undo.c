@@ -1,5 +1,5 @@
 /* undo.c - see undo.h. A step has changed, when a law refuses: columns of the particles, positions
- * and sums of boundaries, forces at rest of absorbing sides, and the saved-start impulses of
+ * and sums of boundaries, forces at rest of absorbing sides, and the warm-start impulses of
  * contacts. Time, bodies and energy budget change after the laws.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
@@ -30,7 +30,7 @@ static double *saved(const mpsi_undo *u, int32_t c, int64_t count) {
   return (double *)u->room.item + c * count;
 }
 
-/* A step swaps the memory of the saved-start impulses with that of the step before. */
+/* A step swaps the memory of the warm-start impulses with that of the step before. */
 static void save_impulses(const mpsi_contacts *contacts, mpsi_undo *undo) {
   const mpsi_impulses *all = &contacts->impulses;
   undo->kept_impulses = all->warm_room.item;

@@ -178,8 +178,8 @@ MPSI_APART void return_momenta(mps_mpm *mpm, const mpsi_cell_block *cells, int d
       before[c] = v[c] - before[c];
     }
     if (mpm->energy.counts)
-      mpsi_mpm_energy_given_back(&mpm->grid, &mpm->p, &mpm->energy, &mpm->def, mpm->run.dt, cells,
-                                 b->first + lane, before);
+      mpsi_mpm_energy_returned(&mpm->grid, &mpm->p, &mpm->energy, &mpm->def, mpm->run.dt, cells,
+                               b->first + lane, before);
   }
 }
 

@@ -134,7 +134,7 @@ MPSI_INLINE bool mpsi_has_fits(const mpsi_grid *grid, const mpsi_cell_block *cel
 }
 
 /* M^-1 for the weights b->w, its upper half in `upper`, and the fit in b->q; returns det M /
- * M00^(dim + 1), 0 for a singular M. */
+ * M00^(dim + 1), which is near 0 if M is nearly singular. */
 MPSI_INLINE mpsi_quad mpsi_invert_fit(const mpsi_grid *grid, int dim, int spline,
                                       mpsi_quad upper[4][4], mpsi_cut *b) {
   mpsi_moments(dim, spline, b, b->w, upper);

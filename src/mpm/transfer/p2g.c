@@ -4,7 +4,7 @@
  *
  * Consecutive particles with the same stencil, a segment, are summed in registers before they are
  * added to the tile. Particles are sorted by stencil; an order that is only nearly sorted gives
- * shorter segments and the same sums. SPDX-License-Identifier: BSD-3-Clause */
+ * shorter segments. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall_support.h"
 
 /* Contributions of particles to their nodes, w (part 0 + part 1 s_x + part 2 s_y + part 3 s_z), for
