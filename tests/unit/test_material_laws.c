@@ -23,7 +23,7 @@ static void each_kind_has_its_descriptor(void **state) {
     assert_non_null(type->define);
     int columns = 0;
     while (type->columns[columns]) columns++;
-    assert_true(columns <= 4);
+    assert_true(columns <= MPSI_MATERIAL_COLUMNS);
     assert_true(!(type->traits & MPSI_LAW_OPENS) ||
                 (columns == 2 && strcmp(type->columns[1], "opening") == 0));
     for (size_t level = 0; level < sizeof levels / sizeof *levels; level++)
