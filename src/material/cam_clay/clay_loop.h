@@ -90,8 +90,9 @@ MPSI_INLINE void clay_try(const int geometry, const bool lode, const mpsi_law *c
     const double p = p0 * clay_exp(y), pc = pcs[k];
     const double square =
         (d.xx * d.xx + d.yy * d.yy + d.zz * d.zz) + 2.0 * (d.xy * d.xy + d.zx * d.zx + d.yz * d.yz);
-    const bool plain = (gaps[k] == 0.0) & (p0 >= least) & (p >= least) & (pc >= 2.0 * least) &
-                       (clay_size(y) <= CLAY_LARGEST) & (square <= CLAY_LONGEST * CLAY_LONGEST);
+    const int bears = (gaps[k] == 0.0) & (p0 >= least) & (p >= least) & (pc >= 2.0 * least);
+    const int near = clay_size(y) <= CLAY_LARGEST, brief = square <= CLAY_LONGEST * CLAY_LONGEST;
+    const int plain = bears & near & brief;
     const double over = q * q + slope * (p * (p - pc));
     const double kind = over > 0.0 ? CLAY_YIELDS : CLAY_ELASTIC;
     t->dev[0][k] = s.xx, t->dev[1][k] = s.yy, t->dev[2][k] = s.zz, t->dev[3][k] = s.xy;
@@ -130,17 +131,17 @@ MPSI_INLINE double clay_round(const mpsi_law *law, int64_t n, clay_packed *c) {
     const double p = c->p0[k] * clay_exp(y), pc = clay_exp(plastic), D = 1.0 + rate * g;
     const double per_D = 1.0 / D, cut = c->q2[k] * per_D * per_D, twice = 2.0 * p - pc;
     const double r1 = (c->dv[k] - elastic) - vm * g * twice, r2 = cut + p * (p - pc);
-    const bool done = (clay_size(r1) <= 1e-14 * vm) & (clay_size(r2) <= 1e-13 * (1.0 + p * p));
+    const int volume = clay_size(r1) <= 1e-14 * vm, yields = clay_size(r2) <= 1e-13 * (1.0 + p * p);
+    const int done = volume & yields;
     const double yy = -kappa - vm * g * (2.0 * p + fall * pc), yg = -vm * twice;
     const double gy = p * twice + fall * p * pc, gg = -2.0 * cut * rate * per_D;
     const double det = yy * gg - yg * gy;
-    const bool lost = !((clay_size(det) > 1e-300) & (clay_size(y) <= CLAY_LARGEST) &
-                        (clay_size(plastic) <= CLAY_LARGEST));
+    const int regular = clay_size(det) > 1e-300, near = clay_size(y) <= CLAY_LARGEST;
+    const int within = clay_size(plastic) <= CLAY_LARGEST, lost = !(regular & near & within);
     const double per_det = 1.0 / det;
     const double next = g + (gy * r1 - yy * r2) * per_det;
     const double state = done ? 1.0 : 0.0, now = lost ? 2.0 : state;
-    const bool works = c->state[k] == 0.0;
-    const bool moves = works & (now == 0.0);
+    const int works = c->state[k] == 0.0, moves = works & (now == 0.0);
     c->p[k] = works ? p : c->p[k], c->pc[k] = works ? pc : c->pc[k];
     c->D[k] = works ? D : c->D[k];
     c->y[k] = moves ? y + (yg * r2 - gg * r1) * per_det : y;
