@@ -14,6 +14,7 @@
 #include <mps/mpm.h>
 #include <mps/mpm_energy.h>
 #include <mps/mpm_settle.h>
+#include <mps/pore_water.h>
 
 /* What a rank calls functions of: a solver of each kind on one domain. */
 typedef struct subject {
@@ -78,6 +79,12 @@ CALL(mpm_rollback, mps_mpm_rollback(s->mpm, s->then[0]))
 CALL(mpm_save, mps_mpm_save(s->mpm, nowhere, NULL))
 CALL(mpm_restore, mps_mpm_restore(s->mpm, nowhere, NULL))
 CALL(mpm_settle, mps_mpm_settle(s->mpm, NULL, &(mps_mpm_settled){0}))
+CALL(mpm_add_pore_water, mps_mpm_add_pore_water(s->mpm, NULL))
+CALL(mpm_set_pore_level, mps_mpm_set_pore_level(s->mpm, low))
+CALL(mpm_add_pore_face, mps_mpm_add_pore_face(s->mpm, NULL, NULL))
+CALL(mpm_set_pore_face, mps_mpm_set_pore_face(s->mpm, 0, NULL))
+CALL(mpm_get_pore_flow, mps_mpm_get_pore_flow(s->mpm, -1, NULL, NULL))
+CALL(mpm_get_pore_budget, mps_mpm_get_pore_budget(s->mpm, &(mps_pore_budget){0}))
 CALL(grid_get_nodes,
      mps_grid_get_nodes(mps_mpm_grid(s->mpm), 0, &(int64_t){0}, NULL, NULL, NULL, NULL))
 CALL(grid_evaluate,
@@ -187,6 +194,12 @@ static const struct {
     ROW(mpm_save),
     ROW(mpm_restore),
     ROW(mpm_settle),
+    ROW(mpm_add_pore_water),
+    ROW(mpm_set_pore_level),
+    ROW(mpm_add_pore_face),
+    ROW(mpm_set_pore_face),
+    ROW(mpm_get_pore_flow),
+    ROW(mpm_get_pore_budget),
     ROW(grid_get_nodes),
     ROW(grid_evaluate),
     ROW(fluid_step),

@@ -107,7 +107,8 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
                       area_of(&mpm->grid, mpm->water, cell, NULL, direction, X));
   }
   const mpsi_pore_cell *beside = mpsi_pore_beside(&mpm->grid, mpm->water, g, k, direction);
-  const double area = area_of(&mpm->grid, mpm->water, cell, beside, direction, X);
+  const double area =
+      mpm->water->flows ? area_of(&mpm->grid, mpm->water, cell, beside, direction, X) : 0.0;
   if (!beside->thin)
     return to_cell(&mpm->grid, mpm->water, &mpm->def, cell, beside, direction, p,
                    pressure_of(beside, end), area);

@@ -154,16 +154,17 @@ static void clear_masses(mps_mpm *mpm, int64_t g, int32_t worker) {
 }
 
 /* A particle in its cell: along each axis weights and slopes of the four nodes from the one below
- * the cell on, those beyond a side of the domain added to their mirror images; and the sign that a
- * velocity has there. */
+ * the cell on, those beyond a side of the domain added to their mirror images, where velocities
+ * across it have the other sign. */
 typedef struct shape {
-  double w[3][MPSI_PORE_SPAN], across[3][MPSI_PORE_SPAN], slope[3][MPSI_PORE_SPAN];
+  double w[3][MPSI_PORE_SPAN], slope[3][MPSI_PORE_SPAN];
 } shape;
 
 static shape find_shape(const mpsi_grid *grid, const mpsi_columns *p, const int64_t *cell,
                         int64_t k) {
   const double moment = mpsi_inverse_moment(grid->spline) * grid->inverse;
-  shape out = {.w = {{0.0}, {0.0}, {1.0}}};
+  shape out = {.w = {{0.0}}};
+  if (grid->dim == 2) out.w[2][0] = 1.0;
   for (int c = 0; c < grid->dim; c++) {
     double X = mpsi_grid_at(grid, c, p->x[c][k]), w[4];
     X = fmin(fmax(X, (double)cell[c]), (double)cell[c] + 1.0);
@@ -180,7 +181,6 @@ static shape find_shape(const mpsi_grid *grid, const mpsi_columns *p, const int6
       const double sign = below || above ? -1.0 : 1.0, slope = w[i] * (i - t) * moment;
       if (at < 0 || at >= MPSI_PORE_SPAN) continue;
       out.w[c][at] += w[i];
-      out.across[c][at] += slope; /* seen by the components along the other axes */
       out.slope[c][at] += sign * slope;
     }
   }
