@@ -93,9 +93,11 @@ static double body_area(const mps_fluid *f, const mpsi_fluid_body *body, bool ne
   for (int k = 0; k < n; k++) mpsi_fluid_corner(body, next, k, x[k]);
   for (int b = 0; b < f->boundaries && n > 0; b++)
     if (f->wall[b].used) n = cut(&f->wall[b], n, &polygon);
-  for (int k = 1; k + 1 < n; k++) {
-    const double *a = x[0], *b = x[k], *c = x[k + 1];
-    area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+  const double *a = n > 0 ? x[0] : NULL, *c = a;
+  for (int k = 1; k < n; k++) { /* c: the corner before b */
+    const double *b = x[k];
+    area += 0.5 * ((c[0] - a[0]) * (b[1] - a[1]) - (c[1] - a[1]) * (b[0] - a[0]));
+    c = b;
   }
   return area;
 }
