@@ -101,11 +101,22 @@ static double porosity_of(const mps_fluid *f, int64_t j) {
   return mpsi_fluid_pore_of(f, j < f->count ? j : f->parent[j - f->count])->porosity;
 }
 
+/* Whether all neighbours of particle i have its porosity: the sums are right as they are. */
+static bool alike(const mps_fluid *f, int64_t i) {
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const double own = mpsi_fluid_pore_of(f, i)->porosity;
+  for (int32_t k = 0; k < f->near[i]; k++)
+    if (porosity_of(f, index[k]) != own) return false;
+  return true;
+}
+
 void mpsi_fluid_sum_pores(const mps_fluid *f, int64_t i, mpsi_fluid_sums *s) {
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   const float *w = f->w + mpsi_fluid_pairs(f, i);
   mpsi_fluid_pore *own = mpsi_fluid_pore_of(f, i);
   double n = 0.0, m[2] = {0.0, 0.0}, square = 0.0, shift[2] = {0.0, 0.0};
+  own->fill = s->n;
+  if (alike(f, i)) return;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t j = index[k];
     const double part = w[k] * own->porosity / porosity_of(f, j);

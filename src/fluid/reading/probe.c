@@ -119,11 +119,14 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, n
   return true;
 }
 
-/* The particles near a wall, in the order of the set, to near_wall_room: each has an image there,
- * unless displacements since exceed the reach of images beyond the fit. */
+/* Whether each particle near a wall has an image there: unless displacements since exceed the reach
+ * of images beyond the fit. */
+static bool has_images(const mps_fluid *f) { return f->travel < f->weight.re - REACH * f->l0; }
+
+/* The particles near a wall, in the order of the set, to near_wall_room. */
 static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
                          int64_t *count) {
-  const bool imaged = f->travel < f->weight.re - REACH * f->l0;
+  const bool imaged = has_images(f);
   const int64_t candidates = imaged ? w->images : f->count;
   if (!mpsi_room_ensure(f->context, &f->near_wall_room, candidates + 1, sizeof(neighbour)))
     return mpsi_fail_memory(f->context, function, (size_t)candidates * sizeof(neighbour));
@@ -245,6 +248,7 @@ static mps_status load_line(mps_fluid *f, const char *function, mpsi_fluid_wall 
   for (int64_t k = 0; k < boundary->line->count; k++) {
     mpsi_fluid_wall *w = &boundary->line->segment[k].wall;
     w->load = (mpsi_fluid_load){0};
+    if (has_images(f) && w->images == 0) continue; /* far from the water */
     resultant r = {w, pitch(f, w) * f->def.measure};
     const mps_status status = for_points(f, w, function, add_force, &r);
     if (status != MPS_OK) return status;
