@@ -5,7 +5,7 @@
 #include "core/particles/particles_internal.h"
 #include "test_allocator.h"
 
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/body/window.h"
 
 #include <SuiteSparse_config.h>

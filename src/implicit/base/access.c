@@ -1,7 +1,7 @@
 /* access.c - access to the solver object: its guard, ranks of ids, and the set's fields as vectors
  * over all particles. SPDX-License-Identifier: BSD-3-Clause */
 #include "access.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* motion_state.c - the state of a motion: its arrays, its end, and its time.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "motion_state.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <string.h>
 

@@ -19,7 +19,7 @@
  * body of one material is not corrected by default; the layers of a composite have fewer cells and
  * less surface. SPDX-License-Identifier: BSD-3-Clause */
 #include "bending.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <string.h>
 

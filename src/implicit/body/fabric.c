@@ -2,7 +2,7 @@
  * that a run after a rollback or from a file is the same as an uninterrupted one.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fabric.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 
 #include "core/base/hash.h"

@@ -1,7 +1,7 @@
 /* facets.c - the surface: faces of cells that no neighbour shares, found from the lattice.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "facets.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/body/gradient.h"
 

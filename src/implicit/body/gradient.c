@@ -2,7 +2,7 @@
  * lattice.c and the joints of joints.c; and its transpose, which makes nodal forces of a load's
  * first moment. SPDX-License-Identifier: BSD-3-Clause */
 #include "gradient.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <string.h>
 

@@ -15,7 +15,7 @@
  * correction of the gradients, and its transpose in the forces, keep the operator symmetric.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "joints.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/body/bending.h"
 
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * influence, the particle number densities n_i and n0, Chikazawa (6), (7), and the plain
  * displacement gradient (operator.c) on them. SPDX-License-Identifier: BSD-3-Clause */
 #include "lattice.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

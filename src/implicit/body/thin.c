@@ -2,7 +2,7 @@
  * cells (bending.c). A part of n cells lacks 1/n^2 of its stiffness against bending, of which free
  * surfaces make up for a share. SPDX-License-Identifier: BSD-3-Clause */
 #include "thin.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #define THIN 8        /* cells: the error of a cantilever is .8 % there, with and without */
 #define SLENDER 4     /* times as long as thick, at least */

@@ -2,7 +2,7 @@
  * window, or the whole body; volumes and pair stiffnesses there.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "window.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/body/bending.h"
 
 void mpsi_elastic_measure(mps_elastic *e) {

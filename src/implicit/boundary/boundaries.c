@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
 #include "boundaries.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include "core/base/boundary_kind.h"
 #include "core/context/retain.h"

@@ -8,7 +8,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
 #include "loads.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/body/gradient.h"
 
 #include "core/particles/particles_internal.h"

@@ -6,7 +6,7 @@
  * rollers at any angle.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "supports.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <string.h>
 

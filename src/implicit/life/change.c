@@ -3,7 +3,7 @@
  * No particles can be added: the lattice is found once.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "change.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/life/body.h"
 

@@ -1,7 +1,7 @@
 /* elastic.c - the solver object: checks of the definition, creation, destruction.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/life/body.h"
 #include "implicit/life/change.h"

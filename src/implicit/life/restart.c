@@ -1,6 +1,6 @@
 /* restart.c - the state of a motion (core/state.h): snapshots, rollback, checkpoints.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/life/change.h"
 

@@ -1,7 +1,7 @@
 /* modes.c - lowest eigenmodes K phi = omega^2 M phi by ARPACK: the largest eigenvalues of the
  * symmetric operator M^1/2 K^-1 M^1/2 are 1 / omega^2.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/solve/system.h"
 #include "implicit/solve/foreign.h"
 

@@ -11,7 +11,7 @@
  * their boundary. A step is computed beside the present state, which it replaces when complete.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/body/fabric.h"
 #include "implicit/motion/renewal.h"

@@ -8,7 +8,7 @@
  * continues from the new value (mpsi_elastic_former_strain, fabric.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "renewal.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/body/fabric.h"
 #include "implicit/operator/operator.h"

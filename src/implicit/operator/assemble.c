@@ -8,7 +8,7 @@
  * the pattern depends on shape, supports and joints of materials, not on the moduli.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "assemble.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/body/bending.h"
 
 #include <string.h>

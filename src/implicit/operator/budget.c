@@ -8,7 +8,7 @@
  * without an owner, whose work is counted too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "budget.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/body/fabric.h"
 #include "implicit/operator/operator.h"

@@ -17,7 +17,7 @@
  * these; joints there need one layer more.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "operator.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/body/bending.h"
 #include "implicit/body/gradient.h"
 

@@ -5,7 +5,7 @@
  * published: the virial stress of the pairs, sigma_i = (d/n_i) sum_j w p_ij (x) t_ij with the pair
  *   vector p_ij of Chikazawa (10), symmetric part.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/body/gradient.h"
 #include "implicit/operator/operator.h"
 

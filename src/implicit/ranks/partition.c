@@ -9,7 +9,7 @@
  * not shared has the whole body as its window, in ascending order of ids.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "partition.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #define MOST_AT_ONCE (1 << 20) /* numbers of one reduction */
 

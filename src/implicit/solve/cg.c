@@ -3,7 +3,7 @@
  * positive definite matrix and needs no memory but the diagonal.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cg.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <string.h>
 

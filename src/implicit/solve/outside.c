@@ -3,7 +3,7 @@
  * solution by the operator. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit/base/defs.h"
 #include "outside.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/operator/assemble.h"
 #include "implicit/operator/operator.h"
 

@@ -3,7 +3,7 @@
  * scaled by its size); the null space of these rows is named.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "rigid.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 
 #include <lapacke.h>
 

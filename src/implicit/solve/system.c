@@ -6,7 +6,7 @@
  * displacements alone, is the solution itself.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "system.h"
-#include "implicit/base/elastic_solver.h"
+#include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/body/thin.h"
 #include "implicit/body/window.h"
