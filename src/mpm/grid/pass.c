@@ -322,7 +322,8 @@ static void run_worker(void *data, int64_t unit, int32_t worker) {
   (void)unit;
   for (int32_t look = 0; !is_all_claimed(f); look++) {
     int32_t entry[MOST_CLAIMED];
-    const int32_t n = claim(f, worker, look, entry);
+    /* under a caller's executor the thread of another lane may never come: no patience */
+    const int32_t n = claim(f, worker, own ? look : PATIENCE, entry);
     for (int32_t k = 0; k < n; k++) work_on(f, entry[k], worker);
     const bool waits = n == 0 && !atomic_load_explicit(&f->arrived, memory_order_relaxed);
     if (waits && receives) receive(f);
