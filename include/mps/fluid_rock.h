@@ -28,8 +28,8 @@ typedef struct mps_fluid_rock_def {
   double diameter;       /* D50, m, 1e-6 to 100; no default */
   double alpha;          /* 0 to 1e6; default 1000 (van Gent); 500 with beta 2 (Jensen 2014) */
   double beta;           /* 0 to 1e3; default 1.1 (van Gent) */
-  double KC;             /* Keulegan-Carpenter number, 1e-6 to 1e300; NaN (default): no such term, as
-                            in flow in one direction */
+  double KC;             /* Keulegan-Carpenter number, 1e-6 to 1e300; NaN (default): no such term,
+                            as in flow in one direction */
   double gamma;          /* added mass, 0 to 10; default 0.34 */
   double viscosity;      /* nu of the water in the pores, m2/s, 0 to 1; default 1e-6 */
 } mps_fluid_rock_def;
