@@ -201,6 +201,8 @@ static int read_texts(const options_program *program, flume *m) {
     return options_refuse(program,
                           "--profile must be 3 to 64 points X,Y in m separated by commas, the "
                           "first 0,0, X not falling, Y not below 0, no point twice");
+  if (m->s.profile && m->s.wall != FLUME_PROFILE)
+    return options_refuse(program, "--profile needs --wall profile");
   if (!m->s.rocks) return -1;
   if (p->rocks == FLUME_ROCKS)
     return options_refuse(program, "--rock is a ninth region of rock: 8 are possible");

@@ -7,9 +7,9 @@
 
 #include <mps/mpm.h>
 
-#define BLOCK_BOX_MASS 480.0                         /* kg */
-#define BLOCK_BOX_INERTIA (480.0 * 0.13 / 12.0)      /* kg m2: .3 x .2 m */
-#define BLOCK_BOX_X 0.8                              /* m: its centre at the start */
+#define BLOCK_BOX_MASS 480.0                    /* kg */
+#define BLOCK_BOX_INERTIA (480.0 * 0.13 / 12.0) /* kg m2: .3 x .2 m */
+#define BLOCK_BOX_X 0.8                         /* m: its centre at the start */
 #define BLOCK_BOX_Y 0.6
 
 extern const double block_corner[8]; /* m: x, y of the corners of the box at the start */

@@ -6,6 +6,12 @@
 
 #include "common/app.h"
 
+/* Options that name a participant and its mesh, of a side's definition (common/options.h). */
+#define LOOP_OPTIONS(def)                                                                          \
+  OPTION_TEXT("config", "FILE", &(def).config, "preCICE's configuration"),                         \
+      OPTION_TEXT("participant", "NAME", &(def).name, "name of this participant in it;"),          \
+      OPTION_TEXT("mesh", "NAME", &(def).mesh, "name of its mesh;")
+
 enum { LOOP_DATA = 2 }; /* vectors that a side reads, and writes, at most */
 
 /* Arrays of vectors have `dim` values a vertex, in the order of `x`. Functions return false, with

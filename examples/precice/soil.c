@@ -47,9 +47,7 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_FLAG("free", &s->free, "the box falls by itself, without a coupling"),
       OPTION_NUMBER("duration", "s", OPTION_ABOVE_TO(0.0, 10.0), &s->duration, "of --free"),
       OPTION_HEADING("Coupling"),
-      OPTION_TEXT("config", "FILE", &s->coupling.config, "preCICE's configuration"),
-      OPTION_TEXT("participant", "NAME", &s->coupling.name, "name of this participant in it;"),
-      OPTION_TEXT("mesh", "NAME", &s->coupling.mesh, "name of its mesh;"),
+      LOOP_OPTIONS(s->coupling),
       OPTION_TEXT("displacement", "NAME", &s->coupling.displacement,
                   "name of the displacements that are read;"),
       OPTION_TEXT("force", "NAME", &s->coupling.force, "name of the forces that are written;"),
@@ -73,9 +71,9 @@ static bool each(void *user, mps_mpm *soil) {
 }
 
 /* The box with its own mass, a row a step. */
-static bool fall(app *a, const settings *s, records *r, mps_mpm *soil) {
+static bool fall(app *a, const settings *s, records *r, mps_mpm *soil, int64_t *steps) {
   bool good = true;
-  while (good && mps_mpm_time(soil) < s->duration - 0.5 * s->step)
+  for (*steps = 0; good && mps_mpm_time(soil) < s->duration - 0.5 * s->step; ++*steps)
     good = app_check(a, mps_mpm_step(soil, 1)) && each(r, soil);
   return good;
 }
@@ -90,7 +88,8 @@ static bool run(app *a, settings *s) {
     r.box = b.box;
     csv_header(&r.table, "t_s,x_m,y_m,angle_rad");
     s->coupling.each = each, s->coupling.user = &r;
-    good = s->free ? fall(a, s, &r, b.soil) : rigid_run(a, b.soil, b.box, &s->coupling, &result);
+    good = s->free ? fall(a, s, &r, b.soil, &result.steps)
+                   : rigid_run(a, b.soil, b.box, &s->coupling, &result);
     good = output_close(&r.table) && good;
   }
   if (good) {

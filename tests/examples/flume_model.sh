@@ -96,6 +96,11 @@ refuse "caisson 4,0 must be 3.7 times --spacing above the bed" \
 refuse "probe 4,0.2 is more than half a --spacing from all faces" 'probe: [[4, 0.2]]\nlength: 8\n'
 refuse "--length is that to the toe" 'structure: [[4, 0], [5, 0.6], [6, 0.6]]\nlength: 8\n'
 
+code=0
+"$flume" --profile 0,0,0.8,0.4,1,0.4 --out "$work/refused" 2>"$work/log" >&2 || code=$?
+[ $code -eq 2 ] || fail "exit code $code for a profile without --wall profile"
+has "$work/log" "--profile needs --wall profile"
+
 # Cut off anywhere: an error or a smaller model, no crash.
 bytes=$(wc -c <"$2/caisson.yaml")
 n=400

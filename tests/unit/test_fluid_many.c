@@ -282,11 +282,50 @@ static void a_bed_in_pieces_is_one(void **state) {
   drop(&one), drop(&many);
 }
 
+/* Water of 1 x .5 m, 1 m from the right side, and a drop above it that flies 2 m in a step towards
+ * that; `more` planes behind the left side. */
+static void add_drop(tank *t, int more) {
+  const double lower[2] = {0.0, 0.0}, upper[2] = {1.0, 0.5}, at[2] = {0.5, 0.9};
+  mps_edit edit;
+  begin(t, SIZE);
+  mps_assert_ok(context, mps_particles_fill_box(t->water, lower, upper, NULL));
+  mps_assert_ok(context, mps_particles_append(t->water, 1, at));
+  mps_assert_ok(context, mps_particles_add_field(t->water, "velocity", 0));
+  mps_assert_ok(context, mps_particles_edit(t->water, "velocity", &edit));
+  *mps_edit_f64(&edit, mps_particles_count(t->water) - 1, 0) = 2000.0;
+  mps_assert_ok(context, mps_particles_commit(t->water, &edit));
+  fill(t, 0.5);
+  add_sides(t, 2.0);
+  for (int k = 0; k < more; k++) add_plane(t, -1.0 - k, 0.0, 1.0, 0.0, NULL);
+  mps_assert_ok(context, mps_fluid_set_dt(t->fluid, 1e-3));
+}
+
+/* With many planes a particle looks at those near it; one that goes farther in a step than these
+ * reach is put back too. */
+static void planes_far_away_change_nothing(void **state) {
+  (void)state;
+  tank few, many;
+  mps_fluid_report report;
+  add_drop(&few, 0), add_drop(&many, 40);
+  for (int n = 0; n < 20; n++) {
+    mps_assert_ok(context, mps_fluid_step(few.fluid, 1));
+    mps_assert_ok(context, mps_fluid_step(many.fluid, 1));
+    for (int64_t i = 0; i < mps_particles_count(many.water); i++) {
+      assert_true(place(&many, i, 0) > 0.0 && place(&many, i, 0) < 2.0);
+      for (int32_t c = 0; c < 2; c++) assert_true(place(&many, i, c) == place(&few, i, c));
+    }
+  }
+  mps_assert_ok(context, mps_fluid_get_report(many.fluid, &report));
+  assert_true(report.pushed > 0);
+  drop(&few), drop(&many);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(water_rests_in_a_bowl_of_planes),
                                      cmocka_unit_test(boundaries_have_a_documented_maximum),
                                      cmocka_unit_test(twenty_bodies_have_their_buoyancy),
                                      cmocka_unit_test(segments_behind_others_change_nothing),
-                                     cmocka_unit_test(a_bed_in_pieces_is_one)};
+                                     cmocka_unit_test(a_bed_in_pieces_is_one),
+                                     cmocka_unit_test(planes_far_away_change_nothing)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -185,11 +185,24 @@ static bool box_is_near(const mps_fluid *f, const mpsi_fluid_wall *w, double mos
   double least = -most;
   for (int c = 0; c < 2; c++)
     least += w->normal[c] * (box[w->normal[c] > 0.0 ? c : 2 + c] - w->at[c]);
-  return !(least > f->weight.re * (1.0 + 1e-9));
+  return !(least > f->weight.re * (1.0 + 10.0 * SQUARE));
 }
 
-/* Images of the particles, then of the images so far. */
+/* Whether all of the box is beyond the ends of a face, as far as its images reach. */
+static bool box_is_beyond(const mps_fluid *f, const mpsi_fluid_wall *w, const double *box) {
+  const double walk[2] = {-w->normal[1], w->normal[0]}, re = f->weight.re * (1.0 + 1e-9);
+  double low = 0.0, high = 0.0;
+  for (int c = 0; c < 2; c++) {
+    low += walk[c] * (box[walk[c] > 0.0 ? c : 2 + c] - w->at[c]);
+    high += walk[c] * (box[walk[c] > 0.0 ? 2 + c : c] - w->at[c]);
+  }
+  return high < w->from - re || low > w->to + re;
+}
+
+/* Images of the particles, then of the images so far: those of walls at right angles to this one,
+ * which are as far from it as their particles. */
 static bool mirror_all(mps_fluid *f, int wall) {
+  bool near = false;
   mpsi_fluid_wall *w = &f->wall[wall];
   const int64_t all = f->count + f->ghosts;
   const double *s = mpsi_fluid_places(f, w), *box = f->box_room.item;
@@ -198,10 +211,13 @@ static bool mirror_all(mps_fluid *f, int wall) {
   w->first_image = f->ghosts;
   for (int64_t begin = 0; begin < f->count; begin += MPSI_FLUID_CHUNK, box += 4) {
     const int64_t end = begin + MPSI_FLUID_CHUNK < f->count ? begin + MPSI_FLUID_CHUNK : f->count;
-    if (box_is_near(f, w, most, box) && !mirror(f, wall, begin, end)) return false;
+    if (!box_is_near(f, w, most, box)) continue;
+    near = true;
+    if (w->of_body && box_is_beyond(f, w, box)) continue;
+    if (!mirror(f, wall, begin, end)) return false;
   }
   w->images = f->ghosts - w->first_image;
-  return mirror(f, wall, f->count, all);
+  return !near || mirror(f, wall, f->count, all);
 }
 
 /* Arrays over the cloud, and over its ghosts; keeps the particles' part. */

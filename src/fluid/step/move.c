@@ -207,7 +207,60 @@ static bool keep_off(const mps_fluid *f, int wall, int64_t i, double *x, double 
   return true;
 }
 
-static int64_t keep_off_walls(const mps_fluid *f, int64_t i, double *x, double *u) {
+/* The planes near a chunk of particles, ascending; -1: all are looked at, as there are few. */
+typedef struct planes {
+  int count, number[16];
+} planes;
+
+/* Largest displacement for which the list is complete: a particle that is put back from a plane
+ * comes no farther than twice that. */
+static double listed_way(const mps_fluid *f) { return f->weight.re; }
+
+/* Whether a place of the box is nearer to a plane at the end of the step than `reach`. */
+static bool is_near(const mpsi_fluid_wall *w, const double *low, const double *high, double reach) {
+  double least = 0.0, most = w->next.s[0];
+  for (int64_t k = 1; k < w->nodes; k++) most = mpsi_fluid_larger(most, w->next.s[k]);
+  for (int c = 0; c < 2; c++)
+    least += w->normal[c] * ((w->normal[c] > 0.0 ? low[c] : high[c]) - w->at[c]);
+  return !(least - most > reach);
+}
+
+static void find_planes(const mps_fluid *f, int64_t begin, int64_t end, planes *near) {
+  enum { MOST = sizeof near->number / sizeof *near->number };
+  double low[2], high[2];
+  near->count = -1;
+  if (f->boundaries <= MOST) return;
+  for (int c = 0; c < 2; c++) {
+    low[c] = high[c] = f->x[c][begin];
+    for (int64_t i = begin + 1; i < end; i++) {
+      low[c] = f->x[c][i] < low[c] ? f->x[c][i] : low[c];
+      high[c] = f->x[c][i] > high[c] ? f->x[c][i] : high[c];
+    }
+  }
+  int count = 0;
+  for (int b = 0; b < f->boundaries; b++) {
+    if (!f->wall[b].used || !is_near(&f->wall[b], low, high, 2.0 * listed_way(f) + f->l0)) continue;
+    if (count == MOST) return;
+    near->number[count++] = b;
+  }
+  near->count = count;
+}
+
+static int64_t keep_off_planes(const mps_fluid *f, const planes *near, int64_t i, double *x,
+                               double *u) {
+  const double way[2] = {x[0] - f->x[0][i], x[1] - f->x[1][i]}, most = listed_way(f);
+  const bool listed = near->count >= 0 && way[0] * way[0] + way[1] * way[1] < most * most;
+  const int count = listed ? near->count : f->boundaries;
+  int64_t pushed = 0;
+  for (int k = 0; k < count; k++) {
+    const int b = listed ? near->number[k] : k;
+    if (f->wall[b].used) pushed += keep_off(f, b, i, x, u);
+  }
+  return pushed;
+}
+
+static int64_t keep_off_walls(const mps_fluid *f, const planes *near, int64_t i, double *x,
+                              double *u) {
   int64_t pushed = f->segments > 0 ? mpsi_fluid_keep_off_lines(f, i, x, u) : 0;
   for (int b = 0; b < f->bodies; b++) {
     double d; /* in front of an acute corner less than the distance from the body */
@@ -215,9 +268,7 @@ static int64_t keep_off_walls(const mps_fluid *f, int64_t i, double *x, double *
     const int face = mpsi_fluid_face_of(f, &f->body[b], true, x, &d);
     if (d < MPSI_FLUID_OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, face, i, x, u);
   }
-  for (int b = 0; b < f->boundaries; b++)
-    if (f->wall[b].used) pushed += keep_off(f, b, i, x, u);
-  return pushed;
+  return pushed + keep_off_planes(f, near, i, x, u);
 }
 
 #define FASTEST 1e100 /* m/s: kinetic energies are numbers */
@@ -228,9 +279,11 @@ static bool finite(const double *x, const double *u) {
 
 static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double *before[2];
+  planes near;
   int64_t pushed = 0;
   double far2 = 0.0, gain[2] = {0.0, 0.0};
   for (int c = 0; c < 2; c++) before[c] = mpsi_particles_column(f->particles, "velocity", c);
+  find_planes(f, begin, end, &near);
   for (int64_t i = begin; i < end; i++) {
     double shift[2], x[2], u[2];
     find_shift(f, i, shift);
@@ -245,7 +298,7 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
       x[c] = f->x[c][i] + open * f->dt * (f->u_new[c][i] - (moved ? f->u[c][i] : 0.0)) + shift[c];
       u[c] = f->u_new[c][i] + part * (G[2 * c] * shift[0] + G[2 * c + 1] * shift[1]);
     }
-    pushed += keep_off_walls(f, i, x, u);
+    pushed += keep_off_walls(f, &near, i, x, u);
     mpsi_fluid_rises(f)[i] = mpsi_fluid_rise(f, i);
     const double way[2] = {x[0] - f->x[0][i], x[1] - f->x[1][i]};
     const double way2 = way[0] * way[0] + way[1] * way[1];
