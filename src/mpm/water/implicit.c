@@ -31,25 +31,13 @@ static bool ensure(mps_mpm *mpm, mpsi_room *room, int64_t count, size_t size) {
 
 static int span_nodes(const mpsi_grid *grid) { return grid->dim == 3 ? 64 : 16; }
 
-static int32_t find_block(const mpsi_grid *grid, const int32_t *at) {
-  int64_t low = 0, high = grid->node_count;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(grid->nodes[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at) ? (int32_t)low : -1;
-}
-
 static void find_around(const mpsi_grid *grid, system_of *s) {
   for (int64_t g = 0; g < grid->node_count; g++)
     for (int k = 0; k < MPSI_PORE_AROUND; k++) {
       int32_t at[3], step[3];
       mpsi_unravel(k, 3, step);
       for (int c = 0; c < 3; c++) at[c] = grid->nodes[g].at[c] + step[c] - 1;
-      s->around[g][k] = grid->dim == 2 && step[2] != 1 ? -1 : find_block(grid, at);
+      s->around[g][k] = grid->dim == 2 && step[2] != 1 ? -1 : mpsi_pore_own_block(grid, at);
     }
 }
 

@@ -31,19 +31,11 @@ static mps_status make_room(mps_context *context, const mpsi_grid *grid, mpsi_co
   return MPS_OK;
 }
 
-/* Number of the block of nodes at `at` whose cells are known here, or -1; the list is in order. */
+/* Number of the block of nodes at `at` whose cells are known here, or -1. */
 static int32_t find_block(const mpsi_grid *grid, const mpsi_water *water, const int32_t *at) {
-  int64_t low = 0, high = grid->node_count;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(grid->nodes[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  const bool found = low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at);
-  if (found && !grid->nodes[low].foreign) return (int32_t)low;
-  return water->layers ? mpsi_pore_guest_block(grid, water, at) : -1;
+  const int32_t own = mpsi_pore_own_block(grid, at);
+  if (own >= 0 || !water->layers) return own;
+  return mpsi_pore_guest_block(grid, water, at);
 }
 
 static bool are_linked(const mpsi_grid *grid, const mpsi_water *water) {
