@@ -41,13 +41,13 @@ static void find_around(const mpsi_grid *grid, system_of *s) {
     }
 }
 
-bool mpsi_pore_make_system(mps_mpm *mpm) {
+mps_status mpsi_pore_make_system(mps_mpm *mpm, const char *function) {
   enum { VECTORS = 7 };
   const int64_t blocks = mpm->grid.node_count, nodes = blocks * mpm->grid.block_nodes;
   system_of *s = mpm->water->system;
   if (!s) {
     s = mpm->water->system = mpsi_alloc(mpm->context, 1, sizeof *s);
-    if (!s) return false;
+    if (!s) return mpsi_fail_memory(mpm->context, function, sizeof *s);
     memset(s, 0, sizeof *s);
   }
   const bool good = ensure(mpm, &s->around_room, blocks, sizeof *s->around) &&
@@ -58,7 +58,8 @@ bool mpsi_pore_make_system(mps_mpm *mpm) {
                     ensure(mpm, &s->conductance_room, nodes, sizeof *s->conductance) &&
                     ensure(mpm, &s->vector_room, VECTORS * nodes, sizeof(double)) &&
                     ensure(mpm, &s->part_room, blocks, sizeof *s->part);
-  if (!good) return false;
+  if (!good)
+    return mpsi_fail_memory(mpm->context, function, (size_t)(VECTORS * nodes) * sizeof(double));
   s->around = s->around_room.item;
   s->mass = s->mass_room.item;
   s->velocity = s->velocity_room.item;
@@ -70,7 +71,7 @@ bool mpsi_pore_make_system(mps_mpm *mpm) {
                                     &s->direction, &s->product, &s->inverse};
   for (int k = 0; k < VECTORS; k++) *vector[k] = (double *)s->vector_room.item + k * nodes;
   find_around(&mpm->grid, s);
-  return true;
+  return MPS_OK;
 }
 
 void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
@@ -232,7 +233,7 @@ static void find_held(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   }
 }
 
-static bool assemble_forces(mps_mpm *mpm) {
+static mps_status assemble_forces(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   const mpsi_grid *grid = &mpm->grid;
   int32_t rows = 0;
@@ -241,13 +242,14 @@ static bool assemble_forces(mps_mpm *mpm) {
       if (mpsi_pore_marked(mpm->water->block[g].filled, k))
         s->row[mpsi_first_node(grid, g) + k] = rows++;
   const int64_t numbers = (int64_t)rows * grid->dim * span_nodes(grid);
-  if (!ensure(mpm, &s->force_room, numbers, sizeof *s->force)) return false;
+  if (!ensure(mpm, &s->force_room, numbers, sizeof *s->force))
+    return mpsi_fail_memory(mpm->context, function, (size_t)numbers * sizeof *s->force);
   s->force = s->force_room.item;
   memset(s->force, 0, (size_t)numbers * sizeof *s->force);
   const mpsi_pass pass = {.clear = clear_masses, .scatter = add_particles};
   mpsi_mpm_run_pass(mpm, &pass);
   for_blocks(mpm, find_held, 0.0);
-  return true;
+  return MPS_OK;
 }
 
 /* ---- the operator ---------------------------------------------------------------------------- */
@@ -383,7 +385,7 @@ static mps_status iterate(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   double rest = sum_blocks(mpm, start, 0.0);
   const double least = TOLERANCE * TOLERANCE * rest;
-  for (s->iterations = 0; rest > least; s->iterations++) {
+  for (s->iterations = 0; rest > least || !isfinite(rest); s->iterations++) {
     if (s->iterations == MOST_ITERATIONS || !isfinite(rest))
       return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
                        "step %lld: pressures of the pore water have a residual of %g after %lld "
@@ -400,6 +402,6 @@ static mps_status iterate(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function) {
-  if (assemble_forces(mpm)) return iterate(mpm, function);
-  return mpsi_fail_memory(mpm->context, function, 0);
+  const mps_status status = assemble_forces(mpm, function);
+  return status == MPS_OK ? iterate(mpm, function) : status;
 }

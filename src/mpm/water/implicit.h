@@ -25,10 +25,10 @@ struct mpsi_pore_system {
   mpsi_room conductance_room, vector_room, part_room;
 };
 
-/* Room for the present blocks; false where there is no memory. */
-bool mpsi_pore_make_system(mps_mpm *mpm);
+/* Room for the present blocks. MPS_ERROR_MEMORY. */
+mps_status mpsi_pore_make_system(mps_mpm *mpm, const char *function);
 /* The pressures `now` at the end of the step, from those at its start, changes of volume and faces.
- * MPS_ERROR_NUMERIC: no solution to the tolerance. */
+ * MPS_ERROR_NUMERIC: no solution to the tolerance; MPS_ERROR_MEMORY. */
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function);
 void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **system);
 

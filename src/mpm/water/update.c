@@ -87,9 +87,8 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   if (!mpm->water) return status;
   status = renew_layers(mpm, function, status);
   if (status == MPS_OK) status = make_room(mpm->context, &mpm->grid, &mpm->p, mpm->water, function);
-  if (status == MPS_OK && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT &&
-      !mpsi_pore_make_system(mpm))
-    status = mpsi_fail_memory(mpm->context, function, 0);
+  if (status == MPS_OK && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
+    status = mpsi_pore_make_system(mpm, function);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
