@@ -44,6 +44,35 @@ static inline void run_team(ranks *s, int32_t size) {
   team_end(&t);
 }
 
+/* Every particle was on one of `size` ranks or, with `shared`, may have been on all of them, as the
+ * columns of a free field are. */
+static inline void check_seen(const result *alone, const int64_t *seen, int32_t size, bool shared) {
+  for (int64_t i = 0; i < alone->count; i++)
+    if (seen[i] != 1 && !(shared && seen[i] == size))
+      fail_msg("particle %lld is on %lld ranks", (long long)alone->id[i], (long long)seen[i]);
+}
+
+/* Runs `s` on a team, whose ranks have the bits of the run without a domain. */
+static inline void compare_team(ranks *s, int32_t size, const result *alone, bool shared) {
+  int64_t *seen = calloc((size_t)alone->count + 1, sizeof *seen);
+  run_team(s, size);
+  for (int32_t r = 0; r < size; r++) {
+    if (s->rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s->rank[r].message);
+    compare(alone, &s->rank[r], seen);
+    drop(&s->rank[r]);
+    assert_int_equal(s->allocator[r].live, 0);
+  }
+  check_seen(alone, seen, size, shared);
+  free(seen);
+}
+
+/* A part of a run, as that before or after a checkpoint, on ranks of one thread. */
+static inline void compare_part(result_fn *part, int32_t size, int what, int64_t length,
+                                const result *alone, bool shared) {
+  ranks s = {.compute = part, .what = what, .threads = 1, .length = length};
+  compare_team(&s, size, alone, shared);
+}
+
 /* On teams of several sizes and numbers of threads; `few`: not on one and on four ranks; quick:
  * two. */
 static inline void compare_teams(result_fn *run, int what, int64_t length, bool few) {
@@ -56,18 +85,7 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
   mps_context_destroy(&serial);
   for (int k = 0; k < (test_quick() ? 2 : few ? 4 : 6); k++) {
     ranks s = {.compute = run, .what = what, .threads = teams[k].threads, .length = length};
-    int64_t *seen = calloc((size_t)alone.count + 1, sizeof *seen);
-    run_team(&s, teams[k].ranks);
-    for (int32_t r = 0; r < teams[k].ranks; r++) {
-      if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
-      compare(&alone, &s.rank[r], seen);
-      drop(&s.rank[r]);
-      assert_int_equal(s.allocator[r].live, 0);
-    }
-    for (int64_t i = 0; i < alone.count; i++) /* every rank has the columns of a free field */
-      if (seen[i] != 1 && seen[i] != teams[k].ranks)
-        fail_msg("particle %lld is on %lld ranks", (long long)alone.id[i], (long long)seen[i]);
-    free(seen);
+    compare_team(&s, teams[k].ranks, &alone, true);
   }
   drop(&alone);
 }

@@ -5,8 +5,9 @@
  *           u/q = 1 + ln[e^-m + (1 - e^-m) u_T]/m, S/H = (1 - e^-m) U, u_T and U of Terzaghi
  * mcc       normally consolidated Cam-Clay, K0: e = e0 - lambda ln(s/s0), k = k0 (v/v0) s0/s; then
  *           w = ln(s/s0) follows dw/dt = c d2w/dZ2, c = k0 s0 v0/(lambda rho_w g), by depths Z
- * before the load, as in Davis and Raymond (1965), and with m = ln(1 + q/s0): u/q = [e^m - e^(m (1
- * - u_T))]/(e^m - 1), S/H = lambda/v0 m U mandel    Mandel (1953); tan(a)/a = (1 - nu)/(1/2 - nu)
+ *           before the load, as in Davis and Raymond (1965), and with m = ln(1 + q/s0):
+ *           u/q = [e^m - e^(m (1 - u_T))]/(e^m - 1), S/H = lambda/v0 m U
+ * mandel    Mandel (1953); tan(a)/a = (1 - nu)/(1/2 - nu)
  * cryer     Cryer (1963); (1 - eta x^2/2) tan(x) = x, eta = (1 - nu)/(1 - 2 nu)
  * strip     half space under a strip load, undrained: p = q alpha/pi, alpha = 2 atan(B/z)
  * SPDX-License-Identifier: BSD-3-Clause */

@@ -1,5 +1,5 @@
-/* element.h - the parts of mps-element: the law (law.c), the path of stress and strain (path.c,
- * steps.c), results (results.c).
+/* element.h - the parts of mps-element: options (options.c), the law (law.c), the path of stress
+ * and strain (path.c), results (results.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_ELEMENT_H
 #define EXAMPLES_ELEMENT_H
@@ -74,6 +74,11 @@ typedef struct element {
   double e[4]; /* logarithmic strain xx, yy, zz, and engineering shear xy, so far */
   int pc_at, void_at, plastic_at; /* columns of history; -1: the law has none */
 } element;
+
+enum { ELEMENT_OPTIONS = 64 }; /* rows of the table at most, with the empty one */
+settings element_defaults(void);
+/* Writes the table, whose values are those of `s`. */
+void element_options(settings *s, option *table);
 
 /* Reasons why settings are not consistent; NULL: good. Fills in defaults that depend on the law. */
 const char *element_settle(settings *s, const option *table);

@@ -37,18 +37,6 @@ static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t 
   return compute_half(own, domain, what, count, CHECKPOINT, NULL, r);
 }
 
-static void run_half(result_fn *half, int32_t size, int64_t count, const result *expected) {
-  ranks s = {.compute = half, .what = COLLAPSE, .threads = 1, .length = count};
-  int64_t *seen = calloc((size_t)expected->count + 1, sizeof *seen);
-  run_team(&s, size);
-  for (int32_t r = 0; r < size; r++) {
-    if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
-    compare(expected, &s.rank[r], seen);
-    drop(&s.rank[r]);
-  }
-  free(seen);
-}
-
 /* Written by 3 ranks, it continues with 2, and without a domain, as a run without one does; and
  * before it does, it reports what it reported before. */
 static void test_checkpoint(void **state) {
@@ -60,9 +48,9 @@ static void test_checkpoint(void **state) {
   mps_assert_ok(own, begin(own, NULL, COLLAPSE, count, &half));
   mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &whole));
   remove(CHECKPOINT);
-  run_half(begin, 3, count, &half);
-  run_half(go_on, 2, 0, &half);
-  run_half(go_on, 2, count, &whole);
+  compare_part(begin, 3, COLLAPSE, count, &half, true);
+  compare_part(go_on, 2, COLLAPSE, 0, &half, true);
+  compare_part(go_on, 2, COLLAPSE, count, &whole, true);
   mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &on));
   int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
   compare(&whole, &on, seen);

@@ -70,20 +70,6 @@ static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t 
   return compute_half(own, domain, what, steps, CHECKPOINT, NULL, r);
 }
 
-static void run_half(result_fn *half, int32_t size, int what, int64_t steps,
-                     const result *expected) {
-  ranks s = {.compute = half, .what = what, .threads = 1, .length = steps};
-  int64_t *seen = calloc((size_t)expected->count + 1, sizeof *seen);
-  run_team(&s, size);
-  for (int32_t r = 0; r < size; r++) {
-    if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
-    compare(expected, &s.rank[r], seen);
-    drop(&s.rank[r]);
-  }
-  for (int64_t i = 0; i < expected->count; i++) assert_int_equal(seen[i], 1);
-  free(seen);
-}
-
 /* Written on 4 ranks, a run continues with the bits of one that was not cut: on 3, and on one
  * without a domain; written without a domain, on 3. */
 static void compare_cut(int what, int64_t steps) {
@@ -92,10 +78,10 @@ static void compare_cut(int what, int64_t steps) {
   mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_ok(own, compute_half(own, NULL, what, steps, NULL, CHECKPOINT, &half));
   mps_assert_ok(own, go_on(own, NULL, what, steps, &whole));
-  run_half(go_on, 3, what, steps, &whole);
+  compare_part(go_on, 3, what, steps, &whole, false);
   remove(CHECKPOINT);
-  run_half(begin, 4, what, steps, &half);
-  run_half(go_on, 3, what, steps, &whole);
+  compare_part(begin, 4, what, steps, &half, false);
+  compare_part(go_on, 3, what, steps, &whole, false);
   mps_assert_ok(own, go_on(own, NULL, what, steps, &on));
   int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
   compare(&whole, &on, seen);

@@ -165,19 +165,6 @@ static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t 
   return halve(own, domain, what, steps, CHECKPOINT, NULL, r);
 }
 
-static void run_half(result_fn *half, int32_t size, int64_t steps, const result *expected) {
-  ranks s = {.compute = half, .what = LAYERS, .threads = 1, .length = steps};
-  int64_t *seen = calloc((size_t)expected->count + 1, sizeof *seen);
-  run_team(&s, size);
-  for (int32_t r = 0; r < size; r++) {
-    if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
-    compare(expected, &s.rank[r], seen);
-    drop(&s.rank[r]);
-  }
-  for (int64_t i = 0; i < expected->count; i++) assert_int_equal(seen[i], 1);
-  free(seen);
-}
-
 /* Written on 4 ranks, a run continues with the bits of one that was not cut, on 3 and without a
  * domain; written without a domain, on 3. */
 static void test_cut(void **state) {
@@ -188,10 +175,10 @@ static void test_cut(void **state) {
   mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
   mps_assert_ok(own, halve(own, NULL, LAYERS, 2 * steps, NULL, NULL, &whole));
   mps_assert_ok(own, begin(own, NULL, LAYERS, steps, &half));
-  run_half(go_on, 3, steps, &whole);
+  compare_part(go_on, 3, LAYERS, steps, &whole, false);
   remove(CHECKPOINT);
-  run_half(begin, 4, steps, &half);
-  run_half(go_on, 3, steps, &whole);
+  compare_part(begin, 4, LAYERS, steps, &half, false);
+  compare_part(go_on, 3, LAYERS, steps, &whole, false);
   mps_assert_ok(own, go_on(own, NULL, LAYERS, steps, &on));
   int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
   compare(&whole, &on, seen);

@@ -5,6 +5,7 @@
  * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
 #include "mpm/particles/particles.h"
+#include "block_range.h"
 #include "parcels.h"
 
 #include <string.h>
@@ -23,9 +24,8 @@ typedef struct search {
   const char *function;
   mpsi_cell_block *own; /* own blocks in order */
   int64_t count;
-  int64_t
-      *range;   /* for each rank: lower (3) and upper (3) bounds of its blocks, and their number */
-  notice *sent; /* blocks sent, rank by rank */
+  int64_t *range; /* of the blocks of each rank (block_range.h) */
+  notice *sent;   /* blocks sent, rank by rank */
   mps_domain_message *message;
   mpsi_mailbox box;
   notice *ghost; /* ghosts in the order of their owners */
@@ -33,8 +33,6 @@ typedef struct search {
   int64_t *index;
   int64_t ghosts;
 } search;
-
-enum { RANGE = 7 };
 
 static bool is_own(const search *s, const int32_t *at) {
   int64_t low = 0, high = s->count;
@@ -65,40 +63,30 @@ static mps_status copy_own(search *s) {
   mps_context *context = s->mpm->context;
   const int64_t ranks = mps_domain_size(s->mpm->partition->domain);
   s->own = mpsi_alloc(context, grid->cell_count, sizeof *s->own);
-  s->range = mpsi_alloc(context, RANGE * ranks, sizeof *s->range);
+  s->range = mpsi_alloc(context, MPSI_BLOCK_RANGE * ranks, sizeof *s->range);
   if (!s->own || !s->range)
     return mpsi_fail_memory(context, s->function, (size_t)grid->cell_count * sizeof *s->own);
   for (int64_t b = 0; b < grid->cell_count; b++)
     if (!grid->cells[b].ghost) s->own[s->count++] = grid->cells[b];
-  int64_t *mine = s->range + RANGE * mps_domain_rank(s->mpm->partition->domain);
-  memset(s->range, 0, (size_t)(RANGE * ranks) * sizeof *s->range);
-  for (int64_t b = 0; b < s->count; b++)
-    for (int c = 0; c < 3; c++) {
-      const int64_t at = s->own[b].at[c];
-      if (b == 0 || at < mine[c]) mine[c] = at;
-      if (b == 0 || at > mine[3 + c]) mine[3 + c] = at;
-    }
-  mine[6] = s->count;
+  int64_t *mine = s->range + MPSI_BLOCK_RANGE * mps_domain_rank(s->mpm->partition->domain);
+  memset(s->range, 0, (size_t)(MPSI_BLOCK_RANGE * ranks) * sizeof *s->range);
+  for (int64_t b = 0; b < s->count; b++) mpsi_block_range_add(mine, s->own[b].at);
   return MPS_OK;
 }
 
-/* Whether the block may be beside one of the rank's. */
-static bool near_range(const int64_t *range, const int32_t *at) {
-  if (range[6] == 0) return false;
-  for (int c = 0; c < 3; c++)
-    if (at[c] < range[c] - 1 || at[c] > range[3 + c] + 1) return false;
-  return true;
+static bool is_sent(const search *s, int32_t rank, int64_t b) {
+  return rank != mps_domain_rank(s->mpm->partition->domain) &&
+         mpsi_block_range_near(s->range + MPSI_BLOCK_RANGE * rank, s->own[b].at);
 }
 
 static mps_status exchange_search(search *s) {
   mps_context *context = s->mpm->context;
   mps_domain *domain = s->mpm->partition->domain;
-  const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
+  const int32_t ranks = mps_domain_size(domain);
   int64_t notices = 0;
   int32_t messages = 0;
   for (int32_t r = 0; r < ranks; r++)
-    for (int64_t b = 0; r != rank && b < s->count; b++)
-      notices += near_range(s->range + RANGE * r, s->own[b].at);
+    for (int64_t b = 0; b < s->count; b++) notices += is_sent(s, r, b);
   s->sent = mpsi_alloc(context, notices, sizeof *s->sent);
   s->message = mpsi_alloc(context, ranks, sizeof *s->message);
   mps_status status = MPS_OK;
@@ -107,8 +95,8 @@ static mps_status exchange_search(search *s) {
   notices = 0;
   for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
     const int64_t first = notices;
-    for (int64_t b = 0; r != rank && b < s->count; b++) {
-      if (!near_range(s->range + RANGE * r, s->own[b].at)) continue;
+    for (int64_t b = 0; b < s->count; b++) {
+      if (!is_sent(s, r, b)) continue;
       notice *n = &s->sent[notices++];
       n->number = (int32_t)b;
       memcpy(n->at, s->own[b].at, sizeof n->at);
@@ -279,7 +267,7 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_domain_agree(partition->domain, function, copy_own(&s));
   if (status == MPS_OK)
     status = mpsi_domain_sum(partition->domain, function,
-                             RANGE * mps_domain_size(partition->domain), s.range);
+                             MPSI_BLOCK_RANGE * mps_domain_size(partition->domain), s.range);
   if (status == MPS_OK) status = exchange_search(&s);
   if (status == MPS_OK) status = join(&s);
   mpsi_domain_free_mail(&s.box);

@@ -29,18 +29,17 @@ static bool ensure(mps_mpm *mpm, mpsi_room *room, int64_t count, size_t size) {
   return mpsi_room_ensure(mpm->context, room, count, size);
 }
 
-static int span_nodes(const mpsi_grid *grid) { return grid->dim == 3 ? 64 : 16; }
+enum { MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
 
-static int32_t find_block(const mpsi_grid *grid, const int32_t *at) {
-  int64_t low = 0, high = grid->node_count;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(grid->nodes[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at) ? (int32_t)low : -1;
+/* The box of nodes or cells in reach of a block's own: from TILE_BEFORE places before it on. */
+enum { TILE_BEFORE = MPSI_PORE_SPAN - 2, TILE = MPSI_SIDE + 2 * TILE_BEFORE };
+
+static int tile_places(const mpsi_grid *grid) {
+  return grid->dim == 3 ? TILE * TILE * TILE : TILE * TILE;
+}
+
+static int span_nodes(const mpsi_grid *grid) {
+  return grid->dim == 3 ? MOST_SPAN : MPSI_PORE_SPAN * MPSI_PORE_SPAN;
 }
 
 static void find_around(const mpsi_grid *grid, system_of *s) {
@@ -49,17 +48,17 @@ static void find_around(const mpsi_grid *grid, system_of *s) {
       int32_t at[3], step[3];
       mpsi_unravel(k, 3, step);
       for (int c = 0; c < 3; c++) at[c] = grid->nodes[g].at[c] + step[c] - 1;
-      s->around[g][k] = grid->dim == 2 && step[2] != 1 ? -1 : find_block(grid, at);
+      s->around[g][k] = grid->dim == 2 && step[2] != 1 ? -1 : mpsi_pore_own_block(grid, at);
     }
 }
 
-bool mpsi_pore_make_system(mps_mpm *mpm) {
+mps_status mpsi_pore_make_system(mps_mpm *mpm, const char *function) {
   enum { VECTORS = 7 };
   const int64_t blocks = mpm->grid.node_count, nodes = blocks * mpm->grid.block_nodes;
   system_of *s = mpm->water->system;
   if (!s) {
     s = mpm->water->system = mpsi_alloc(mpm->context, 1, sizeof *s);
-    if (!s) return false;
+    if (!s) return mpsi_fail_memory(mpm->context, function, sizeof *s);
     memset(s, 0, sizeof *s);
   }
   const bool good = ensure(mpm, &s->around_room, blocks, sizeof *s->around) &&
@@ -69,29 +68,32 @@ bool mpsi_pore_make_system(mps_mpm *mpm) {
                     ensure(mpm, &s->row_room, nodes, sizeof *s->row) &&
                     ensure(mpm, &s->conductance_room, nodes, sizeof *s->conductance) &&
                     ensure(mpm, &s->vector_room, VECTORS * nodes, sizeof(double)) &&
+                    ensure(mpm, &s->tile_room, blocks * tile_places(&mpm->grid), sizeof *s->tile) &&
                     ensure(mpm, &s->part_room, blocks, sizeof *s->part);
-  if (!good) return false;
+  if (!good)
+    return mpsi_fail_memory(mpm->context, function, (size_t)(VECTORS * nodes) * sizeof(double));
   s->around = s->around_room.item;
   s->mass = s->mass_room.item;
   s->velocity = s->velocity_room.item;
   s->held = s->held_room.item;
   s->row = s->row_room.item;
   s->conductance = s->conductance_room.item;
+  s->tile = s->tile_room.item;
   s->part = s->part_room.item;
   double **const vector[VECTORS] = {&s->diagonal,  &s->scale,   &s->change, &s->residual,
                                     &s->direction, &s->product, &s->inverse};
   for (int k = 0; k < VECTORS; k++) *vector[k] = (double *)s->vector_room.item + k * nodes;
   find_around(&mpm->grid, s);
-  return true;
+  return MPS_OK;
 }
 
 void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
   system_of *s = *pointer;
   *pointer = NULL;
   if (!s) return;
-  const mpsi_room room[] = {s->around_room, s->mass_room,        s->velocity_room,
-                            s->held_room,   s->row_room,         s->force_room,
-                            s->vector_room, s->conductance_room, s->part_room};
+  const mpsi_room room[] = {s->around_room, s->mass_room,  s->velocity_room, s->held_room,
+                            s->row_room,    s->force_room, s->vector_room,   s->conductance_room,
+                            s->tile_room,   s->part_room};
   for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
   mpsi_free(context, s);
 }
@@ -103,13 +105,11 @@ static bool is_unknown(const mpsi_water *water, int64_t g, int k, const mpsi_por
   return mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin;
 }
 
-/* The node or cell at `offset` from place k of block g, or -1. */
-static int64_t find_at(const mpsi_grid *grid, const system_of *s, int64_t g, int k,
-                       const int *offset) {
-  int at[3], block = 0, local = 0;
-  mpsi_unravel(k, MPSI_SIDE, at);
+/* The node or cell at `offset` from the first of block g, or -1. */
+static int64_t find_at(const mpsi_grid *grid, const system_of *s, int64_t g, const int *offset) {
+  int block = 0, local = 0;
   for (int c = 2; c >= 0; c--) {
-    const int place = at[c] + (c < grid->dim ? offset[c] : 0);
+    const int place = c < grid->dim ? offset[c] : 0;
     block = 3 * block + (place < 0 ? 0 : place < MPSI_SIDE ? 1 : 2);
     local = MPSI_SIDE * local + (place & (MPSI_SIDE - 1));
   }
@@ -142,6 +142,36 @@ static double sum_blocks(mps_mpm *mpm, void (*task)(mps_mpm *, system_of *, int6
   for_blocks(mpm, task, factor);
   for (int64_t g = 0; g < mpm->grid.node_count; g++) sum += mpm->water->system->part[g];
   return sum;
+}
+
+/* The place in a tile of what is `before` places before place k of the block along each axis. */
+static int tile_place(const mpsi_grid *grid, int k, int before) {
+  int at[3];
+  mpsi_unravel(k, MPSI_SIDE, at);
+  for (int c = 0; c < grid->dim; c++) at[c] += TILE_BEFORE - before;
+  return (at[2] * TILE + at[1]) * TILE + at[0];
+}
+
+/* How far places q of a span lie from the first in a tile. */
+static void list_shifts(const mpsi_grid *grid, int *shift) {
+  for (int q = 0; q < span_nodes(grid); q++) {
+    int i[3];
+    mpsi_unravel(q, MPSI_PORE_SPAN, i);
+    shift[q] = (i[2] * TILE + i[1]) * TILE + i[0];
+  }
+}
+
+/* What is in reach of each block, once a step: iterations look nothing up. */
+static void find_tile(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+  const mpsi_grid *grid = &mpm->grid;
+  int32_t *tile = s->tile + g * tile_places(grid);
+  (void)factor;
+  for (int t = 0; t < tile_places(grid); t++) {
+    int offset[3];
+    mpsi_unravel(t, TILE, offset);
+    for (int c = 0; c < 3; c++) offset[c] -= TILE_BEFORE;
+    tile[t] = (int32_t)find_at(grid, s, g, offset);
+  }
 }
 
 /* ---- forces on nodes ------------------------------------------------------------------------- */
@@ -200,6 +230,7 @@ static void add_particle(mps_mpm *mpm, int64_t b, int64_t k) {
   const int32_t g = mpsi_block_under(cells, at[0], at[1], at[2]);
   const int local = mpsi_local_under(at[0], at[1], at[2]), nodes = span_nodes(grid);
   double *force = s->force + (int64_t)s->row[mpsi_first_node(grid, g) + local] * grid->dim * nodes;
+  const int32_t *near = s->tile + g * tile_places(grid) + tile_place(grid, local, 1);
   const double V = mpm->p.V[k], m = mpm->p.m[k];
   const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   for (int q = 0; q < nodes; q++) {
@@ -210,8 +241,7 @@ static void add_particle(mps_mpm *mpm, int64_t b, int64_t k) {
     force[q] += V * n.slope[0][i[0]] * w[1] * w[2] + (ring ? V * all / mpm->p.x[0][k] : 0.0);
     force[nodes + q] += V * w[0] * n.slope[1][i[1]] * w[2];
     if (grid->dim == 3) force[2 * nodes + q] += V * w[0] * w[1] * n.slope[2][i[2]];
-    const int offset[3] = {i[0] - 1, i[1] - 1, i[2] - 1};
-    const int64_t node = all > 0.0 ? find_at(grid, s, g, local, offset) : -1;
+    const int64_t node = all > 0.0 ? near[(i[2] * TILE + i[1]) * TILE + i[0]] : -1;
     if (node >= 0) s->mass[node] += m * all;
   }
 }
@@ -244,7 +274,7 @@ static void find_held(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   }
 }
 
-static bool assemble_forces(mps_mpm *mpm) {
+static mps_status assemble_forces(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   const mpsi_grid *grid = &mpm->grid;
   int32_t rows = 0;
@@ -253,13 +283,15 @@ static bool assemble_forces(mps_mpm *mpm) {
       if (mpsi_pore_marked(mpm->water->block[g].filled, k))
         s->row[mpsi_first_node(grid, g) + k] = rows++;
   const int64_t numbers = (int64_t)rows * grid->dim * span_nodes(grid);
-  if (!ensure(mpm, &s->force_room, numbers, sizeof *s->force)) return false;
+  if (!ensure(mpm, &s->force_room, numbers, sizeof *s->force))
+    return mpsi_fail_memory(mpm->context, function, (size_t)numbers * sizeof *s->force);
   s->force = s->force_room.item;
   memset(s->force, 0, (size_t)numbers * sizeof *s->force);
+  for_blocks(mpm, find_tile, 0.0);
   const mpsi_pass pass = {.clear = clear_masses, .scatter = add_particles};
   mpsi_mpm_run_pass(mpm, &pass);
   for_blocks(mpm, find_held, 0.0);
-  return true;
+  return MPS_OK;
 }
 
 /* ---- the operator ---------------------------------------------------------------------------- */
@@ -268,21 +300,23 @@ static const double *forces_of(const mpsi_grid *grid, const system_of *s, int64_
   return s->force + (int64_t)s->row[cell] * grid->dim * span_nodes(grid);
 }
 
-/* Velocities of nodes under the pressures `direction`, per dt. */
+/* Velocities of nodes under the pressures `direction`, per dt. Node k is number q of the cell that
+ * lies q places before the last of those in reach. */
 static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const mpsi_grid *grid = &mpm->grid;
   const int nodes = span_nodes(grid);
   const int64_t first = mpsi_first_node(grid, g);
+  const int32_t *tile = s->tile + g * tile_places(grid);
+  int shift[MOST_SPAN];
   (void)factor;
+  list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     double *v = s->velocity[first + k];
     v[0] = v[1] = v[2] = 0.0;
     if (!(s->mass[first + k] > 0.0)) continue;
+    const int last = tile_place(grid, k, MPSI_PORE_SPAN - 2) + shift[nodes - 1];
     for (int q = 0; q < nodes; q++) {
-      int i[3];
-      mpsi_unravel(q, MPSI_PORE_SPAN, i);
-      const int offset[3] = {1 - i[0], 1 - i[1], 1 - i[2]};
-      const int64_t cell = find_at(grid, s, g, k, offset);
+      const int64_t cell = tile[last - shift[q]];
       if (cell < 0 || !(s->scale[cell] > 0.0)) continue;
       const double *force = forces_of(grid, s, cell), d = s->scale[cell] * s->direction[cell];
       for (int c = 0; c < grid->dim; c++) v[c] += force[c * nodes + q] * d;
@@ -293,17 +327,16 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
 }
 
 /* dt^2 G^T v of a cell, m3. */
-static double squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int k, bool diagonal) {
+static double squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int k, const int *shift,
+                         bool diagonal) {
   const mpsi_grid *grid = &mpm->grid;
   const int nodes = span_nodes(grid);
   const int64_t cell = mpsi_first_node(grid, g) + k;
   const double *force = forces_of(grid, s, cell), dt = mpm->run.dt;
   double sum = 0.0;
+  const int32_t *near = s->tile + g * tile_places(grid) + tile_place(grid, k, 1);
   for (int q = 0; q < nodes; q++) {
-    int i[3];
-    mpsi_unravel(q, MPSI_PORE_SPAN, i);
-    const int offset[3] = {i[0] - 1, i[1] - 1, i[2] - 1};
-    const int64_t node = find_at(grid, s, g, k, offset);
+    const int64_t node = near[shift[q]];
     if (node < 0 || !(s->mass[node] > 0.0)) continue;
     for (int c = 0; c < grid->dim; c++) {
       const double f = force[c * nodes + q];
@@ -322,7 +355,9 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   mpsi_water *water = mpm->water;
   const int64_t first = mpsi_first_node(grid, g);
   const mpsi_pore_cell *cell = water->cell + first;
+  int shift[MOST_SPAN];
   (void)factor;
+  list_shifts(grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < grid->block_nodes; k++) {
     if (!is_unknown(water, g, k, cell)) continue;
@@ -334,7 +369,7 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
       sum +=
           mpm->run.dt * s->conductance[first + k][d] * (own - s->direction[beside - water->cell]);
     }
-    sum += squeeze_of(mpm, s, g, k, false);
+    sum += squeeze_of(mpm, s, g, k, shift, false);
     s->product[first + k] = sum;
     s->part[g] += own * sum;
   }
@@ -346,11 +381,13 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 static void start(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const mpsi_pore_cell *cell = mpm->water->cell + first;
+  int shift[MOST_SPAN];
   (void)factor;
+  list_shifts(&mpm->grid, shift);
   s->part[g] = 0.0;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!is_unknown(mpm->water, g, k, cell)) continue;
-    double diagonal = s->diagonal[first + k] + squeeze_of(mpm, s, g, k, true);
+    double diagonal = s->diagonal[first + k] + squeeze_of(mpm, s, g, k, shift, true);
     for (int d = 0; d < 2 * mpm->grid.dim; d++)
       diagonal += mpm->run.dt * s->conductance[first + k][d];
     s->inverse[first + k] = 1.0 / diagonal;
@@ -395,7 +432,7 @@ static mps_status iterate(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   double rest = sum_blocks(mpm, start, 0.0);
   const double least = TOLERANCE * TOLERANCE * rest;
-  for (s->iterations = 0; rest > least; s->iterations++) {
+  for (s->iterations = 0; rest > least || !isfinite(rest); s->iterations++) {
     if (s->iterations == MOST_ITERATIONS || !isfinite(rest))
       return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
                        "step %lld: pressures of the pore water have a residual of %g after %lld "
@@ -412,6 +449,6 @@ static mps_status iterate(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function) {
-  if (assemble_forces(mpm)) return iterate(mpm, function);
-  return mpsi_fail_memory(mpm->context, function, 0);
+  const mps_status status = assemble_forces(mpm, function);
+  return status == MPS_OK ? iterate(mpm, function) : status;
 }

@@ -1,6 +1,8 @@
 /* layers.c - see layers.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "layers.h"
 
+#include "mpm/ranks/block_range.h"
+
 #include <string.h>
 
 static const char step[] = "mps_mpm_step";
@@ -16,7 +18,7 @@ typedef struct notice {
 typedef struct search {
   const mps_mpm *mpm;
   const char *function;
-  int64_t *range; /* of each rank: lower (3) and upper (3) blocks that it computes, and how many */
+  int64_t *range; /* of the blocks that each rank computes (block_range.h) */
   notice *sent;
   mps_domain_message *message;
   mpsi_mailbox box;
@@ -24,58 +26,30 @@ typedef struct search {
   int64_t *index;
 } search;
 
-enum { RANGE = 7 };
-
-/* The rank's own block at `at`, or -1: the list is in order. */
-static int64_t find_own(const mpsi_grid *grid, const int32_t *at) {
-  int64_t low = 0, high = grid->node_count;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(grid->nodes[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  const bool found = low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at);
-  return found && !grid->nodes[low].foreign ? low : -1;
-}
-
 static mps_status find_ranges(search *s) {
   const mpsi_grid *grid = &s->mpm->grid;
   mps_domain *domain = s->mpm->partition->domain;
   const int64_t ranks = mps_domain_size(domain);
-  s->range = mpsi_alloc(s->mpm->context, RANGE * ranks, sizeof *s->range);
+  s->range = mpsi_alloc(s->mpm->context, MPSI_BLOCK_RANGE * ranks, sizeof *s->range);
   mps_status status = MPS_OK;
   if (!s->range)
-    status =
-        mpsi_fail_memory(s->mpm->context, s->function, (size_t)(RANGE * ranks) * sizeof *s->range);
+    status = mpsi_fail_memory(s->mpm->context, s->function,
+                              (size_t)(MPSI_BLOCK_RANGE * ranks) * sizeof *s->range);
   status = mpsi_domain_agree(domain, s->function, status);
   if (status != MPS_OK) return status;
-  memset(s->range, 0, (size_t)(RANGE * ranks) * sizeof *s->range);
-  int64_t *mine = s->range + RANGE * mps_domain_rank(domain);
+  memset(s->range, 0, (size_t)(MPSI_BLOCK_RANGE * ranks) * sizeof *s->range);
+  int64_t *mine = s->range + MPSI_BLOCK_RANGE * mps_domain_rank(domain);
   for (int64_t g = 0; g < grid->node_count; g++) {
     if (grid->nodes[g].foreign) continue;
-    for (int c = 0; c < 3; c++) {
-      const int64_t at = grid->nodes[g].at[c];
-      if (mine[6] == 0 || at < mine[c]) mine[c] = at;
-      if (mine[6] == 0 || at > mine[3 + c]) mine[3 + c] = at;
-    }
-    mine[6]++;
+    mpsi_block_range_add(mine, grid->nodes[g].at);
   }
-  return mpsi_domain_sum(domain, s->function, (int32_t)(RANGE * ranks), s->range);
-}
-
-/* May the block be beside one of the rank's? */
-static bool near_range(const int64_t *range, const int32_t *at) {
-  bool near = range[6] > 0;
-  for (int c = 0; c < 3; c++) near = near && at[c] >= range[c] - 1 && at[c] <= range[3 + c] + 1;
-  return near;
+  return mpsi_domain_sum(domain, s->function, (int32_t)(MPSI_BLOCK_RANGE * ranks), s->range);
 }
 
 static bool announces(const search *s, int32_t rank, int64_t g) {
   return rank != mps_domain_rank(s->mpm->partition->domain) && !s->mpm->grid.nodes[g].foreign &&
          mpsi_mpm_counts_node_block(&s->mpm->grid, g) &&
-         near_range(s->range + RANGE * rank, s->mpm->grid.nodes[g].at);
+         mpsi_block_range_near(s->range + MPSI_BLOCK_RANGE * rank, s->mpm->grid.nodes[g].at);
 }
 
 static mps_status announce(search *s) {
@@ -115,7 +89,7 @@ static mps_status announce(search *s) {
 static bool is_at_face(const mpsi_grid *grid, const int32_t *at, int direction) {
   int32_t beside[3] = {at[0], at[1], at[2]};
   beside[direction / 2] += direction & 1 ? 1 : -1;
-  return find_own(grid, beside) >= 0;
+  return mpsi_pore_own_block(grid, beside) >= 0;
 }
 
 static bool make_room(search *s, mpsi_pore_layers *layers) {
@@ -142,7 +116,7 @@ static mps_status choose(search *s, mpsi_pore_layers *layers) {
     const notice *from = s->box.mail[m].data;
     for (int64_t k = 0; k < s->box.mail[m].bytes / (int64_t)sizeof *from; k++) {
       const int64_t before = layers->guests;
-      if (find_own(grid, from[k].at) >= 0) continue;
+      if (mpsi_pore_own_block(grid, from[k].at) >= 0) continue;
       for (int d = 0; d < 2 * grid->dim; d++) {
         if (!is_at_face(grid, from[k].at, d)) continue;
         s->rank[layers->guests] = s->box.mail[m].rank;

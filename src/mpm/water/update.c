@@ -31,19 +31,11 @@ static mps_status make_room(mps_context *context, const mpsi_grid *grid, mpsi_co
   return MPS_OK;
 }
 
-/* Number of the block of nodes at `at` whose cells are known here, or -1; the list is in order. */
+/* Number of the block of nodes at `at` whose cells are known here, or -1. */
 static int32_t find_block(const mpsi_grid *grid, const mpsi_water *water, const int32_t *at) {
-  int64_t low = 0, high = grid->node_count;
-  while (low < high) {
-    const int64_t middle = (low + high) / 2;
-    if (mpsi_block_before(grid->nodes[middle].at, at))
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  const bool found = low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at);
-  if (found && !grid->nodes[low].foreign) return (int32_t)low;
-  return water->layers ? mpsi_pore_guest_block(grid, water, at) : -1;
+  const int32_t own = mpsi_pore_own_block(grid, at);
+  if (own >= 0 || !water->layers) return own;
+  return mpsi_pore_guest_block(grid, water, at);
 }
 
 static bool are_linked(const mpsi_grid *grid, const mpsi_water *water) {
@@ -95,9 +87,8 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   if (!mpm->water) return status;
   status = renew_layers(mpm, function, status);
   if (status == MPS_OK) status = make_room(mpm->context, &mpm->grid, &mpm->p, mpm->water, function);
-  if (status == MPS_OK && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT &&
-      !mpsi_pore_make_system(mpm))
-    status = mpsi_fail_memory(mpm->context, function, 0);
+  if (status == MPS_OK && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
+    status = mpsi_pore_make_system(mpm, function);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =

@@ -79,6 +79,20 @@ struct mpsi_water {
   mpsi_pore_system *system; /* where pressures are implicit, else NULL */
 };
 
+/* Number of the rank's own block of nodes at `at`, or -1: the list is in order. */
+static inline int32_t mpsi_pore_own_block(const mpsi_grid *grid, const int32_t *at) {
+  int64_t low = 0, high = grid->node_count;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (mpsi_block_before(grid->nodes[middle].at, at))
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  const bool found = low < grid->node_count && !mpsi_block_before(at, grid->nodes[low].at);
+  return found && !grid->nodes[low].foreign ? (int32_t)low : -1;
+}
+
 /* The part of a tile that its particles may be in after a step. */
 static inline void mpsi_pore_region(const mpsi_cell_block *cells, int *low, int *high) {
   for (int c = 0; c < 3; c++) {
