@@ -1,6 +1,7 @@
 /* access.c - access to the solver object: its guard, checks of a step size, its energy; and loops
  * over its particles by all threads.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "access.h"
 #include "fluid/ranks/partition.h"
 
 mps_status mpsi_fluid_free(mps_fluid *f, const char *function) {

@@ -3,6 +3,9 @@
  * normal is linear between them. The caller moves the body between steps; the fluid keeps its pose
  * at the last step, and uses the present one as that of the end of the next.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "bodies.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/slots.h"
 #include "fluid/boundary/clearance.h"
 #include "fluid/boundary/pose.h"
 #include "fluid/ranks/partition.h"

@@ -1,5 +1,7 @@
 /* boundaries.c - plane walls: definitions, checks, and how they are added, changed and removed.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
+#include "fluid/boundary/slots.h"
 #include "fluid/boundary/clearance.h"
 #include "fluid/ranks/partition.h"
 

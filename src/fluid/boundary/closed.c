@@ -10,6 +10,8 @@
  * The space is the intersection of the boundaries' half-planes less the bodies: its area follows
  * from the lengths of the boundaries within the others, by the divergence theorem.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "closed.h"
+#include "fluid/base/access.h"
 #include "fluid/boundary/pose.h"
 #include "fluid/ranks/partition.h"
 

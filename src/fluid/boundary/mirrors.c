@@ -8,6 +8,7 @@
  * Around a convex corner particles without a line of sight are neighbours at the length of the path
  * around it (sight.c). Images in plane boundaries at right angles to a segment are mirrored in it
  * like particles. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/boundary/sight.h"
 #include "fluid/boundary/vicinity.h"
 
 #include <string.h>

@@ -12,7 +12,8 @@
  * Where the body overhangs the water, lines of sight of several reflections have no image, as
  * images at walls at an angle are not mirrored again; these missing neighbours are no free surface.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/fluid_private.h"
+#include "sight.h"
+#include "fluid/base/fluid_solver.h"
 
 #define EDGE 1e-6  /* l0 */
 #define CORNER 1.5 /* l0 */

@@ -2,7 +2,8 @@
  * bodies, in one list that grows; bodies in another. Between steps alone, as images have the
  * numbers of the walls that they are mirrored at.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/fluid_private.h"
+#include "slots.h"
+#include "fluid/base/fluid_solver.h"
 
 #include <string.h>
 

@@ -1,5 +1,6 @@
 /* wall.c - one wall: the nodes at which its motion is given, values between them, and points
  * mirrored at it. SPDX-License-Identifier: BSD-3-Clause */
+#include "wall.h"
 #include "fluid/boundary/polyline.h"
 
 double mpsi_fluid_between(const mpsi_fluid_wall *w, const double *values, double along) {

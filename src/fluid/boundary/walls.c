@@ -7,6 +7,9 @@
  * step: free slip); its reduced pressure is the parent's less rho (a . N)(distance of the two), N
  * out of the fluid: the one place where the wall's new velocity enters.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "walls.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/sight.h"
 #include "fluid/boundary/vicinity.h"
 #include "signal/signal_internal.h"
 

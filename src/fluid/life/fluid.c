@@ -1,5 +1,10 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, queries.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
+#include "fluid/life/material.h"
+#include "fluid/particles/look.h"
+#include "fluid/particles/particles.h"
+#include "fluid/step/exchange.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"
 #include "fluid/pressure/coarse.h"

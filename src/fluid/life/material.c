@@ -1,6 +1,8 @@
 /* material.c - what the fluid is made of: the viscosity of a Newtonian material, the density of the
  * set's field. The fluid is one material, incompressible: a bulk modulus has no part in it.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "material.h"
+#include "fluid/base/access.h"
 #include "fluid/ranks/partition.h"
 
 #include "core/base/digits.h"

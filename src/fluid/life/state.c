@@ -1,6 +1,8 @@
 /* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. Data that
  * follow from the particles' positions, neighbours and the surface are computed again when needed.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
+#include "fluid/particles/particles.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"
 

@@ -9,6 +9,8 @@
  *
  * Damping, -r z^2 u, z from 0 to 1 along a zone, makes waves fade without a reflection of its own.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "loads.h"
+#include "fluid/base/access.h"
 #include "core/base/digits.h"
 #include "fluid/ranks/partition.h"
 #include "signal/signal_internal.h"

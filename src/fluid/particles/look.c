@@ -1,5 +1,9 @@
 /* look.c - the particles at the start of a step: copies of their fields, their order in memory,
  * neighbours, and the sums over these. SPDX-License-Identifier: BSD-3-Clause */
+#include "look.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/sight.h"
+#include "fluid/boundary/walls.h"
 #include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 

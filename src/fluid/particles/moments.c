@@ -15,6 +15,9 @@
  * and water that a wall accelerates responds at first as if its surface were .2 l0 higher. Their
  * surface point is the mean of those of their neighbours at the surface, with c = |m|/h too.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "moments.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/sight.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"

@@ -5,6 +5,9 @@
  * Particles are sorted in the same order now and then (step.c), so that indices of neighbours are
  * near each other too.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "near.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/sight.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"

@@ -1,5 +1,8 @@
 /* particles.c - particles edited, added and removed between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "particles.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/walls.h"
 #include "fluid/boundary/polyline.h"
 
 #include <string.h>

@@ -7,6 +7,7 @@
  *   sum w e_i/e_j 2 k_i k_j/(k_i + k_j) (q_j - q_i) + k_i c (q_s - q_i) = S (rho/dt) div(U/lambda),
  *
  * over e_i^2, which makes it symmetric. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
 #include "fluid/particles/rock.h"
 #include "core/base/digits.h"
 #include "fluid/ranks/partition.h"

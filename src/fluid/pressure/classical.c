@@ -9,6 +9,9 @@
  * w = re/r - 1, re 2.1 l0 in n and the gradient, 3.1 l0 in the Laplacian, d = 2, and p = 0 where n*
  * < .97 n0. Walls are mirror images here too, with their parent's p.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "classical.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/walls.h"
 #include "fluid/ranks/partition.h"
 #include "core/base/digits.h"
 

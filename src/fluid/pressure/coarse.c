@@ -1,5 +1,6 @@
 /* coarse.c - see coarse.h.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
 #include "coarse.h"
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"

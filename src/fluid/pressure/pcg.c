@@ -22,6 +22,8 @@
  * halves the iterations in waves. The blocks depend on the number of particles alone, and sums are
  * made chunk by chunk, so the result does not depend on the threads.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "pcg.h"
+#include "fluid/base/access.h"
 #include "coarse.h"
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"

@@ -10,6 +10,11 @@
  * any spacing. Images of particles beyond a wall have their parent's q and an offset that the
  * wall's acceleration a gives, -rho (a . N) times their distance, so they add no unknowns; isolated
  * particles have no row and no column. SPDX-License-Identifier: BSD-3-Clause */
+#include "pressure.h"
+#include "fluid/base/access.h"
+#include "fluid/boundary/closed.h"
+#include "fluid/boundary/walls.h"
+#include "fluid/pressure/pcg.h"
 #include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 

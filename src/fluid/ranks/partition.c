@@ -3,6 +3,7 @@
  * Neighbours change with every step, and with them the halo of a rank. A particle stays in the halo
  * until the set is sorted again: after a few steps hardly any is new, and the pattern of the
  * messages stays. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
 #include "partition.h"
 
 #include "fluid/particles/rock.h"

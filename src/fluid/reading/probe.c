@@ -11,6 +11,9 @@
  * spacing along the wall, the surface point the end of one: it has half the weight, less where the
  * water's surface is along the wall, or the wall is level.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "probe.h"
+#include "fluid/boundary/sight.h"
+#include "fluid/particles/look.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/ranks/partition.h"
 

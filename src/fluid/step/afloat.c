@@ -9,7 +9,10 @@
  *
  * The pressure acts through the step: velocity first, then place, as the particles move
  * (mpsi_body_advance). SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid/fluid_private.h"
+#include "afloat.h"
+#include "fluid/base/fluid_solver.h"
+#include "fluid/base/access.h"
+#include "fluid/reading/probe.h"
 
 #include "body/body_internal.h"
 #include "domain/domain_internal.h"

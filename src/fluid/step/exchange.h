@@ -4,7 +4,8 @@
 #ifndef MPSI_FLUID_EXCHANGE_H
 #define MPSI_FLUID_EXCHANGE_H
 
-#include "fluid/fluid_private.h"
+#include "fluid/base/fluid_solver.h"
+#include "fluid/step/exchange.h"
 
 /* Particle i, of this chunk, gets dv (m/s) from the wall. */
 void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, int64_t i,
@@ -19,5 +20,11 @@ void mpsi_fluid_exchange_along_line(const mps_fluid *fluid, int64_t chunk, int64
 void mpsi_fluid_gain(const mps_fluid *fluid, int64_t chunk, const double *du);
 /* The velocity u that an image has to move with at walls of no slip: against its parent's. */
 void mpsi_fluid_stick(const mps_fluid *fluid, int64_t ghost, double *u);
+
+/* Memory of a step's sums; their values, on all ranks; finally the momentum error. */
+mps_status mpsi_fluid_begin_exchange(mps_fluid *fluid, const char *function);
+void mpsi_fluid_end_exchange(mps_fluid *fluid);
+void mpsi_fluid_book_momentum(mps_fluid *fluid);
+void mpsi_fluid_drop_exchange(mps_fluid *fluid);
 
 #endif

@@ -2,6 +2,8 @@
  * closer than .1 l0, is put back to that distance, in an acute corner to the point that has it from
  * both segments, and loses its velocity into them.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "keep_off.h"
+#include "fluid/step/move.h"
 #include "fluid/boundary/vicinity.h"
 #include "fluid/step/exchange.h"
 

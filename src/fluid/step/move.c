@@ -12,6 +12,9 @@
  * near the surface .3 of its part along it, keeps the particles evenly apart (Lind 2012, Khayyer
  * 2017); s0 = sqrt(g/l0), b = max(0, 1 - |G|^2/(.05 s0^2)).
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "move.h"
+#include "fluid/base/access.h"
+#include "fluid/step/keep_off.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"

@@ -18,6 +18,7 @@
  *
  * The Laplacian of u is n v/S: a viscosity nu takes the share nu dt n/S of v, and a only what that
  * leaves. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
 #include "fluid/step/smooth.h"
 
 #include "fluid/base/loops.h"

@@ -1,5 +1,14 @@
 /* step.c - the order of a step, its size, and its errors.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid/base/access.h"
+#include "fluid/boundary/walls.h"
+#include "fluid/particles/look.h"
+#include "fluid/particles/particles.h"
+#include "fluid/reading/probe.h"
+#include "fluid/step/afloat.h"
+#include "fluid/step/exchange.h"
+#include "fluid/step/move.h"
+#include "fluid/step/warn.h"
 #include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 

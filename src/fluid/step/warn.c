@@ -7,6 +7,7 @@
  * wall mirrors at its local position along the normal that it has when plane: the error grows as
  * the square of the slope.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "warn.h"
 #include "fluid/boundary/clearance.h"
 
 #define WARN_FROM 50      /* steps */

@@ -1,6 +1,8 @@
-/* solver.c - the pressure equation for a solver of the caller (mps/fluid_solver.h): the matrix by
+/* outside.c - the pressure equation for a solver of the caller (mps/fluid_solver.h): the matrix by
  * rows with the ghosts' columns added to their parents', and the check of its solution.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "outside.h"
+#include "fluid/base/access.h"
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
 

@@ -1,0 +1,21 @@
+/* sight.h - visibility of neighbours past walls that end.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_FLUID_SIGHT_H
+#define MPSI_FLUID_SIGHT_H
+
+#include <mps/fluid.h>
+
+#include <stdbool.h>
+
+void mpsi_fluid_find_limits(mps_fluid *fluid);
+int64_t mpsi_fluid_keep_visible(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
+                                double *r2);
+/* Whether a corner of a body, in the water, is within 1.5 l0 of particle i. */
+bool mpsi_fluid_near_corner(const mps_fluid *fluid, int64_t i);
+/* Whether an acute corner of the water is within 3.1 l0 of particle i, and within 60 degrees of the
+ * direction e, unless that is NULL. */
+bool mpsi_fluid_near_wedge(const mps_fluid *fluid, int64_t i, const double *e);
+/* Whether a face other than `wall` (-1: none) is between two points. */
+bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
+
+#endif

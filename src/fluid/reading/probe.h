@@ -1,0 +1,10 @@
+/* probe.h - pressure at walls, level of the surface.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_FLUID_PROBE_H
+#define MPSI_FLUID_PROBE_H
+
+#include <mps/fluid.h>
+
+mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
+
+#endif
