@@ -5,7 +5,7 @@
 #ifndef MPSI_FLUID_LOOPS_H
 #define MPSI_FLUID_LOOPS_H
 
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 static inline int32_t mpsi_fluid_padded(int32_t near) {
   return (near + MPSI_FLUID_WIDE - 1) & ~(MPSI_FLUID_WIDE - 1);

@@ -3,7 +3,7 @@
 #ifndef MPSI_FLUID_POSE_H
 #define MPSI_FLUID_POSE_H
 
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 /* Corner k of a body in a pose; that after the last one is the first. */
 static inline void mpsi_fluid_corner_at(const mps_body *body, const mpsi_fluid_pose *pose,

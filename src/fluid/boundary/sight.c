@@ -13,7 +13,7 @@
  * images at walls at an angle are not mirrored again; these missing neighbours are no free surface.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "sight.h"
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 #define EDGE 1e-6  /* l0 */
 #define CORNER 1.5 /* l0 */

@@ -3,7 +3,7 @@
  * numbers of the walls that they are mirrored at.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "slots.h"
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 #define MPSI_FLUID_ROCK_H
 
 #include "fluid/base/loops.h"
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 #include <mps/fluid_rock.h>
 

@@ -17,7 +17,7 @@
 #define MPSI_FLUID_COARSE_H
 
 #include "envelope.h"
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 /* Where an entry of A Z is in its block: the row from the block's first on, the column's slot. */
 typedef struct mpsi_fluid_coarse_at {

@@ -15,7 +15,7 @@
 #ifndef MPSI_FLUID_PARTITION_H
 #define MPSI_FLUID_PARTITION_H
 
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 #include "domain/domain_internal.h"
 

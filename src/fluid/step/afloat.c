@@ -10,7 +10,7 @@
  * The pressure acts through the step: velocity first, then place, as the particles move
  * (mpsi_body_advance). SPDX-License-Identifier: BSD-3-Clause */
 #include "afloat.h"
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 #include "fluid/base/access.h"
 #include "fluid/reading/probe.h"
 

@@ -4,7 +4,7 @@
 #ifndef MPSI_FLUID_EXCHANGE_H
 #define MPSI_FLUID_EXCHANGE_H
 
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 #include "fluid/step/exchange.h"
 
 /* Particle i, of this chunk, gets dv (m/s) from the wall. */

@@ -3,7 +3,7 @@
 #ifndef MPSI_FLUID_SMOOTH_H
 #define MPSI_FLUID_SMOOTH_H
 
-#include "fluid/base/fluid_solver.h"
+#include "fluid/base/flow_solver.h"
 
 /* How steep the flow at particle i is, 1 where it is as in breakers. */
 double mpsi_fluid_steepness(const mps_fluid *f, int64_t i);

@@ -1,9 +1,9 @@
-/* fluid_solver.h - the incompressible fluid solver, put together from its parts: each has a header
+/* flow_solver.h - the incompressible fluid solver, put together from its parts: each has a header
  * of its own. Indices below `count` are particles, those from `count` on are ghosts. A step works
  * on copies of positions and velocities and writes the particles' fields only on success.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_FLUID_SOLVER_H
-#define MPSI_FLUID_FLUID_SOLVER_H
+#ifndef MPSI_FLUID_FLOW_SOLVER_H
+#define MPSI_FLUID_FLOW_SOLVER_H
 
 #include "body/body_internal.h"
 #include "core/base/exact.h"
