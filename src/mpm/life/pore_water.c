@@ -114,9 +114,9 @@ static mps_status renew_limit(mps_mpm *mpm) {
   if (status != MPS_OK || isnan(mpm->def.dt) || mpm->def.dt <= mps_mpm_limit(mpm)) return status;
   return mpsi_fail(
       mpm->context, add, MPS_ERROR_ARGUMENT,
-      "dt of the solver is %g s, above the limit with water, %g s: choose at most half "
-      "of that, or NaN for a step that follows the limit",
-      mpm->def.dt, mps_mpm_limit(mpm));
+      "bulk is %g Pa: dt of the solver is %g s, above the limit with water, %g s: choose "
+      "at most half of that, or NaN for a step that follows the limit",
+      mpm->water->def.bulk, mpm->def.dt, mps_mpm_limit(mpm));
 }
 
 /* A layer without a permeability of the definition has that of the field. */
