@@ -342,7 +342,7 @@ static bool draw_columns(app *a, const simulation *sim) {
   }
   const int panel = 330, panel_height = (int)(panel * height / width), edge = 78, gap = 46;
   const double x = FRAMES * (panel + gap) + edge - gap + 135.0;
-  const double y = sim->count * (panel_height + 70.0) + 42.0;
+  const double y = sim->count * (panel_height + 84.0) + 28.0;
   const area_def def = {.spacing = s->h / sqrt((double)s->ppc),
                         .slit = AREA_SLIT_SHEARED,
                         .upper = {width * s->width, height * s->width},
@@ -370,7 +370,7 @@ static bool draw_columns(app *a, const simulation *sim) {
               "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
               "set cblabel 'plastic strain (-)'\n",
               sim->count, FRAMES, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 40.0 / y, gap / x,
-              70.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
+              84.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
   plot_colours(&f, 0.0, fmin(2.0, most), 0.0, most);
   for (int k = 0; k < sim->count; k++)
     for (int shot = 0; shot < FRAMES; shot++) {

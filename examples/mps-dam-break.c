@@ -253,7 +253,7 @@ static bool draw_water(app *a, const simulation *sim, double T) {
   const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
   const int panel_height = (int)(panel * height / width), edge = 78, gap = 46;
   const double x = across * (panel + gap) + edge - gap + 160.0;
-  const double y = down * (panel_height + 70.0) + 42.0;
+  const double y = down * (panel_height + 84.0) + 28.0;
   const bool mps = s->method == METHOD_MPS;
   const area_def def = {.spacing = s->h / (mps ? 1.0 : sqrt((double)s->ppc)),
                         .slit = mps ? AREA_SLIT : AREA_SLIT_SHEARED,
@@ -274,7 +274,7 @@ static bool draw_water(app *a, const simulation *sim, double T) {
               "set xtics 1\nset ytics 1\n"
               "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
               "set cblabel 'pressure (kPa)'\n",
-              down, across, edge / x, (x - 160.0) / x, 72.0 / y, 1.0 - 40.0 / y, gap / x, 70.0 / y,
+              down, across, edge / x, (x - 160.0) / x, 72.0 / y, 1.0 - 40.0 / y, gap / x, 84.0 / y,
               width, height, (x - 145.0) / x);
   plot_colours(&f, 0.0, 0.9e-3 * DENSITY * G * column_height(s), least, most);
   for (int k = 0; k < FRAMES; k++) {
