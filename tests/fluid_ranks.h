@@ -36,7 +36,6 @@ static inline void drop_scene(scene *s) {
 static inline mps_status wall(scene *s, int32_t kind, double x, double y, double nx, double ny,
                               mps_signal *signal) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.kind = kind;
   def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
   def.signal = signal;

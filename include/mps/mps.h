@@ -21,7 +21,8 @@
  *   dynamics.h    explicit elastodynamics;  dynamics_limit.h  its stable step
  *   elastic.h     implicit elasticity;  elastic_motion.h  its motions, vibration;
  *                 elastic_solver.h  another solver of its equations
- *   fluid.h       free-surface flow;  fluid_rock.h  rock in it;
+ *   fluid.h       free-surface flow;  fluid_boundary.h, fluid_contact.h, fluid_load.h  its walls,
+ *                 bodies and loads;  fluid_rock.h  rock in it;
  *                 fluid_solver.h  another solver of its pressure equation
  *   couple.h      implicit coupling of two codes
  *   waves.h       seas, wave makers, absorption, reflection;  wave_loads.h  loads on walls
@@ -45,6 +46,9 @@
 #include "elastic_motion.h"
 #include "elastic_solver.h"
 #include "fluid.h"
+#include "fluid_boundary.h"
+#include "fluid_contact.h"
+#include "fluid_load.h"
 #include "fluid_rock.h"
 #include "fluid_solver.h"
 #include "geostatic.h"

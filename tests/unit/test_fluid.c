@@ -157,6 +157,8 @@ static void the_definition_comes_back_completed(void **state) {
   mps_assert_near(now.level, 0.5, 1e-12); /* half a spacing above the highest row, at .45 */
   assert_int_equal(mps_fluid_get_def(NULL, &now), MPS_ERROR_ARGUMENT);
   mps_assert_fails(context, mps_fluid_get_def(f, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  assert_ptr_equal(mps_fluid_context(f), context);
+  assert_null(mps_fluid_context(NULL));
   mps_fluid_destroy(&f);
   mps_particles_destroy(&p);
 }

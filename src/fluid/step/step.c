@@ -3,7 +3,7 @@
 #include "fluid/base/access.h"
 #include "fluid/boundary/walls.h"
 #include "fluid/particles/look.h"
-#include "fluid/particles/particles.h"
+#include "fluid/particles/holder.h"
 #include "fluid/reading/probe.h"
 #include "fluid/step/afloat.h"
 #include "fluid/step/exchange.h"

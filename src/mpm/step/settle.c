@@ -3,7 +3,7 @@
  * since there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
 #include "settle.h"
 
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 #include <mps/mpm_settle.h>

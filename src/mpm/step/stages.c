@@ -3,7 +3,7 @@
 #include "stages.h"
 
 #include "core/particles/particles_internal.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 #define CHATTER 6.0 /* k dt^2/m above which a penalty contact oscillates */
 
