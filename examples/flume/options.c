@@ -106,6 +106,9 @@ static option table[] = {
         "end", "open|closed", &model.s.closed,
         "behind a structure: water leaves there, or the flume continues to --length with an "
         "end as without a structure"),
+    OPTION_CHOICE("passed", "returns|leaves", &model.s.leaves,
+                  "water that has passed the crest returns to the surface near the maker within "
+                  "some two periods, so that the mean level stays; or the flume loses it"),
     OPTION_TEXT("rock", "m,...", &model.s.rocks,
                 "X,Y,X,Y,...: corners of a region of rock, from the maker and above the bed"),
     OPTION_NUMBER("porosity", "1", OPTION_FROM_TO(0.1, 1.0), &model.s.rock.porosity, "of rock"),
