@@ -251,5 +251,6 @@ int flume_check(const options_program *program, flume *m) {
   int code = complete(program, m);
   if (code < 0) code = check_times(program, &m->s);
   if (code < 0) code = check_shapes(program, m);
-  return code < 0 ? check_gauges(program, m) : code;
+  if (code < 0) code = check_gauges(program, m);
+  return code < 0 ? flume_check_unused(program, m) : code;
 }

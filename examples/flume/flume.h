@@ -155,6 +155,8 @@ int flume_read_file(const options_program *program, flume *m);
 bool flume_read_points(const char *text, int most, double (*point)[2], int32_t *count);
 /* check.c: completes the settings and checks them; likewise. */
 int flume_check(const options_program *program, flume *m);
+/* unused.c: refuses options that the rest of the model makes no use of; likewise. */
+int flume_check_unused(const options_program *program, const flume *m);
 
 /* shapes.c: the ground as one polyline, solids, rock, water at rest. */
 void flume_make_ground(flume *m);
