@@ -122,8 +122,8 @@ typedef struct flume {
   int64_t samples, capacity;
   int64_t filled, returned; /* particles: at the start, that have returned */
   double due;               /* part of the next particle that returns, 0 to 1 */
-  flume_look look;   /* of the largest force */
-  flume_look *frame; /* of the animation */
+  flume_look look;          /* of the largest force */
+  flume_look *frame;        /* of the animation */
   int64_t frames, frame_room;
   mps_fluid_report report;
   resume_schedule saves;
@@ -148,7 +148,10 @@ static inline bool flume_is_caisson(const flume *m) {
 /* options.c: the model of the command line and its file; *code: -1 to continue, or the exit code.
  */
 flume *flume_read(int argc, char **argv, int *code);
-/* file.c. Returns -1, or the exit code after one error line. */
+/* file.c. options_refuse, with the line of the model file where the reason names an option that is
+ * a key there. */
+int flume_refuse(const options_program *program, const flume *m, const char *reason);
+/* Returns -1, or the exit code after one error line. */
 int flume_read_file(const options_program *program, flume *m);
 /* Reads texts of points X,Y in m separated by commas, at most `most` of them; false when it is
  * none. */
@@ -187,7 +190,8 @@ void flume_find_rest(flume *m);
 /* refill.c: water that has passed the crest, returned after a step of `dt` (s). */
 int64_t flume_count_water(const flume *m);
 mps_status flume_refill(flume *m, double dt);
-/* run.c: displacement (m) of the maker; steps to the end, or until Ctrl-C, which leaves a checkpoint. */
+/* run.c: displacement (m) of the maker; steps to the end, or until Ctrl-C, which leaves a
+ * checkpoint. */
 double flume_maker_place(const flume *m);
 mps_status flume_run(app *a, flume *m);
 /* restart.c. flume_peek compares the options of the file with these before the model is built. */
@@ -210,7 +214,7 @@ typedef struct flume_figures {
   double discharge;                            /* m2/s */
   double mean_level;                           /* m above that at rest, of all gauges */
   double water; /* mean of the water before the crest, over that at the start */
-  double loss;                                 /* of the height, a wave length */
+  double loss;  /* of the height, a wave length */
   mps_goda goda;
   mps_eurotop eurotop;
   bool has_goda, has_eurotop;

@@ -1,17 +1,17 @@
 /* refill.c - water that has passed the crest returns to the flume, so that the mean level of a long
- * storm stays. A particle of it is laid on the surface near the maker, in the lowest of some places,
- * with the velocity of the water below it: within incompressible water there is no room for one. The
- * rate is what is missing before the rear edge of the crest over FLUME_REFILL_PERIODS periods, slow
- * against the waves; what is missing follows from the particles themselves, so that the books close
- * to the particle: water at the start + returned = in the flume + passed.
+ * storm stays. A particle of it is laid on the surface near the maker, in the lowest of some
+ * places, with the velocity of the water below it: within incompressible water there is no room for
+ * one. The rate is what is missing before the rear edge of the crest over FLUME_REFILL_PERIODS
+ * periods, slow against the waves; what is missing follows from the particles themselves, so that
+ * the books close to the particle: water at the start + returned = in the flume + passed.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
 #include <math.h>
 
-#define PLACES 8            /* that are compared */
-#define CLEAR 4.0           /* spacings from the maker, and from gauges where the flume has room */
-#define STEEP 1.5           /* spacings between a place and the level: more is spray or a breaker */
+#define PLACES 8  /* that are compared */
+#define CLEAR 4.0 /* spacings from the maker, and from gauges where the flume has room */
+#define STEEP 1.5 /* spacings between a place and the level: more is spray or a breaker */
 #define GOLDEN 0.6180339887498949 /* of the places: even in every part of their order */
 
 /* Particles before the rear edge of the crest. */
@@ -93,8 +93,9 @@ mps_status flume_refill(flume *m, double dt) {
   mps_status status = MPS_OK;
   if (!flume_is_open(m) || m->s.leaves) return MPS_OK;
   const int64_t missing = m->filled - flume_count_water(m);
-  m->due = missing > 0 ? fmin(m->due + (double)missing * dt / (FLUME_REFILL_PERIODS * m->s.period), 1.0)
-                       : 0.0;
+  m->due = missing > 0
+               ? fmin(m->due + (double)missing * dt / (FLUME_REFILL_PERIODS * m->s.period), 1.0)
+               : 0.0;
   if (m->due < 1.0 || !find_place(m, place, &below, &status)) return status;
   status = add_particle(m, place, below);
   if (status == MPS_OK) m->due = 0.0, m->returned++;

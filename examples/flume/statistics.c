@@ -35,8 +35,7 @@ static void find_moments(const flume *m, int gauge, double from, double to, flum
   s->skewness = moment[1] / pow(moment[0], 1.5);
 }
 
-bool flume_find_statistics(const flume *m, int gauge, double from, double to,
-                           flume_statistics *s) {
+bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s) {
   double *height = calloc((size_t)m->samples + 1, sizeof *height);
   double before = NAN, then = NAN, crest = 0.0, trough = 0.0, first = NAN, last = NAN;
   if (!height) return false;
@@ -47,8 +46,10 @@ bool flume_find_statistics(const flume *m, int gauge, double from, double to,
     if (t < from || t > to || isnan(z)) continue;
     if (before < 0.0 && z >= 0.0) { /* between two samples the level is a straight line */
       const double at = then + (t - then) * before / (before - z);
-      if (isnan(first)) first = at;
-      else height[s->waves++] = crest - trough;
+      if (isnan(first))
+        first = at;
+      else
+        height[s->waves++] = crest - trough;
       last = at, crest = trough = 0.0;
     }
     crest = fmax(crest, z), trough = fmin(trough, z);

@@ -14,14 +14,9 @@ typedef struct need {
 } need;
 
 static int refuse(const options_program *program, const flume *m, const need *n) {
-  char text[600];
-  const document *key = m->text ? document_find(m->text, n->option) : NULL;
-  if (key)
-    snprintf(text, sizeof text, "%.200s, line %d: %s is not used: it needs %s", m->s.model,
-             key->line, n->option, n->needs);
-  else
-    snprintf(text, sizeof text, "--%s is not used: it needs %s", n->option, n->needs);
-  return options_refuse(program, text);
+  char text[300];
+  snprintf(text, sizeof text, "--%s is not used: it needs %s", n->option, n->needs);
+  return flume_refuse(program, m, text);
 }
 
 int flume_check_unused(const options_program *program, const flume *m) {
@@ -56,6 +51,7 @@ int flume_check_unused(const options_program *program, const flume *m) {
       {"beta", "--rock, or rock in --model", rock},
   };
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-    if (!list[k].met && options_given(m->table, list[k].option)) return refuse(program, m, &list[k]);
+    if (!list[k].met && options_given(m->table, list[k].option))
+      return refuse(program, m, &list[k]);
   return -1;
 }
