@@ -208,6 +208,7 @@ typedef struct flume_figures {
   double *frequency, *incident, *reflected, *target; /* Hz, m: amplitudes */
   double target_height; /* m, Hm0 of the linear target at the gauges in the same window */
   double force_still, force_peak, force_least, peak_at, foot_peak; /* N, N, N, s, Pa above rest */
+  double force_mean, force_harmonic, force_linear; /* N: of regular waves, see regular.c */
   double sliding, overturning; /* least safeties of the caisson: uplift a triangle */
   double sliding_bedding, overturning_bedding; /* uplift as computed in the rock below it */
   double uplift_peak, uplift_triangle;         /* N, above rest, at the largest force */
@@ -232,6 +233,8 @@ typedef struct flume_statistics {
 
 /* statistics.c. False without memory. */
 bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s);
+/* regular.c: force_mean and those after it, of an upright wall. */
+void flume_find_regular_forces(const flume *m, flume_figures *f);
 /* figures.c. False after an error line. */
 bool flume_find_figures(app *a, flume *m, flume_figures *f);
 void flume_free_figures(flume_figures *f);

@@ -194,10 +194,14 @@ static void summarise_absorption(output *f, const flume *m) {
 
 static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   const bool wall = flume_is_loaded(m), caisson = flume_is_caisson(m), body = flume_has_body(m);
+  const bool regular = !isnan(g->force_mean);
   json_number_if(f, wall, "force_still", g->force_still);
   json_number_if(f, wall, "force_peak", g->force_peak - g->force_still);
   json_number_if(f, wall, "force_least", g->force_least - g->force_still);
   json_number_if(f, wall, "force_peak_at", g->peak_at);
+  json_number_if(f, regular, "force_peak_mean", g->force_mean);
+  json_number_if(f, regular, "force_harmonic", g->force_harmonic);
+  json_number_if(f, regular, "force_harmonic_linear", g->force_linear);
   json_number_if(f, wall, "foot_peak", g->foot_peak);
   json_number_if(f, g->has_goda, "force_goda", g->goda.force);
   json_number_if(f, g->has_goda, "foot_goda", g->goda.p3);
@@ -217,6 +221,12 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
     printf("largest force above rest %.1f N at %.2f s, Goda %.1f N (%+.1f %%)\n",
            g->force_peak - g->force_still, g->peak_at, g->goda.force,
            100.0 * ((g->force_peak - g->force_still) / g->goda.force - 1.0));
+  if (regular && g->has_goda)
+    printf(
+        "mean of the highest force of each wave %.1f N (%+.1f %% of Goda's); first harmonic %.1f "
+        "N, linear theory %.1f N (%+.1f %%)\n",
+        g->force_mean, 100.0 * (g->force_mean / g->goda.force - 1.0), g->force_harmonic,
+        g->force_linear, 100.0 * (g->force_harmonic / g->force_linear - 1.0));
 }
 
 static void summarise_discharge(app *a, output *f, const flume *m, const flume_figures *g,
