@@ -111,6 +111,7 @@ mps_status flume_build(app *a, flume *m) {
   m->capacity = (int64_t)ceil(m->s.duration / m->s.sample - 1e-9);
   m->sample = calloc((size_t)m->capacity + 1, sizeof *m->sample);
   flume_find_rest(m);
+  if (status == MPS_OK && flume_is_open(m)) m->filled = flume_count_water(m);
   return status == MPS_OK && !(m->sample && make_looks(m)) ? MPS_ERROR_MEMORY : status;
 }
 

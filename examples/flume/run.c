@@ -24,6 +24,13 @@ static double place_of(const mps_absorber *piston) {
   return piston && mps_absorber_get_report(piston, &r) == MPS_OK ? r.displacement : 0.0;
 }
 
+double flume_maker_place(const flume *m) {
+  double s = 0.0;
+  const double t = mps_fluid_time(m->fluid);
+  if (m->maker) return place_of(m->maker);
+  return mps_waves_get_piston(m->waves, 1, &t, &s, NULL, NULL, NULL) == MPS_OK ? s : 0.0;
+}
+
 /* The maker without absorption moves as it is asked to. */
 static mps_status move_maker(flume *m, double dt) {
   const double t = mps_fluid_time(m->fluid) + dt;
@@ -47,7 +54,8 @@ static mps_status make_step(flume *m) {
                          dt, &s);
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
-  return status == MPS_OK ? mps_fluid_end_step(m->fluid) : status;
+  if (status == MPS_OK) status = mps_fluid_end_step(m->fluid);
+  return status == MPS_OK ? flume_refill(m, dt) : status;
 }
 
 /* Where a step is not made, as after Ctrl-C, the pistons are those before it: the checkpoint's. */
@@ -68,14 +76,13 @@ static mps_status step(flume *m) {
 /* Water behind the crest, and what has left over the open side. A film that stays on the crest has
  * not passed it. */
 static mps_status measure_passed(flume *m, flume_sample *sample) {
+  const double each = m->s.spacing * m->s.spacing;
+  const int64_t count = mps_particles_count(m->water), before = flume_count_water(m);
   mps_reaction side;
-  mps_view x;
-  int64_t behind = 0;
-  mps_status status = mps_fluid_get_reaction(m->fluid, FLUME_END, &side);
-  if (status == MPS_OK) status = mps_particles_view(m->water, "position", &x);
+  const mps_status status = mps_fluid_get_reaction(m->fluid, FLUME_END, &side);
   if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < x.shape[0]; i++) behind += *mps_view_f64(&x, i, 0) > m->heel[0];
-  sample->volume = side.removed_mass / WAVES_DENSITY + (double)behind * m->s.spacing * m->s.spacing;
+  sample->volume = side.removed_mass / WAVES_DENSITY + (double)(count - before) * each;
+  sample->returned = (double)m->returned * each, sample->water = (double)before * each;
   return MPS_OK;
 }
 
@@ -104,11 +111,9 @@ static mps_status take_sample(flume *m) {
   for (int k = 0; k < m->gauges; k++) sample.level[k] -= m->s.depth;
   if (status == MPS_OK) status = flume_measure_loads(m, &sample);
   if (status == MPS_OK && flume_is_open(m)) status = measure_passed(m, &sample);
-  if (status == MPS_OK && !m->maker)
-    status = mps_waves_get_piston(m->waves, 1, &sample.t, &sample.maker, NULL, NULL, NULL);
   if (status == MPS_OK) status = mps_fluid_get_report(m->fluid, &m->report);
   if (status != MPS_OK) return status;
-  if (m->maker) sample.maker = place_of(m->maker);
+  sample.maker = flume_maker_place(m);
   sample.end = place_of(m->end);
   m->sample[m->samples++] = sample;
   status = take_frame(m);
