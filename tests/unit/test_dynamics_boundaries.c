@@ -284,6 +284,7 @@ static void dashpots_on_one_particle(void **state) {
       const double c2[2] = {corner ? 200.0 / D : 0.0, corner ? 100.0 / D : 0.0};
       double v[2] = {0.3, -0.2};
       for (int k = 0; k < 20; k++) {
+        const double before[2] = {v[0], v[1]};
         for (int m = 0; m < 2; m++) {
           const double c = c1[m] + c2[m];
           const double in = m == 0 ? 1.5 * mps_signal_velocity(wave, mps_dynamics_time(d)) : 0.0;
@@ -293,8 +294,10 @@ static void dashpots_on_one_particle(void **state) {
                      : (v[m] * (1.0 - 0.5 * c * dt) + pull) / (1.0 + 0.5 * c * dt);
         }
         mps_assert_ok(context, mps_dynamics_step(d, 1));
-        for (int m = 0; m < 2; m++)
+        for (int m = 0; m < 2; m++) {
           mps_assert_near(value(set, "velocity", id, m), v[m], 1e-11 * (1.0 + fabs(v[m])));
+          mps_assert_near(value(set, "acceleration", id, m), (v[m] - before[m]) / dt, 1e-8);
+        }
       }
       mps_dynamics_destroy(&d);
       mps_particles_destroy(&set);
