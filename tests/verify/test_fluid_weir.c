@@ -54,7 +54,7 @@ static mps_fluid *make_basin(mps_particles **water) {
   return fluid;
 }
 
-/* Theory goes on from the head that was measured when the first front had left. */
+/* Theory continues from the head that was measured when the first front had left. */
 static void a_basin_runs_out_by_the_law_of_the_weir(void **state) {
   (void)state;
   const double law = pow(2.0 / 3.0, 1.5) * sqrt(9.81); /* m^.5/s */
