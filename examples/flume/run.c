@@ -27,12 +27,12 @@ static double place_of(const mps_absorber *piston) {
   return piston && mps_absorber_get_report(piston, &r) == MPS_OK ? r.displacement : 0.0;
 }
 
-/* Before a wall the mean level at the maker's face is some mm above that of the flume, as standing
- * waves have it there, and the maker, which holds it, would move back and the mean level of the
- * flume fall. An offset of the level that it is given, the integral of its correction, takes it
- * back:
+/* Before a wall the maker would not stay: the mean level of standing waves at its face, which it
+ * holds, is some mm above that of the flume, and the slow part of the second order that it is asked
+ * for has an endless flume before it. Both change the mean level of a closed one. An offset of the
+ * level that it is given, the integral of its displacement, takes it back:
  *
- *   X' = s (b - X d/L - ...) - leak X,  b' = -K X,
+ *   X' = s (b - X d/L - ...), b' = -K X,
  *
  * with K = (s d/L)^2/(4 s), and its rate (s K)^1/2 at most SLOW of a period: without oscillations,
  * and slow against the waves. Between two pistons the mean level is theirs. */
@@ -41,7 +41,7 @@ static void return_maker(flume *m, double dt) {
   if (!m->maker || m->end || mps_absorber_get_report(m->maker, &r) != MPS_OK) return;
   const double s = sqrt(WAVES_G / m->s.depth);
   const double rate = fmin(0.5 * s * m->s.depth / m->toe, SLOW / m->s.period);
-  m->offset -= rate * rate / s * r.correction * dt;
+  m->offset -= rate * rate / s * r.displacement * dt;
 }
 
 double flume_maker_place(const flume *m) {
