@@ -8,6 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#define SLOW 0.2 /* rate at which the mean position of the maker returns, of a period */
+
 /* ---- pistons --------------------------------------------------------------------------------- */
 
 static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, double face, double dt,
@@ -15,13 +17,31 @@ static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, doub
   const double t = mps_fluid_time(m->fluid);
   double level, u;
   mps_status status = mps_fluid_get_levels(m->fluid, 1, &face, &level);
-  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, level - m->s.depth, moved, &u);
+  level -= m->s.depth + m->offset;
+  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, level, moved, &u);
   return status == MPS_OK ? mps_fluid_set_wall_motion(m->fluid, wall, moved, &u) : status;
 }
 
 static double place_of(const mps_absorber *piston) {
   mps_absorber_report r = {.displacement = 0.0};
   return piston && mps_absorber_get_report(piston, &r) == MPS_OK ? r.displacement : 0.0;
+}
+
+/* Before a wall the maker would not stay: the mean level of standing waves at its face, which it
+ * holds, is some mm above that of the flume, and the slow part of the second order that it is asked
+ * for has an endless flume before it. Both change the mean level of a closed one. An offset of the
+ * level that it is given, the integral of its displacement, takes it back:
+ *
+ *   X' = s (b - X d/L - ...), b' = -K X,
+ *
+ * with K = (s d/L)^2/(4 s), and its rate (s K)^1/2 at most SLOW of a period: without oscillations,
+ * and slow against the waves. Between two pistons the mean level is theirs. */
+static void return_maker(flume *m, double dt) {
+  mps_absorber_report r;
+  if (!m->maker || m->end || mps_absorber_get_report(m->maker, &r) != MPS_OK) return;
+  const double s = sqrt(WAVES_G / m->s.depth);
+  const double rate = fmin(0.5 * s * m->s.depth / m->toe, SLOW / m->s.period);
+  m->offset -= rate * rate / s * r.displacement * dt;
 }
 
 double flume_maker_place(const flume *m) {
@@ -55,6 +75,7 @@ static mps_status make_step(flume *m) {
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
   if (status == MPS_OK) status = mps_fluid_end_step(m->fluid);
+  if (status == MPS_OK) return_maker(m, dt);
   return status == MPS_OK ? flume_refill(m, dt) : status;
 }
 

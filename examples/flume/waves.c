@@ -9,11 +9,6 @@
 
 enum { POINTS = 40 }; /* a period, of a record read from a file */
 
-/* Of a period: the piston's correction returns. By the library's .02 a mean level at its face that
- * is .2 mm off moves it by .05 m in a storm, and the mean level of the flume with it by 3 mm; .1
- * reflects at most .8 % more of the waves. */
-#define LEAK 0.1
-
 static mps_waves_def definition(const flume_settings *s) {
   mps_waves_def def = mps_waves_defaults();
   static const int32_t kinds[] = {MPS_WAVES_KIND_REGULAR, MPS_WAVES_KIND_JONSWAP,
@@ -90,7 +85,7 @@ mps_status flume_make_pistons(app *a, flume *m) {
   mps_absorber_def def = mps_absorber_defaults();
   def.form = m->s.form ? MPS_ABSORBER_FORM_SHALLOW : MPS_ABSORBER_FORM_TUNED;
   def.depth = m->s.depth, def.gravity = WAVES_G;
-  def.period = m->s.period, def.leak = LEAK / m->s.period;
+  def.period = m->s.period;
   if (!isnan(m->s.stroke)) def.stroke = m->s.stroke;
   def.waves = m->waves;
   if (m->s.absorb != FLUME_ACTIVE) return MPS_OK;
