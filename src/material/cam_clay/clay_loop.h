@@ -12,10 +12,10 @@
 #include "material/tensor.h"
 
 #define CLAY_CHUNK 64
-#define CLAY_LANES 8       /* doubles of the longest vector: a divisor of CLAY_CHUNK */
-#define CLAY_LONGEST 1e-2  /* strain of an undivided step, as in cam_clay.c */
-#define CLAY_LARGEST 1.0   /* argument of the exponentials */
-#define CLAY_ROUNDS 12     /* of Newton's method */
+#define CLAY_LANES 8      /* doubles of the longest vector: a divisor of CLAY_CHUNK */
+#define CLAY_LONGEST 1e-2 /* strain of an undivided step, as in cam_clay.c */
+#define CLAY_LARGEST 1.0  /* argument of the exponentials */
+#define CLAY_ROUNDS 12    /* of Newton's method */
 
 /* What a particle is; doubles, as the vectors' other values. */
 #define CLAY_ELASTIC 0.0
@@ -37,13 +37,13 @@ typedef struct clay_packed {
   double p0[CLAY_CHUNK], dv[CLAY_CHUNK], vm[CLAY_CHUNK], q2[CLAY_CHUNK], rate[CLAY_CHUNK];
   double y[CLAY_CHUNK], g[CLAY_CHUNK];
   double p[CLAY_CHUNK], pc[CLAY_CHUNK], D[CLAY_CHUNK];
-  double state[CLAY_CHUNK]; /* 0: Newton's method works on it, 1: solved, 2: not */
+  double state[CLAY_CHUNK];  /* 0: Newton's method works on it, 1: solved, 2: not */
   double strain[CLAY_CHUNK]; /* growth of the plastic strain */
   int64_t at[CLAY_CHUNK];
 } clay_packed;
 
-/* Vectors of particles, as long as the processor's: gcc leaves the round of Newton's method below as
- * a loop with branches. */
+/* Vectors of particles, as long as the processor's: gcc leaves the round of Newton's method below
+ * as a loop with branches. */
 #if MPSI_LEVEL == 4
 #define CLAY_WIDE 8
 #elif MPSI_LEVEL == 3
@@ -176,8 +176,7 @@ MPSI_INLINE clay_mask clay_move(double kappa, double per_plastic, int64_t k, cla
   const clay_wide D = 1.0 + rate * g, per_D = 1.0 / D, twice = 2.0 * p - pc;
   const clay_wide cut = clay_get(c->q2 + k) * per_D * per_D;
   const clay_wide r1 = (dv - elastic) - vm * g * twice, r2 = cut + p * (p - pc);
-  const clay_mask done =
-      (clay_sizes(r1) <= 1e-14 * vm) & (clay_sizes(r2) <= 1e-13 * (1.0 + p * p));
+  const clay_mask done = (clay_sizes(r1) <= 1e-14 * vm) & (clay_sizes(r2) <= 1e-13 * (1.0 + p * p));
   const clay_wide yy = -kappa - vm * g * (2.0 * p + fall * pc), yg = -vm * twice;
   const clay_wide gy = p * twice + fall * p * pc, gg = -2.0 * cut * rate * per_D;
   const clay_wide det = yy * gg - yg * gy, per_det = 1.0 / det;
