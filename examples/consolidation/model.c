@@ -84,8 +84,6 @@ const char *consolidation_settle(simulation *sim, const option *table) {
     return "--load must be small, at most 0.02 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
            "nu)): "
            "the exact solution is of small strains";
-  if (s->kase == STRIP && s->scheme == IMPLICIT)
-    return "--scheme implicit is not for --case strip, which settles with explicit pressures";
   if (isnan(s->damping)) s->damping = 0.5 * sqrt(sim->modulus / DENSITY);
   if (isnan(s->duration))
     s->duration = (s->kase == MANDEL ? 1000.0 : 300.0) / sqrt(sim->modulus / DENSITY);

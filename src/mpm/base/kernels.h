@@ -1,5 +1,5 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * cut_scatter.c, cut_gather.c, search.c, sweep.c; common code is in loops.h.
+ * cut_scatter.c, cut_gather.c, search.c, sweep.c, cell_loops.c; common code is in loops.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H
@@ -31,6 +31,8 @@ typedef struct mpsi_kernels {
   mpsi_mpm_task flush;            /* second half: from the tile to the nodes */
   const mpsi_mpm_task (*g2p)[2];  /* G2P: velocities and positions; then law and speed */
   mpsi_mpm_task speed;            /* largest c + |v| of a block */
+  mpsi_mpm_task pore_sum;  /* water in the pores: sums of a block in the worker's tiles, which */
+  mpsi_mpm_task pore_give; /* are clear; and back from the cells (water/cell_loops.c) */
   mpsi_fit_fn fit;
   mpsi_foot_fn foot;
   /* search.c, of particles [begin, end): the largest speed (m/s); the first that is not known to be

@@ -271,6 +271,8 @@ void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constra
                                    bool back);
 void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mpsi_impulses *all, int64_t constraint, double *v);
 void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
+void MPSI_LEVELLED(mpsi_pore_sum)(mps_mpm *mpm, int64_t b, int32_t worker);
+void MPSI_LEVELLED(mpsi_pore_give)(mps_mpm *mpm, int64_t b, int32_t worker);
 void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

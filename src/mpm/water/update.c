@@ -2,6 +2,7 @@
  * particles have moved. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit.h"
 #include "layers.h"
+#include "mpm/base/kernels.h"
 #include "water.h"
 
 #include <string.h>
@@ -100,6 +101,11 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   link_blocks(&mpm->grid, mpm->water);
   mpsi_mpm_for_cells(mpm, keep_volumes);
   return MPS_OK;
+}
+
+void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme) {
+  mpm->water->def.scheme = scheme;
+  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
 }
 
 /* ---- after ----------------------------------------------------------------------------------- */
