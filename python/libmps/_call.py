@@ -174,8 +174,11 @@ class Call:
                 return 1
             if blocks:
                 block = _block.Block(values[blocks[0]])
-                answer = function(block)
-                block._end()
+                try:
+                    answer = function(block)
+                    block._write()
+                finally:
+                    block._end()
             else:
                 answer = function(*[self.wrap(value) for value in values])
             if kind.result.kind == "void":
@@ -250,8 +253,12 @@ class Call:
             for k, item in enumerate(value):
                 getattr(made, name)[k] = self.to_c(item, kind.item, True)
         elif kind.kind == "array":
-            self.fits(name, kind, value)
-            getattr(made, name)[0:len(value)] = [float(x) for x in value]
+            try:
+                numbers = [float(x) for x in value]
+            except (TypeError, ValueError) as error:
+                raise type(error)(f"{name!r} is {value!r}: up to {kind.length} numbers are wanted") from error
+            self.fits(name, kind, numbers)
+            getattr(made, name)[0:len(numbers)] = numbers
         else:
             try:
                 setattr(made, name, self.to_c(value, kind, True))
@@ -266,9 +273,8 @@ class Call:
     def to_c(self, value, kind, constant):
         if value is None:
             return ffi.NULL
-        if getattr(value, "pointer", None) is not None:
-            self.alive.append(value)
-            return value.pointer
+        if hasattr(type(value), "pointer"):
+            return self.object(value, kind)
         if kind.kind == "function" and not isinstance(value, ffi.CData):
             return self.callback(kind, value)
         if kind.kind == "pointer" and kind.item.cname == "char":
@@ -293,6 +299,16 @@ class Call:
         if kind.kind == "pointer" and not isinstance(value, ffi.CData):
             return self.array(value, kind.item, constant)
         return value
+
+    def object(self, value, kind):
+        """The pointer of an object of the library, which is kept alive."""
+        if value.pointer is None:
+            raise ValueError("it is closed")
+        wanted = class_name(kind.item.cname) if _is_object(kind) else "number or array"
+        if ffi.typeof(value.pointer) is not kind and kind.cname != "void *":
+            raise TypeError(f"a {class_name(value.kind)} is no {wanted}")
+        self.alive.append(value)
+        return value.pointer
 
     def structs(self, kind, rows):
         """An array of structs from a list of dictionaries."""

@@ -185,6 +185,26 @@ class Errors(unittest.TestCase):
         with self.assertRaises(AttributeError):
             mps.nonsense
 
+    def test_values_of_the_wrong_kind_are_named(self):
+        context = mps.Context()
+        sand = block(context)
+        law = context.material_create_linear_elastic(1e6, 0.3)
+        other = context.particles_create(spacing=0.1)
+        other.close()
+        for call, kind, text in [
+                (lambda: context.mpm_create(law, sand, cell=0.2), TypeError, "'particles' is .*a Material is no Particles"),
+                (lambda: context.mpm_create(sand, law, cell=0.2, kernel=law), TypeError, "'kernel' is .*Material is no Kernel"),
+                (lambda: context.mpm_create(sand, law, cell=law), TypeError, "'cell' is .*no number"),
+                (lambda: context.mpm_create(sand, law, cell=0.2, gravity=9.81), TypeError, "'gravity' is 9.81: up to 3 numbers"),
+                (lambda: context.mpm_create(sand, law, cell=0.2, lower=[0, "a"]), ValueError, "'lower' is .*up to 3 numbers"),
+                (lambda: context.mpm_create(other, law, cell=0.2), ValueError, "'particles' is .*it is closed"),
+                (lambda: mps.Context(thread=2), TypeError, r"Context\(\) has no keyword 'thread' \(is it 'threads'\?\)"),
+                (lambda: mps.Context(threads=-3), mps.Error, "^mps_context_create: threads is -3"),
+                (lambda: copy.copy(sand), TypeError, "a Particles is neither copied nor pickled"),
+                (lambda: pickle.dumps(law), TypeError, "a Material is neither copied nor pickled")]:
+            with self.assertRaisesRegex(kind, text):
+                call()
+
     def test_an_exception_in_a_callback_comes_out(self):
         context = mps.Context()
         sand = block(context)

@@ -172,6 +172,28 @@ class Laws(unittest.TestCase):
             self.assertTrue(stress.base is None and stress.flags.owndata)
             self.assertTrue(np.isfinite(gradient).all() and (ids >= 0).all())
 
+    def test_a_block_that_is_kept_gives_nothing_more(self):
+        kept = []
+
+        def update(b):
+            if len(kept) == 1:
+                kept.append(b)
+                raise ZeroDivisionError
+            kept.append(b)
+            b.stress[0] += 0.0
+
+        context = mps.Context(threads=1)
+        solver = context.mpm_create(block(context), context.material_create_user(
+            update=update, name="kept", bulk_modulus=YOUNG, shear_modulus=SHEAR), cell=0.2, dt=5e-4)
+        with self.assertRaises(ZeroDivisionError):
+            solver.step(1)
+        for b in kept[:2]:  # one has returned, the other raised
+            self.assertGreater(b.count, 0)
+            for name in ("gradient", "ids", "history", "position", "volume_ratio", "flags"):
+                with self.assertRaises(mps.StaleError, msg=name):
+                    getattr(b, name)
+        self.assertEqual(kept[0].stress.shape, (4, kept[0].count))  # taken in the law
+
     def test_history_and_assignment(self):
         def update(block):
             block.history[0] += block.dt
