@@ -2,6 +2,7 @@
 
 import difflib
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -233,7 +234,7 @@ class Call:
 
     def measure(self, owner, name, kind, value):
         """Notes how long an array is that C reads or writes."""
-        plain = not isinstance(value, (ffi.CData, str, bytes, dict)) and not hasattr(type(value), "pointer")
+        plain = not isinstance(value, (ffi.CData, str, bytes, Mapping, Result)) and not hasattr(type(value), "pointer")
         if kind.kind == "pointer" and plain and hasattr(value, "__len__"):
             self._arrays.append((owner, name, numpy.size(value) if kind.item.kind == "primitive"
                                  else len(value)))
@@ -289,8 +290,8 @@ class Call:
             self.alive.append(made)
             return made
         if kind.kind == "pointer" and kind.item.kind == "struct":
-            if isinstance(value, dict):
-                return self.struct(kind.item, value)
+            if isinstance(value, (Mapping, Result)):
+                return self.struct(kind.item, vars(value) if isinstance(value, Result) else value)
             if isinstance(value, (list, tuple)) and kind.item.fields:
                 return self.structs(kind.item, value)
             if not isinstance(value, ffi.CData):

@@ -6,6 +6,7 @@ import gc
 import pickle
 import re
 import signal
+import types
 import unittest
 
 import numpy as np
@@ -104,6 +105,19 @@ class Values(unittest.TestCase):
         self.assertTrue(np.all(sand["python.steps"] == 50.0))
         np.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-13)
         self.assertGreater(np.abs(np.diff(places[0][:, 0])).max(), 0.1)
+
+    def test_a_struct_is_a_mapping_or_a_result(self):
+        context = mps.Context()
+        body = context.body_create_disc(0.1, position=[1.0, 2.0])
+        body.set_motion({"velocity": [0.5, 0.0, 0.0]})
+        self.assertEqual(list(body.get_state().velocity), [0.5, 0.0, 0.0])
+        body.set_motion(types.MappingProxyType({"velocity": [0.25, 0.0, 0.0]}))
+        self.assertEqual(list(body.get_state().velocity), [0.25, 0.0, 0.0])
+        body.set_motion(mps.BodyMotion(velocity=[0.0, 3.0, 0.0]))
+        state = body.get_state()
+        self.assertEqual((list(state.velocity), list(state.position[:2])), ([0.0, 3.0, 0.0], [1.0, 2.0]))
+        with self.assertRaisesRegex(TypeError, "no member 'velocty' .is it 'velocity'"):
+            body.set_motion(mps.BodyMotion(velocty=[0.0, 3.0, 0.0]))
 
     def test_layers_are_dictionaries_and_hooks_are_functions(self):
         """Stress at rest under two layers; a warning through the log hook."""

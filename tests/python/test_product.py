@@ -2,6 +2,7 @@
 compiled laws against the library's own, exceptions with their traceback, arrays that C fills, pictures."""
 
 import ast
+import builtins
 import importlib.util
 import inspect
 import pathlib
@@ -86,6 +87,22 @@ class Documents(unittest.TestCase):
         for name in classes:
             self.assertTrue(inspect.isclass(getattr(mps, name)), name)
         self.assertTrue(pathlib.Path(mps.__file__).with_name("py.typed").exists())
+
+    def test_stubs_name_nothing_that_they_lack(self):
+        stubs = ast.parse(pathlib.Path(mps.__file__).with_name("__init__.pyi").read_text())
+        known = set(dir(builtins))
+        for node in ast.walk(stubs):
+            if isinstance(node, ast.ClassDef):
+                known.add(node.name)
+            elif isinstance(node, (ast.Import, ast.ImportFrom)):
+                known.update(name.asname or name.name for name in node.names)
+            elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+                known.add(node.target.id)
+            elif isinstance(node, ast.Assign):
+                known.update(target.id for target in node.targets if isinstance(target, ast.Name))
+        named = {node.id for node in ast.walk(stubs) if isinstance(node, ast.Name)}
+        self.assertGreater(len(named), 30)
+        self.assertEqual(named - known, set())
 
 
 class Shown(unittest.TestCase):
