@@ -130,10 +130,11 @@ static void caisson_feels_no_side_force(void **state) {
   start(shift, 0.05, 1, BEDDING_RADIUS);
   const sums s = observe(0.5, 2.5);
   const double uplift = buoyancy();
-  print_message(
-      "caisson on rock: force %.2f +- %.2f N, uplift %.1f +- %.1f N (%.1f), energy gained "
-      "%.1e of %.2f J lost\n",
-      s.mean[0], s.spread[0], s.mean[1], s.spread[1], uplift, s.gained, s.lost);
+  print_message("caisson on rock: force %.2f +- %.2f N, uplift %.1f +- %.1f N (%.1f N, %+.2f %%), "
+                "energy gained "
+                "%.1e of %.2f J lost\n",
+                s.mean[0], s.spread[0], s.mean[1], s.spread[1], uplift,
+                100.0 * (s.mean[1] / uplift - 1.0), s.gained, s.lost);
   assert_true(fabs(s.mean[0]) < 0.01 * uplift && s.spread[0] < 0.006 * uplift);
   mps_assert_near(s.mean[1], uplift, 0.01 * uplift);
   assert_true(s.spread[1] < 0.01 * uplift);
