@@ -20,9 +20,7 @@ enum { FLUME_ACTIVE = 0, FLUME_ZONE, FLUME_NONE };
 enum { FLUME_POINTS = 64, FLUME_ROCKS = 8, FLUME_PROBES = 32, FLUME_GAUGES = 16 };
 enum { FLUME_BED = 0, FLUME_MAKER, FLUME_END, FLUME_BODY }; /* boundaries of the fluid */
 
-/* Radius of the weights in spacings where there is rock, whose particles lie 1/porosity^.5 spacings
- * apart. With the library's 3.1 the force of still water on a caisson on rock scatters by 51 N,
- * with 3.6 by 2.4 N (share/models/caisson.yaml, 2.5 s). */
+/* Radius of the weights in rock, in spacings, at most (mps/fluid_rock.h). */
 #define FLUME_ROCK_RADIUS 3.6
 
 /* Periods in which water that has passed the crest returns: with q = 1e-3 m2/s of a flume of 1.9 m2

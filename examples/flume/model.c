@@ -78,7 +78,6 @@ static mps_status make_fluid(app *a, flume *m) {
   def.domain = a->domain;
   def.density = WAVES_DENSITY, def.level = s->depth;
   def.tolerance = s->tolerance;
-  if (m->shape.rocks > 0) def.radius_ratio = FLUME_ROCK_RADIUS;
   mps_status status = mps_particles_create(a->context, &set, &m->water);
   if (status == MPS_OK) status = flume_fill(m, m->water);
   status = app_settle(a, status);

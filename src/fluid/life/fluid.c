@@ -162,7 +162,8 @@ static void release(mps_fluid *f) {
 static mps_status start(mps_fluid *f, const char *function) {
   f->count = mps_particles_count(f->particles);
   f->l0 = mps_particles_spacing(f->particles);
-  f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
+  f->reach = f->def.radius_ratio * f->l0;
+  f->weight = mpsi_fluid_make_weight(f->l0, f->reach, f->reach);
   f->most_near = 31, f->most_lower = 15;
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);

@@ -9,6 +9,7 @@
 #include "fluid/step/exchange.h"
 #include "fluid/step/move.h"
 #include "fluid/step/warn.h"
+#include "fluid/particles/pores.h"
 #include "fluid/particles/rock.h"
 #include "fluid/ranks/partition.h"
 
