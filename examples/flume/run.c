@@ -29,8 +29,8 @@ static double place_of(const mps_absorber *piston) {
 
 /* Before a wall the maker would not stay: the mean level of standing waves at its face, which it
  * holds, is some mm above that of the flume, and the slow part of the second order that it is asked
- * for has an endless flume before it. Both change the mean level of a closed one. An offset of the
- * level that it is given, the integral of its displacement, takes it back:
+ * for is that of an infinitely long flume. Both change the mean level of a closed one. An offset of
+ * the level that it is given, the integral of its displacement, takes it back:
  *
  *   X' = s (b - X d/L - ...), b' = -K X,
  *
