@@ -31,9 +31,6 @@
 
 #define BETA 0.06
 #define EVERY 8 /* steps */
-#define LEAST_SHARE 0.4
-#define MOST_SHARE 2.0
-#define OWN 0.75
 
 bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run) {
   return p->laws.some_filtered && run->steps % EVERY == 0;
@@ -54,32 +51,13 @@ static double bulk_of(const mpsi_columns *p, int64_t k) {
   return mpsi_law_of(p, k)->bulk * mpsi_mpm_stiffness(p, k);
 }
 
-/* Growth of p along gravity over that of the weight. Where p is in proportion to the stress along
- * gravity it is p over that stress: (1 + 2 K0)/3 in ground at rest, up to 1.8 where it is pushed
- * together; in ground compressed without lateral strain K/M. With K/M alone shaken ground lost
- * height by every cycle, with its own p alone its p grew (property/mpm_filter_cycles): the mean has
- * most of the one. */
-static double share_of_weight(const mpsi_grid *grid, const mpsi_columns *p, const double *gravity,
-                              int64_t k) {
-  const mpsi_law_use *law = mpsi_law_of(p, k);
-  const double *g = gravity;
-  double along = 0.0, square = 0.0;
-  for (int c = 0; c < grid->dim; c++) along += g[c] * g[c] * p->s[c][k], square += g[c] * g[c];
-  along += 2.0 * g[0] * g[1] * p->s[3][k];
-  if (grid->dim == 3) along += 2.0 * (g[2] * g[0] * p->s[4][k] + g[1] * g[2] * p->s[5][k]);
-  const double mean = mean_stress(p, k) * square;
-  if (!(along < 0.0 && mean < 0.0)) return law->bulk / law->modulus;
-  const double own = fmax(LEAST_SHARE, fmin(MOST_SHARE, mean / along));
-  return OWN * own + (1.0 - OWN) * law->bulk / law->modulus;
-}
-
-/* e, Pa, and its slope (per cell along each axis) where the vertical stress is that of the weight;
- * none where it is open. */
+/* e, Pa, and its slope (per cell along each axis) in ground at rest, compressed by its weight
+ * without lateral strain; none where it is open. */
 static double closed_stress(const mpsi_grid *grid, const mpsi_columns *p, const mps_mpm_def *def,
                             int64_t k, double *slope) {
-  const double gap = *gap_of(mpsi_law_of(p, k), k), density = p->m[k] / p->V[k];
-  const double weight =
-      gap > 0.0 ? 0.0 : density * share_of_weight(grid, p, def->gravity, k) * grid->cell;
+  const mpsi_law_use *law = mpsi_law_of(p, k);
+  const double gap = *gap_of(law, k), density = p->m[k] / p->V[k];
+  const double weight = gap > 0.0 ? 0.0 : density * law->bulk / law->modulus * grid->cell;
   for (int c = 0; c < 3; c++) slope[c] = c < grid->dim ? -weight * def->gravity[c] : 0.0;
   return mean_stress(p, k) + bulk_of(p, k) * gap;
 }
