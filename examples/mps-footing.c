@@ -56,7 +56,7 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("shape", "strip|circle", &s->shape, "circle: axisymmetry; cohesive ground"),
       OPTION_NUMBER("half-width", "m", OPTION_LENGTH, &s->half_width, "B/2; radius of a circle"),
       COMMON_NUMBER("friction", &s->mu, "of its base"),
-      COMMON_NUMBER("corner", &s->corner, "radius of its edges for the soil, in cells; impulses"),
+      COMMON_NUMBER("corner", &s->corner, NULL),
       COMMON_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 0.1), &s->rate,
                        "default 0.5 mm/s, quasi-static 1.5 mm/s"),
       OPTION_NUMBER("settlement", "m", OPTION_LENGTH, &s->settlement,

@@ -11,7 +11,7 @@
 static const char *settle(settings *s, const option *table) {
   const bool softens = options_given(table, "residual-phi") ||
                        options_given(table, "residual-cohesion") || options_given(table, "slip");
-  if (isnan(s->crest)) s->crest = 1.2 * s->height;
+  if (isnan(s->crest)) s->crest = 1.2 * (s->height + s->base);
   if (isnan(s->toe)) s->toe = s->base > 0.0 ? 1.5 * s->height : 0.0;
   if (isnan(s->h)) s->h = s->height / 20.0;
   if (s->base > 0.0) {
@@ -73,7 +73,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("base", "m", OPTION_FROM_TO(0.0, 1e6), &s->base,
                     "depth of ground below the toe; rigid rough ground below"),
       OPTION_NUMBER("crest", "m", OPTION_LENGTH, &s->crest,
-                    "level ground behind the crest; default 1.2 heights"),
+                    "level ground behind the crest; default 1.2 times height and base"),
       OPTION_NUMBER(
           "toe", "m", OPTION_LENGTH, &s->toe,
           "level ground in front of the toe, up to whole cells; default 1.5 heights with --base"),

@@ -103,7 +103,7 @@ static const char *choice_word(const char *choices, int index, int *length) {
 
 static void describe_default(const option *o, char *out, size_t size) {
   out[0] = '\0';
-  if (o->number && o->count < 2 && !isnan(*o->number)) {
+  if (o->number && o->count < 2 && isfinite(*o->number)) {
     char value[48];
     units_show(*o->number, o->unit, value, sizeof value);
     snprintf(out, size, "; default %s", value);

@@ -226,11 +226,23 @@ static double limit_of_clay(const settings *s) {
   }
 }
 
+/* Mohr-Coulomb, sigma1 - sigma3 = (sigma1 + sigma3) sin(phi) + 2 c cos(phi): q in triaxial tests.
+ * Without dilation undrained shear keeps p (the elastic law does, and no volume is plastic), with
+ * it the strength has no limit. */
+static double limit_of_friction(const settings *s, double lateral) {
+  const double sine = sin(s->phi * RADIANS), cosine = cos(s->phi * RADIANS);
+  const double kp = (1.0 + sine) / (1.0 - sine);
+  const double twice = 2.0 * (s->p0 * sine + s->cohesion * cosine);
+  if (s->path == CD) return (kp - 1.0) * lateral + 2.0 * s->cohesion * sqrt(kp);
+  if (s->psi > 0.0 || s->tension < INFINITY) return NAN;
+  if (s->path == CU) return twice / (1.0 - sine / 3.0);
+  return s->path == EXTENSION ? twice / (1.0 + sine / 3.0) : NAN;
+}
+
 double element_limit(const element *x) {
   const settings *s = &x->s;
   const bool sheared = s->path == CU || s->path == CD || s->path == EXTENSION;
   const double lateral = 3.0 * s->k0 * s->p0 / (1.0 + 2.0 * s->k0);
-  const double sine = sin(s->phi * RADIANS), kp = (1.0 + sine) / (1.0 - sine);
   const bool firm = s->hardening == 0.0 && s->residual == 1.0 && s->rate_factor == 0.0 &&
                     isnan(s->residual_phi) && isnan(s->residual_cohesion);
   if (s->path_file) return NAN;
@@ -240,7 +252,5 @@ double element_limit(const element *x) {
   if (!firm) return NAN;
   if (s->law == VON_MISES && s->path >= CU) return s->yield;
   if (s->law == TRESCA && sheared) return 2.0 * s->cohesion;
-  if (s->law == MOHR_COULOMB && s->path == CD)
-    return (kp - 1.0) * lateral + 2.0 * s->cohesion * sqrt(kp);
-  return NAN;
+  return s->law == MOHR_COULOMB && sheared ? limit_of_friction(s, lateral) : NAN;
 }

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#define ADJUSTS 0.3 /* of the displacement that counts as failure */
+
 /* Trials that have ended: the last one where the run has. */
 static int ended(const simulation *sim) {
   const trial *last = &sim->trial[sim->now];
@@ -168,8 +170,26 @@ static void print(const simulation *sim) {
            found_factor(sim), stands, fails);
 }
 
+/* The first stress is no equilibrium: ground that stands moves, in proportion to 1/E, until it has
+ * one. That must be little of what counts as failure. It is least in the strongest ground. */
+static void warn_of_adjustment(app *a, const simulation *sim) {
+  const trial *least = NULL;
+  for (int k = 0; k < ended(sim); k++)
+    if (!sim->trial[k].failed && (!least || sim->trial[k].factor < least->factor))
+      least = &sim->trial[k];
+  if (!least || isnan(found_factor(sim))) return;
+  const double moved = least->moved[least->rows - 1] / sim->s.height;
+  if (moved > ADJUSTS * sim->s.fails)
+    app_warn(a,
+             "the factor of safety is too low: divided by %.4g the strength holds, but the ground "
+             "moves by %.4f H as it comes to equilibrium, and by %g H (--fails) it has failed: "
+             "take a stiffer --young",
+             least->factor, moved, sim->s.fails);
+}
+
 bool slope_finish(app *a, void *user) {
   simulation *sim = user;
+  warn_of_adjustment(a, sim);
   if (sim->s.runout && sim->lost > sim->s.crest - sim->s.h)
     app_warn(a, "the slope has moved up to the end of its ground: take a longer --crest");
   if (!write_trials(a, sim) || !write_motion(a, sim)) return false;

@@ -13,29 +13,49 @@
 typedef struct pressure {
   double across, along, height; /* height: of the force across over H above the toe */
   double theory;                /* Rankine, of a smooth wall; Coulomb, active and rough; NaN */
+  double cracked;               /* Rankine below a tension crack: active, smooth, cohesive; NaN */
 } pressure;
 
 static double unit(const settings *s) {
   return 0.5 * s->density * s->gravity * s->height * s->height;
 }
 
+/* Rankine's coefficient without cohesion. */
+static double rankine(const settings *s) {
+  const double side = s->pressure == ACTIVE ? -1.0 : 1.0;
+  return pow(tan((45.0 + side * 0.5 * s->phi) * DEGREE), 2.0);
+}
+
 /* Rankine: K rho g H^2/2 -+ 2 c sqrt(K) H. Coulomb's wedge on a vertical wall whose friction is at
  * most that of the ground: within some percent of the exact one in the active case, not in the
- * passive one. */
+ * passive one, nor on a smooth bed, on which the ground at the toe slides along with the wall. */
 static double find_theory(const settings *s) {
   const double phi = s->phi * DEGREE, side = s->pressure == ACTIVE ? -1.0 : 1.0;
-  const double k = pow(tan(0.25 * 180.0 * DEGREE + side * 0.5 * phi), 2.0);
+  const double k = rankine(s);
   if (s->friction == 0.0) return k + side * 2.0 * s->cohesion * sqrt(k) * s->height / unit(s);
-  if (s->pressure == PASSIVE || s->cohesion > 0.0) return NAN;
+  if (s->pressure == PASSIVE || s->cohesion > 0.0 || s->base == 0.0) return NAN;
   const double delta = fmin(atan(s->friction), phi);
   const double root = sqrt(sin(phi + delta) * sin(phi) / cos(delta));
   return pow(cos(phi), 2.0) / pow(1.0 + root, 2.0); /* its component across the wall */
 }
 
+/* A wall cannot pull: Rankine's stress where it is a pressure, below 2 c/(rho g sqrt(K)). It is in
+ * equilibrium and within the strength, so that the wall needs no more; with Rankine's tension it
+ * would need less than the ground does. */
+static double find_cracked(const settings *s) {
+  if (s->pressure == PASSIVE || s->friction > 0.0 || s->cohesion == 0.0) return NAN;
+  const double k = rankine(s), depth = 2.0 * s->cohesion / (s->density * s->gravity * sqrt(k));
+  return k * pow(fmax(0.0, 1.0 - depth / s->height), 2.0);
+}
+
 /* Mean over the last fifth of the path; NaN where it has not ended. */
 static pressure measure(const simulation *sim) {
   const settings *s = &sim->s;
-  pressure p = {.across = NAN, .along = NAN, .height = NAN, .theory = find_theory(s)};
+  pressure p = {.across = NAN,
+                .along = NAN,
+                .height = NAN,
+                .theory = find_theory(s),
+                .cracked = find_cracked(s)};
   if (sim->rows < WALL_SAMPLES) return p;
   const int n = WALL_SAMPLES / 5;
   double moment = 0.0;
@@ -75,6 +95,7 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   json_number(&f, "K_resultant", hypot(p->across, p->along));
   json_number(&f, "force_height", p->height);
   json_number(&f, "K_theory", p->theory);
+  json_number(&f, "K_cracked", p->cracked);
   json_end(&f);
   return output_close(&f);
 }
@@ -102,6 +123,11 @@ static bool draw_pressure(app *a, const simulation *sim, const pressure *p) {
   if (!isnan(p->theory))
     output_text(&f, ", \\\n  %.9g dashtype '--' linecolor rgb '#c0392b' title '%s'", p->theory,
                 s->friction == 0.0 ? "Rankine" : "Coulomb");
+  if (!isnan(p->cracked))
+    output_text(&f,
+                ", \\\n  %.9g dashtype '.' linecolor rgb '#c0392b' title 'Rankine with a tension "
+                "crack'",
+                p->cracked);
   output_text(&f, "\n");
   return plot_close(&f, s->out, "pressure");
 }
@@ -163,7 +189,9 @@ static void print(const settings *s, const pressure *p) {
   printf("%s earth pressure K %.4f across the wall, %.4f in all, at %.3f H",
          s->pressure == ACTIVE ? "active" : "passive", p->across, hypot(p->across, p->along),
          p->height);
-  if (!isnan(p->theory))
+  if (!isnan(p->cracked))
+    printf(" (Rankine %.4f, with a tension crack %.4f)", p->theory, p->cracked);
+  else if (!isnan(p->theory))
     printf(" (%s %.4f, %+.1f %%)", s->friction == 0.0 ? "Rankine" : "Coulomb", p->theory,
            100.0 * (p->across / p->theory - 1.0));
   printf("\n");

@@ -57,6 +57,19 @@ is "$work/beyond/path.csv" q -1 198000 3000 # Kp - 1 times 100 kPa is 200 kPa
 # Other laws: what they bear.
 run mises --law vonmises --cohesion 20kPa --path ps-undrained --strain 0.05
 is "$work/mises/path.csv" q -1 34641 35
+# (sigma1 + sigma3) sin(phi) + 2 c cos(phi) at a mean stress of 90 kPa, in compression and extension.
+clay="--law mohrcoulomb --phi 26 --cohesion 5kPa --p0 90kPa"
+for name in cu extension; do run $name-mohr $clay --path $name; done
+is "$work/cu-mohr/path.csv" q -1 102936 5
+in_range "$work/cu-mohr/summary.json" q_limit 102935 102937
+is "$work/extension-mohr/path.csv" q -1 76689 5
+in_range "$work/extension-mohr/summary.json" q_limit 76688 76690
+# Oedometer without dilation: horizontal stress at its least, a third of 450 kPa, at the end of loading;
+# back to 160 kPa it falls by nu/(1 - nu) 290 kPa.
+printf 'exx,eyy,szz,steps\n0,0,-300e3,500\n0,0,290e3,500\n' >"$work/unload.csv"
+run unload --law mohrcoulomb --phi 30 --p0 100kPa --k0 0.5 --nu 0.15 --path-file "$work/unload.csv"
+is "$work/unload/path.csv" sxx 501 -150000 50
+is "$work/unload/path.csv" sxx -1 -98824 50
 run mohr --law mohrcoulomb --phi 30 --psi 10 --path cd --strain 0.2
 is "$work/mohr/path.csv" q -1 200000 1
 run soft --law tresca --cohesion 10kPa --residual 0.5 --slip 10mm --band 0.1m --path cu --strain 1 --steps 4000

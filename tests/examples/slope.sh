@@ -23,4 +23,11 @@ for kind in 15kPa 4kPa; do
 done
 awk -v hard="$(value "$work/15kPa" runout)" -v soft="$(value "$work/4kPa" runout)" \
   'BEGIN { exit !(soft > hard + 2 && hard >= 0) }' || fail "the run-out of a strength that softens"
+# Soft deep clay moves by most of a hundredth of the height before it is in equilibrium; ten times stiffer it does not.
+for young in 100MPa 1GPa; do
+  "$1/mps-slope" --base 10 --phi 0 --cohesion 39240 --h 2 --tolerance 0.3 --young "$young" --threads 1 \
+    --out "$work/$young" >"$work/$young.log" 2>&1 || exit 1
+done
+has "$work/100MPa.log" "take a stiffer --young"
+grep -q "take a stiffer --young" "$work/1GPa.log" && fail "a warning of stiff ground"
 exit 0

@@ -1,13 +1,14 @@
 #!/bin/sh
 # wall.sh DIRECTORY: mps-wall against Rankine's coefficients on a smooth wall, at 30 degrees 1/3 and 3, with
-# cohesion, and against Coulomb's on a rough one; the force of a wall that turns about its top acts higher.
+# cohesion, between those of a wall that pulls and of ground with a tension crack, and against Coulomb's on a
+# rough one with ground below, which alone have Coulomb's wedge; the force of a wall that turns about its top acts higher.
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/checks.sh"
 
 wall() { # NAME OPTION...
   name=$1
   shift
-  "${programs}/mps-wall" --h 0.125 --rate 0.04 "$@" --threads 1 --out "$work/$name" >"$work/log" || exit 1
+  "${programs}/mps-wall" --h "${h:-0.125}" --rate 0.04 "$@" --threads 1 --out "$work/$name" >"$work/log" || exit 1
 }
 programs=$1
 value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$work/$1/summary.json"; }
@@ -20,6 +21,15 @@ wall passive --pressure passive --length 3
 in_range "$work/passive/summary.json" K 2.91 3.09
 wall clay --pressure passive --length 3 --phi 0 --cohesion 5kPa
 in_range "$work/clay/summary.json" K 2.09 2.18 # 1 + 4 c/(gamma H) = 2.133
+wall cohesive --phi 25 --cohesion 1413Pa # 0.08002 gamma H
+in_range "$work/cohesive/summary.json" K 0.198 0.228
+in_range "$work/cohesive/summary.json" K_theory 0.20193 0.20196 # K - 4 c/(gamma H) sqrt(K)
+in_range "$work/cohesive/summary.json" K_cracked 0.22754 0.22757 # K (1 - 2 c/(gamma H sqrt(K)))^2
+h=0.0625 wall rough --phi 36 --friction 0.445 --base 0.5
+in_range "$work/rough/summary.json" K 0.16 0.225 # the toe loses pressure, as of the smooth wall with a base
+in_range "$work/rough/summary.json" K_theory 0.2145 0.2147
+wall bed --phi 36 --friction 0.445
+has "$work/bed/summary.json" '"K_theory": null'
 wall top --motion top
 awk -v low="$(value active force_height)" -v high="$(value top force_height)" \
   'BEGIN { exit !(high > low + 0.02) }' || fail "the height of the force"
