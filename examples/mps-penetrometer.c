@@ -110,8 +110,8 @@ int main(int argc, char **argv) {
   const options_program program = {
       "mps-penetrometer",
       "A rigid cone, sphere or mesh pushed into soil (WLS-MPM in space; von Mises, Tresca,\n"
-      "Drucker-Prager, Cam-Clay or elastic): its resistance by tip and shaft along the path, and "
-      "the soil in section.",
+      "Drucker-Prager, Cam-Clay or elastic): its resistance by tip and shaft along the path,\n"
+      "and the soil in section.",
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;

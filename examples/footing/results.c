@@ -12,6 +12,8 @@
 
 enum { LINES = 40 };
 
+#define GROWTH 0.1 /* of the pressure, over the second half of the path: more is no capacity */
+
 /* q/c of the run, and the reference values. */
 typedef struct capacity {
   double unit;                 /* Pa: the cohesion, of the upper layer where there are two */
@@ -290,6 +292,17 @@ static void print(const settings *s, const capacity *c) {
            100.0 * (c->undeformed / c->exact - 1.0));
 }
 
+/* Sand whose pressure still grows has not reached its bearing capacity, and the line through it
+ * means nothing. */
+static void warn_of_growth(app *a, const simulation *sim, const capacity *c) {
+  const double growth = c->slope * (sim->path[sim->rows - 1] - sim->path[sim->rows / 2]) * 1e3;
+  if (sim->s.model != VON_MISES && growth > GROWTH * c->last)
+    app_warn(a,
+             "the pressure grows by %.0f %% over the second half of the path: the ground has not "
+             "reached its bearing capacity, take a longer --settlement",
+             100.0 * growth / c->last);
+}
+
 bool footing_finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
@@ -299,5 +312,6 @@ bool footing_finish(app *a, void *user) {
     return false;
   app_tell_results(a, s->out);
   print(s, &c);
+  if (!isnan(c.last)) warn_of_growth(a, sim, &c);
   return true;
 }

@@ -143,9 +143,12 @@ static void caisson_feels_no_side_force(void **state) {
 }
 
 /* Lattices shifted against walls and rock leave gaps, and the water sloshes as they close: forces
- * sway by some N, without single steps that stand out (63 N before), and no energy is gained. */
+ * sway by some N and no energy is gained. Root mean squares of ten shifts, as a particle that
+ * crosses a face of the rock may change the force of one step: 4.4 to 6.8 N along, 3.7 to 13.9 N
+ * upwards in eight sets of displacements. */
 static void rest_gains_no_energy(void **state) {
   (void)state;
+  double squares[2] = {0.0, 0.0};
   for (int k = 0; k < SHIFTS; k++) {
     const double shift[2] = {0.1 * k, 0.07 * k};
     start(shift, 0.1, 2 + (uint64_t)k, BEDDING_RADIUS);
@@ -154,10 +157,11 @@ static void rest_gains_no_energy(void **state) {
                   "%.1e of %.2f J lost\n",
                   shift[0], shift[1], s.mean[0], s.spread[0], s.mean[1], s.spread[1], s.gained,
                   s.lost);
-    assert_true(s.spread[0] < 12.0 && s.spread[1] < 30.0);
+    for (int c = 0; c < 2; c++) squares[c] += s.spread[c] * s.spread[c] / SHIFTS;
     assert_true(s.lost > 0.0 && s.gained < 0.01 * s.lost);
     end();
   }
+  assert_true(sqrt(squares[0]) < 10.0 && sqrt(squares[1]) < 25.0);
 }
 
 int main(void) {
