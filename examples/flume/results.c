@@ -105,8 +105,10 @@ static bool write_discharge(app *a, const flume *m) {
   return output_close(&f);
 }
 
-/* An event: water that passes the crest without a pause of half a period. */
+/* An event: water that passes the crest without a pause of half a period. Volumes come in
+ * particles, their sum with errors of rounding, which are no event. */
 static bool write_events(app *a, const flume *m, int64_t *count) {
+  const double some = 0.5 * m->s.spacing * m->s.spacing;
   output f;
   if (!output_open(&f, a, m->s.out, "events.csv")) return false;
   csv_header(&f, "begins_s,ends_s,volume_m2");
@@ -120,7 +122,7 @@ static bool write_events(app *a, const flume *m, int64_t *count) {
       (*count)++;
       begins = NAN;
     }
-    if (k == m->samples || !(m->sample[k].volume > last)) continue;
+    if (k == m->samples || !(m->sample[k].volume > last + some)) continue;
     if (isnan(begins)) begins = m->sample[k].t, before = last;
     ends = m->sample[k].t, last = m->sample[k].volume;
   }

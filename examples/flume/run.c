@@ -8,7 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#define SLOW 0.2 /* rate at which the mean position of the maker returns, of a period */
+#define SLOW 0.2        /* rate at which the mean position of the maker returns, of a period */
+#define LAST_STEPS 32.0 /* that are equal, and shorter, to end the run at its duration */
 
 /* ---- pistons --------------------------------------------------------------------------------- */
 
@@ -65,8 +66,15 @@ static mps_status keep_memory(const mps_absorber *piston, double *memory) {
   return piston ? mps_absorber_get_memory(piston, memory) : MPS_OK;
 }
 
+/* As of mps_fluid_run: the last steps, or all of fewer, are equal. */
+static double step_size(const flume *m) {
+  const double dt = mps_fluid_dt(m->fluid), left = m->s.duration - mps_fluid_time(m->fluid);
+  const double count = ceil(left / dt * (1.0 - 1e-9));
+  return count <= LAST_STEPS ? fmin(left / fmax(count, 1.0), dt) : dt;
+}
+
 static mps_status make_step(flume *m) {
-  const double dt = mps_fluid_dt(m->fluid);
+  const double dt = step_size(m);
   double s;
   mps_status status = move_maker(m, dt);
   if (status == MPS_OK && m->end)
