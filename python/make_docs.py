@@ -39,7 +39,7 @@ class Error(Exception):
     object: str
 
 class StaleError(Exception):
-    """An array of a field whose particles were added, removed or sorted since."""
+    """An array of a field whose particles were added, removed or sorted since; a block whose law has returned."""
 
 class Field(NDArrayOperatorsMixin):
     """A field of particles, without a copy; it computes and answers as a NumPy array does."""

@@ -96,9 +96,10 @@ static double frame_interval(const settings *s, double duration) {
   return duration / (double)(s->frames > 1 ? s->frames - 1 : 1);
 }
 
-/* Number of the last frame that is due by the time `now`, the rounding of `now` aside. */
+/* Number of the last frame that is due by the time `now`. A run may end by 1e-9 of a step before
+ * the duration, of which the last frame is. */
 static int64_t frames_until(const files *f, double now) {
-  return f->frame_every > 0.0 ? (int64_t)floor(now / f->frame_every * (1.0 + 1e-12)) : 0;
+  return f->frame_every > 0.0 ? (int64_t)floor(now / f->frame_every * (1.0 + 2e-9)) : 0;
 }
 
 bool files_open(app *a, const settings *s, double duration, results_so_far *so_far,

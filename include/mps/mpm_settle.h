@@ -2,12 +2,12 @@
  * in far fewer steps than a slow loading takes.
  *
  * The particles oscillate about equilibrium, and are stopped when their kinetic energy has passed a
- * peak
- * (dynamic relaxation with kinetic damping). Steps are those of mps_mpm_step, with these
+ * peak (dynamic relaxation with kinetic damping). Steps are those of mps_mpm_step, with these
  * differences: the time is constant, so signals of loads keep their value; boundaries and bodies in
- * contact are at rest, also driven ones. Reactions are those of the last step; impulses, works, the
- * budget and mps_mpm_steps continue. Laws whose stress depends on the rate of strain see the rates
- * of this motion, which are not those of the real one.
+ * contact are at rest, also driven ones; implicit pressures of undrained pore water are found as
+ * explicit ones, with the shorter steps of these. Reactions are those of the last step; impulses,
+ * works, the budget and mps_mpm_steps continue. Laws whose stress depends on the rate of strain see
+ * the rates of this motion, which are not those of the real one.
  *
  * Thread rule: as mps/mpm.h.
  * SPDX-License-Identifier: BSD-3-Clause */

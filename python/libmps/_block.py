@@ -69,6 +69,10 @@ class Block:
                 if pointer:
                     ffi.memmove(pointer, row, 8 * self.count)
 
+    def _assign(self, name, value):
+        self._c  # an array that was taken would receive what C never reads
+        getattr(self, name)[...] = value
+
     @property
     def gradient(self):
         return self._take("gradient", lambda c: list(c.gradient))
@@ -83,7 +87,7 @@ class Block:
 
     @stress.setter
     def stress(self, value):
-        self.stress[...] = value
+        self._assign("stress", value)
 
     @property
     def history(self):
@@ -91,7 +95,7 @@ class Block:
 
     @history.setter
     def history(self, value):
-        self.history[...] = value
+        self._assign("history", value)
 
     @property
     def volume_ratio(self):
@@ -99,7 +103,7 @@ class Block:
 
     @volume_ratio.setter
     def volume_ratio(self, value):
-        self.volume_ratio[...] = value
+        self._assign("volume_ratio", value)
 
     @property
     def flags(self):
@@ -107,7 +111,7 @@ class Block:
 
     @flags.setter
     def flags(self, value):
-        self.flags[...] = value
+        self._assign("flags", value)
 
     @property
     def ids(self):

@@ -51,7 +51,7 @@ class Error(Exception):
 
 
 class StaleError(Exception):
-    """An array of a field whose particles were added, removed or sorted since."""
+    """An array of a field whose particles were added, removed or sorted since; a block whose law has returned."""
 
 
 class Result(SimpleNamespace):

@@ -41,6 +41,11 @@ for frames in 1 2 3; do
   has "$work/info" "frames $frames first $first s last 0.2 s"
   rm -r "$work/frames"
 done
+# 60 steps, the last of which ends by 1.4e-12 s before the duration.
+"$wave" --width 4 --height 10 --duration 0.2 --dt 0.00333333333331 --frames 3 --out "$work/frames" >/dev/null
+"$1/mps-info" "$work/frames/wave.vtkhdf" | tr -s '[:space:]' ' ' >"$work/info" || fail "mps-info"
+has "$work/info" "frames 3 first 0 s last 0.2 s"
+rm -r "$work/frames"
 
 # A slope writes its crest and toe.
 "$wave" --radius 1 --width 40 --height 20 --slope 15,25,12 --sides freefield --courant 0.5 \

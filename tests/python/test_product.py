@@ -209,7 +209,13 @@ class Laws(unittest.TestCase):
             for name in ("gradient", "ids", "history", "position", "volume_ratio", "flags"):
                 with self.assertRaises(mps.StaleError, msg=name):
                     getattr(b, name)
-        self.assertEqual(kept[0].stress.shape, (4, kept[0].count))  # taken in the law
+        stress = kept[0].stress  # taken in the law
+        self.assertEqual(stress.shape, (4, kept[0].count))
+        before = stress.copy()
+        for name in ("stress", "history", "volume_ratio", "flags"):
+            with self.assertRaises(mps.StaleError, msg=name):
+                setattr(kept[0], name, 1)
+        np.testing.assert_array_equal(stress, before)
 
     def test_history_and_assignment(self):
         def update(block):
