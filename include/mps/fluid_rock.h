@@ -46,9 +46,11 @@ static inline mps_fluid_rock_def mps_fluid_rock_defaults(void) {
 /** Adds a region of rock at rest, between steps; `number` (may be NULL) receives the lowest free
  *  number, from 0. Particles may be in it. Its force on the water is part of impulse_scheme of the
  *  totals, its work of `dissipated`; the totals count U as the velocity of a particle.
- *  MPS_ERROR_ARGUMENT: a member of `def` out of range; MPS_ERROR_STATE: a step is open, or a
- * callback of the solver is running; MPS_ERROR_UNSUPPORTED: the classical scheme;
- *  MPS_ERROR_MEMORY. On an error nothing has changed. */
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range; a body or a plane wall nearer to a polyline
+ *  or its corners than the radius in the rock, which is the re of mps/fluid_boundary.h then;
+ *  MPS_ERROR_STATE: a step is open, or a callback of the solver is running;
+ *  MPS_ERROR_UNSUPPORTED: the classical scheme; MPS_ERROR_MEMORY. On an error nothing has changed.
+ */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_rock(mps_fluid *fluid, const mps_fluid_rock_def *def,
                                                     int32_t *number);
 /** Removes region `number`. MPS_ERROR_ARGUMENT: no region of that number; MPS_ERROR_STATE: a step

@@ -4,6 +4,7 @@
 
 #include <mps/body.h>
 #include <mps/fluid.h>
+#include <mps/fluid_rock.h>
 
 #include <stdio.h>
 
@@ -95,6 +96,31 @@ static void a_polyline_near_a_body_is_refused(void **state) {
   mps_assert_ok(context, add_basin(0.0, 0.0));
 }
 
+/* Where the radius of weights in rock is larger than the distance, the rock is refused, and the
+ * water stays as it was. */
+static void rock_whose_weights_reach_further_is_refused(void **state) {
+  (void)state;
+  const double corner[3][3] = {{0.5, 0.0, 0.0}, {1.5, 0.0, 0.0}, {1.0, 0.1, 0.0}};
+  mps_fluid_rock_def rock = mps_fluid_rock_defaults();
+  mps_fluid_boundary_def side = mps_fluid_boundary_defaults();
+  rock.corners = corner[0], rock.corner_count = 3;
+  rock.porosity = 0.45, rock.diameter = 0.02;
+  mps_assert_ok(context, add_basin(0.0, 0.0));
+  mps_assert_ok(context, add_box(0.2 + 1.05 * RE, 1.5));
+  assert_int_equal(mps_fluid_add_rock(fluid, &rock, NULL), MPS_ERROR_ARGUMENT);
+  says("porosity of the rock: its weights have the radius 0.178885 m, but body 0 is 0.16275 m from "
+       "segment 0 of the polyline of boundary 0");
+  mps_contact_destroy(&contact);
+  side.point[0] = -1.05 * RE, side.normal[0] = 1.0;
+  mps_assert_ok(context, mps_fluid_add_boundary(fluid, &side, NULL));
+  assert_int_equal(mps_fluid_add_rock(fluid, &rock, NULL), MPS_ERROR_ARGUMENT);
+  says("the corner at (0, 0) m of the polyline of boundary 0 is 0.16275 m from boundary 1");
+  mps_assert_ok(context, mps_fluid_step(fluid, 2));
+  mps_assert_ok(context, mps_fluid_remove_boundary(fluid, 1));
+  mps_assert_ok(context, mps_fluid_add_rock(fluid, &rock, NULL));
+  mps_assert_ok(context, mps_fluid_step(fluid, 2));
+}
+
 /* Beyond re the images in both are right: the box has its buoyancy, and the bed the pressure of the
  * water above it. */
 static void beside_each_other_both_are_right(void **state) {
@@ -154,6 +180,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(a_body_near_a_polyline_is_refused, make, drop),
       cmocka_unit_test_setup_teardown(a_polyline_near_a_body_is_refused, make, drop),
+      cmocka_unit_test_setup_teardown(rock_whose_weights_reach_further_is_refused, make, drop),
       cmocka_unit_test_setup_teardown(beside_each_other_both_are_right, make, drop),
       cmocka_unit_test_setup_teardown(a_body_that_comes_near_ends_the_step, make, drop)};
   return cmocka_run_group_tests(tests, make_context, drop_context);

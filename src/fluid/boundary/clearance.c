@@ -52,20 +52,19 @@ static double extent(const mpsi_fluid_body *body, bool next, double *middle) {
   return radius;
 }
 
-/* The first segment that is closer than re to a body at the beginning of the step, or at its end
- * (next), and its distance (m); NULL: none. */
-static const mpsi_fluid_segment *too_close(const mps_fluid *f, const mpsi_fluid_body *body,
-                                           bool next, const mpsi_fluid_polyline *line,
-                                           double *distance) {
+/* The first segment that is closer than `reach` to a body at the beginning of the step, or at its
+ * end (next), and its distance (m); NULL: none. */
+static const mpsi_fluid_segment *too_close(const mpsi_fluid_body *body, double reach, bool next,
+                                           const mpsi_fluid_polyline *line, double *distance) {
   double middle[2];
-  const double radius = extent(body, next, middle), far = radius + f->reach;
+  const double radius = extent(body, next, middle), far = radius + reach;
   for (int64_t k = 0; k < line->count; k++) {
     const mpsi_fluid_segment *s = &line->segment[k];
     if (fabs(mpsi_fluid_before_segment(s, middle)) > far ||
         mpsi_fluid_from_segment(s, middle) > far * far)
       continue;
     *distance = gap(body, next, s);
-    if (*distance < f->reach) return s;
+    if (*distance < reach) return s;
   }
   return NULL;
 }
@@ -76,7 +75,7 @@ mps_status mpsi_fluid_check_clearance(mps_fluid *f, const char *function, bool n
   for (int b = 0; b < f->boundaries; b++) {
     double distance;
     const mpsi_fluid_segment *s =
-        f->wall[b].line ? too_close(f, body, next, f->wall[b].line, &distance) : NULL;
+        f->wall[b].line ? too_close(body, f->reach, next, f->wall[b].line, &distance) : NULL;
     if (s && next)
       return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                        "step %lld, t = %g s: body %d comes within %g m of segment %d of the "
@@ -96,12 +95,56 @@ mps_status mpsi_fluid_check_bodies(mps_fluid *f, const char *function,
   for (int b = 0; b < f->bodies; b++) {
     double distance;
     const mpsi_fluid_segment *s =
-        f->body[b].body ? too_close(f, &f->body[b], false, line, &distance) : NULL;
+        f->body[b].body ? too_close(&f->body[b], f->reach, false, line, &distance) : NULL;
     if (s)
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "corners: segment %d of the polyline, from (%g, %g) m, is %g m from body "
                        "%d, must be at least re = %g m away",
                        s->number, s->end[0][0], s->end[0][1], distance, b, f->reach);
+  }
+  return MPS_OK;
+}
+
+/* The first segment whose last corner is closer than `reach` to a plane wall, which wall, and the
+ * distance (m); NULL: none. */
+static const mpsi_fluid_segment *corner_near(const mps_fluid *f, double reach,
+                                             const mpsi_fluid_polyline *line, int *plane,
+                                             double *distance) {
+  for (int k = 0; k < f->boundaries; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (!w->used || w->line) continue;
+    for (int64_t n = 0; n < line->count; n++) {
+      const mpsi_fluid_segment *s = &line->segment[n];
+      const double d = fabs(mpsi_fluid_distance(w, w->now.s, s->end[1][0], s->end[1][1]));
+      if (!mpsi_fluid_turns(s) || !(d < reach)) continue;
+      *plane = k, *distance = d;
+      return s;
+    }
+  }
+  return NULL;
+}
+
+mps_status mpsi_fluid_check_reach(mps_fluid *f, const char *function, double reach) {
+  for (int b = 0; b < f->boundaries; b++) {
+    const mpsi_fluid_polyline *line = f->wall[b].line;
+    double distance;
+    int plane;
+    if (!line) continue;
+    for (int k = 0; k < f->bodies; k++) {
+      const mpsi_fluid_segment *s =
+          f->body[k].body ? too_close(&f->body[k], reach, false, line, &distance) : NULL;
+      if (s)
+        return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                         "porosity of the rock: its weights have the radius %g m, but body %d is "
+                         "%g m from segment %d of the polyline of boundary %d",
+                         reach, k, distance, s->number, b);
+    }
+    const mpsi_fluid_segment *s = corner_near(f, reach, line, &plane, &distance);
+    if (s)
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "porosity of the rock: its weights have the radius %g m, but the corner at "
+                       "(%g, %g) m of the polyline of boundary %d is %g m from boundary %d",
+                       reach, s->end[1][0], s->end[1][1], b, distance, plane);
   }
   return MPS_OK;
 }

@@ -12,5 +12,8 @@ mps_status mpsi_fluid_check_clearance(mps_fluid *fluid, const char *function, bo
 /* A polyline and all bodies: MPS_ERROR_ARGUMENT where they are too close. */
 mps_status mpsi_fluid_check_bodies(mps_fluid *fluid, const char *function,
                                    const mpsi_fluid_polyline *line);
+/* Before weights of a larger radius (m) are used, those of rock: MPS_ERROR_ARGUMENT where a body or
+ * a plane wall is closer than that to a polyline or its corners. */
+mps_status mpsi_fluid_check_reach(mps_fluid *fluid, const char *function, double reach);
 
 #endif

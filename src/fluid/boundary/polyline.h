@@ -35,6 +35,11 @@ typedef struct mpsi_fluid_path {
   int32_t segment[MPSI_FLUID_REFLECTIONS];
 } mpsi_fluid_path;
 
+/* Whether the polyline turns at a segment's last corner. */
+static inline bool mpsi_fluid_turns(const mpsi_fluid_segment *s) {
+  return fabs(s->angle[1] - 3.141592653589793) > 1e-9;
+}
+
 /* Distance along the normal, > 0 in the fluid. */
 static inline double mpsi_fluid_before_segment(const mpsi_fluid_segment *s, const double *x) {
   const double *at = s->wall.at, *n = s->wall.normal;

@@ -7,6 +7,7 @@
 #include "rock.h"
 #include "fluid/base/access.h"
 #include "core/base/digits.h"
+#include "fluid/boundary/clearance.h"
 #include "fluid/particles/near.h"
 #include "fluid/ranks/partition.h"
 
@@ -82,6 +83,11 @@ static int32_t find_room(mps_fluid *f) {
   return k;
 }
 
+/* Radius of the weights in rock of a porosity, m. */
+static double radius_in(const mps_fluid *f, double porosity) {
+  return fmax(fmin(WIDE * f->l0 / sqrt(porosity), WIDEST * f->l0), f->weight.re);
+}
+
 static void fill_in(mps_fluid *f, mpsi_fluid_rock *rock, const mps_fluid_rock_def *d) {
   const double e = d->porosity, D = d->diameter, solid = 1.0 - e;
   for (int32_t k = 0; k < d->corner_count; k++)
@@ -99,9 +105,7 @@ static void fill_in(mps_fluid *f, mpsi_fluid_rock *rock, const mps_fluid_rock_de
   rock->a = d->alpha * solid * solid / (e * e * e) * d->viscosity / (D * D);
   rock->b = d->beta * (1.0 + (isnan(d->KC) ? 0.0 : 7.5 / d->KC)) * solid / (e * e * e * D);
   rock->mass = 1.0 + d->gamma * solid / e;
-  const double spacing = f->l0 / sqrt(e);
-  rock->weight = mpsi_fluid_make_weight(
-      spacing, fmax(fmin(WIDE * spacing, WIDEST * f->l0), f->weight.re), f->weight.re);
+  rock->weight = mpsi_fluid_make_weight(f->l0 / sqrt(e), radius_in(f, e), f->weight.re);
   rock->used = true;
 }
 
@@ -148,7 +152,9 @@ static mps_status read_rock(mps_fluid *f, const char *function, const mps_fluid_
   if (status != MPS_OK) return status;
   if (f->classical.gamma > 0.0)
     return mpsi_fail(f->context, function, MPS_ERROR_UNSUPPORTED, "rock with the classical scheme");
-  return check(f, def);
+  const mps_status wrong = check(f, def);
+  const double reach = radius_in(f, def->porosity);
+  return wrong == MPS_OK && reach > f->reach ? mpsi_fluid_check_reach(f, function, reach) : wrong;
 }
 
 mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int32_t *number) {
