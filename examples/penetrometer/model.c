@@ -66,7 +66,8 @@ const char *pen_check(penetrometer *p, const option *table) {
     return "--alpha asks for --contact impulse";
   if (s->alpha > 0.0 && s->cohesion == 0.0) return "--alpha asks for a --cohesion > 0";
   p->stride = fmin(0.2 * s->h, (s->depth - s->start) / 200.0);
-  p->t_end = pen_path(p) / s->rate + 0.5 * ramp_of(p);
+  p->hold = pen_vertical(p, s->start) > 0.0 ? ramp_of(p) : 0.0;
+  p->t_end = p->hold + pen_path(p) / s->rate + 0.5 * ramp_of(p);
   p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
   p->run[0].geometry = s->no_space ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_SPACE;
   p->run[1].geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
@@ -192,15 +193,16 @@ static double penalty_of(const penetrometer *p, const pen_run *r) {
 
 static mps_status make_tip(penetrometer *p, pen_run *r) {
   const int up = pen_up(r);
-  const double ramp = ramp_of(p), rate = p->s.rate;
-  const double t[] = {0.0, ramp > 0.0 ? ramp : p->t_end, p->t_end + 1.0};
-  const double v[] = {ramp > 0.0 ? 0.0 : rate, rate, rate};
+  const double ramp = ramp_of(p), rate = p->s.rate, full = p->hold + ramp;
+  const double t[] = {0.0, p->hold, full > 0.0 ? full : p->t_end, p->t_end + 1.0};
+  const double v[] = {ramp > 0.0 ? 0.0 : rate, ramp > 0.0 ? 0.0 : rate, rate, rate};
+  const int skip = p->hold > 0.0 ? 0 : 1; /* times rise */
   mps_signal *down = NULL;
   mps_body **body = &r->m.body[0];
   mps_body_def def = mps_body_defaults();
   def.position[up] = r->size[up] + pen_gap(p) - p->s.start;
   mps_status status =
-      mps_signal_create_table(p->context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &down);
+      mps_signal_create_table(p->context, MPS_SIGNAL_QUANTITY_VELOCITY, 4 - skip, t + skip, v + skip, &down);
   if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_STL)
@@ -244,7 +246,7 @@ static void name_course(penetrometer *p) {
                            .directory = p->s.out,
                            .what = p->now == 0 ? "penetration" : "penetration-axisymmetric",
                            .duration = p->t_end,
-                           .key = "mps-penetrometer 1",
+                           .key = "mps-penetrometer 2",
                            .table = options_read(),
                            .pass = pen_pass,
                            .user = p};
@@ -263,6 +265,7 @@ mps_status pen_build_run(penetrometer *p, bool restores) {
   if (status == MPS_OK) status = pen_load_soil(p, r);
   if (status == MPS_OK) status = add_contact(p, r);
   if (status == MPS_OK) r->dt = mps_mpm_dt(r->m.mpm);
+  p->stride = fmax(p->stride, 1.25 * p->s.rate * r->dt); /* a step at least, or rows would lack */
   return status == MPS_OK ? mpm_course_begin(&p->course, p->context, restores) : status;
 }
 

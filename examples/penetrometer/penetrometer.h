@@ -16,7 +16,7 @@
 enum { PEN_CONE, PEN_SPHERE, PEN_STL };                             /* --tip */
 enum { PEN_CLAY, PEN_SAND, PEN_ELASTIC, PEN_TRESCA, PEN_CAM_CLAY }; /* --law */
 enum { PEN_QUARTER, PEN_WHOLE };                                    /* --model */
-enum { PEN_ROLLERS, PEN_STRESS };                                   /* --sides */
+enum { PEN_ROLLERS, PEN_FREE };                                     /* --sides */
 enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL, PEN_FORCES };
 
 typedef struct pen_settings {
@@ -66,6 +66,7 @@ typedef struct pen_run {
   pen_row *row;
   int64_t rows, capacity;
   double last_time, last_impulse[PEN_FORCES]; /* since the last row */
+  double rest;                                /* N, upwards on the tip before it moves */
   int64_t inside;                             /* most particles inside the tip at once */
   mpm_counts counts;                          /* of them */
   double deepest;                             /* m, the furthest that one was below its surface */
@@ -89,6 +90,7 @@ typedef struct penetrometer {
   int runs, now;  /* number of runs, and the present one */
   mpm_course course;
   double stride; /* m of path between rows */
+  double hold;   /* s, the tip waits in its hole: the ground comes to rest */
   double t_end;  /* s */
   mps_context *context;
 } penetrometer;
@@ -115,6 +117,8 @@ const char *pen_check_soil(penetrometer *p, const option *table); /* part of pen
 mps_status pen_make_soil(penetrometer *p, pen_run *r, const double *lower);
 /* Pore water, and the surcharge, once the solver is made. */
 mps_status pen_load_soil(const penetrometer *p, pen_run *r);
+
+double pen_vertical(const penetrometer *p, double depth); /* Pa, total stress of ground at rest */
 
 /* Cone factors at a tip pressure q (Pa) and depth (m); NaN where there are none. */
 typedef struct pen_factor {

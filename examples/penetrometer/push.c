@@ -106,6 +106,21 @@ static mps_status end_row(const penetrometer *p, pen_run *r, double t) {
   return MPS_OK;
 }
 
+/* In the second half of the wait the force of ground at rest is read; the first row begins at its
+ * end. */
+static mps_status wait_for_rest(const penetrometer *p, pen_run *r, double t) {
+  double up[PEN_FORCES];
+  if (t < 0.5 * p->hold) return MPS_OK;
+  const bool first = r->last_time == 0.0;
+  if (!first && t < p->hold) return MPS_OK;
+  const mps_status status = read_impulses(r, up);
+  if (status != MPS_OK) return status;
+  if (!first) r->rest = (up[PEN_TIP] - r->last_impulse[PEN_TIP]) / (t - r->last_time);
+  for (int k = 0; k < PEN_FORCES; k++) r->last_impulse[k] = up[k];
+  r->last_time = t;
+  return MPS_OK;
+}
+
 /* Means over 4 cells of path or a tenth of it, less where the path begins and ends. */
 static void smooth(const penetrometer *p, pen_run *r) {
   const int64_t half = (int64_t)(fmin(2.0 * p->s.h, 0.05 * pen_path(p)) / p->stride);
@@ -190,6 +205,7 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   mps_status status = look_for_intruders(p, r);
   if (status == MPS_OK && (mps_mpm_steps(mpm) % VOLUME_EVERY == 0 || t >= p->t_end))
     status = look_at_volumes(p, r);
+  if (status == MPS_OK && r->last_time < p->hold) return wait_for_rest(p, r, t);
   const double next = p->s.start + p->stride * (double)(r->rows + 1) - pen_gap(p);
   if (depth < next && t < p->t_end) return status;
   status = join_looks(r, status);

@@ -14,6 +14,7 @@ void pen_pass(void *user, resume_bytes *b) {
   resume_pass(b, r->row, (size_t)r->rows * sizeof *r->row);
   resume_pass(b, &r->last_time, sizeof r->last_time);
   resume_pass(b, r->last_impulse, sizeof r->last_impulse);
+  resume_pass(b, &r->rest, sizeof r->rest);
   resume_pass(b, &r->inside, sizeof r->inside);
   double *const values[] = {&r->deepest, &r->ratio_max, &r->ratio_min};
   for (size_t k = 0; k < sizeof values / sizeof *values; k++)

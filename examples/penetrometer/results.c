@@ -104,6 +104,7 @@ static void write_factor(output *f, const penetrometer *p, const mean *m) {
   const pen_factor n = pen_factor_of(p, m->force[PEN_TIP] / base_area(p), m->depth);
   if (s->start > 0.0) json_number(f, "start", s->start);
   if (s->surcharge > 0.0) json_number(f, "surcharge", s->surcharge);
+  if (p->hold > 0.0) json_number(f, "q_at_rest", p->run[0].rest / base_area(p));
   if (isnan(n.strength)) return;
   json_number(f, "su", n.strength);
   json_number(f, "rigidity_index", n.rigidity);

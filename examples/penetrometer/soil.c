@@ -51,8 +51,10 @@ static const char *check_start(const penetrometer *p) {
     return "--depth must be at least 2 cells of --h below --start";
   if (s->surcharge > 0.0 && !(s->start > 0.0))
     return "--surcharge asks for --start, with which the shaft holds the ground beside it open";
-  if (s->sides == PEN_STRESS && !(s->start > 0.0))
-    return "--sides stress asks for --start, in ground far from the surface";
+  if (s->sides == PEN_FREE && !(s->start > 0.0))
+    return "--sides free asks for --start, in ground far from the surface";
+  if (s->sides == PEN_FREE && s->surcharge > 0.0)
+    return "--sides free is for ground without stress: --surcharge must be 0";
   if (ranks_launched() > 1 && s->start > 0.0) return "--start is for one process";
   if (s->law == PEN_CAM_CLAY && !(s->surcharge > 0.0))
     return "--law mcc asks for a --surcharge > 0, the vertical effective stress of its ground";
@@ -70,8 +72,8 @@ static const char *complete(pen_settings *s, const option *table) {
   if (undrained && !isnan(s->ir)) s->young = 2.0 * (1.0 + s->poisson) * s->ir * strength_of(s);
   if (isnan(s->gravity)) s->gravity = s->law == PEN_SAND ? 9.81 : 0.0;
   if (isnan(s->k0)) s->k0 = s->poisson / (1.0 - s->poisson);
-  if (s->sides == PEN_STRESS && s->gravity > 0.0)
-    return "--sides stress is for ground without weight: --gravity must be 0";
+  if (s->sides == PEN_FREE && s->gravity > 0.0)
+    return "--sides free is for ground without stress: --gravity must be 0";
   const double vertical = s->surcharge + s->density * s->gravity * s->height * s->diameter;
   if (undrained && fabs(1.0 - s->k0) * vertical > 2.0 * strength_of(s))
     return "--k0 and the stress at the bottom, --surcharge + density g depth, are beyond the "
@@ -298,52 +300,16 @@ static bool at_surface(const penetrometer *p, const pen_run *r, const double *x)
   return x[pen_up(r)] > r->size[pen_up(r)] - mps_particles_spacing(r->m.particles);
 }
 
-/* The upper ends of the box across x and, in space, y; the lower ones are on the axis but of a
- * whole model. */
-static bool at_side(const pen_run *r, const double *x, int axis, double sign) {
-  return sign * x[axis] > r->size[axis] - mps_particles_spacing(r->m.particles);
-}
-
-static bool at_right(const penetrometer *p, const pen_run *r, const double *x) {
-  (void)p;
-  return at_side(r, x, 0, 1.0);
-}
-
-static bool at_left(const penetrometer *p, const pen_run *r, const double *x) {
-  (void)p;
-  return at_side(r, x, 0, -1.0);
-}
-
-static bool at_back(const penetrometer *p, const pen_run *r, const double *x) {
-  (void)p;
-  return at_side(r, x, 1, 1.0);
-}
-
-static bool at_front(const penetrometer *p, const pen_run *r, const double *x) {
-  (void)p;
-  return at_side(r, x, 1, -1.0);
-}
-
-/* A pressure on the outermost particles of a face. */
-static mps_status press(const penetrometer *p, pen_run *r, choice_fn face, int axis,
-                        double traction) {
+/* The surcharge, on the uppermost particles. */
+static mps_status press(const penetrometer *p, pen_run *r) {
   mps_mpm_load_def load = mps_mpm_load_defaults();
   int64_t *ids = NULL;
-  mps_status status = choose(p, r, face, &load.id_count, &ids);
+  mps_status status = choose(p, r, at_surface, &load.id_count, &ids);
   load.ids = ids;
-  load.traction[axis] = traction;
+  load.traction[pen_up(r)] = -p->s.surcharge;
   if (status == MPS_OK) status = mps_mpm_add_load(r->m.mpm, &load, NULL);
   free(ids);
   return status;
-}
-
-static mps_status press_sides(const penetrometer *p, pen_run *r) {
-  const double sideways = p->state.sideways;
-  const bool space = pen_up(r) == 2, whole = space && p->s.model == PEN_WHOLE;
-  mps_status status = press(p, r, at_right, 0, -sideways);
-  if (status == MPS_OK && space) status = press(p, r, at_back, 1, -sideways);
-  if (status == MPS_OK && whole) status = press(p, r, at_left, 0, sideways);
-  return status == MPS_OK && whole ? press(p, r, at_front, 1, sideways) : status;
 }
 
 mps_status pen_load_soil(const penetrometer *p, pen_run *r) {
@@ -356,13 +322,14 @@ mps_status pen_load_soil(const penetrometer *p, pen_run *r) {
     water.density = PEN_WATER;
     status = mps_mpm_add_pore_water(r->m.mpm, &water);
   }
-  if (status == MPS_OK && s->surcharge > 0.0)
-    status = press(p, r, at_surface, pen_up(r), -s->surcharge);
-  const bool pressed = s->sides == PEN_STRESS && p->state.sideways > 0.0;
-  return status == MPS_OK && pressed ? press_sides(p, r) : status;
+  return status == MPS_OK && s->surcharge > 0.0 ? press(p, r) : status;
 }
 
 /* ---- cone factors ---------------------------------------------------------------------------- */
+
+double pen_vertical(const penetrometer *p, double depth) {
+  return p->s.surcharge + p->s.density * p->s.gravity * depth;
+}
 
 /* Of a smooth cone. C. I. Teh, G. T. Houlsby, Geotechnique 41 (1991) 17-34, for Ir from 50 to 500
  * (von Mises); Q. Lu, M. F. Randolph, Y. Hu, I. C. Bugarski, Geotechnique 54 (2004) 257-267
@@ -374,7 +341,7 @@ pen_factor pen_factor_of(const penetrometer *p, double q, double depth) {
   const double su = p->state.strength, weight = s->density * s->gravity * depth;
   f.strength = su;
   f.rigidity = p->state.shear / su;
-  f.vertical = s->surcharge + weight;
+  f.vertical = pen_vertical(p, depth);
   f.n_kt = (q - f.vertical) / su;
   const double sideways = p->state.sideways + s->k0 * weight;
   f.deviation = (f.vertical - sideways) / (2.0 * su);

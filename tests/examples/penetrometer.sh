@@ -56,7 +56,7 @@ cmp "$work/blunt/force.csv" "$work/blunt3/force.csv" || fail "three threads give
 # bears more.
 deep="--axisymmetric --no-space --h 0.025 --corner 0 --rate 1 --threads 1"
 for ir in 50 200; do
-  "$1/mps-penetrometer" $deep --soil 8x8x6 --start 0.25 --depth 0.35 --sides stress --law tresca --ir $ir --out "$work/$ir" >"$work/log"
+  "$1/mps-penetrometer" $deep --soil 8x8x6 --start 0.25 --depth 0.35 --sides free --law tresca --ir $ir --out "$work/$ir" >"$work/log"
   has "$work/log" "net cone factor N_kt"
   in_range "$work/$ir/summary.json" rigidity_index "$ir" "$ir.01"
   in_range "$work/$ir/summary.json" n_kt "$(awk "BEGIN { print 4 / 3 * (1 + log($ir)) }")" \
@@ -64,6 +64,17 @@ for ir in 50 200; do
   in_range "$work/$ir/summary.json" particles_inside 0 0
 done
 in_range "$work/200/summary.json" n_kt "$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p' "$work/50/summary.json")" 100
+
+# Ground under 10 su, the same in all directions, presses the tip before that moves, at most over a cell more and with twice
+# the cavity's 2 su (1 + ln Ir)/3 of ground that settles around it.
+"$1/mps-penetrometer" $deep --soil 6x6x4.5 --start 0.2 --depth 0.26 --law tresca --ir 50 --surcharge 100kPa --k0 1 --out "$work/s" >/dev/null
+in_range "$work/s/summary.json" q_at_rest 100e3 222e3
+in_range "$work/s/summary.json" vertical_stress 99999 100001
+in_range "$work/s/summary.json" particles_inside 0 0
+
+# A path of a few steps has all frames that were asked for.
+"$1/mps-penetrometer" --soil 2x2x2 --depth 0.002 --frames 4 --threads 1 --out "$work/short" >/dev/null
+[ "$(grep -c '<Time' "$work/short/penetration.xdmf")" -eq 4 ] || fail "a short path lacks frames"
 
 # Cam-Clay with water in its pores: su of the law, (M/2) p (pc/(2 p))^Lambda after K0 = 0.748 for 100 kPa.
 "$1/mps-penetrometer" $deep --law mcc --surcharge 100kPa --soil 5x5x4 --start 0.2 --depth 0.26 --out "$work/mcc" >"$work/log"
