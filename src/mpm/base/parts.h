@@ -9,6 +9,8 @@ typedef struct mpsi_energy mpsi_energy;         /* base/energy.h */
 typedef struct mpsi_run mpsi_run;               /* base/run.h */
 typedef struct mpsi_rooms mpsi_rooms;           /* base/mpm_solver.h */
 typedef struct mpsi_kernels mpsi_kernels;       /* base/kernels.h */
+typedef struct mpsi_transfer mpsi_transfer;     /* base/kernels.h */
+typedef struct mpsi_transfer mpsi_transfer;     /* base/kernels.h */
 typedef struct mpsi_grid mpsi_grid;             /* grid/blocks.h */
 typedef struct mpsi_cell_block mpsi_cell_block; /* grid/blocks.h */
 typedef struct mpsi_laws mpsi_laws;             /* particles/laws.h */

@@ -272,7 +272,7 @@ void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g) {
     for (int32_t t = 0; t < nodes->holds; t++) {
       const mpsi_boundary *hold = &mpm->boundaries.hold[first[t].hold];
       const bool holds_all = hold->kind == MPS_BOUNDARY_HELD;
-      if (mpsi_is_mirror(mpm, first[t].hold) && holds_all == (pass == 1))
+      if (mpsi_is_mirror(&mpm->mirrors, first[t].hold) && holds_all == (pass == 1))
         for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
     }
   for (int k = 0; k < mpm->grid.block_nodes && nodes->split; k++)

@@ -161,7 +161,8 @@ static void find_candidates(const mpsi_grid *grid, const mpsi_columns *p,
   }
 }
 
-static void find_in_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void find_in_block(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   (void)worker;
   for (int32_t q = 0; q < cells->pairs; q++) {
@@ -227,7 +228,7 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   all->candidate = all->candidate_room.item;
   all->block = all->block_room.item;
   if (good && candidates > 0) {
-    mpsi_mpm_for_cells(mpm, find_in_block);
+    mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, find_in_block, mpm);
     list_blocks(&mpm->grid, &mpm->contact);
   }
   const int64_t n = all->constraint_count;
@@ -289,11 +290,11 @@ static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *
 }
 
 /* Extrapolated shape functions psi at the nodes of the constraint's stencil. */
-static void find_psi(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+static void find_psi(const mpsi_kernels *kernels, const mpsi_transfer *work,
                      const mpsi_constraint *constraint, mpsi_foot_weights *out) {
   double d[3];
   for (int a = 0; a < 3; a++) d[a] = constraint->impulse.at[a] - constraint->x[a];
-  mpm->kernels->foot(mpm, cells, worker, constraint->particle, d, out);
+  kernels->foot(work, constraint->particle, d, out);
 }
 
 /* Tile node of stencil node s. */
@@ -376,10 +377,11 @@ static void fit_evenly(const mpsi_grid *grid, mpsi_contacts *contacts, const mps
 }
 
 /* Weights and mobility (inverse of the effective mass) of a constraint. */
-static void fit_constraint(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
+static void fit_constraint(mps_mpm *mpm, const mpsi_transfer *work, int64_t n) {
+  const mpsi_cell_block *cells = work->cells;
   mpsi_constraint *constraint = &mpm->contact.impulses.constraint[n];
   mpsi_foot_weights f;
-  find_psi(mpm, cells, &mpm->grid.workers[worker], constraint, &f);
+  find_psi(mpm->kernels, work, constraint, &f);
   constraint->nodes = 0;
   constraint->even = !mpm->partition && !cells->mirrors;
   if (constraint->even)
@@ -389,13 +391,13 @@ static void fit_constraint(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t w
 }
 
 /* States of nodes (support.h) where some fit has not been stored by the scatter. */
-static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                        const mpsi_constraint_block *block, mpsi_worker *worker) {
-  const mpsi_constraint *constraint = mpm->contact.impulses.constraint + block->first;
+static void find_states(const mpsi_transfer *work, const mpsi_constraint_block *block) {
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_constraint *constraint = work->contact->impulses.constraint + block->first;
   bool all = cells->first_fit >= 0;
   for (int64_t n = 0; n < block->count && all; n++)
-    all = mpm->grid.fitted[cells->first_fit + (constraint[n].particle - cells->begin)] != 0;
-  if (!all) mpsi_mpm_find_states(mpm, cells, worker);
+    all = work->grid->fitted[cells->first_fit + (constraint[n].particle - cells->begin)] != 0;
+  if (!all) mpsi_mpm_find_states(work);
 }
 
 /* Adds the mirrors' part of the impulses of a block's constraints to the walls. */
@@ -404,16 +406,16 @@ static void mirror_block(void *data, int64_t unit, int32_t number) {
   mpsi_impulses *all = &mpm->contact.impulses;
   const mpsi_constraint_block *block = &all->block[unit];
   if (block->cells < 0) return;
-  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
-  mpsi_worker *worker = &mpm->grid.workers[number];
+  const mpsi_transfer work = mpsi_transfer_of(mpm, block->cells, number);
+  const mpsi_cell_block *cells = work.cells;
   if (!cells->mirrors) return;
-  find_states(mpm, cells, block, worker);
+  find_states(&work, block);
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     const mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_impulse *c = &constraint->impulse;
     mpsi_foot_weights f;
     if (!(c->normal_impulse > 0.0)) continue;
-    find_psi(mpm, cells, worker, constraint, &f);
+    find_psi(mpm->kernels, &work, constraint, &f);
     for (uint64_t left = f.active; left != 0; left &= left - 1) {
       const int s = __builtin_ctzll(left);
       int place[3];
@@ -436,7 +438,8 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;
   const mpsi_constraint_block *block = &all->block[unit];
-  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  const mpsi_transfer work = mpsi_transfer_of(mpm, block->cells, worker);
+  const mpsi_cell_block *cells = work.cells;
   const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
   int64_t n = block->first;
   for (int32_t q = 0; q < cells->pairs; q++) {
@@ -447,9 +450,9 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
       begin_constraint(mpm, t, cells->begin + candidate[i], id, &all->constraint[n++]);
   }
   qsort(all->constraint + block->first, (size_t)block->count, sizeof *all->constraint, by_place);
-  find_states(mpm, cells, block, &mpm->grid.workers[worker]);
+  find_states(&work, block);
   for (n = block->first; n < block->first + block->count; n++) {
-    fit_constraint(mpm, cells, worker, n);
+    fit_constraint(mpm, &work, n);
     mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_warm_impulse *warm =
         mpsi_mpm_warm_impulse(&mpm->contact, constraint->id, constraint->body);

@@ -67,7 +67,8 @@ static void find_inside_body(const mpsi_grid *grid, const mpsi_contacts *contact
   }
 }
 
-void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_find_inside(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   const size_t count = (size_t)mpm->grid.block_nodes;
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
@@ -169,7 +170,8 @@ static void mark_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const in
   if (nodes->inside) find_normals(&mpm->grid, &mpm->contact, nodes, local);
 }
 
-void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
+void mpsi_mpm_mark_reached(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   for_corners(mpm, &mpm->grid.cells[b], mark_node, mpm->contact.reached);
 }
@@ -264,11 +266,12 @@ static void mark_near(const mpsi_grid *grid, const mpsi_contacts *contacts,
       }
 }
 
-void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
-  mark_outside(&mpm->grid, cells, worker->state);
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
-    if (nodes->inside || nodes->thin) mark_near(&mpm->grid, &mpm->contact, nodes, q, worker);
+void mpsi_mpm_find_states(const mpsi_transfer *work) {
+  const mpsi_grid *grid = work->grid;
+  mark_outside(grid, work->cells, work->worker->state);
+  for (int q = 0; q < 1 << grid->dim; q++) {
+    const mpsi_node_block *nodes = &grid->nodes[work->cells->to[q]];
+    if (nodes->inside || nodes->thin) mark_near(grid, work->contact, nodes, q, work->worker);
   }
-  if (cells->mirrors) mpsi_mpm_mirror_states(mpm, cells, worker);
+  if (work->cells->mirrors) mpsi_mpm_mirror_states(work);
 }

@@ -110,11 +110,10 @@ void mpsi_mpm_clear_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts
                             const mpsi_cell_block *cells, const mpsi_worker *worker);
 void mpsi_mpm_add_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
                           const mpsi_cell_block *cells, const mpsi_worker *worker);
-void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t worker);
 /* inside.c: finds the nodes of a block that lie inside bodies; marks the corners of a block's cells
  * that hold particles. */
-void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
-void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
+void mpsi_mpm_find_inside(void *solver, int64_t g, int32_t worker);
+void mpsi_mpm_mark_reached(void *solver, int64_t b, int32_t worker);
 /* inside.c: marks the corners of the cells of ghost blocks that hold particles, as their ranks have
  * found them. `known`: this rank has found its own. Collective. */
 mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);

@@ -250,8 +250,8 @@ mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mp
                                  const mpsi_block *block);
 /* node_update.c, of one block of nodes: sets its sums to zero; velocities and normal penalty
  * forces; friction, boundaries, damping. */
-void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
-void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
-void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_clear_nodes(void *solver, int64_t g, int32_t worker);
+void mpsi_mpm_update_nodes(void *solver, int64_t g, int32_t worker);
+void mpsi_mpm_finish_nodes(void *solver, int64_t g, int32_t worker);
 
 #endif

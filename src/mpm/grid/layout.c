@@ -118,7 +118,8 @@ static void order_by_id(mpsi_radix *key, const int64_t *id, int64_t begin, int64
 
 /* Position of a block, the part of its tile in use, and the order of the particles of each stencil.
  * `begin` and `end` of the block are known. */
-static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void place_block(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_radix *key = mpm->grid.sorted;
@@ -227,7 +228,7 @@ static mps_status find_cells(mps_mpm *mpm, const char *function) {
     return no_room(mpm->context, &mpm->grid, function, cells);
   make_cells(&chunks, cells, mpm->grid.cells);
   mpm->grid.cell_count = cells;
-  mpsi_mpm_for_cells(mpm, place_block);
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, place_block, mpm);
   return MPS_OK;
 }
 

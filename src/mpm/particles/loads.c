@@ -17,7 +17,8 @@ static mps_status make_forces(mps_context *context, const mpsi_grid *grid, mpsi_
   return mpsi_fail_memory(context, function, (size_t)p->count * sizeof(double));
 }
 
-static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void begin_forces(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   for (int c = 0; c < mpm->grid.dim; c++) {
@@ -59,7 +60,7 @@ mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
     if (status != MPS_OK) return status;
   }
   if (!mpm->rooms.force.item) return MPS_OK;
-  mpsi_mpm_for_cells(mpm, begin_forces);
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, begin_forces, mpm);
   for (int32_t k = 0; k < loads->count; k++) add_traction(&mpm->grid, &mpm->p, &loads->traction[k]);
   return MPS_OK;
 }

@@ -21,14 +21,14 @@ mps_status mps_grid_get_info_sized(const mps_grid *grid, mps_grid_info *out, siz
 
 /* P2G with forces apart, after all preparations. */
 static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
-  mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_penalty};
+  mpsi_pass pass = {.data = mpm, .clear = mpsi_mpm_clear_nodes, .scatter = mpsi_step_scatter};
   if (mpm->partition) {
     pass.scatter = mpsi_mpm_scatter_tile;
-    pass.arrive = mpsi_mpm_receive_parcels;
+    pass.arrive = mpsi_step_receive_parcels;
     const mps_status status = mpsi_mpm_send_tiles(mpm, function);
     if (status != MPS_OK) return status;
   }
-  mpsi_mpm_run_pass(mpm, &pass);
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   return mpm->partition ? mpm->partition->lost : MPS_OK;
 }
 

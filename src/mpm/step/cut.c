@@ -149,8 +149,10 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
   mpm->contact.penalty_bodies = 0;
-  static const mpsi_pass pass = {
-      .update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached, .ghosts = true};
+  const mpsi_pass pass = {.data = mpm,
+                          .update = mpsi_mpm_find_inside,
+                          .gather = mpsi_mpm_mark_reached,
+                          .ghosts = true};
   if (mpm->contact.bodies > 0) {
     if (status == MPS_OK)
       status = mpsi_mpm_list_pairs(mpm->context, &mpm->grid, &mpm->contact, function);
@@ -159,7 +161,8 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
       status = mpsi_fail_memory(mpm->context, function,
                                 (size_t)(mpm->contact.node_pair_count * mpm->grid.block_nodes) *
                                     sizeof *mpm->contact.sight);
-    if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
+    if (status == MPS_OK && mpm->contact.cell_pair_count > 0)
+      mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
     if (mpm->partition) { /* collective: also where the status of this rank is an error */
       for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
         mpm->grid.cells[b].thin = near_thin(&mpm->grid, &mpm->contact, &mpm->grid.cells[b]);

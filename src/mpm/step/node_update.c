@@ -6,7 +6,8 @@
 
 enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE }; /* nodes of a block */
 
-void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_clear_nodes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *mpm->grid.node;
   memset(mpm->grid.node + mpsi_first_node(&mpm->grid, g), 0, bytes);
@@ -49,7 +50,8 @@ static bool update_cut(const mpsi_grid *grid, double dt, bool split, mpsi_node *
   return light && !grid->by_weight && !grid->standard;
 }
 
-void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_update_nodes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
   mpsi_node *node = mpm->grid.node + mpsi_first_node(&mpm->grid, g);
   nodes->light = false;
@@ -113,7 +115,8 @@ static void finish(mps_mpm *mpm, int64_t g) {
   mpsi_mpm_prescribe_nodes(mpm, g, fixed);
 }
 
-void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_finish_nodes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   const int32_t across = mpm->grid.nodes[g].across;
   mpsi_mpm_begin_held(&mpm->grid, &mpm->boundaries, g);

@@ -4,6 +4,7 @@
 
 #include "core/particles/particles_internal.h"
 #include "mpm/particles/particles.h"
+#include "tiles.h"
 
 #define CHATTER 6.0 /* k dt^2/m above which a penalty contact oscillates */
 
@@ -52,27 +53,23 @@ void mpsi_step_begin(mps_mpm *mpm, double dt) {
   warn_about_chatter(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->def, dt);
 }
 
-static mpsi_mpm_task g2p(const mpsi_grid *grid, const mpsi_kernels *kernels) {
-  return kernels->g2p[grid->geometry][grid->spline - 2];
+static void gather(void *solver, int64_t b, int32_t worker) {
+  mps_mpm *mpm = solver;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  if (mpm->undo.on) mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
+  mpm->kernels->g2p[mpm->grid.geometry][mpm->grid.spline - 2](&work);
 }
 
-static void save_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
-  g2p(&mpm->grid, mpm->kernels)(mpm, b, worker);
-}
-
-mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *contacts,
-                                 const mpsi_kernels *kernels) {
-  const mpsi_mpm_task p2g = kernels->p2g[grid->geometry][grid->spline - 2];
-  return (mpsi_pass){.clear = mpsi_mpm_clear_nodes,
-                     .scatter = contacts->penalty_bodies > 0 ? mpsi_mpm_scatter_penalty : p2g,
+mpsi_pass mpsi_step_scatter_pass(mps_mpm *mpm) {
+  return (mpsi_pass){.data = mpm,
+                     .clear = mpsi_mpm_clear_nodes,
+                     .scatter = mpsi_step_scatter,
                      .update = mpsi_mpm_update_nodes};
 }
 
-void mpsi_step_gather_pass(const mpsi_grid *grid, const mpsi_undo *undo,
-                           const mpsi_kernels *kernels, mpsi_pass *pass) {
+void mpsi_step_gather_pass(mpsi_pass *pass) {
   pass->finish = mpsi_mpm_finish_nodes;
-  pass->gather = undo->on ? save_and_gather : g2p(grid, kernels);
+  pass->gather = gather;
 }
 
 void mpsi_step_without_contact(const mpsi_boundaries *boundaries, mpsi_contacts *contacts,

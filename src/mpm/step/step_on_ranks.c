@@ -61,21 +61,21 @@ static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, 
 /* P2G, contact and G2P. `status`: of the search for constraints on this rank, on which ranks agree
  * when they exchange these. */
 static mps_status transfer(mps_mpm *mpm, const char *function, double dt, mps_status status) {
-  mpsi_pass pass = mpsi_step_scatter_pass(&mpm->grid, &mpm->contact, mpm->kernels);
+  mpsi_pass pass = mpsi_step_scatter_pass(mpm);
   const mps_status sent = mpsi_mpm_send_tiles(mpm, function);
   if (sent != MPS_OK) return sent;
   pass.scatter = mpsi_mpm_scatter_tile;
-  pass.arrive = mpsi_mpm_receive_parcels;
+  pass.arrive = mpsi_step_receive_parcels;
   if (mpm->contact.cell_pair_count > 0 || mpm->contact.bodies > 0) {
-    mpsi_mpm_run_pass(mpm, &pass);
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
     status = solve_contacts(mpm, function, dt, status);
     if (status != MPS_OK) return status;
-    pass = (mpsi_pass){.clear = NULL};
+    pass = (mpsi_pass){.data = mpm};
   } else {
     mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
   }
-  mpsi_step_gather_pass(&mpm->grid, &mpm->undo, mpm->kernels, &pass);
-  mpsi_mpm_run_pass(mpm, &pass);
+  mpsi_step_gather_pass(&pass);
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   return status;
 }
 

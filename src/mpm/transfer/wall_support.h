@@ -57,16 +57,15 @@ MPSI_INLINE bool mpsi_wall_active(const mpsi_grid *grid, const mpsi_cell_block *
 
 /* Weights across the wall of a particle t cells from the lowest node of its stencil, of the kind
  * `part`; returns M0. */
-MPSI_INLINE double mpsi_wall_weights(const mpsi_grid *grid, const mpsi_cell_block *cells,
-                                     int spline, int axis, int32_t first, double t,
-                                     mpsi_wall_part part, double *value, double *slope) {
+MPSI_INLINE double mpsi_wall_weights(const mpsi_transfer *work, int spline, int axis, int32_t first,
+                                     double t, mpsi_wall_part part, double *value, double *slope) {
   int place[3];
   double M0 = 0.0, M1 = 0.0, M2 = 0.0, w[4];
   mpsi_unravel(first, MPSI_TILE_SIDE, place);
   mpsi_weights(spline, t, w);
   for (int i = 0; i <= spline; i++) {
     const double s = (double)i - t;
-    if (!mpsi_wall_active(grid, cells, axis, place[axis], i)) w[i] = 0.0;
+    if (!mpsi_wall_active(work->grid, work->cells, axis, place[axis], i)) w[i] = 0.0;
     M0 += w[i], M1 += w[i] * s, M2 += w[i] * s * s;
   }
   const double inverse = 1.0 / (M0 * M2 - M1 * M1);
@@ -81,34 +80,37 @@ MPSI_INLINE double mpsi_wall_weights(const mpsi_grid *grid, const mpsi_cell_bloc
   return M0;
 }
 
-/* Weights of particles [begin, end) of a chunk, which share a stencil cut by the wall across
- * `axis`. */
-MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                  int spline, const mpsi_places *from, int begin, int end, int axis,
-                                  mpsi_wall_part part, mpsi_wall *out) {
+/* Weights of a segment cut by the wall across `axis`. */
+MPSI_INLINE void mpsi_wall_places(const mpsi_transfer *work, int dim, int spline,
+                                  const mpsi_segment *segment, int axis, mpsi_wall_part part,
+                                  mpsi_wall *out) {
+  const mpsi_places *from = segment->places;
+  const int n = segment->end - segment->begin;
   out->axis = axis;
-  for (int k = begin; k < end; k++) {
+  out->places.chunk = from->chunk + segment->begin, out->places.count = n;
+  for (int q = 0; q < n; q++) {
+    const int k = segment->begin + q;
     double value[3][4], slope[3][4];
     for (int c = 0; c < dim; c++) {
       if (c == axis) {
-        out->mass[k - begin] = mpsi_wall_weights(&mpm->grid, cells, spline, c, from->first[k],
-                                                 from->t[c][k], part, value[c], slope[c]);
+        out->mass[q] = mpsi_wall_weights(work, spline, c, from->first[k], from->t[c][k], part,
+                                         value[c], slope[c]);
         continue;
       }
       mpsi_weights(spline, from->t[c][k], value[c]);
       for (int i = 0; i < 4; i++) slope[c][i] = value[c][i] * ((double)i - from->t[c][k]);
     }
-    out->places.first[k - begin] = from->first[k];
-    memcpy(out->rows.w[k - begin], value[0], sizeof value[0]);
-    memcpy(out->rows.ws[k - begin], slope[0], sizeof slope[0]);
-    for (int c = 0; c < dim; c++) out->places.t[c][k - begin] = from->t[c][k];
+    out->places.first[q] = from->first[k];
+    memcpy(out->rows.w[q], value[0], sizeof value[0]);
+    memcpy(out->rows.ws[q], slope[0], sizeof slope[0]);
+    for (int c = 0; c < dim; c++) out->places.t[c][q] = from->t[c][k];
     for (int c = 0; c < dim; c++)
       for (int i = 0; i <= spline; i++) {
-        out->places.w[c][i][k - begin] = value[c][i];
-        out->places.ws[c][i][k - begin] = slope[c][i];
+        out->places.w[c][i][q] = value[c][i];
+        out->places.ws[c][i][q] = slope[c][i];
       }
   }
-  mpsi_pad_places(dim, spline, 7, end - begin, &out->places);
+  mpsi_pad_places(dim, spline, 7, n, &out->places);
 }
 
 #endif

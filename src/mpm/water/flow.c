@@ -236,7 +236,8 @@ static void advance(mps_mpm *mpm, int64_t g, int k, bool whole, mpsi_pore_cell *
               mpsi_pore_squeeze(mpm->water, cell);
 }
 
-static void find_pressures(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_pressures(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
   (void)worker;
@@ -300,7 +301,8 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
   cell->now = lines > 0 ? sum / lines : 0.0;
 }
 
-static void find_slopes(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_slopes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
@@ -360,7 +362,8 @@ MPSI_INLINE void give_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wa
   }
 }
 
-static void give_to_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void give_to_particles(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   if (mpm->grid.dim == 2)
     give_body(&mpm->grid, &mpm->p, mpm->water, &mpm->def, mpm->run.dt, b, 2);
@@ -398,7 +401,8 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
   s->residual[at] = dt * flux + storage * mpsi_pore_squeeze(water, cell);
 }
 
-static void find_equations(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_equations(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const mpsi_pore_cell *cell = water->cell + first;
@@ -413,7 +417,8 @@ static void find_equations(mps_mpm *mpm, int64_t g, int32_t worker) {
 }
 
 /* What flows under the pressures at the end of the step, so that no water is lost. */
-static void find_gains(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_gains(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   (void)worker;
@@ -427,26 +432,27 @@ static void find_gains(mps_mpm *mpm, int64_t g, int32_t worker) {
 }
 
 static mps_status find_implicit(mps_mpm *mpm, const char *function) {
-  const mpsi_pass equations = {.finish = find_equations};
-  const mpsi_pass gains = {.finish = find_gains};
-  mpsi_mpm_run_pass(mpm, &equations);
+  const mpsi_pass equations = {.data = mpm, .finish = find_equations};
+  const mpsi_pass gains = {.data = mpm, .finish = find_gains};
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &equations);
   const mps_status status = mpsi_pore_solve(mpm, function);
-  if (status == MPS_OK && mpm->water->flows) mpsi_mpm_run_pass(mpm, &gains);
+  if (status == MPS_OK && mpm->water->flows)
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &gains);
   return status;
 }
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
 mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function) {
-  const mpsi_pass pressures = {.finish = find_pressures};
-  const mpsi_pass particles = {.finish = find_slopes, .gather = give_to_particles};
+  const mpsi_pass pressures = {.data = mpm, .finish = find_pressures};
+  const mpsi_pass particles = {.data = mpm, .finish = find_slopes, .gather = give_to_particles};
   mps_status status = MPS_OK;
   if (mpm->water->system) {
     status = find_implicit(mpm, function);
   } else if (mpm->water->flows) {
-    mpsi_mpm_run_pass(mpm, &pressures);
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pressures);
     mpsi_pore_exchange(mpm, MPSI_PORE_NOW);
   }
-  if (status == MPS_OK) mpsi_mpm_run_pass(mpm, &particles);
+  if (status == MPS_OK) mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &particles);
   return status;
 }
