@@ -69,8 +69,36 @@ const mpsi_kernels *mpsi_mpm_kernels(int32_t isa);
 /* inside.c: states of the nodes under a cut block's tile, to worker->state. */
 void mpsi_mpm_find_states(const mpsi_transfer *work);
 
-/* The transfer of block of cells b by a worker. */
-static inline mpsi_transfer mpsi_transfer_of(mps_mpm *mpm, int64_t b, int32_t worker) {
+/* What the contact stage of a step works on. */
+typedef struct mpsi_contact_stage {
+  mps_context *context;
+  mpsi_transfer transfer; /* of no block of cells yet */
+  mpsi_contacts *contact;
+  mpsi_partition *partition; /* NULL: one rank */
+  const mpsi_kernels *kernels;
+  double dt, next_dt; /* s, of this step and of the next one */
+  bool settling;      /* bodies do not move freely */
+} mpsi_contact_stage;
+
+/* The stage's transfer of block of cells b by a worker. */
+static inline mpsi_transfer mpsi_contact_transfer(const mpsi_contact_stage *stage, int64_t b,
+                                                  int32_t worker) {
+  mpsi_transfer work = stage->transfer;
+  work.cells = &work.grid->cells[b];
+  work.worker = &work.grid->workers[worker];
+  return work;
+}
+
+/* inside.c: what the search for nodes inside bodies works on. */
+typedef struct mpsi_inside_search {
+  const mpsi_grid *grid;
+  const mpsi_columns *p;
+  const mpsi_contacts *contact;
+  const mpsi_kernels *kernels;
+} mpsi_inside_search;
+
+/* The transfer of a solver, of no block of cells yet. */
+static inline mpsi_transfer mpsi_transfer_begin(mps_mpm *mpm) {
   return (mpsi_transfer){.grid = &mpm->grid,
                          .p = &mpm->p,
                          .contact = &mpm->contact,
@@ -79,9 +107,26 @@ static inline mpsi_transfer mpsi_transfer_of(mps_mpm *mpm, int64_t b, int32_t wo
                          .water = mpm->water,
                          .energy = &mpm->energy,
                          .run = &mpm->run,
-                         .def = &mpm->def,
-                         .cells = &mpm->grid.cells[b],
-                         .worker = &mpm->grid.workers[worker]};
+                         .def = &mpm->def};
+}
+
+/* The transfer of block of cells b by a worker. */
+static inline mpsi_transfer mpsi_transfer_of(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_transfer work = mpsi_transfer_begin(mpm);
+  work.cells = &mpm->grid.cells[b];
+  work.worker = &mpm->grid.workers[worker];
+  return work;
+}
+
+static inline mpsi_contact_stage mpsi_contact_stage_of(mps_mpm *mpm) {
+  return (mpsi_contact_stage){.context = mpm->context,
+                              .transfer = mpsi_transfer_begin(mpm),
+                              .contact = &mpm->contact,
+                              .partition = mpm->partition,
+                              .kernels = mpm->kernels,
+                              .dt = mpm->run.dt,
+                              .next_dt = mps_mpm_dt(mpm),
+                              .settling = mpm->settling.on};
 }
 
 #endif

@@ -71,8 +71,6 @@ void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_r
 void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
                           double *moduli);
-/* volumetric.c: after the step's G2P the laws that wait for means, and what is smoothed. */
-void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,

@@ -46,7 +46,9 @@ static mps_status find_sums(mps_mpm *mpm, const char *function, mps_status statu
   status = mpsi_mpm_evaluate_signals(mpm, function, mps_mpm_dt(mpm), false);
   status = mpsi_mpm_update_boundaries(mpm, function, status);
   status = mpsi_mpm_find_near(mpm, function, status);
-  if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
+  if (status == MPS_OK)
+    status =
+        mpsi_mpm_find_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->loads, function);
   if (mpm->partition) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status == MPS_OK) status = sum_nodes(mpm, function);
   mpm->grid.apart = false;

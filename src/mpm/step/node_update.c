@@ -74,7 +74,7 @@ static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
   mpsi_node before[MOST], old[MOST];
   mpsi_node *side = mpm->grid.side + mpsi_first_node(&mpm->grid, mpm->grid.nodes[g].side);
   memcpy(old, side, bytes);
-  mpsi_mpm_prescribe_mirrors(mpm, g);
+  mpsi_mpm_prescribe_mirrors(&mpm->grid, &mpm->boundaries, &mpm->mirrors, mpm->run.dt, g);
   memcpy(before, node, bytes);
   mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   memcpy(side, old, bytes);
@@ -90,7 +90,7 @@ static void finish_and_damp(mps_mpm *mpm, int64_t g) {
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
   apply_body_friction(mpm, g, held);
-  mpsi_mpm_prescribe_nodes(mpm, g, fixed);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, fixed);
   memcpy(damped, node, bytes);
   if (mpm->settling.on)
     mpsi_mpm_measure_balance(&mpm->grid, &mpm->contact, &mpm->settling, mpm->run.dt, g, fixed,
@@ -109,10 +109,10 @@ static void finish(mps_mpm *mpm, int64_t g) {
     return;
   }
   if (mpm->grid.nodes[g].pairs > 0) {
-    mpsi_mpm_prescribe_mirrors(mpm, g);
+    mpsi_mpm_prescribe_mirrors(&mpm->grid, &mpm->boundaries, &mpm->mirrors, mpm->run.dt, g);
     mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   }
-  mpsi_mpm_prescribe_nodes(mpm, g, fixed);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, fixed);
 }
 
 void mpsi_mpm_finish_nodes(void *data, int64_t g, int32_t worker) {

@@ -6,7 +6,8 @@
 #include "mpm/water/water.h"
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  if (!mpm->partition) return mpsi_mpm_sort_alone(mpm, function);
+  if (!mpm->partition)
+    return mpsi_mpm_sort_alone(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
   mps_status status = MPS_OK;
   if (mpm->contact.bodies > 0)
     status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, mpm->partition->domain,

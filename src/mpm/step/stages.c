@@ -4,12 +4,14 @@
 
 #include "core/particles/particles_internal.h"
 #include "mpm/particles/particles.h"
+#include "means.h"
 #include "tiles.h"
 
 #define CHATTER 6.0 /* k dt^2/m above which a penalty contact oscillates */
 
 mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_mpm_find_forces(mpm, function);
+  mps_status status =
+      mpsi_mpm_find_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->loads, function);
   if (status == MPS_OK) status = mpsi_mpm_energy_begin(mpm, function);
   if (status == MPS_OK)
     status = mpsi_mpm_begin_balance(mpm->context, &mpm->grid, &mpm->p, &mpm->settling, &mpm->def,
@@ -98,7 +100,9 @@ mps_status mpsi_step_refuse(mps_mpm *mpm, const char *function) {
 }
 
 void mpsi_step_complete(mps_mpm *mpm) {
-  if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm);
+  if (mpm->contact.bodies > 0)
+    mpsi_mpm_update_bodies(&mpm->grid, &mpm->contact, &mpm->energy, mpm->partition, &mpm->settling,
+                           mpm->run.dt);
   mpsi_mpm_energy_end(mpm);
   mpm->run.moments = true;
   mpm->run.time += mpm->run.dt;

@@ -49,11 +49,12 @@ static bool find_masses(void *data) {
 static bool solve_contacts(void *data) {
   mpsi_step *step = data;
   mps_mpm *mpm = step->mpm;
-  mpsi_mpm_fit_constraints(mpm);
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  mpsi_mpm_fit_constraints(&stage);
   step->status =
       mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, step->function);
   if (step->status != MPS_OK) return false;
-  mpsi_mpm_apply_impulses(mpm);
+  mpsi_mpm_apply_impulses(&stage);
   mpsi_mpm_begin_boundaries(&mpm->boundaries, step->dt);
   return true;
 }
@@ -104,7 +105,8 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   if (status == MPS_OK) status = mpsi_pore_begin(mpm, function, status);
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
-  status = mpsi_mpm_find_constraints(mpm, function);
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  status = mpsi_mpm_find_constraints(&stage, function);
   if (status == MPS_OK) status = transfer(mpm, function, dt);
   if (status != MPS_OK) return status;
   mpsi_step_after_gather(mpm);

@@ -47,12 +47,13 @@ static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status)
  * depths are known. */
 static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, mps_status status) {
   mpsi_mpm_find_contact_mass(&mpm->grid, &mpm->contact, mpm->partition); /* mass over all ranks */
-  mpsi_mpm_fit_constraints(mpm);
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  mpsi_mpm_fit_constraints(&stage);
   if (status == MPS_OK)
     status = mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, function);
-  status = mpsi_mpm_exchange_contacts(mpm, function, status);
+  status = mpsi_mpm_exchange_contacts(&stage, function, status);
   if (status != MPS_OK) return status;
-  mpsi_mpm_apply_impulses(mpm);
+  mpsi_mpm_apply_impulses(&stage);
   mpsi_mpm_end_contact_exchange(&mpm->contact);
   mpsi_mpm_begin_boundaries(&mpm->boundaries, dt);
   return MPS_OK;
@@ -92,7 +93,8 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (!unchanged) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
-  status = mpsi_mpm_find_constraints(mpm, function);
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  status = mpsi_mpm_find_constraints(&stage, function);
   if (mpm->contact.bodies > 0) mpsi_mpm_mark_contact_blocks(&mpm->contact, &mpm->grid);
   status = transfer(mpm, function, dt, status);
   if (status != MPS_OK) return status;

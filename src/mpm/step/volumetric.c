@@ -219,10 +219,12 @@ static void sum_rates(void *data, int64_t b, int32_t number) {
   }
 }
 
-static void mean_diagonals(const mpsi_grid *grid, const mpsi_columns *p,
-                           const mpsi_contacts *contacts, const mps_mpm_def *def, double dt,
-                           const mpsi_cell_block *cells, int64_t begin, int64_t end,
+static void mean_diagonals(const mpsi_transfer *work, int64_t begin, int64_t end,
                            double (*diagonal)[MPSI_CHUNK]) {
+  const mpsi_grid *grid = work->grid;
+  const mpsi_columns *p = work->p;
+  const mpsi_cell_block *cells = work->cells;
+  const double dt = work->run->dt;
   const double *L[3];
   find_diagonal(grid, p, L);
   for (int64_t k = begin; k < end; k++) {
@@ -230,11 +232,11 @@ static void mean_diagonals(const mpsi_grid *grid, const mpsi_columns *p,
     double mean;
     if (keeps_own(p, k)) {
       mean = own;
-    } else if (by_nodes(def)) {
-      const support s = support_of(grid, p, contacts, dt, cells, k);
+    } else if (by_nodes(work->def)) {
+      const support s = support_of(grid, p, work->contact, dt, cells, k);
       mean = mean_of_nodes(grid, cells, &s, level);
     } else {
-      const double *sums = sums_of(grid, p, contacts, dt, cells, NULL, k);
+      const double *sums = sums_of(grid, p, work->contact, dt, cells, NULL, k);
       mean = sums[MPSI_SUM_VALUE] / sums[MPSI_SUM_VOLUME];
     }
     const double change = (mean - own) / 3.0;
@@ -253,7 +255,7 @@ static void apply_laws(void *data, int64_t b, int32_t worker) {
     const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
     double *D[9], mean[3][MPSI_CHUNK];
     for (int c = 0; c < mpm->grid.dim * mpm->grid.dim; c++) D[c] = mpm->p.D[c] + k;
-    mean_diagonals(&mpm->grid, &mpm->p, &mpm->contact, &mpm->def, mpm->run.dt, cells, k, end, mean);
+    mean_diagonals(&work, k, end, mean);
     mpsi_mpm_apply_law(&laws, k, end, D, mean);
   }
   if (!by_nodes(&mpm->def)) mpm->kernels->speed(&work);

@@ -365,7 +365,7 @@ MPSI_INLINE void speed_chunk(const mpsi_transfer *work, int dim, int64_t begin, 
   find_speed(work->p, work->def, work->cells, dim, begin, n, moduli);
 }
 
-/* Velocities and gradients of a segment. */
+/* Velocities and gradients of a segment. The last arguments are literal: each has its own code. */
 MPSI_INLINE void gather_segment(const mpsi_transfer *work, int dim, int spline,
                                 const mpsi_segment *segment, mpsi_gathered *out) {
   const mpsi_cell_block *cells = work->cells;
@@ -374,16 +374,19 @@ MPSI_INLINE void gather_segment(const mpsi_transfer *work, int dim, int spline,
   find_polynomials(dim, spline, (const mpsi_node *)work->worker->tile + first, &rows);
   const uint32_t state = cells->cut ? mpsi_support_state(work->worker, dim, spline, first) : 0;
   const int axis = state ? mpsi_wall_axis(work->grid, cells, dim, spline, state, first) : -1;
-  const bool at_wall = !cells->light && axis >= 0, full = !cells->light && !state;
-  if (!at_wall && !full && MPSI_LEVELLED(mpsi_mpm_gather_cut)(work, segment, out)) return;
-  for (int k = segment->begin; k < segment->end; k += MPSI_LANES) {
-    const int end = segment->end - k < MPSI_LANES ? segment->end : k + MPSI_LANES;
-    const mpsi_segment some = {segment->places, k, end};
-    const lanes of = {segment->places, k, &rows};
-    if (at_wall)
-      OF_KIND(gather_at_wall, dim, spline)(work, &some, axis, &rows, out);
-    else
-      OF_KIND(gather_lanes, dim, spline)(work, &of, full ? -1 : EVERY_AXIS, out);
+  lanes of = {segment->places, segment->begin, &rows};
+  if (!cells->light && axis >= 0) {
+    for (mpsi_segment part = *segment; part.begin < segment->end; part.begin = part.end) {
+      const int left = segment->end - part.begin;
+      part.end = part.begin + (left < MPSI_LANES ? left : MPSI_LANES);
+      OF_KIND(gather_at_wall, dim, spline)(work, &part, axis, &rows, out);
+    }
+  } else if (!cells->light && !state) {
+    for (; of.k < segment->end; of.k += MPSI_LANES)
+      OF_KIND(gather_lanes, dim, spline)(work, &of, -1, out);
+  } else if (!MPSI_LEVELLED(mpsi_mpm_gather_cut)(work, segment, out)) {
+    for (; of.k < segment->end; of.k += MPSI_LANES)
+      OF_KIND(gather_lanes, dim, spline)(work, &of, EVERY_AXIS, out);
   }
 }
 

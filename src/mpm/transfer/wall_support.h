@@ -85,32 +85,31 @@ MPSI_INLINE void mpsi_wall_places(const mpsi_transfer *work, int dim, int spline
                                   const mpsi_segment *segment, int axis, mpsi_wall_part part,
                                   mpsi_wall *out) {
   const mpsi_places *from = segment->places;
-  const int n = segment->end - segment->begin;
+  const int begin = segment->begin, end = segment->end;
   out->axis = axis;
-  out->places.chunk = from->chunk + segment->begin, out->places.count = n;
-  for (int q = 0; q < n; q++) {
-    const int k = segment->begin + q;
+  out->places.chunk = from->chunk + begin, out->places.count = end - begin;
+  for (int k = begin; k < end; k++) {
     double value[3][4], slope[3][4];
     for (int c = 0; c < dim; c++) {
       if (c == axis) {
-        out->mass[q] = mpsi_wall_weights(work, spline, c, from->first[k], from->t[c][k], part,
-                                         value[c], slope[c]);
+        out->mass[k - begin] = mpsi_wall_weights(work, spline, c, from->first[k], from->t[c][k],
+                                                 part, value[c], slope[c]);
         continue;
       }
       mpsi_weights(spline, from->t[c][k], value[c]);
       for (int i = 0; i < 4; i++) slope[c][i] = value[c][i] * ((double)i - from->t[c][k]);
     }
-    out->places.first[q] = from->first[k];
-    memcpy(out->rows.w[q], value[0], sizeof value[0]);
-    memcpy(out->rows.ws[q], slope[0], sizeof slope[0]);
-    for (int c = 0; c < dim; c++) out->places.t[c][q] = from->t[c][k];
+    out->places.first[k - begin] = from->first[k];
+    memcpy(out->rows.w[k - begin], value[0], sizeof value[0]);
+    memcpy(out->rows.ws[k - begin], slope[0], sizeof slope[0]);
+    for (int c = 0; c < dim; c++) out->places.t[c][k - begin] = from->t[c][k];
     for (int c = 0; c < dim; c++)
       for (int i = 0; i <= spline; i++) {
-        out->places.w[c][i][q] = value[c][i];
-        out->places.ws[c][i][q] = slope[c][i];
+        out->places.w[c][i][k - begin] = value[c][i];
+        out->places.ws[c][i][k - begin] = slope[c][i];
       }
   }
-  mpsi_pad_places(dim, spline, 7, n, &out->places);
+  mpsi_pad_places(dim, spline, 7, end - begin, &out->places);
 }
 
 #endif
