@@ -340,8 +340,9 @@ static bool draw_columns(app *a, const simulation *sim) {
     width = fmax(width, 1.05 * c->front[c->rows - 1] / s->width);
     height = fmax(height, 1.1 * c->aspect);
   }
-  const int panel = 330, panel_height = (int)(panel * height / width), edge = 78;
-  const double x = FRAMES * (panel + edge) + 135.0, y = sim->count * (panel_height + 100.0) + 12.0;
+  const int panel = 330, panel_height = (int)(panel * height / width), edge = 78, gap = 46;
+  const double x = FRAMES * (panel + gap) + edge - gap + 135.0;
+  const double y = sim->count * (panel_height + 84.0) + 28.0;
   const area_def def = {.spacing = s->h / sqrt((double)s->ppc),
                         .slit = AREA_SLIT_SHEARED,
                         .upper = {width * s->width, height * s->width},
@@ -367,15 +368,16 @@ static bool draw_columns(app *a, const simulation *sim) {
               "set palette defined (0 '#f3e3bd', 0.4 '#c98f4a', 1 '#5b2c12')\n"
               "set xtics 1\nset ytics %g\n"
               "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
-              "set cblabel 'plastic strain (-)'\nset xlabel 'x/L_0' offset 0,0.6\n"
-              "set ylabel 'y/L_0' offset 1.3\n",
-              sim->count, FRAMES, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 40.0 / y, edge / x,
-              100.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
+              "set cblabel 'plastic strain (-)'\n",
+              sim->count, FRAMES, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 40.0 / y, gap / x,
+              84.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
   plot_colours(&f, 0.0, fmin(2.0, most), 0.0, most);
   for (int k = 0; k < sim->count; k++)
     for (int shot = 0; shot < FRAMES; shot++) {
       const column_case *c = &sim->column[k];
       if (k + shot == 1) output_text(&f, "unset colorbox\n");
+      output_text(&f, "set xlabel '%s' offset 0,0.6\nset ylabel '%s' offset 1.3\n",
+                  k == sim->count - 1 ? "x/L_0" : "", shot == 0 ? "y/L_0" : "");
       if (c->shot[shot].count == 0) { /* the run ended before */
         output_text(&f, "set multiplot next\n");
         continue;

@@ -57,8 +57,7 @@ int main(int argc, char **argv) {
                     "along H, a or B, a whole number; default 20, mandel 10, strip 4"),
       OPTION_CHOICE("scheme", "explicit|implicit", &s->scheme,
                     "pressures in time: explicit, or by the solution of a system in each step, "
-                    "which may then "
-                    "be longer"),
+                    "which may then be longer; strip settles, where both are the same"),
       OPTION_NUMBER("mass-damping", "1/s", OPTION_FROM_TO(0.0, 1e6), &s->damping,
                     "viscous; default half a wave velocity over H; strip none"),
       OPTION_HEADING("Run"),

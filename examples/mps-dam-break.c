@@ -251,8 +251,9 @@ static bool draw_water(app *a, const simulation *sim, double T) {
   const settings *s = &sim->s;
   const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (s->impact ? 1.0 : (double)s->n2);
   const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
-  const int panel_height = (int)(panel * height / width), edge = 78;
-  const double x = across * (panel + edge) + 160.0, y = down * (panel_height + 100.0) + 12.0;
+  const int panel_height = (int)(panel * height / width), edge = 78, gap = 46;
+  const double x = across * (panel + gap) + edge - gap + 160.0;
+  const double y = down * (panel_height + 84.0) + 28.0;
   const bool mps = s->method == METHOD_MPS;
   const area_def def = {.spacing = s->h / (mps ? 1.0 : sqrt((double)s->ppc)),
                         .slit = mps ? AREA_SLIT : AREA_SLIT_SHEARED,
@@ -265,22 +266,24 @@ static bool draw_water(app *a, const simulation *sim, double T) {
   area_range(FRAMES, image, 1e-3, &least, &most);
   output f;
   if (!plot_open(&f, a, s->out, "water", (int)x, (int)y)) return false;
-  output_text(
-      &f,
-      "set multiplot layout %d,%d columnsfirst margins screen %.4f, screen %.4f, screen "
-      "%.4f, screen %.4f spacing screen %.4f, screen %.4f\n"
-      "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
-      "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
-      "set xtics 1\nset ytics 1\nset xlabel 'x/a' offset 0,0.6\nset ylabel 'y/a' offset 1.3\n"
-      "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
-      "set cblabel 'pressure (kPa)'\n",
-      down, across, edge / x, (x - 160.0) / x, 72.0 / y, 1.0 - 40.0 / y, edge / x, 100.0 / y, width,
-      height, (x - 145.0) / x);
+  output_text(&f,
+              "set multiplot layout %d,%d columnsfirst margins screen %.4f, screen %.4f, screen "
+              "%.4f, screen %.4f spacing screen %.4f, screen %.4f\n"
+              "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
+              "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
+              "set xtics 1\nset ytics 1\n"
+              "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
+              "set cblabel 'pressure (kPa)'\n",
+              down, across, edge / x, (x - 160.0) / x, 72.0 / y, 1.0 - 40.0 / y, gap / x, 84.0 / y,
+              width, height, (x - 145.0) / x);
   plot_colours(&f, 0.0, 0.9e-3 * DENSITY * G * column_height(s), least, most);
   for (int k = 0; k < FRAMES; k++) {
     if (sim->shot[k].count == 0) continue; /* the run ended before */
-    output_text(&f, "%sset title 'T = %.2f' offset 0,-0.7\nplot ", k == 1 ? "unset colorbox\n" : "",
-                sim->shot[k].time * T);
+    output_text(&f,
+                "%sset xlabel '%s' offset 0,0.6\nset ylabel '%s' offset 1.3\n"
+                "set title 'T = %.2f' offset 0,-0.7\nplot ",
+                k == 1 ? "unset colorbox\n" : "", k % down == down - 1 ? "x/a" : "",
+                k < down ? "y/a" : "", sim->shot[k].time * T);
     area_plot(&f, "water.bin", &image[k], s->base, 1e-3);
     output_text(&f, "\n");
   }

@@ -24,6 +24,7 @@ int main(int argc, char **argv) {
                                  .gravity = NAN,
                                  .k = 2e9,
                                  .settlement = NAN,
+                                 .tolerance = 2e-3,
                                  .spline = 1,
                                  .ppc = 4,
                                  .course = MPM_COURSE_DEFAULTS,
@@ -71,6 +72,10 @@ int main(int argc, char **argv) {
       OPTION_FLAG("quasi-static", &s->settled,
                   "the ground comes to rest after each of 30 parts of the path: less inertia in "
                   "fewer steps"),
+      OPTION_NUMBER(
+          "tolerance", "1", OPTION_FROM_TO(1e-5, 1e-2), &s->tolerance,
+          "quasi-static: unbalanced over applied forces at rest, in the second half of the "
+          "path; before it 0.002"),
       MPM_COURSE_OPTIONS(&s->course, FOOTING_SAMPLES),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),

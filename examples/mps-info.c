@@ -42,13 +42,22 @@ static bool readable(const char *path, char *why) {
   return true;
 }
 
+/* Why a file is not looked into: of the text beside a series, where its frames are. */
+static void refuse(const char *path, char *why) {
+  const char *ending = strrchr(path, '.');
+  if (ending && strcmp(ending, ".xdmf") == 0)
+    snprintf(why, INFO_WHY, "names frames for ParaView 5.11, which are in the .vtkhdf file beside it");
+  else
+    snprintf(why, INFO_WHY, "not an HDF5 file, or a damaged one");
+}
+
 static int show(report *r, mps_context *context, const char *path) {
   char why[INFO_WHY] = "", format[40];
   bool good = false;
   if (!readable(path, why)) return complain(path, why);
   const hid_t file = H5Fis_hdf5(path) > 0 ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
   if (file < 0)
-    snprintf(why, sizeof why, "not an HDF5 file, or a damaged one");
+    refuse(path, why);
   else if (info_text(file, "format", format, sizeof format) &&
            strcmp(format, "libmps checkpoint") == 0)
     good = info_checkpoint(r, context, path, file, why);

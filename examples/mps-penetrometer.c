@@ -18,6 +18,14 @@ int main(int argc, char **argv) {
                                  .poisson = 0.4,
                                  .density = 1800.0,
                                  .alpha = NAN,
+                                 .k0 = NAN,
+                                 .ir = NAN,
+                                 .M = 0.92,
+                                 .lambda = 0.205,
+                                 .kappa = 0.044,
+                                 .e0 = 1.4,
+                                 .ocr = 1.0,
+                                 .permeability = NAN,
                                  .corner = 0.6,
                                  .gravity = NAN,
                                  .h = 0.0125,
@@ -45,19 +53,42 @@ int main(int argc, char **argv) {
       MPM_MODEL_CONTACT(&s->contact),
       COMMON_NUMBER("corner", &s->corner, NULL),
       COMMON_NUMBER("depth", &s->depth, "of the lowest point, where the run ends"),
+      OPTION_NUMBER(
+          "start", "m", OPTION_FROM_TO(0.0, 1e4), &s->start,
+          "depth of the lowest point at the start, in a hole that cone and shaft fill; 0: "
+          "above the ground"),
       COMMON_NUMBER("rate", &s->rate, NULL),
       OPTION_HEADING("Soil"),
-      OPTION_CHOICE("law", "clay|sand|elastic", &s->law,
-                    "von Mises, Drucker-Prager (inscribed cone), linear elastic"),
+      OPTION_CHOICE("law", "clay|sand|elastic|tresca|mcc", &s->law,
+                    "von Mises, Drucker-Prager (inscribed cone), linear elastic, Tresca, modified "
+                    "Cam-Clay with water in its pores"),
       OPTION_TEXT("soil", "WxWxD", &s->soil,
                   "width, breadth and depth of the box in diameters, made whole cells"),
-      COMMON_NUMBER("cohesion", &s->cohesion, "of clay; of sand, default 0"),
+      COMMON_NUMBER("cohesion", &s->cohesion, "of clay, tresca; of sand, default 0"),
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 60.0), &s->phi, "of sand"),
       COMMON_NUMBER("psi", &s->psi, "of sand"),
       COMMON_NUMBER("young", &s->young, NULL),
-      COMMON_NUMBER("poisson", &s->poisson, NULL),
+      COMMON_NUMBER("poisson", &s->poisson, "of mcc, default 0.25; with --ir else 0.49"),
+      OPTION_NUMBER("ir", "1", OPTION_FROM_TO(1.0, 1e5), &s->ir,
+                    "rigidity index G/su instead of --young; clay, tresca, mcc"),
+      OPTION_NUMBER("M", "1", OPTION_FROM_TO(0.05, 2.9), &s->M, "mcc: critical q/p in compression"),
+      OPTION_NUMBER("lambda", "1", OPTION_FROM_TO(1e-4, 5.0), &s->lambda,
+                    "mcc: slope of virgin compression in e - ln p"),
+      OPTION_NUMBER("kappa", "1", OPTION_FROM_TO(1e-5, 5.0), &s->kappa,
+                    "mcc: slope of unloading, below lambda"),
+      OPTION_NUMBER("e0", "1", OPTION_FROM_TO(0.01, 20.0), &s->e0, "mcc: void ratio"),
+      OPTION_NUMBER("ocr", "1", OPTION_FROM_TO(1.0, 1000.0), &s->ocr,
+                    "mcc: largest former vertical stress over --surcharge"),
+      OPTION_NUMBER("permeability", "m/s", OPTION_ABOVE_TO(0.0, 1e-2), &s->permeability,
+                    "mcc: drained by the surface; undrained if not given"),
       COMMON_NUMBER("density", &s->density, NULL),
       COMMON_NUMBER("gravity", &s->gravity, "default 9.81 m/s2 with --law sand, else 0"),
+      OPTION_NUMBER("surcharge", "Pa", OPTION_FROM_TO(0.0, 1e9), &s->surcharge,
+                    "vertical stress at the surface, with --start; mcc: effective, of all ground"),
+      OPTION_NUMBER("k0", "1", OPTION_FROM_TO(0.0, 10.0), &s->k0,
+                    "horizontal over vertical stress, default nu/(1 - nu); mcc: by the law"),
+      OPTION_CHOICE("sides", "rollers|stress", &s->sides,
+                    "of the box: they stay, or carry the in-situ stress, as in ground of no end"),
       OPTION_HEADING("Grid"),
       OPTION_CHOICE("model", "quarter|whole", &s->model,
                     "quarter: rollers on two planes through the axis"),
@@ -78,13 +109,13 @@ int main(int argc, char **argv) {
       {0}};
   const options_program program = {
       "mps-penetrometer",
-      "A rigid cone, sphere or mesh pushed into soil (WLS-MPM in space; von Mises, Drucker-Prager\n"
-      "or elastic): its resistance by tip and shaft along the path, and the soil in section.",
+      "A rigid cone, sphere or mesh pushed into soil (WLS-MPM in space; von Mises, Tresca,\n"
+      "Drucker-Prager, Cam-Clay or elastic): its resistance by tip and shaft along the path, and "
+      "the soil in section.",
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  if (s->law == PEN_SAND && !options_given(table, "cohesion")) s->cohesion = 0.0;
-  const char *reason = pen_check(&p);
+  const char *reason = pen_check(&p, table);
   if (reason) return options_refuse(&program, reason);
   static const mpm_model_parts parts = {pen_build, pen_push, pen_finish};
   const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};

@@ -187,9 +187,10 @@ class Writer:
 
     def stubs(self):
         interface, out = self.interface, [HEAD]
-        returned = {n.type for f in interface.functions.values() for n in f.results}
+        named = {word for f in interface.functions.values() for n in (*f.results, *f.arguments)
+                 for word in n.type.split(" | ")}
         for kind, entry in sorted(interface.structs.items()):
-            if kind in ("mps_error", "mps_edit") or (kind.endswith("_def") and class_name(kind) not in returned):
+            if kind in ("mps_error", "mps_edit") or (kind.endswith("_def") and class_name(kind) not in named):
                 continue
             out.append(f"class {class_name(kind)}(Result):")
             out.append(self.quoted(self.words(entry.text) or kind, "    "))

@@ -402,4 +402,12 @@ static inline mps_context *team_context(int32_t executor, int32_t threads) {
   return mps_context_create(&def, &made, NULL, 0) == MPS_OK ? made : NULL;
 }
 
+/* A team of `size` ranks that runs `run` and ends. */
+static inline void team_compute(int32_t size, team_fn run, void *user) {
+  team t;
+  team_begin(&t, size);
+  team_run(&t, run, user);
+  team_end(&t);
+}
+
 #endif

@@ -155,6 +155,17 @@ static inline mps_dynamics_def scene_def(mps_domain *domain, int what) {
   return def;
 }
 
+/* A scene with its solver and conditions; `base` receives the number of its lowest boundary. */
+static inline mps_status begin_scene(mps_context *own, mps_domain *domain, int what,
+                                     mps_particles **set, mps_dynamics **dynamics, int32_t *base) {
+  const mps_dynamics_def def = scene_def(domain, what);
+  mps_status status = make_set(own, RANKS_IN_PARTS ? domain : NULL, what, set);
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(mps_dynamics_create(own, *set, &def, dynamics));
+  if (status == MPS_OK) status = add_conditions(own, domain, *dynamics, what, base);
+  return status;
+}
+
 /* Half of a run that is cut in two: to the checkpoint, or on from it. `path` NULL: not cut. */
 enum { FIRST_HALF = 1, SECOND_HALF = 2 };
 static inline mps_status compute_halves(mps_context *own, mps_domain *domain, int what, int halves,
@@ -162,11 +173,7 @@ static inline mps_status compute_halves(mps_context *own, mps_domain *domain, in
   mps_particles *set = NULL;
   mps_dynamics *dynamics = NULL;
   int32_t base = -1;
-  const mps_dynamics_def def = scene_def(domain, what);
-  mps_status status = make_set(own, RANKS_IN_PARTS ? domain : NULL, what, &set);
-  if (domain) status = mps_domain_agree(domain, status);
-  TRY(mps_dynamics_create(own, set, &def, &dynamics));
-  if (status == MPS_OK) status = add_conditions(own, domain, dynamics, what, &base);
+  mps_status status = begin_scene(own, domain, what, &set, &dynamics, &base);
   if (halves & FIRST_HALF) TRY(mps_dynamics_step(dynamics, 9));
   if ((halves & FIRST_HALF) && path) TRY(mps_dynamics_save(dynamics, path, NULL));
   if ((halves & SECOND_HALF) && path) TRY(mps_dynamics_restore(dynamics, path, NULL));
@@ -184,11 +191,7 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   mps_particles *set = NULL;
   mps_dynamics *dynamics = NULL;
   int32_t base = -1;
-  const mps_dynamics_def def = scene_def(domain, what);
-  mps_status status = make_set(own, RANKS_IN_PARTS ? domain : NULL, what, &set);
-  if (domain) status = mps_domain_agree(domain, status);
-  TRY(mps_dynamics_create(own, set, &def, &dynamics));
-  if (status == MPS_OK) status = add_conditions(own, domain, dynamics, what, &base);
+  mps_status status = begin_scene(own, domain, what, &set, &dynamics, &base);
   TRY(what == UNSTABLE ? fall_apart(dynamics, length) : march(dynamics, length));
   TRY(mps_dynamics_get_totals(dynamics, &r->totals));
   TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction[0]));

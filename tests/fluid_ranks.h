@@ -36,7 +36,6 @@ static inline void drop_scene(scene *s) {
 static inline mps_status wall(scene *s, int32_t kind, double x, double y, double nx, double ny,
                               mps_signal *signal) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.kind = MPS_BOUNDARY_ROLLER; /* slip */
   def.kind = kind;
   def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
   def.signal = signal;
@@ -74,12 +73,12 @@ static inline mps_status add_float(mps_context *own, scene *s) {
   return status;
 }
 
-/* Water of porosity .64, whose particles lie .025 m apart. */
+/* Water in rock of porosity 4/9, whose particles lie .03 m apart. */
 static inline mps_status fill_breakwater(mps_particles *set) {
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.9, 1.0};
   mps_status status = mps_particles_fill_box(set, lower, upper, NULL);
-  for (int n = 0; status == MPS_OK && n < 800; n++) {
-    const double at[2] = {0.9 + 0.025 * (n / 40 + 0.5), 0.025 * (n % 40 + 0.5)};
+  for (int n = 0; status == MPS_OK && n < 528; n++) {
+    const double at[2] = {0.9 + 0.03 * (n / 33 + 0.5), 0.03 * (n % 33 + 0.5)};
     status = mps_particles_append(set, 1, at);
   }
   return status;
@@ -96,7 +95,7 @@ static inline mps_status add_breakwater(scene *s) {
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 0.0, 0.0, 1.0, 0.0, NULL));
   TRY(wall(s, MPS_BOUNDARY_ROLLER, 3.5, 0.0, -1.0, 0.0, NULL));
   rock.corners = stones[0], rock.corner_count = 4;
-  rock.porosity = 0.64, rock.diameter = 0.02;
+  rock.porosity = 4.0 / 9.0, rock.diameter = 0.02;
   TRY(mps_fluid_add_rock(s->fluid, &rock, NULL));
   return status;
 }

@@ -37,12 +37,7 @@ static inline void run_rank(void *user, team *t, int32_t rank) {
   mps_context_destroy(&own);
 }
 
-static inline void run_team(ranks *s, int32_t size) {
-  team t;
-  team_begin(&t, size);
-  team_run(&t, run_rank, s);
-  team_end(&t);
-}
+static inline void run_team(ranks *s, int32_t size) { team_compute(size, run_rank, s); }
 
 /* Every particle was on one of `size` ranks or, with `shared`, may have been on all of them, as the
  * columns of a free field are. */
@@ -144,10 +139,7 @@ static inline void meet_troubles(trouble_fn *run, const trouble_case *list, int 
   int bad = 0;
   for (int what = 0; what < count; what++) {
     troubled s = {.run = run, .what = what};
-    team t;
-    team_begin(&t, 3);
-    team_run(&t, run_troubled, &s);
-    team_end(&t);
+    team_compute(3, run_troubled, &s);
     for (int32_t r = 0; r < 3; r++)
       if (s.status[r] != list[what].status || !strstr(s.message[r], list[what].text)) {
         print_error("trouble %d, rank %d: %d %s\n", what, (int)r, (int)s.status[r], s.message[r]);

@@ -19,9 +19,9 @@ eval text(60, 57.8, 'examples/, and yours: they see include/mps/ only, and link 
 array upper[5] = ["mpm", "dynamics", "implicit", "fluid", "couple"]
 array upper1[5] = ["soil on a grid that", "explicit: waves through", "elastic structures:", "water with a", "two codes that act on"]
 array upper2[5] = ["follows the particles", "ground, step by step", "statics, steps, modes", "free surface", "one another in a step"]
-array lower[5] = ["material", "contact, body", "signal", "io", "domain"]
+array lower[5] = ["material", "contact, body", "signal, waves", "io", "domain"]
 array lower1[5] = ["laws on blocks of par-", "rigid bodies, forces", "functions of time,", "frames for ParaView,", "one model on several"]
-array lower2[5] = ["ticles, ground at rest", "at their surface", "recorded motions", "checkpoint files", "ranks, by a transport"]
+array lower2[5] = ["ticles, ground at rest", "at their surface", "records, seas, makers", "checkpoint files", "ranks, by a transport"]
 do for [i = 1:5] {
   x = 2 + (i - 1)*23.6
   m = x + 10.8
@@ -61,8 +61,8 @@ eval head(101.5, 105.3, 'nodes, bodies, boundaries')
 eval text(101.5, 102.4, 'nodes and boundaries owned by the')
 eval text(101.5, 100.1, 'solver; bodies shared with the caller')
 eval head(55, 106, 'one step of WLS-MPM')
-array stage[10] = ["order and blocks", "what is near bodies", "forces on particles", "particles to nodes", "motion of the nodes", "impulses of contacts", "walls, boxes, friction", "nodes to particles", "laws", "bodies, results of the step"]
-array how[10] = ["only when a particle has left its block", "pairs of blocks and bodies, nodes inside, touches", "loads; motions of walls and boxes by their signals", "splines; mirrors at walls, fit at bodies; springs (28)", "velocities before and after the forces (26)", "where particles touch: until nothing approaches", "prescribed nodes; friction of the springs (31)-(34)", "velocity, its gradient, place (41)-(43)", "stress from strain and spin (44)-(48)", "reactions, free bodies move; speed for dt (49)"]
+array stage[10] = ["order and blocks", "contact search", "forces on particles", "particles to nodes", "motion of the nodes", "impulses of contacts", "walls, boxes, friction", "nodes to particles", "laws", "bodies, results of the step"]
+array how[10] = ["only when a particle has left its block", "blocks near bodies, nodes inside, candidates", "loads; motions of walls and boxes by their signals", "splines; mirrors at walls, fit at bodies; penalty (28)", "velocities before and after the forces (26)", "Gauss-Seidel sweeps over the active contacts", "prescribed nodes; penalty friction (31)-(34)", "velocity, its gradient, position (41)-(43)", "stress from strain and spin (44)-(48)", "reactions, free bodies move; speed for dt (49)"]
 array split[10] = ["chunks of particles", "blocks", "chunks of particles", "blocks of cells, so that no two write the same node", "blocks of nodes", "blocks of one colour; beside a free body, one thread", "blocks of nodes", "blocks of cells", "blocks of cells, while they are in the cache", "sums in a fixed order"]
 do for [i = 1:10] {
   y = 104 - 9.7*i
@@ -93,5 +93,5 @@ eval out(8); eval L(8, 1.3, 'position, velocity,'); eval L(8, -1.3, 'gradient')
 eval from(8); eval R(8, 0, 'velocity')
 eval out(9); eval L(9, 1.3, 'stress, volume,'); eval L(9, -1.3, 'history of the law')
 eval to(10); eval R(10, 1.3, 'reactions by part, pose,'); eval R(10, -1.3, 'spin; time, steps')
-eval text(60, 2.2, "Blue: one pass over the blocks, in two parts where particles touch. Results leave between steps: views, reactions, totals, files.")
+eval text(60, 2.2, "Blue: one pass over the blocks, in two parts where there is contact. Results leave between steps: views, reactions, totals, files.")
 plot NaN

@@ -49,6 +49,16 @@ set title 'Thin layer of clay, B = 4 H, rough'; set ylabel 'pressure over c'
 plot [0:*] [0:*] thin.'pressure.csv' every ::1 using 1:3 with lines lw 2 lc rgb blue title 'WLS-MPM', 6.1416 dt '--' lc rgb red title '{/Symbol p} + 1 + B/(2 H)'
 unset multiplot
 
+# ---- cones -----------------------------------------------------------------------------------
+set terminal pngcairo size 900,520 enhanced font 'DejaVu Sans,11'
+set output 'docs/images/textbook-cones.png'
+set title 'Smooth cone of 60° in deep clay (Tresca), D/8, from a hole 4 D deep'
+set xlabel 'way over D'; set ylabel 'N_{kt}'; set key bottom right
+cone(ir) = folder('mps-penetrometer_--axisymmetric_--no-space_--law_tresca_--ir_'.ir.'_').'force.csv'
+lu(ir) = 3.4 + 1.6*log(ir)
+plot [0:1.7] [0:14] for [k=0:2] cone(word('50 100 200', k + 1)) every ::1 using (($1 - 0.4)/0.1):10 with lines lw 2 lc rgb word(green.' '.blue.' '.grey, k + 1) title 'Ir = '.word('50 100 200', k + 1), \
+  lu(50) dt '--' lc rgb green notitle, lu(100) dt '--' lc rgb blue notitle, lu(200) dt '--' lc rgb grey title 'Lu et al. (2004)'
+
 # ---- walls and sand --------------------------------------------------------------------------
 set terminal pngcairo size 1200,420 enhanced font 'DejaVu Sans,11'
 set output 'docs/images/textbook-sand.png'

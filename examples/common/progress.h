@@ -12,17 +12,17 @@
 typedef struct progress {
   bool terminal; /* stderr is one: otherwise nothing is drawn */
   bool drawn;
-  double started;      /* s, monotonic clock: when the fraction was `first` */
-  double first, shown; /* of the whole: when it began to be drawn; last drawn */
-  double done, share;  /* of the whole: before the present part, and of it */
-  double from, to; /* s, time of the solver in the present part; equal: as reported by the solver */
-  double call;     /* s, time of the solver when the present call of it began */
-  /* progress_by_clock */
-  pthread_t clock;
-  bool ticks;          /* there is such a thread */
-  atomic_bool stopped; /* it is to end */
-  double began, takes; /* s */
-  const char *doing;
+  double started;      /* s, monotonic clock: when the bar was drawn first */
+  double first, shown; /* fractions of the whole: drawn first, and last */
+  double done, share;  /* fractions of the whole: before the present part, and of this part */
+  double from, to; /* s, solver time at both ends of the part; equal: as the solver reports it */
+  double call;     /* s, solver time at the begin of the solver's present call */
+  /* of progress_by_clock */
+  pthread_t clock;     /* the thread that draws */
+  bool ticks;          /* the thread exists */
+  atomic_bool stopped; /* asks the thread to end */
+  double began, takes; /* s: when the part began, and its expected duration */
+  const char *doing;   /* words beside the bar */
 } progress;
 
 enum { PROGRESS_LAST_LINE = 1400, PROGRESS_PATH = 1400 };

@@ -84,8 +84,6 @@ const char *consolidation_settle(simulation *sim, const option *table) {
     return "--load must be small, at most 0.02 of the modulus M' = E (1 - nu)/((1 + nu)(1 - 2 "
            "nu)): "
            "the exact solution is of small strains";
-  if (s->kase == STRIP && s->scheme == IMPLICIT)
-    return "--scheme implicit is not for --case strip, which settles with explicit pressures";
   if (isnan(s->damping)) s->damping = 0.5 * sqrt(sim->modulus / DENSITY);
   if (isnan(s->duration))
     s->duration = (s->kase == MANDEL ? 1000.0 : 300.0) / sqrt(sim->modulus / DENSITY);
@@ -112,7 +110,7 @@ static mps_status make_ground(mps_context *context, const settings *s, mpm_model
   return status == MPS_OK ? mps_particles_set(m->particles, "density", 0, DENSITY) : status;
 }
 
-/* A ball fills its four quarters: those beyond the axes go. */
+/* The fill makes the whole section of the ball: three of its four quarters are removed. */
 static mps_status cut_ball(mps_particles *set) {
   mps_view x, id;
   mps_status status = mps_particles_view(set, "position", &x);
@@ -128,7 +126,7 @@ static mps_status cut_ball(mps_particles *set) {
   return status;
 }
 
-/* The particles on the line that the profile is of: the lowest row or the first column. */
+/* Particles of the profile: the lowest row of the ground or its first column. */
 static mps_status find_profile(simulation *sim) {
   const settings *s = &sim->s;
   mps_view x, id;
@@ -189,8 +187,8 @@ static mps_status begin_mandel(simulation *sim) {
   return status == MPS_OK ? mps_particles_set(set, "stress", 1, -sim->s.load) : status;
 }
 
-/* The plate: the upper side of the domain, which moves as in the exact solution. The side itself
- * stays where it is, and the way is small beside a cell. */
+/* The plate is the upper side of the domain with the velocity of the exact solution; the side stays
+ * in place, as its displacement is small beside a cell. */
 static mps_status drive_plate(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
   static double t[PLATE_POINTS], w[PLATE_POINTS];

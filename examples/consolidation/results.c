@@ -12,8 +12,8 @@ static double exact_at(const simulation *sim, int r, int point) {
   return exact_pressure(&sim->s, sim->s.load / sim->modulus, sim->at[point], sim->row[r].T);
 }
 
-/* Largest difference of u/u0 over all points; of Mandel and Cryer at the one nearest to the centre,
- * and of the strip the root of the mean square down to 4 B. */
+/* Error of u/u0 in row r: the largest over all points; for Mandel and Cryer that at the point
+ * nearest to the centre, for the strip the root mean square down to a depth of 4 B. */
 static double pressure_error(const simulation *sim, int r) {
   double most = 0.0, square = 0.0;
   const bool centre = sim->s.kase == MANDEL || sim->s.kase == CRYER;

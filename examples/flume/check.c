@@ -23,12 +23,13 @@ static int complete(const options_program *program, flume *m) {
   if (isnan(s->spacing)) s->spacing = s->depth / 16.0;
   m->wave_length = 2.0 * WAVES_PI / waves_number(s->period, s->depth);
   if (s->closed && s->wall != FLUME_OPEN_END)
-    return options_refuse(program, "--end closed needs a structure of --model, and --wall none");
+    return flume_refuse(program, m, "--end closed needs a structure of --model, and --wall none");
   if (s->closed && own && isnan(s->length))
-    return options_refuse(program, "--end closed needs --length, to the far end");
+    return flume_refuse(program, m, "--end closed needs --length, to the far end");
   if (own && !s->closed && !isnan(s->length))
-    return options_refuse(program, "--length is that to the toe of the structure of --model: give "
-                                   "it with --end closed alone");
+    return flume_refuse(program, m,
+                        "--length is that to the toe of the structure of --model: give "
+                        "it with --end closed alone");
   if (own && !s->closed) s->length = m->shape.structure_point[0][0];
   if (isnan(s->length)) s->length = ceil(3.0 * m->wave_length / s->spacing) * s->spacing;
   if (isnan(s->ramp)) s->ramp = 2.0 * s->period;
@@ -37,29 +38,31 @@ static int complete(const options_program *program, flume *m) {
   if (isnan(s->repeat) && s->waves != FLUME_REGULAR)
     s->repeat = fmax(s->duration, 20.0 * s->period);
   if (s->depth < 5.0 * s->spacing)
-    return options_refuse(program, "--depth must be at least 5 times --spacing");
+    return flume_refuse(program, m, "--depth must be at least 5 times --spacing");
   if (s->length < 10.0 * s->spacing)
-    return options_refuse(program, "--length must be at least 10 times --spacing");
+    return flume_refuse(program, m, "--length must be at least 10 times --spacing");
   if (s->length / s->spacing * s->depth / s->spacing > 2e6)
-    return options_refuse(program, "--spacing gives more than 2 million particles");
+    return flume_refuse(program, m, "--spacing gives more than 2 million particles");
   if (!is_whole(s->depth, s->spacing) || !(is_whole(s->length, s->spacing) || (own && !s->closed)))
-    return options_refuse(program, "--length and --depth must be whole numbers of --spacing: else "
-                                   "the water does not fill the flume");
+    return flume_refuse(program, m,
+                        "--length and --depth must be whole numbers of --spacing: else "
+                        "the water does not fill the flume");
   return -1;
 }
 
-static int check_times(const options_program *program, const flume_settings *s) {
+static int check_times(const options_program *program, const flume *m) {
+  const flume_settings *s = &m->s;
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
-    return options_refuse(program,
-                          "--sample must be between a millionth of --duration and all of it");
+    return flume_refuse(program, m,
+                        "--sample must be between a millionth of --duration and all of it");
   if (s->sample > 0.1 * s->period)
-    return options_refuse(program, "--sample must be at most a tenth of --period");
+    return flume_refuse(program, m, "--sample must be at most a tenth of --period");
   if (!isnan(s->window[0]) && !(s->window[0] < s->window[1]))
-    return options_refuse(program, "--window must be two times, the first before the second");
+    return flume_refuse(program, m, "--window must be two times, the first before the second");
   if (s->waves == FLUME_FILE && !s->file)
-    return options_refuse(program, "--waves file needs --file");
+    return flume_refuse(program, m, "--waves file needs --file");
   if (s->waves == FLUME_FOCUSED && (isnan(s->focus[0]) || isnan(s->focus[1])))
-    return options_refuse(program, "--waves focused needs --focus X,T");
+    return flume_refuse(program, m, "--waves focused needs --focus X,T");
   return -1;
 }
 
@@ -79,11 +82,11 @@ static int check_gauges(const options_program *program, flume *m) {
   if (m->gauges == 0) place_gauges(m), m->gauges = 4;
   for (int k = 0; k < m->gauges; k++)
     if (s->gauge[k] < 0.0 || s->gauge[k] > s->length)
-      return options_refuse(program, "--gauge must be in the flume, 0 to --length");
+      return flume_refuse(program, m, "--gauge must be in the flume, 0 to --length");
   for (int k = 0; k < m->gauges; k++)
     for (int j = 0; j < k; j++)
       if (s->gauge[k] == s->gauge[j])
-        return options_refuse(program, "--gauge has one station twice");
+        return flume_refuse(program, m, "--gauge has one station twice");
   return -1;
 }
 
@@ -119,19 +122,19 @@ static int check_wall(const options_program *program, const flume *m) {
   const flume_shapes *p = &m->shape;
   const bool simple = s->wall == FLUME_CAISSON || s->wall == FLUME_SLOPE;
   if (simple && s->crest < s->spacing)
-    return options_refuse(program, "--crest must be at least --spacing");
+    return flume_refuse(program, m, "--crest must be at least --spacing");
   if (simple && s->width < s->spacing)
-    return options_refuse(program, "--width must be at least --spacing");
+    return flume_refuse(program, m, "--width must be at least --spacing");
   if (s->absorb == FLUME_ZONE && (s->wall != FLUME_OPEN_END || flume_is_open(m)))
-    return options_refuse(program, "--absorb zone is a zone at the far end: it needs --wall none");
+    return flume_refuse(program, m, "--absorb zone is a zone at the far end: it needs --wall none");
   if (s->wall != FLUME_PROFILE) return -1;
   for (int k = 1; k < p->structure; k++) {
     const double *a = p->structure_point[k - 1], *b = p->structure_point[k];
     if (hypot(b[0] - a[0], b[1] - a[1]) < s->spacing)
-      return options_refuse(program, "--profile must have its points at least --spacing apart");
+      return flume_refuse(program, m, "--profile must have its points at least --spacing apart");
   }
   if (p->structure_point[p->structure - 1][1] < s->depth + 2.0 * s->spacing)
-    return options_refuse(program, "--profile must end at least 2 times --spacing above --depth");
+    return flume_refuse(program, m, "--profile must end at least 2 times --spacing above --depth");
   return -1;
 }
 
@@ -177,7 +180,7 @@ static int check_structure(const options_program *program, const flume *m) {
     return refuse(program, m, "structure", rear,
                   "must be at least 2 times --spacing above --depth, or --end closed");
   if (!flume_is_open(m) && m->s.length < rear[0] + 8.0 * m->s.spacing)
-    return options_refuse(program, "--length must be 8 times --spacing more than the structure's");
+    return flume_refuse(program, m, "--length must be 8 times --spacing more than the structure's");
   return check_sides(program, m, "structure", p->structure, false, at);
 }
 
@@ -185,7 +188,7 @@ static int check_body(const options_program *program, const flume *m) {
   const flume_shapes *p = &m->shape;
   if (!flume_has_body(m)) return -1;
   if (flume_is_open(m))
-    return options_refuse(program, "--end must be closed with a caisson: water is on both sides");
+    return flume_refuse(program, m, "--end must be closed with a caisson: water is on both sides");
   for (int k = 0; k < p->body; k++) {
     const double *at = p->body_point[k];
     if (at[0] < 8.0 * m->s.spacing || at[0] > m->outlet - 8.0 * m->s.spacing)
@@ -230,26 +233,27 @@ static int check_shapes(const options_program *program, flume *m) {
   double lowest = 0.0;
   for (int k = 0; k < m->grounds; k++) lowest = fmin(lowest, m->ground[k][1]);
   if (m->outlet * (m->s.depth - lowest) / (m->s.spacing * m->s.spacing) > 2e6)
-    return options_refuse(program, "--spacing gives more than 2 million particles");
+    return flume_refuse(program, m, "--spacing gives more than 2 million particles");
   code = check_body(program, m);
   if (code < 0) code = check_rock(program, m);
   if (code < 0) code = check_probes(program, m);
   if (code >= 0) return code;
   if (m->shape.bed > 0 && !flume_has_structure(m) &&
       m->outlet < m->shape.bed_point[m->shape.bed - 1][0] - 1e-9)
-    return options_refuse(program, "--length is less than that of the bed");
-  if (!flume_fill_cells(m)) return options_refuse(program, "out of memory");
+    return flume_refuse(program, m, "--length is less than that of the bed");
+  if (!flume_fill_cells(m)) return flume_refuse(program, m, "out of memory");
   for (int64_t j = 0; flume_is_open(m) && j < m->cells.rows; j++)
     if (m->cells.wet[(j + 1) * m->cells.columns - 1])
-      return options_refuse(program,
-                            "the water at rest reaches the open side behind the structure: "
-                            "--end must be closed");
+      return flume_refuse(program, m,
+                          "the water at rest reaches the open side behind the structure: "
+                          "--end must be closed");
   return -1;
 }
 
 int flume_check(const options_program *program, flume *m) {
   int code = complete(program, m);
-  if (code < 0) code = check_times(program, &m->s);
+  if (code < 0) code = check_times(program, m);
   if (code < 0) code = check_shapes(program, m);
-  return code < 0 ? check_gauges(program, m) : code;
+  if (code < 0) code = check_gauges(program, m);
+  return code < 0 ? flume_check_unused(program, m) : code;
 }

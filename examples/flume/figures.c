@@ -219,6 +219,20 @@ static double passed_at(const flume *m, double t) {
   return volume;
 }
 
+/* Means over the window of the level at all gauges, and of the water before the crest. */
+static void find_means(const flume *m, flume_figures *f) {
+  double level = 0.0, levels = 0.0, water = 0.0, samples = 0.0;
+  const double filled = (double)m->filled * m->s.spacing * m->s.spacing;
+  for (int64_t k = 0; k < m->samples; k++) {
+    if (!in_window(f, m->sample[k].t)) continue;
+    water += m->sample[k].water / filled, samples += 1.0;
+    for (int g = 0; g < m->gauges; g++)
+      if (!isnan(m->sample[k].level[g])) level += m->sample[k].level[g], levels += 1.0;
+  }
+  f->mean_level = level / levels;
+  if (m->filled > 0) f->water = water / samples;
+}
+
 static void find_discharge(app *a, const flume *m, flume_figures *f) {
   const flume_settings *s = &m->s;
   mps_eurotop_def def = mps_eurotop_defaults();
@@ -239,6 +253,8 @@ static void find_discharge(app *a, const flume *m, flume_figures *f) {
 bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   memset(f, 0, sizeof *f);
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
+  f->mean_level = f->water = NAN;
+  f->force_mean = f->force_harmonic = f->force_linear = NAN;
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
   f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
   f->force_still = m->rest.force;
@@ -252,8 +268,10 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
     return true;
   }
   if (m->gauges >= 2 && !separate(a, m, f)) return false;
+  find_means(m, f);
   if (flume_is_loaded(m)) find_forces(m, f);
   if (!flume_is_loaded(m) && m->gauges >= 3) find_loss(m, f);
+  flume_find_regular_forces(m, f);
   if (f->separated) find_goda(a, m, f);
   if (f->separated) find_discharge(a, m, f);
   return true;

@@ -24,6 +24,27 @@ static int refuse(const options_program *program, const flume *m, const document
   return options_refuse(program, text);
 }
 
+/* The line of the first key of the model file that the reason names as an option; 0: none. */
+static int line_of_option(const document *d, const char *reason) {
+  for (const char *at = d ? strstr(reason, "--") : NULL; at; at = strstr(at + 2, "--")) {
+    char name[64] = "";
+    const size_t length = strspn(at + 2, "abcdefghijklmnopqrstuvwxyz-");
+    if (length == 0 || length >= sizeof name) continue;
+    memcpy(name, at + 2, length);
+    const document *key = document_find(d, name);
+    if (key) return key->line;
+  }
+  return 0;
+}
+
+int flume_refuse(const options_program *program, const flume *m, const char *reason) {
+  char text[800];
+  const int line = line_of_option(m->text, reason);
+  if (line == 0) return options_refuse(program, reason);
+  snprintf(text, sizeof text, "%.200s, line %d: %s", m->s.model, line, reason);
+  return options_refuse(program, text);
+}
+
 /* ---- shapes ---------------------------------------------------------------------------------- */
 
 static int read_point(const options_program *program, const flume *m, const char *key,

@@ -15,14 +15,17 @@
 
 enum { FLUME_REGULAR = 0, FLUME_JONSWAP, FLUME_PM, FLUME_FOCUSED, FLUME_FILE };
 enum { FLUME_OPEN_END = 0, FLUME_VERTICAL, FLUME_CAISSON, FLUME_SLOPE, FLUME_PROFILE };
+enum { FLUME_RETURNS = 0, FLUME_LEAVES };
 enum { FLUME_ACTIVE = 0, FLUME_ZONE, FLUME_NONE };
 enum { FLUME_POINTS = 64, FLUME_ROCKS = 8, FLUME_PROBES = 32, FLUME_GAUGES = 16 };
 enum { FLUME_BED = 0, FLUME_MAKER, FLUME_END, FLUME_BODY }; /* boundaries of the fluid */
 
-/* Radius of the weights in spacings where there is rock, whose particles lie 1/porosity^.5 spacings
- * apart. With the library's 3.1 the force of still water on a caisson on rock scatters by 51 N,
- * with 3.6 by 2.4 N (share/models/caisson.yaml, 2.5 s). */
+/* Radius of the weights in rock, in spacings, at most (mps/fluid_rock.h). */
 #define FLUME_ROCK_RADIUS 3.6
+
+/* Periods in which water that has passed the crest returns: with q = 1e-3 m2/s of a flume of 1.9 m2
+ * .15 % of the water is on its way. */
+#define FLUME_REFILL_PERIODS 2.0
 
 /* A region of rock, in any convex or concave polygon. */
 typedef struct flume_rock {
@@ -45,6 +48,7 @@ typedef struct flume_shapes {
 typedef struct flume_settings {
   int waves, wall, absorb, form, order, random; /* FLUME_..., mps_absorber_form, mps_waves_theory */
   int closed;                                   /* the far end behind a structure */
+  int leaves;                                   /* FLUME_RETURNS: what has passed the crest */
   int solver;                                   /* of the pressure: waves_choose_solver */
   double tolerance;                             /* of its residual */
   double depth, length, spacing;                /* m; length: to the toe of the wall, or the end */
@@ -68,7 +72,8 @@ typedef struct flume_sample {
   double force, moment;       /* N, N m about the heel of a structure, the foot of a wall: on it */
   double uplift, uplift_moment; /* N, N m about the heel: below a body on rock */
   double foot;                  /* Pa, before it */
-  double volume;                /* m2: has passed the crest so far */
+  double volume, returned;      /* m2: has passed the crest so far, and returned to the flume */
+  double water;                 /* m2: before the rear edge of the crest */
   double probe[FLUME_PROBES];   /* Pa */
 } flume_sample;
 
@@ -113,8 +118,11 @@ typedef struct flume {
   mps_recorder *series;
   flume_sample *sample;
   int64_t samples, capacity;
-  flume_look look;   /* of the largest force */
-  flume_look *frame; /* of the animation */
+  int64_t filled, returned; /* particles: at the start, that have returned */
+  double offset;            /* m: of the level at the maker's face, which takes it back */
+  double due;               /* part of the next particle that returns, 0 to 1 */
+  flume_look look;          /* of the largest force */
+  flume_look *frame;        /* of the animation */
   int64_t frames, frame_room;
   mps_fluid_report report;
   resume_schedule saves;
@@ -139,13 +147,18 @@ static inline bool flume_is_caisson(const flume *m) {
 /* options.c: the model of the command line and its file; *code: -1 to continue, or the exit code.
  */
 flume *flume_read(int argc, char **argv, int *code);
-/* file.c. Returns -1, or the exit code after one error line. */
+/* file.c. options_refuse, with the line of the model file where the reason names an option that is
+ * a key there. */
+int flume_refuse(const options_program *program, const flume *m, const char *reason);
+/* Returns -1, or the exit code after one error line. */
 int flume_read_file(const options_program *program, flume *m);
 /* Reads texts of points X,Y in m separated by commas, at most `most` of them; false when it is
  * none. */
 bool flume_read_points(const char *text, int most, double (*point)[2], int32_t *count);
 /* check.c: completes the settings and checks them; likewise. */
 int flume_check(const options_program *program, flume *m);
+/* unused.c: refuses options that the rest of the model makes no use of; likewise. */
+int flume_check_unused(const options_program *program, const flume *m);
 
 /* shapes.c: the ground as one polyline, solids, rock, water at rest. */
 void flume_make_ground(flume *m);
@@ -170,8 +183,15 @@ void flume_free(flume *m);
 /* loads.c: forces, moments, uplift and pressures of the present water; of water at rest. */
 mps_status flume_measure_loads(flume *m, flume_sample *sample);
 mps_status flume_look_at(flume *m, flume_look *look, bool faces);
+/* Room for that many particles; false without memory. */
+bool flume_look_room(flume_look *look, int64_t count);
 void flume_find_rest(flume *m);
-/* run.c: steps to the end, or until Ctrl-C, which leaves a checkpoint. */
+/* refill.c: water that has passed the crest, returned after a step of `dt` (s). */
+int64_t flume_count_water(const flume *m);
+mps_status flume_refill(flume *m, double dt);
+/* run.c: displacement (m) of the maker; steps to the end, or until Ctrl-C, which leaves a
+ * checkpoint. */
+double flume_maker_place(const flume *m);
 mps_status flume_run(app *a, flume *m);
 /* restart.c. flume_peek compares the options of the file with these before the model is built. */
 mps_status flume_save(void *user);
@@ -187,11 +207,14 @@ typedef struct flume_figures {
   double *frequency, *incident, *reflected, *target; /* Hz, m: amplitudes */
   double target_height; /* m, Hm0 of the linear target at the gauges in the same window */
   double force_still, force_peak, force_least, peak_at, foot_peak; /* N, N, N, s, Pa above rest */
+  double force_mean, force_harmonic, force_linear; /* N: of regular waves, see regular.c */
   double sliding, overturning; /* least safeties of the caisson: uplift a triangle */
   double sliding_bedding, overturning_bedding; /* uplift as computed in the rock below it */
   double uplift_peak, uplift_triangle;         /* N, above rest, at the largest force */
   double discharge;                            /* m2/s */
-  double loss;                                 /* of the height, a wave length */
+  double mean_level;                           /* m above that at rest, of all gauges */
+  double water; /* mean of the water before the crest, over that at the start */
+  double loss;  /* of the height, a wave length */
   mps_goda goda;
   mps_eurotop eurotop;
   bool has_goda, has_eurotop;
@@ -199,6 +222,18 @@ typedef struct flume_figures {
   char why[600];       /* reason why a formula is not valid here */
 } flume_figures;
 
+/* Waves of a gauge by crossings of the mean level upwards. */
+typedef struct flume_statistics {
+  int64_t waves;
+  double mean, Hm0;             /* m above the water at rest; m, 4 standard deviations */
+  double third, tenth, highest; /* m: mean heights of the highest third, tenth; the highest */
+  double period, skewness;      /* s, mean; of the levels */
+} flume_statistics;
+
+/* statistics.c. False without memory. */
+bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s);
+/* regular.c: force_mean and those after it, of an upright wall. */
+void flume_find_regular_forces(const flume *m, flume_figures *f);
 /* figures.c. False after an error line. */
 bool flume_find_figures(app *a, flume *m, flume_figures *f);
 void flume_free_figures(flume_figures *f);

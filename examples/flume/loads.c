@@ -128,13 +128,23 @@ static mps_status add_faces(flume *m, int32_t wall, double from, flume_look *loo
   return status == MPS_OK && !more ? MPS_ERROR_MEMORY : status;
 }
 
+/* Water behind the crest and what has returned may together be more than at the start. */
+bool flume_look_room(flume_look *look, int64_t count) {
+  if (count <= look->room) return true;
+  float *more = realloc(look->value, 3 * (size_t)count * sizeof *more);
+  if (!more) return false;
+  look->value = more, look->room = count;
+  return true;
+}
+
 mps_status flume_look_at(flume *m, flume_look *look, bool faces) {
   mps_view x, p;
   mps_status status = mps_particles_view(m->water, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(m->water, "pressure", &p);
   if (status != MPS_OK) return status;
+  if (!flume_look_room(look, x.shape[0])) return MPS_ERROR_MEMORY;
   look->t = mps_fluid_time(m->fluid);
-  look->count = x.shape[0] < look->room ? x.shape[0] : look->room;
+  look->count = x.shape[0];
   for (int64_t i = 0; i < look->count; i++) {
     for (int c = 0; c < 2; c++) look->value[3 * i + c] = (float)*mps_view_f64(&x, i, c);
     look->value[3 * i + 2] = (float)*mps_view_f64(&p, i, 0);

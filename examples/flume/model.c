@@ -78,7 +78,6 @@ static mps_status make_fluid(app *a, flume *m) {
   def.domain = a->domain;
   def.density = WAVES_DENSITY, def.level = s->depth;
   def.tolerance = s->tolerance;
-  if (m->shape.rocks > 0) def.radius_ratio = FLUME_ROCK_RADIUS;
   mps_status status = mps_particles_create(a->context, &set, &m->water);
   if (status == MPS_OK) status = flume_fill(m, m->water);
   status = app_settle(a, status);
@@ -111,6 +110,7 @@ mps_status flume_build(app *a, flume *m) {
   m->capacity = (int64_t)ceil(m->s.duration / m->s.sample - 1e-9);
   m->sample = calloc((size_t)m->capacity + 1, sizeof *m->sample);
   flume_find_rest(m);
+  if (status == MPS_OK && flume_is_open(m)) m->filled = flume_count_water(m);
   return status == MPS_OK && !(m->sample && make_looks(m)) ? MPS_ERROR_MEMORY : status;
 }
 

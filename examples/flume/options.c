@@ -106,6 +106,9 @@ static option table[] = {
         "end", "open|closed", &model.s.closed,
         "behind a structure: water leaves there, or the flume continues to --length with an "
         "end as without a structure"),
+    OPTION_CHOICE("passed", "returns|leaves", &model.s.leaves,
+                  "water that has passed the crest returns to the surface near the maker within "
+                  "some two periods, so that the mean level stays; or the flume loses it"),
     OPTION_TEXT("rock", "m,...", &model.s.rocks,
                 "X,Y,X,Y,...: corners of a region of rock, from the maker and above the bed"),
     OPTION_NUMBER("porosity", "1", OPTION_FROM_TO(0.1, 1.0), &model.s.rock.porosity, "of rock"),
@@ -194,21 +197,21 @@ static int read_texts(const options_program *program, flume *m) {
   flume_shapes *p = &m->shape;
   flume_rock *r = &p->rock[p->rocks];
   if (!read_lengths(m->s.gauges, FLUME_GAUGES, m->s.gauge, &m->gauges))
-    return options_refuse(program, "--gauge must be at most 16 lengths in m separated by commas");
+    return flume_refuse(program, m, "--gauge must be at most 16 lengths in m separated by commas");
   if (m->s.wall != FLUME_OPEN_END && (p->structure > 0 || p->body > 0))
-    return options_refuse(program, "--wall must be none: the structure is that of --model");
+    return flume_refuse(program, m, "--wall must be none: the structure is that of --model");
   if (!read_profile(m))
-    return options_refuse(program,
-                          "--profile must be 3 to 64 points X,Y in m separated by commas, the "
-                          "first 0,0, X not falling, Y not below 0, no point twice");
+    return flume_refuse(program, m,
+                        "--profile must be 3 to 64 points X,Y in m separated by commas, the "
+                        "first 0,0, X not falling, Y not below 0, no point twice");
   if (m->s.profile && m->s.wall != FLUME_PROFILE)
-    return options_refuse(program, "--profile needs --wall profile");
+    return flume_refuse(program, m, "--profile needs --wall profile");
   if (!m->s.rocks) return -1;
   if (p->rocks == FLUME_ROCKS)
-    return options_refuse(program, "--rock is a ninth region of rock: 8 are possible");
+    return flume_refuse(program, m, "--rock is a ninth region of rock: 8 are possible");
   *r = m->s.rock;
   if (!flume_read_points(m->s.rocks, FLUME_POINTS, r->corner, &r->corners) || r->corners < 3)
-    return options_refuse(program, "--rock must be 3 to 64 corners X,Y in m separated by commas");
+    return flume_refuse(program, m, "--rock must be 3 to 64 corners X,Y in m separated by commas");
   p->rocks++;
   return -1;
 }

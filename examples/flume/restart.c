@@ -3,12 +3,14 @@
  * be those of the run (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct notes {
-  int64_t samples, frames;
+  int64_t samples, frames, returned;
+  double due, offset;
   double maker[MPS_ABSORBER_MEMORY], end[MPS_ABSORBER_MEMORY];
   mps_fluid_report report;
 } notes;
@@ -23,8 +25,11 @@ static void pass_look(resume_bytes *b, flume_look *look) {
     int64_t count, faces;
   } n = {look->t, look->force, look->count, look->faces};
   resume_pass(b, &n, sizeof n);
-  if (resume_wrong(b, n.count < 0 || n.count > look->room || n.faces < 0 || n.faces > b->size))
+  if (resume_wrong(b, n.count < 0 || n.count > b->size || n.faces < 0 || n.faces > b->size)) return;
+  if (b->reads && !flume_look_room(look, n.count)) {
+    b->status = MPS_ERROR_MEMORY;
     return;
+  }
   if (b->reads && n.faces > 0) {
     float *more = realloc(look->face, 3 * (size_t)n.faces * sizeof *more);
     if (!more) {
@@ -57,24 +62,27 @@ static void pass(void *user, resume_bytes *b) {
   bool good = true;
   memset(&n, 0, sizeof n);
   n.samples = m->samples, n.frames = m->frames, n.report = m->report;
+  n.returned = m->returned, n.due = m->due, n.offset = m->offset;
   if (m->maker) good = good && mps_absorber_get_memory(m->maker, n.maker) == MPS_OK;
   if (m->end) good = good && mps_absorber_get_memory(m->end, n.end) == MPS_OK;
   pass_probes(m, b);
   resume_pass(b, &n, sizeof n);
   good = good && n.samples >= 0 && n.samples <= m->capacity && n.frames >= 0 &&
-         n.frames <= m->frame_room;
+         n.frames <= m->frame_room && n.returned >= 0 && n.due >= 0.0 && n.due <= 1.0 &&
+         fabs(n.offset) <= 1e6;
   if (resume_wrong(b, !good)) return;
   if (b->reads &&
       resume_wrong(b, !restore_piston(m->maker, n.maker) || !restore_piston(m->end, n.end)))
     return;
   m->samples = n.samples, m->frames = n.frames, m->report = n.report;
+  m->returned = n.returned, m->due = n.due, m->offset = n.offset;
   resume_pass(b, m->sample, (size_t)m->samples * sizeof *m->sample);
   pass_look(b, &m->look);
   for (int64_t k = 0; k < m->frames; k++) pass_look(b, &m->frame[k]);
 }
 
 static resume parts(flume *m) {
-  return resume_of_fluid("mps-flume 2", m->table, pass, m, m->fluid, m->a);
+  return resume_of_fluid("mps-flume 3", m->table, pass, m, m->fluid, m->a);
 }
 
 mps_status flume_save(void *user) {

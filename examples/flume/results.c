@@ -96,10 +96,11 @@ static bool write_faces(app *a, const flume *m) {
 static bool write_discharge(app *a, const flume *m) {
   output f;
   if (!output_open(&f, a, m->s.out, "discharge.csv")) return false;
-  csv_header(&f, "t_s,volume_m2");
+  csv_header(&f, "t_s,volume_m2,returned_m2,water_m2");
   for (int64_t k = 0; k < m->samples; k++) {
-    const double row[] = {m->sample[k].t, m->sample[k].volume};
-    csv_row(&f, 2, row);
+    const flume_sample *p = &m->sample[k];
+    const double row[] = {p->t, p->volume, p->returned, p->water};
+    csv_row(&f, 4, row);
   }
   return output_close(&f);
 }
@@ -122,6 +123,21 @@ static bool write_events(app *a, const flume *m, int64_t *count) {
     if (k == m->samples || !(m->sample[k].volume > last)) continue;
     if (isnan(begins)) begins = m->sample[k].t, before = last;
     ends = m->sample[k].t, last = m->sample[k].volume;
+  }
+  return output_close(&f);
+}
+
+static bool write_waves(app *a, const flume *m, const flume_figures *g) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "waves.csv")) return false;
+  csv_header(&f, "station_m,waves,mean_m?,Hm0_m?,H_third_m?,H_tenth_m?,H_max_m?,period_s?,"
+                 "skewness?");
+  for (int k = 0; k < m->gauges; k++) {
+    flume_statistics s;
+    if (!flume_find_statistics(m, k, g->from, g->to, &s)) return output_close(&f), app_no_memory(a);
+    const double row[] = {m->s.gauge[k], (double)s.waves, s.mean,   s.Hm0,     s.third,
+                          s.tenth,       s.highest,       s.period, s.skewness};
+    csv_row(&f, 9, row);
   }
   return output_close(&f);
 }
@@ -158,6 +174,7 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, there, "Tm_10", g->split.energy_period);
   json_number_if(f, there, "reflection", g->split.reflection);
   json_number_if(f, there, "residual", g->split.residual);
+  json_number_if(f, there, "mean_level", g->mean_level);
   json_number(f, "loss_per_wavelength", g->loss);
   if (there)
     printf("incident Hm0 %.4f m, linear target in the same window %.4f m; Tp %.3f s; reflection "
@@ -177,10 +194,14 @@ static void summarise_absorption(output *f, const flume *m) {
 
 static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   const bool wall = flume_is_loaded(m), caisson = flume_is_caisson(m), body = flume_has_body(m);
+  const bool regular = !isnan(g->force_mean);
   json_number_if(f, wall, "force_still", g->force_still);
   json_number_if(f, wall, "force_peak", g->force_peak - g->force_still);
   json_number_if(f, wall, "force_least", g->force_least - g->force_still);
   json_number_if(f, wall, "force_peak_at", g->peak_at);
+  json_number_if(f, regular, "force_peak_mean", g->force_mean);
+  json_number_if(f, regular, "force_harmonic", g->force_harmonic);
+  json_number_if(f, regular, "force_harmonic_linear", g->force_linear);
   json_number_if(f, wall, "foot_peak", g->foot_peak);
   json_number_if(f, g->has_goda, "force_goda", g->goda.force);
   json_number_if(f, g->has_goda, "foot_goda", g->goda.p3);
@@ -200,6 +221,12 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
     printf("largest force above rest %.1f N at %.2f s, Goda %.1f N (%+.1f %%)\n",
            g->force_peak - g->force_still, g->peak_at, g->goda.force,
            100.0 * ((g->force_peak - g->force_still) / g->goda.force - 1.0));
+  if (regular && g->has_goda)
+    printf(
+        "mean of the highest force of each wave %.1f N (%+.1f %% of Goda's); first harmonic %.1f "
+        "N, linear theory %.1f N (%+.1f %%)\n",
+        g->force_mean, 100.0 * (g->force_mean / g->goda.force - 1.0), g->force_harmonic,
+        g->force_linear, 100.0 * (g->force_harmonic / g->force_linear - 1.0));
 }
 
 static void summarise_discharge(app *a, output *f, const flume *m, const flume_figures *g,
@@ -209,6 +236,9 @@ static void summarise_discharge(app *a, output *f, const flume *m, const flume_f
   json_number_if(f, body && m->samples > 0, "volume",
                  m->samples ? m->sample[m->samples - 1].volume : NAN);
   json_integer_if(f, body, "events", events);
+  json_number_if(f, body && m->samples > 0, "volume_returned",
+                 (double)m->returned * m->s.spacing * m->s.spacing);
+  json_number_if(f, body && !isnan(g->water), "water_mean", g->water);
   json_number_if(f, g->has_eurotop, "q_eurotop", g->eurotop.discharge);
   json_number_if(f, g->has_eurotop, "q_eurotop_low", g->eurotop.low);
   json_number_if(f, g->has_eurotop, "q_eurotop_high", g->eurotop.high);
@@ -245,7 +275,7 @@ bool flume_write(app *a, flume *m) {
   if (good && m->shape.probes > 0) good = write_probes(a, m);
   if (good && flume_is_loaded(m)) good = write_faces(a, m);
   if (good && flume_is_open(m)) good = write_discharge(a, m) && write_events(a, m, &events);
-  if (good && g.separated) good = write_spectrum(a, m, &g);
+  if (good && g.separated) good = write_waves(a, m, &g) && write_spectrum(a, m, &g);
   if (good && m->series) good = app_check(a, mps_recorder_close(&m->series));
   good = good && write_summary(a, m, &g, events) && flume_draw(a, m, &g);
   flume_free_figures(&g);

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#define SLOW 0.2 /* rate at which the mean position of the maker returns, of a period */
+
 /* ---- pistons --------------------------------------------------------------------------------- */
 
 static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, double face, double dt,
@@ -15,13 +17,38 @@ static mps_status move_piston(flume *m, mps_absorber *piston, int32_t wall, doub
   const double t = mps_fluid_time(m->fluid);
   double level, u;
   mps_status status = mps_fluid_get_levels(m->fluid, 1, &face, &level);
-  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, level - m->s.depth, moved, &u);
+  level -= m->s.depth + m->offset;
+  if (status == MPS_OK) status = mps_absorber_advance(piston, t, dt, level, moved, &u);
   return status == MPS_OK ? mps_fluid_set_wall_motion(m->fluid, wall, moved, &u) : status;
 }
 
 static double place_of(const mps_absorber *piston) {
   mps_absorber_report r = {.displacement = 0.0};
   return piston && mps_absorber_get_report(piston, &r) == MPS_OK ? r.displacement : 0.0;
+}
+
+/* Before a wall the maker would not stay: the mean level of standing waves at its face, which it
+ * holds, is some mm above that of the flume, and the slow part of the second order that it is asked
+ * for is that of an infinitely long flume. Both change the mean level of a closed one. An offset of
+ * the level that it is given, the integral of its displacement, takes it back:
+ *
+ *   X' = s (b - X d/L - ...), b' = -K X,
+ *
+ * with K = (s d/L)^2/(4 s), and its rate (s K)^1/2 at most SLOW of a period: without oscillations,
+ * and slow against the waves. Between two pistons the mean level is theirs. */
+static void return_maker(flume *m, double dt) {
+  mps_absorber_report r;
+  if (!m->maker || m->end || mps_absorber_get_report(m->maker, &r) != MPS_OK) return;
+  const double s = sqrt(WAVES_G / m->s.depth);
+  const double rate = fmin(0.5 * s * m->s.depth / m->toe, SLOW / m->s.period);
+  m->offset -= rate * rate / s * r.displacement * dt;
+}
+
+double flume_maker_place(const flume *m) {
+  double s = 0.0;
+  const double t = mps_fluid_time(m->fluid);
+  if (m->maker) return place_of(m->maker);
+  return mps_waves_get_piston(m->waves, 1, &t, &s, NULL, NULL, NULL) == MPS_OK ? s : 0.0;
 }
 
 /* The maker without absorption moves as it is asked to. */
@@ -47,7 +74,9 @@ static mps_status make_step(flume *m) {
                          dt, &s);
   if (status == MPS_OK) status = mps_fluid_begin_step(m->fluid, dt);
   if (status == MPS_OK) status = mps_fluid_solve_pressure(m->fluid);
-  return status == MPS_OK ? mps_fluid_end_step(m->fluid) : status;
+  if (status == MPS_OK) status = mps_fluid_end_step(m->fluid);
+  if (status == MPS_OK) return_maker(m, dt);
+  return status == MPS_OK ? flume_refill(m, dt) : status;
 }
 
 /* Where a step is not made, as after Ctrl-C, the pistons are those before it: the checkpoint's. */
@@ -68,14 +97,13 @@ static mps_status step(flume *m) {
 /* Water behind the crest, and what has left over the open side. A film that stays on the crest has
  * not passed it. */
 static mps_status measure_passed(flume *m, flume_sample *sample) {
+  const double each = m->s.spacing * m->s.spacing;
+  const int64_t count = mps_particles_count(m->water), before = flume_count_water(m);
   mps_reaction side;
-  mps_view x;
-  int64_t behind = 0;
-  mps_status status = mps_fluid_get_reaction(m->fluid, FLUME_END, &side);
-  if (status == MPS_OK) status = mps_particles_view(m->water, "position", &x);
+  const mps_status status = mps_fluid_get_reaction(m->fluid, FLUME_END, &side);
   if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < x.shape[0]; i++) behind += *mps_view_f64(&x, i, 0) > m->heel[0];
-  sample->volume = side.removed_mass / WAVES_DENSITY + (double)behind * m->s.spacing * m->s.spacing;
+  sample->volume = side.removed_mass / WAVES_DENSITY + (double)(count - before) * each;
+  sample->returned = (double)m->returned * each, sample->water = (double)before * each;
   return MPS_OK;
 }
 
@@ -104,11 +132,9 @@ static mps_status take_sample(flume *m) {
   for (int k = 0; k < m->gauges; k++) sample.level[k] -= m->s.depth;
   if (status == MPS_OK) status = flume_measure_loads(m, &sample);
   if (status == MPS_OK && flume_is_open(m)) status = measure_passed(m, &sample);
-  if (status == MPS_OK && !m->maker)
-    status = mps_waves_get_piston(m->waves, 1, &sample.t, &sample.maker, NULL, NULL, NULL);
   if (status == MPS_OK) status = mps_fluid_get_report(m->fluid, &m->report);
   if (status != MPS_OK) return status;
-  if (m->maker) sample.maker = place_of(m->maker);
+  sample.maker = flume_maker_place(m);
   sample.end = place_of(m->end);
   m->sample[m->samples++] = sample;
   status = take_frame(m);

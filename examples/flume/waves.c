@@ -3,7 +3,9 @@
 #include "flume.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { POINTS = 40 }; /* a period, of a record read from a file */
 
@@ -53,6 +55,17 @@ static mps_status read_file(app *a, const flume_settings *s, mps_waves_def *def,
   return *room ? MPS_OK : MPS_ERROR_MEMORY;
 }
 
+/* Reasons of the library begin with the member that is the key of the model file. */
+static void find_line(app *a, flume *m) {
+  char key[40] = "";
+  const char *reason = mps_context_error(a->context)->message;
+  const size_t length = strcspn(reason, " ");
+  if (!m->text || length >= sizeof key) return;
+  memcpy(key, reason, length);
+  const document *at = document_find(m->text, key);
+  if (at) snprintf(m->why, sizeof m->why, "%.150s, line %d: %.220s", m->s.model, at->line, reason);
+}
+
 mps_status flume_make_waves(app *a, flume *m) {
   mps_waves_def def = definition(&m->s);
   double *room = NULL;
@@ -61,6 +74,7 @@ mps_status flume_make_waves(app *a, flume *m) {
   if (m->s.waves == FLUME_FILE) status = read_file(a, &m->s, &def, &room);
   if (status == MPS_OK) status = mps_waves_create(a->context, &def, &m->waves);
   free(room);
+  if (status == MPS_ERROR_ARGUMENT) find_line(a, m);
   if (status == MPS_OK) status = mps_waves_get_report(m->waves, &report);
   if (status == MPS_OK) m->wave_length = 2.0 * WAVES_PI / report.wave_number;
   return app_settle(a, status);

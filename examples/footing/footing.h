@@ -17,6 +17,7 @@ typedef struct settings {
   double phi, psi;          /* degrees */
   double cohesion, young;   /* Pa */
   double surcharge;         /* Pa, on the ground beside the footing */
+  double tolerance;         /* of the ground at rest, in the second half of the path */
   double top, top_cohesion; /* m, Pa: of an upper layer; 0: none */
   double poisson, density, gravity;
   int contact;            /* mps_contact_method */

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180.0)
+#define TOLERANCE 2e-3 /* of the ground at rest, on the way */
+#define SETTLE_STEPS 200000
 #define RAMP 0.1 /* s to full speed at the paper's rate; the same path at others */
 
 /* ---- settings -------------------------------------------------------------------------------- */
@@ -28,6 +30,7 @@ const char *footing_settle(settings *s, const option *table) {
   const char *large = mpm_model_too_large(s->width * s->depth / (s->h * s->h) * (double)s->ppc);
   if (large) return large;
   if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --h";
+  if (!s->settled && options_given(table, "tolerance")) return "--tolerance is for --quasi-static";
   const bool layer = !cone && s->shape == STRIP;
   if (s->width < 3.0 * s->half_width || (!layer && footing_is_thin(s)))
     return "--domain must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
@@ -251,10 +254,12 @@ static mps_status take_sample(simulation *sim) {
   return MPS_OK;
 }
 
-/* Brings the ground to rest, or continues doing so where Ctrl-C has cut it short. */
+/* Brings the ground to rest, or continues doing so where Ctrl-C has cut it short. The pressure
+ * falls as long as that lasts: where it is measured, the tolerance is the user's. */
 static mps_status come_to_rest(simulation *sim) {
   mps_mpm_settle_def rest = mps_mpm_settle_defaults();
-  rest.tolerance = 2e-3;
+  rest.tolerance = 2 * sim->rows < sim->samples ? TOLERANCE : sim->s.tolerance;
+  rest.max_steps = SETTLE_STEPS;
   return mps_mpm_settle(sim->m.mpm, &rest, NULL);
 }
 

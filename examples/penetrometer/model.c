@@ -1,8 +1,6 @@
-/* model.c - a box of soil, and the tip above it.
+/* model.c - the box of soil, the solver, and the tip above the ground or in it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
-
-#include <mps/geostatic.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -18,7 +16,18 @@ double pen_shoulder(const penetrometer *p) {
   return pen_radius(p) / tan(0.5 * p->s.angle * PEN_PI / 180.0);
 }
 
-double pen_gap(const penetrometer *p) { return fmin(0.5 * p->s.h, 0.2 * p->s.depth); }
+double pen_gap(const penetrometer *p) {
+  return p->s.start > 0.0 ? 0.0 : fmin(0.5 * p->s.h, 0.2 * p->s.depth);
+}
+
+double pen_path(const penetrometer *p) { return pen_gap(p) + p->s.depth - p->s.start; }
+
+int pen_up(const pen_run *r) { return r->geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1; }
+
+/* s: the speed rises over it, so that the ground around the tip is not hit. */
+static double ramp_of(const penetrometer *p) {
+  return p->s.start > 0.0 ? 0.1 * pen_path(p) / p->s.rate : 0.0;
+}
 
 /* m: radius of the tip's part below the surface at the end. */
 static double radius_below(const pen_settings *s) {
@@ -34,7 +43,7 @@ static const char *check_tip(const pen_settings *s) {
   return NULL;
 }
 
-const char *pen_check(penetrometer *p) {
+const char *pen_check(penetrometer *p, const option *table) {
   pen_settings *s = &p->s;
   const char *reason = check_tip(s);
   if (reason) return reason;
@@ -51,15 +60,13 @@ const char *pen_check(penetrometer *p) {
   const double edge = nearbyint(cbrt((double)s->ppc));
   if (edge * edge * edge != (double)s->ppc) return "--ppc must be a cube: 1, 8, 27 or 64";
   if (s->psi > s->phi) return "--psi must be at most --phi";
-  if (s->law == PEN_CLAY && s->cohesion == 0.0) return "--cohesion must be > 0 with --law clay";
+  reason = pen_check_soil(p, table);
+  if (reason) return reason;
   if (s->alpha > 0.0 && s->contact == MPS_CONTACT_METHOD_PENALTY)
     return "--alpha asks for --contact impulse";
   if (s->alpha > 0.0 && s->cohesion == 0.0) return "--alpha asks for a --cohesion > 0";
-  if (isnan(s->gravity)) s->gravity = s->law == PEN_SAND ? 9.81 : 0.0;
-  if (s->density * s->gravity * s->height * s->diameter > 0.5 * s->young)
-    return "--young must be at least twice the stress at the bottom of the soil, density g depth";
-  p->stride = fmin(0.2 * s->h, s->depth / 200.0);
-  p->t_end = (pen_gap(p) + s->depth) / s->rate;
+  p->stride = fmin(0.2 * s->h, (s->depth - s->start) / 200.0);
+  p->t_end = pen_path(p) / s->rate + 0.5 * ramp_of(p);
   p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
   p->run[0].geometry = s->no_space ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_SPACE;
   p->run[1].geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
@@ -80,79 +87,16 @@ static void find_size(const penetrometer *p, pen_run *r) {
   r->factor = 1.0;
 }
 
-static int dim_of(const pen_run *r) { return r->geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2; }
-
 /* Lower end of the box across axis c: on the axis where the model is cut there. */
 static double lower_of(const penetrometer *p, const pen_run *r, int c) {
   const bool whole = r->geometry == MPS_MPM_GEOMETRY_SPACE && p->s.model == PEN_WHOLE;
   return whole && c < 2 ? -r->size[c] : 0.0;
 }
 
-/* The weight above, and nu/(1 - nu) of it sideways. */
-static mps_status set_stress(const penetrometer *p, pen_run *r) {
-  const pen_settings *s = &p->s;
-  const mps_geostatic_layer layer = {
-      .thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson), .density = NAN};
-  mps_geostatic_def def = mps_geostatic_defaults();
-  if (s->gravity == 0.0) return MPS_OK;
-  def.layers = &layer, def.layer_count = 1;
-  def.gravity = s->gravity;
-  def.surface = r->size[dim_of(r) - 1];
-  return mps_particles_set_geostatic(r->m.particles, &def);
-}
-
-/* The places at the start, for the displacements at the end. */
-static mps_status keep_places(pen_run *r) {
-  mps_view x;
-  mps_edit start;
-  mps_status status = mps_particles_add_field(r->m.particles, "start", dim_of(r));
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_edit(r->m.particles, "start", &start);
-  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++)
-    for (int c = 0; c < dim_of(r); c++) *mps_edit_f64(&start, k, c) = *mps_view_f64(&x, k, c);
-  if (status == MPS_OK) status = mps_particles_commit(r->m.particles, &start);
-  return status;
-}
-
-static mps_status make_law(mps_context *context, const pen_settings *s, mps_material **out) {
-  const double young = s->young, radian = PEN_PI / 180.0;
-  if (s->law == PEN_ELASTIC)
-    return mps_material_create_linear_elastic(context, young, s->poisson, out);
-  if (s->law == PEN_CLAY) {
-    mps_material_von_mises_def clay = mps_material_von_mises_defaults();
-    clay.young = young, clay.poisson = s->poisson;
-    clay.yield_stress = sqrt(3.0) * s->cohesion; /* Nakamura (54) */
-    return mps_material_create_von_mises(context, &clay, out);
-  }
-  mps_material_drucker_prager_def sand = mps_material_drucker_prager_defaults();
-  sand.cone = MPS_MATERIAL_CONE_INSCRIBED;
-  sand.young = young, sand.poisson = s->poisson;
-  sand.friction = s->phi * radian, sand.dilation = s->psi * radian;
-  sand.cohesion = s->cohesion;
-  return mps_material_create_drucker_prager(context, &sand, out);
-}
-
-static mps_status make_soil(penetrometer *p, pen_run *r) {
-  const pen_settings *s = &p->s;
-  double lo[3];
-  for (int c = 0; c < 3; c++) lo[c] = lower_of(p, r, c);
-  mps_particles_def set = mps_particles_defaults();
-  set.dim = dim_of(r);
-  set.spacing = s->h / nearbyint(cbrt((double)s->ppc));
-  mps_status status = mpm_model_particles(&r->m, p->context, &set);
-  if (status == MPS_OK) status = mps_particles_fill_box(r->m.particles, lo, r->size, NULL);
-  r->particles = mps_particles_count(r->m.particles);
-  if (status == MPS_OK) status = mpm_model_sum(&r->m, &r->particles);
-  if (status == MPS_OK) status = mps_particles_set(r->m.particles, "density", 0, s->density);
-  if (status == MPS_OK) status = set_stress(p, r);
-  if (status == MPS_OK) status = keep_places(r);
-  return status == MPS_OK ? make_law(p->context, s, &r->m.material) : status;
-}
-
 /* After `status`, that of the rank's own objects. */
 static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   const pen_settings *s = &p->s;
-  const int up = dim_of(r) - 1;
+  const int up = pen_up(r);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = r->geometry;
   def.cell = s->h;
@@ -161,7 +105,11 @@ static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   def.courant = s->courant;
   for (int c = 0; c <= up; c++) {
     def.lower[c] = lower_of(p, r, c);
-    if (c < up) def.upper[c] = r->size[c];
+    if (c == up) continue;
+    if (s->sides == PEN_ROLLERS)
+      def.upper[c] = r->size[c];
+    else if (def.lower[c] < 0.0)
+      def.lower[c] = -INFINITY; /* no mirror but at the axis */
   }
   def.gravity[up] = -s->gravity;
   status = mpm_model_create(&r->m, p->context, status, &def);
@@ -187,7 +135,7 @@ static mps_status make_cone(penetrometer *p, const pen_run *r, const mps_body_de
 
 static mps_status make_sphere(penetrometer *p, const pen_run *r, mps_body_def *def,
                               mps_body **out) {
-  def->position[dim_of(r) - 1] += pen_radius(p);
+  def->position[pen_up(r)] += pen_radius(p);
   const mps_status status = r->geometry == MPS_MPM_GEOMETRY_SPACE
                                 ? mps_body_create_sphere(p->context, def, pen_radius(p), out)
                                 : mps_body_create_disc(p->context, def, pen_radius(p), out);
@@ -243,14 +191,16 @@ static double penalty_of(const penetrometer *p, const pen_run *r) {
 }
 
 static mps_status make_tip(penetrometer *p, pen_run *r) {
-  const int up = dim_of(r) - 1;
-  const double t[] = {0.0, p->t_end + 1.0}, v[] = {p->s.rate, p->s.rate};
+  const int up = pen_up(r);
+  const double ramp = ramp_of(p), rate = p->s.rate;
+  const double t[] = {0.0, ramp > 0.0 ? ramp : p->t_end, p->t_end + 1.0};
+  const double v[] = {ramp > 0.0 ? 0.0 : rate, rate, rate};
   mps_signal *down = NULL;
   mps_body **body = &r->m.body[0];
   mps_body_def def = mps_body_defaults();
-  def.position[up] = r->size[up] + pen_gap(p);
+  def.position[up] = r->size[up] + pen_gap(p) - p->s.start;
   mps_status status =
-      mps_signal_create_table(p->context, MPS_SIGNAL_QUANTITY_VELOCITY, 2, t, v, &down);
+      mps_signal_create_table(p->context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, t, v, &down);
   if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_STL)
@@ -276,7 +226,7 @@ static mps_status add_contact(const penetrometer *p, pen_run *r) {
 
 /* A rank may have any number of the particles. */
 static mps_status make_room(const penetrometer *p, pen_run *r) {
-  r->capacity = (int64_t)((p->s.depth + pen_gap(p)) / p->stride) + 2;
+  r->capacity = (int64_t)(pen_path(p) / p->stride) + 2;
   r->row = calloc((size_t)r->capacity, sizeof *r->row);
   r->near = calloc((size_t)r->particles * 3, sizeof *r->near);
   r->distance = calloc((size_t)r->particles, sizeof *r->distance);
@@ -304,10 +254,13 @@ mps_status pen_build_run(penetrometer *p, bool restores) {
   pen_run *r = &p->run[p->now];
   name_course(p);
   find_size(p, r);
-  mps_status status = make_soil(p, r);
+  double lower[3];
+  for (int c = 0; c < 3; c++) lower[c] = lower_of(p, r, c);
+  mps_status status = pen_make_soil(p, r, lower);
   if (status == MPS_OK) status = make_tip(p, r);
   if (status == MPS_OK) status = make_room(p, r);
   status = make_solver(p, r, status);
+  if (status == MPS_OK) status = pen_load_soil(p, r);
   if (status == MPS_OK) status = add_contact(p, r);
   if (status == MPS_OK) r->dt = mps_mpm_dt(r->m.mpm);
   return status == MPS_OK ? mpm_course_begin(&p->course, p->context, restores) : status;

@@ -11,26 +11,32 @@
 #include "common/mpm_model.h"
 
 #define PEN_PI 3.14159265358979323846
+#define PEN_WATER 1000.0 /* kg/m3, in pores */
 
-enum { PEN_CONE, PEN_SPHERE, PEN_STL };   /* --tip */
-enum { PEN_CLAY, PEN_SAND, PEN_ELASTIC }; /* --law */
-enum { PEN_QUARTER, PEN_WHOLE };          /* --model */
+enum { PEN_CONE, PEN_SPHERE, PEN_STL };                             /* --tip */
+enum { PEN_CLAY, PEN_SAND, PEN_ELASTIC, PEN_TRESCA, PEN_CAM_CLAY }; /* --law */
+enum { PEN_QUARTER, PEN_WHOLE };                                    /* --model */
+enum { PEN_ROLLERS, PEN_STRESS };                                   /* --sides */
 enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL, PEN_FORCES };
 
 typedef struct pen_settings {
-  int tip, law, model, volumetric;
+  int tip, law, model, sides, volumetric;
   int spline;  /* degree of the weights less 2 */
   int contact; /* mps_contact_method */
   const char *mesh;
   double scale;                            /* m per unit of the mesh */
   double diameter, angle;                  /* m, degrees */
   double depth, rate, friction;            /* m, m/s, 1 */
+  double start;                            /* m, depth at the beginning; 0: above the ground */
   double alpha;                            /* of the cohesion; NaN: no bound */
   double corner;                           /* radius of the tip's edges, cells */
   const char *soil;                        /* "WxWxD" in diameters */
   double width, breadth, height;           /* what `soil` says */
   double cohesion, phi, psi;               /* Pa, degrees */
   double young, poisson, density, gravity; /* Pa, 1, kg/m3, m/s2; NaN: by the law */
+  double surcharge, k0, ir;                /* Pa, horizontal over vertical stress, G/su */
+  double M, lambda, kappa, e0, ocr;        /* of Cam-Clay */
+  double permeability;                     /* m/s; NaN: undrained */
   double h, courant;
   bool axisymmetric, no_space;
   int64_t ppc, threads;
@@ -71,8 +77,14 @@ typedef struct pen_run {
   double *distance; /* and their distances */
 } pen_run;
 
+/* Undrained ground before the penetration, where it has no weight: Pa. */
+typedef struct pen_state {
+  double sideways, strength, shear; /* horizontal stress, su in triaxial compression, G */
+} pen_state;
+
 typedef struct penetrometer {
   pen_settings s;
+  pen_state state;
   pen_run run[2]; /* the second one, if there are two, is the axisymmetric one */
   int runs, now;  /* number of runs, and the present one */
   mpm_course course;
@@ -85,7 +97,7 @@ typedef struct penetrometer {
 
 /* Reads `soil`, fills in what depends on others, and returns why the settings cannot be run; NULL
  * where they can. */
-const char *pen_check(penetrometer *p);
+const char *pen_check(penetrometer *p, const option *table);
 mps_status pen_build(mps_context *context, void *user);
 /* The run p->now. */
 mps_status pen_build_run(penetrometer *p, bool restores);
@@ -93,6 +105,25 @@ void pen_free(penetrometer *p);             /* objects that the model does not o
 double pen_radius(const penetrometer *p);   /* m */
 double pen_shoulder(const penetrometer *p); /* m: height of the cone */
 double pen_gap(const penetrometer *p);      /* m: between tip and ground at the start */
+double pen_path(const penetrometer *p);     /* m: of the whole run */
+int pen_up(const pen_run *r);               /* the vertical axis */
+
+/* ---- soil.c ---------------------------------------------------------------------------------- */
+
+const char *pen_check_soil(penetrometer *p, const option *table); /* part of pen_check */
+/* Particles with their stress at rest and law; `lower`: corner of their box. */
+mps_status pen_make_soil(penetrometer *p, pen_run *r, const double *lower);
+/* Pore water, and the surcharge, once the solver is made. */
+mps_status pen_load_soil(const penetrometer *p, pen_run *r);
+
+/* Cone factors at a tip pressure q (Pa) and depth (m); NaN where there are none. */
+typedef struct pen_factor {
+  double strength, rigidity;  /* su in triaxial compression (Pa), Ir = G/su */
+  double vertical, deviation; /* total vertical stress at the tip (Pa), (sv - sh)/(2 su) */
+  double n_kt;                /* (q - sv)/su */
+  double teh_houlsby, lu;     /* of a smooth cone, by strain paths and by finite elements */
+} pen_factor;
+pen_factor pen_factor_of(const penetrometer *p, double q, double depth);
 
 /* restart.c: what a restarted run needs of its history; `user` is the penetrometer. */
 void pen_pass(void *user, resume_bytes *b);

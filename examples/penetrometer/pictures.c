@@ -10,10 +10,13 @@
 #include <stdlib.h>
 
 static const char *title_of(const penetrometer *p) {
-  static const char *const titles[3][3] = {
-      {"Cone in clay", "Cone in sand", "Cone in elastic ground"},
-      {"Sphere in clay", "Sphere in sand", "Sphere in elastic ground"},
-      {"Mesh in clay", "Mesh in sand", "Mesh in elastic ground"}};
+  static const char *const titles[3][5] = {
+      {"Cone in clay", "Cone in sand", "Cone in elastic ground", "Cone in clay (Tresca)",
+       "Cone in Cam-Clay"},
+      {"Sphere in clay", "Sphere in sand", "Sphere in elastic ground", "Sphere in clay (Tresca)",
+       "Sphere in Cam-Clay"},
+      {"Mesh in clay", "Mesh in sand", "Mesh in elastic ground", "Mesh in clay (Tresca)",
+       "Mesh in Cam-Clay"}};
   return titles[p->s.tip][p->s.law];
 }
 
@@ -24,7 +27,8 @@ static void plot_curve(output *f, const char *file, int column, double unit, con
 }
 
 static bool draw_force(app *a, const penetrometer *p) {
-  const bool clay = p->s.law == PEN_CLAY, hertz = p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE;
+  const bool clay = p->s.law == PEN_CLAY || p->s.law == PEN_TRESCA;
+  const bool hertz = p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE;
   const bool space = p->run[0].geometry == MPS_MPM_GEOMETRY_SPACE;
   const double unit = clay ? PEN_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion : 1e3;
   output f;
@@ -37,8 +41,9 @@ static bool draw_force(app *a, const penetrometer *p) {
               clay ? "force over c {/Symbol p}D^2/4" : "force (kN)");
   /* a run that ends above the ground has nothing to scale the axes by */
   output_text(&f, "%s\nplot ",
-              pen_reached(&p->run[0]) > 0.0 ? "set xrange [0:*]\nset yrange [0:*]"
-                                            : "set xrange [0:1]\nset yrange [0:1]");
+              pen_reached(&p->run[0]) <= 0.0 ? "set xrange [0:1]\nset yrange [0:1]"
+              : p->s.start > 0.0             ? "set yrange [0:*]"
+                                             : "set xrange [0:*]\nset yrange [0:*]");
   plot_curve(&f, "force.csv", 2, unit, "linecolor rgb '#bbbbbb' linewidth 0.7", "every row");
   if (p->runs == 2)
     plot_curve(&f, "force-axisymmetric.csv", 5, unit, "linecolor rgb '#c0392b' linewidth 1.6",

@@ -10,14 +10,12 @@
 #define INSIDE 1e-6     /* cells: deeper below the surface counts as inside the tip */
 #define VOLUME_EVERY 10 /* steps */
 
-static int up_of(const pen_run *r) { return r->geometry == MPS_MPM_GEOMETRY_SPACE ? 2 : 1; }
-
 /* The reference point moves as the lowest point does. */
 double pen_depth(const penetrometer *p, const pen_run *r) {
   mps_body_state state;
   const double above = p->s.tip == PEN_SPHERE ? pen_radius(p) : 0.0;
   if (mps_body_get_state(r->m.body[0], &state) != MPS_OK) return NAN;
-  return r->size[up_of(r)] + above - state.position[up_of(r)];
+  return r->size[pen_up(r)] + above - state.position[pen_up(r)];
 }
 
 double pen_reached(const pen_run *r) { return r->rows > 0 ? r->row[r->rows - 1].depth : 0.0; }
@@ -42,7 +40,7 @@ static mps_status look_for_intruders(const penetrometer *p, pen_run *r) {
   mps_view x;
   mps_status status = mps_particles_view(r->m.particles, "position", &x);
   if (status != MPS_OK) return status;
-  const int up = up_of(r);
+  const int up = pen_up(r);
   const double tip = r->size[up] - pen_depth(p, r);
   const double reach = p->s.tip == PEN_STL ? INFINITY : pen_radius(p);
   int64_t count = 0, inside = 0;
@@ -81,13 +79,13 @@ static mps_status read_impulses(const pen_run *r, double *up) {
   static const char *const names[] = {"tip", "shaft"};
   mps_reaction reaction;
   mps_status status = mps_body_get_reaction(r->m.body[0], -1, &reaction);
-  up[PEN_TOTAL] = up[PEN_TIP] = r->factor * reaction.impulse[up_of(r)];
+  up[PEN_TOTAL] = up[PEN_TIP] = r->factor * reaction.impulse[pen_up(r)];
   up[PEN_SHAFT] = 0.0;
   for (int k = 0; k < 2 && status == MPS_OK; k++) {
     const int32_t part = mps_body_find_part(r->m.body[0], names[k]);
     if (part < 0) continue;
     status = mps_body_get_reaction(r->m.body[0], part, &reaction);
-    up[k] = r->factor * reaction.impulse[up_of(r)];
+    up[k] = r->factor * reaction.impulse[pen_up(r)];
   }
   return status;
 }
@@ -110,7 +108,7 @@ static mps_status end_row(const penetrometer *p, pen_run *r, double t) {
 
 /* Means over 4 cells of path or a tenth of it, less where the path begins and ends. */
 static void smooth(const penetrometer *p, pen_run *r) {
-  const int64_t half = (int64_t)(fmin(2.0 * p->s.h, 0.05 * p->s.depth) / p->stride);
+  const int64_t half = (int64_t)(fmin(2.0 * p->s.h, 0.05 * pen_path(p)) / p->stride);
   for (int64_t i = 0; i < r->rows; i++) {
     int64_t reach = half < i ? half : i; /* as far to either side: no lag on a slope */
     if (reach > r->rows - 1 - i) reach = r->rows - 1 - i;
@@ -138,7 +136,7 @@ static bool in_section(const penetrometer *p, double thick, double x, double y) 
 static mps_status look_at_section(const penetrometer *p, pen_run *r, mps_particles *set) {
   mps_view x, start, strain;
   mps_edit moved;
-  const int up = up_of(r);
+  const int up = pen_up(r);
   int64_t *rows = mpm_rows_by_id(set);
   mps_status status = rows ? mps_particles_add_field(set, "displacement", 0) : MPS_ERROR_MEMORY;
   if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
@@ -192,11 +190,11 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   mps_status status = look_for_intruders(p, r);
   if (status == MPS_OK && (mps_mpm_steps(mpm) % VOLUME_EVERY == 0 || t >= p->t_end))
     status = look_at_volumes(p, r);
-  const double next = p->stride * (double)(r->rows + 1) - pen_gap(p);
+  const double next = p->s.start + p->stride * (double)(r->rows + 1) - pen_gap(p);
   if (depth < next && t < p->t_end) return status;
   status = join_looks(r, status);
   if (status == MPS_OK) status = end_row(p, r, t);
-  const int64_t rows = (int64_t)((p->s.depth + pen_gap(p)) / p->stride);
+  const int64_t rows = (int64_t)(pen_path(p) / p->stride);
   return status == MPS_OK ? mpm_course_sample(&p->course, r->rows, rows) : status;
 }
 

@@ -4,6 +4,8 @@
 
 #include "common/frame.h"
 
+#include <mps/pore_water.h>
+
 #include <math.h>
 #include <stdio.h>
 
@@ -18,20 +20,22 @@ static double base_area(const penetrometer *p) { return PEN_PI * pen_radius(p) *
 
 /* Means over the last part of the path (N); of Hertz' force too. */
 typedef struct mean {
-  double force[PEN_FORCES], hertz;
+  double force[PEN_FORCES], hertz, depth; /* N, N, m */
 } mean;
 
 static mean mean_of(const penetrometer *p, const pen_run *r) {
-  mean m = {{0.0}, 0.0};
+  mean m = {{0.0}, 0.0, 0.0};
   int64_t count = 0;
   for (int64_t i = 0; i < r->rows; i++) {
-    if (r->row[i].depth < (1.0 - LAST) * pen_reached(r)) continue;
+    if (r->row[i].depth < p->s.start + (1.0 - LAST) * (pen_reached(r) - p->s.start)) continue;
     for (int k = 0; k < PEN_FORCES; k++) m.force[k] += r->row[i].force[k];
     m.hertz += pen_hertz(p, r->row[i].depth);
+    m.depth += r->row[i].depth;
     count++;
   }
   for (int k = 0; k < PEN_FORCES; k++) m.force[k] = count ? m.force[k] / (double)count : NAN;
   m.hertz = count ? m.hertz / (double)count : NAN;
+  m.depth = count ? m.depth / (double)count : NAN;
   return m;
 }
 
@@ -41,7 +45,7 @@ static bool write_force(app *a, const penetrometer *p, const pen_run *r, const c
   output f;
   if (!output_open(&f, a, p->s.out, name)) return false;
   csv_header(&f, "depth_m,total_N,tip_N,shaft_N,total_smooth_N,tip_smooth_N,shaft_smooth_N,"
-                 "q_kPa,q_over_c?");
+                 "q_kPa,q_over_c?,n_kt?");
   for (int64_t i = 0; i < r->rows; i++) {
     const pen_row *row = &r->row[i];
     const double q = row->smooth[PEN_TIP] / base_area(p);
@@ -54,8 +58,9 @@ static bool write_force(app *a, const penetrometer *p, const pen_run *r, const c
                            row->smooth[PEN_TIP],
                            row->smooth[PEN_SHAFT],
                            1e-3 * q,
-                           ratio};
-    csv_row(&f, 9, line);
+                           ratio,
+                           pen_factor_of(p, q, row->depth).n_kt};
+    csv_row(&f, 10, line);
   }
   return output_close(&f);
 }
@@ -75,7 +80,7 @@ static bool write_section(app *a, const penetrometer *p) {
 
 static void write_settings(output *f, const penetrometer *p) {
   static const char *const tips[] = {"cone", "sphere", "stl"};
-  static const char *const laws[] = {"clay", "sand", "elastic"};
+  static const char *const laws[] = {"clay", "sand", "elastic", "tresca", "mcc"};
   const pen_settings *s = &p->s;
   json_text(f, "tip", tips[s->tip]);
   json_text(f, "law", laws[s->law]);
@@ -93,6 +98,27 @@ static void write_settings(output *f, const penetrometer *p) {
   json_number(f, "dt", p->run[0].dt);
 }
 
+/* Undrained ground: the net cone factor and what it refers to. */
+static void write_factor(output *f, const penetrometer *p, const mean *m) {
+  const pen_settings *s = &p->s;
+  const pen_factor n = pen_factor_of(p, m->force[PEN_TIP] / base_area(p), m->depth);
+  if (s->start > 0.0) json_number(f, "start", s->start);
+  if (s->surcharge > 0.0) json_number(f, "surcharge", s->surcharge);
+  if (isnan(n.strength)) return;
+  json_number(f, "su", n.strength);
+  json_number(f, "rigidity_index", n.rigidity);
+  json_number(f, "vertical_stress", n.vertical);
+  json_number(f, "stress_deviation", n.deviation);
+  json_number(f, "n_kt", n.n_kt);
+  if (isfinite(n.teh_houlsby)) json_number(f, "n_kt_teh_houlsby", n.teh_houlsby);
+  if (isfinite(n.lu)) json_number(f, "n_kt_lu", n.lu);
+  if (s->law != PEN_CAM_CLAY || isnan(s->permeability)) return;
+  /* V = v D/c_v, c_v of virgin compression at the stress before */
+  const double c_v =
+      s->permeability * (1.0 + s->e0) * s->surcharge / (s->lambda * MPS_PORE_GRAVITY * PEN_WATER);
+  json_number(f, "v_d_over_cv", s->rate * s->diameter / c_v);
+}
+
 /* Of the first run; of both for conditions that must never occur. */
 static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   const pen_run *r = &p->run[0], *other = &p->run[p->runs - 1];
@@ -104,8 +130,9 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   json_number(&f, "force_tip", m[0].force[PEN_TIP]);
   json_number(&f, "force_shaft", m[0].force[PEN_SHAFT]);
   json_number(&f, "q", m[0].force[PEN_TIP] / base_area(p));
-  if (p->s.law == PEN_CLAY)
+  if (p->s.law == PEN_CLAY || p->s.law == PEN_TRESCA)
     json_number(&f, "n_factor", m[0].force[PEN_TIP] / base_area(p) / p->s.cohesion);
+  write_factor(&f, p, &m[0]);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE) {
     json_number(&f, "force_hertz", m[0].hertz);
     json_number(&f, "hertz_error", m[0].force[PEN_TOTAL] / m[0].hertz - 1.0);
@@ -126,16 +153,30 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
 
 /* ---- terminal -------------------------------------------------------------------------------- */
 
+static void tell_factor(pen_factor n) {
+  if (!isfinite(n.n_kt)) return;
+  printf("net cone factor N_kt = (q - %.4g kPa)/su = %.4g, su = %.4g kPa in triaxial compression, "
+         "Ir = G/su = %.4g",
+         1e-3 * n.vertical, n.n_kt, 1e-3 * n.strength, n.rigidity);
+  if (isfinite(n.teh_houlsby))
+    printf("; Teh and Houlsby %.4g, %+.1f %%", n.teh_houlsby,
+           100.0 * (n.n_kt / n.teh_houlsby - 1.0));
+  if (isfinite(n.lu)) printf("; Lu et al. %.4g, %+.1f %%", n.lu, 100.0 * (n.n_kt / n.lu - 1.0));
+  printf("\n");
+}
+
 static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
   const double q = m->force[PEN_TIP] / base_area(p);
   if (isfinite(m->force[PEN_TOTAL]))
     printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
            r->geometry == MPS_MPM_GEOMETRY_SPACE ? "space" : "axisymmetric", pen_reached(r),
            m->force[PEN_TOTAL], m->force[PEN_TIP], m->force[PEN_SHAFT], 1e-3 * q);
-  if (p->s.law == PEN_CLAY && isfinite(q)) printf(" = %.4g c", q / p->s.cohesion);
+  if (p->s.cohesion > 0.0 && p->s.law != PEN_SAND && p->s.law != PEN_ELASTIC && isfinite(q))
+    printf(" = %.4g c", q / p->s.cohesion);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE && m->hertz > 0.0)
     printf("; Hertz %.5g N, %+.2f %%", m->hertz, 100.0 * (m->force[PEN_TOTAL] / m->hertz - 1.0));
   printf("\n");
+  tell_factor(pen_factor_of(p, q, m->depth));
   if (isfinite(r->ratio_min))
     printf("V/V0 %.4g to %.4g, particles inside the tip: %lld\n", r->ratio_min, r->ratio_max,
            (long long)r->inside);

@@ -90,13 +90,24 @@ static mps_status write_checkpoint(void *user) {
   return status;
 }
 
+/* The first frame is that of the start, the last that of the end; one alone is the last. */
+static double frame_interval(const settings *s, double duration) {
+  if (s->frames <= 0) return 0.0;
+  return duration / (double)(s->frames > 1 ? s->frames - 1 : 1);
+}
+
+/* Number of the last frame that is due by the time `now`, the rounding of `now` aside. */
+static int64_t frames_until(const files *f, double now) {
+  return f->frame_every > 0.0 ? (int64_t)floor(now / f->frame_every * (1.0 + 1e-12)) : 0;
+}
+
 bool files_open(app *a, const settings *s, double duration, results_so_far *so_far,
                 mps_dynamics *dynamics, files *out) {
   *out =
       (files){.particles = mps_dynamics_particles(dynamics),
               .domain = a->domain,
               .so_far = so_far,
-              .frame_every = s->frames > 0 ? duration / (double)s->frames : 0.0,
+              .frame_every = frame_interval(s, duration),
               .dynamics = dynamics,
               .a = a,
               .saves = {.path = s->checkpoint,
@@ -105,7 +116,7 @@ bool files_open(app *a, const settings *s, double duration, results_so_far *so_f
                         .user = out}};
   if (s->restart && !put_back(a, s, dynamics, out)) return false;
   const double now = mps_dynamics_time(dynamics);
-  out->next_frame = now;
+  out->next_frame = s->frames == 1 ? 1 : frames_until(out, now);
   resume_schedule_at(&out->saves, now);
   return s->frames > 0 ? open_recorder(a, s, now, out) : true;
 }
@@ -121,12 +132,12 @@ static mps_status write_frame(files *f, double now) {
 
 static mps_status record(files *f, mps_status status) {
   const double now = mps_dynamics_time(f->dynamics);
-  const bool frame = f->frame_every > 0.0 && now >= f->next_frame * (1.0 - 1e-12);
+  const bool frame = f->frame_every > 0.0 && frames_until(f, now) >= f->next_frame;
   if (!frame && !resume_is_due(&f->saves, now)) return status;
   if (f->domain) status = mps_domain_agree(f->domain, status);
   if (status == MPS_OK && frame) {
     status = write_frame(f, now);
-    while (f->next_frame <= now) f->next_frame += f->frame_every;
+    f->next_frame = frames_until(f, now) + 1;
   }
   if (status == MPS_OK) resume_save_when_due(f->a, &f->saves, now);
   return status;

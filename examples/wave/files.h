@@ -15,7 +15,8 @@ typedef struct files {
   mps_particles *whole;           /* rank 0 of several: all ranks' particles, to write */
   mps_recorder *recorder;         /* NULL: no frames */
   char *series;                   /* its file */
-  double frame_every, next_frame; /* s; 0: no frames */
+  double frame_every;             /* s, between frames; 0: no frames */
+  int64_t next_frame;             /* due at next_frame * frame_every; the first at once */
   resume_schedule saves;          /* checkpoints */
   mps_dynamics *dynamics;         /* borrowed */
   app *a;                         /* borrowed */

@@ -70,9 +70,9 @@ typedef struct mps_contact_def {
   double adhesion;  /* Pa, >= 0: shear strength of the surface besides friction times the pressure,
                        where it is under pressure; default 0 */
   double strength;  /* Pa, > 0: upper bound of its shear stress, such as alpha times the undrained
-                       strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,  over the
-                       area that soil covers: within 3 %, of curved surfaces with a  spacing of more
-                       than half a cell a fifth short, with a warning */
+                       strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE, over the
+                       area that soil covers, within 3 %; on curved surfaces with a spacing of more
+                       than half a cell the area is a fifth short, with a warning */
   double corner;    /* m, >= 0: radius by which edges and corners of the body are rounded for the
                        particles, so that the grid resolves the flow of soil around them; less than
                        half of the body's thinnest wall. 0 (default): not at all. Not for
@@ -96,7 +96,7 @@ static inline mps_contact_def mps_contact_defaults(void) {
 
 /** Ends the contact, releases the handle and nulls it; accepts NULL. In a callback of the solver it
  *  only records MPS_ERROR_STATE. In an open step of a fluid (mps_fluid_begin_step) the body stays
- * in the water until that step is ended or abandoned. */
+ *  in the water until that step is ended or abandoned. */
 MPS_API void mps_contact_destroy(mps_contact **contact);
 
 /** The body; NULL for NULL. Lives at least as long as the contact. */

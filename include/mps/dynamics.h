@@ -318,7 +318,7 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_refresh(mps_dynamics *dynamics);
  *  it is NULL; a snapshot of this solver is filled again. Edited fields are read as by a step, and
  *  not read on an error. Allowed in a callback of mps_dynamics_run. MPS_ERROR_ARGUMENT: a snapshot
  *  of another solver; MPS_ERROR_STATE: a step is running, a field is being edited, or the run has
- * diverged; MPS_ERROR_MEMORY. */
+ *  diverged; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_snapshot(mps_dynamics *dynamics,
                                                        mps_snapshot **snapshot);
 /** Restores a snapshot, bit for bit, also after a run that has diverged or particles that were

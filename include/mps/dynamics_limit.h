@@ -11,8 +11,9 @@
 MPS_EXTERN_C_BEGIN
 
 /** A stable time step (s) at once: the linear limit where it is known, else a lower bound of it
- * from the stiffest and lightest material on a lattice, at most a quarter below it where all ground
- * is alike. NaN: not known off a lattice before mps_dynamics_find_limit; 0: Euler, likewise. */
+ *  from the stiffest and lightest material on a lattice, at most a quarter below it where all
+ *  ground is alike. NaN: not known off a lattice before mps_dynamics_find_limit; 0: Euler,
+ *  likewise. */
 MPS_API double mps_dynamics_limit(const mps_dynamics *dynamics);
 
 /** Limit by linear theory: the highest eigenfrequency of the tangent at the reference state. */

@@ -16,8 +16,6 @@
  * 2D too; the third is not read, and written as 0. In 2D all forces, masses and energies are those
  * of the `measure`.
  *
- *
- *
  * The set may be sorted while a solver uses it, and particles may be removed (mps_particles_remove:
  * excavation): the rest must be a connected body; boundaries and loads drop removed particles,
  * facets are renumbered, a motion ends. A rollback or restore restores removed particles. None can
@@ -67,10 +65,10 @@ typedef struct mps_elastic_def {
   int32_t solver;      /* mps_elastic_solver */
   int32_t ordering;    /* mps_elastic_ordering */
   double radius_ratio; /* re / spacing of the stabilising pairs, in (1, 4]; NaN (default): 1.5 */
-  double alpha;        /* weight of the stabilising pairs, in [0.03, 100]; default 1, NaN too */
-  double measure;      /* 2D: thickness, m, 1e-30 to 1e30; default 1, NaN too. Not read in 3D */
+  double alpha;        /* weight of the stabilising pairs, in [0.03, 100]; default and NaN: 1 */
+  double measure;      /* 2D: thickness, m, 1e-30 to 1e30; default and NaN: 1. Not read in 3D */
   double memory_limit; /* bytes the factor may take, >= 0; NaN (default): no limit */
-  double tolerance; /* CG: |residual| / |load| to reach, in [1e-14, 1e-2]; default 1e-10, NaN too */
+  double tolerance; /* CG: |residual| / |load| to reach, in [1e-14, 1e-2]; default and NaN: 1e-10 */
   int64_t iterations;  /* CG: most iterations; 0 (default): ten times the unknowns */
   int32_t refinements; /* steps of iterative refinement after a direct solution, 0..10; default 1 */
   int32_t blas_threads;   /* most threads of BLAS, up to 1024; 0 (default): the context's. LLT gives
@@ -243,7 +241,7 @@ typedef enum mps_elastic_load_kind {
 } mps_elastic_load_kind;
 
 /** Traction (dim values, Pa, 0 on entry) at the surface point x (dim values, m) with outward
- * normal. A status other than MPS_OK ends the call, which returns it. */
+ *  normal. A status other than MPS_OK ends the call, which returns it. */
 typedef mps_status (*mps_elastic_traction_fn)(void *user, const double *x, const double *normal,
                                               double *traction);
 
@@ -380,7 +378,7 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_get_energy(const mps_elastic *e, do
  *  lesser of the least one and 4 density spacing^2 / dt^2 (above a ratio of moduli of 1e8 a warning
  *  says so). For other members of the family it is the numerical dissipation, computed as the
  *  remainder of the budget. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown to this library;
- * MPS_ERROR_STATE: a step is running. */
+ *  MPS_ERROR_STATE: a step is running. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(const mps_elastic *e, mps_totals *out,
                                                               size_t size);
 static inline mps_status mps_elastic_get_totals(const mps_elastic *e, mps_totals *out) {

@@ -51,7 +51,7 @@ typedef mps_status (*mps_elastic_matrix_fn)(void *user, const mps_elastic_matrix
 
 /** Solves A x = b with the last matrix. `b` and `x` have all rows, on every process; `x` is 0 and
  *  receives the solution: |b - A x| <= `tolerance` |b|, which the library checks. `iterations` (0
- * at the call) may be set, for the report. */
+ *  at the call) may be set, for the report. */
 typedef mps_status (*mps_elastic_solve_fn)(void *user, const double *b, double tolerance, double *x,
                                            int64_t *iterations);
 

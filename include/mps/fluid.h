@@ -112,253 +112,6 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
                                                         const mps_material *material, int64_t count,
                                                         const int64_t *ids);
 
-/* ---- boundaries ------------------------------------------------------------------------------ */
-
-/* Kinds (mps_boundary_kind) of a wall and of a body's surface:
- *
- *   HELD    no flow across; no slip where the fluid has a viscosity; the wall does not move along
- *           itself
- *   DRIVEN  the same, moved along the normal by a signal
- *   ROLLER  no flow across, no shear: slip; at rest or moved along the normal by a signal
- *   OPEN    no wall: particles that have passed it are removed at the end of a step and counted in
- *           its reaction; the pressure there is that of the air, as where water falls over an edge.
- *           It does not move */
-
-#define MPS_FLUID_MAX_BOUNDARIES 10000 /* of a fluid */
-
-/** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
- *  as prescribed by mps_fluid_set_wall_motion; then it may bend slightly: a displacement along the
- *  normal at each of its nodes, linear between them, with local mirror images. The fluid's angle
- *  between two walls is 90 degrees or more; of a bed and a slope, add the bed first.
- *
- *  Or a polyline at rest, HELD or ROLLER: segments of at least l0 with 15 to 345 degrees of fluid
- *  at each corner, as of bed, slope, berm and crest, of the tip of a wedge, or closed of an island.
- *  An open one continues straight beyond its first and last corner without limit. Where it passes a
- *  plane wall (a piston) it does so at a right angle, with corners at least re away. It has one
- *  number: reactions are sums over its segments, pressures those along all of them. Bodies keep re
- *  away from it: one that is nearer is refused, and so is a step in which one comes nearer. */
-typedef struct mps_fluid_boundary_def {
-  uint32_t struct_size;
-  int32_t kind;       /* mps_boundary_kind: HELD (default), DRIVEN, ROLLER, OPEN */
-  double point[3];    /* m, of the wall at time 0; its pressures are sampled from here on, every
-                         l0: choose the corner */
-  double normal[3];   /* into the fluid, any length > 0; [2] must be 0; no default */
-  mps_signal *signal; /* displacement along the normal: factor times that of the signal, from its
-                         value at the time when the boundary is added; NULL (default): at rest.
-                         Not of HELD. Kept alive */
-  double factor;      /* default 1 */
-  const double
-      *nodes; /* of a bending wall: points along it (3 values each, m, in any order; projected onto
-                 the plane), copied; NULL (default): it stays plane, and moves as one node */
-  int64_t node_count;    /* default 0; at most 1 with a signal */
-  const double *corners; /* of a polyline: its corners in order, the fluid to the left of the way
-                            along them (3 values each, m, z 0), copied; NULL (default): a plane
-                            wall. `point`, `normal` and `factor` are not read then */
-  int64_t corner_count;  /* 2 to 10000, default 0. The first again as the last: it is closed */
-} mps_fluid_boundary_def;
-
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size);
-static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
-  mps_fluid_boundary_def def;
-  memset(&def, 0, sizeof def);
-  if (mps_fluid_boundary_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
-  return def;
-}
-
-/** Adds a wall, between steps; `number` (may be NULL) receives the lowest free number.
- *  MPS_ERROR_ARGUMENT: a member of `def` out of range; a particle lies outside or closer than .3 l0
- *  to it; two walls that enclose less than 90 degrees, unless that corner lies more than re behind
- *  a third one; a polyline that crosses itself, joins a plane wall otherwise than above, or is
- *  nearer than re to a body; more than MPS_FLUID_MAX_BOUNDARIES.
- * MPS_ERROR_STATE: a step is open, or a callback of the solver is running. MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
-                                                        const mps_fluid_boundary_def *def,
-                                                        int32_t *number);
-/** Gives a wall another definition: its present position is `point`, its velocity is kept, and so
- *  are its impulse and work. MPS_ERROR_ARGUMENT: no wall `number`; otherwise errors as
- *  mps_fluid_add_boundary. On an error it is unchanged. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary(mps_fluid *fluid, int32_t number,
-                                                        const mps_fluid_boundary_def *def);
-/** Removes a wall: the fluid may flow out there. MPS_ERROR_ARGUMENT: no wall `number`;
- *  MPS_ERROR_STATE: a step is open, or a callback of the solver is running. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_remove_boundary(mps_fluid *fluid, int32_t number);
-
-/** Motion of a wall without a signal: `velocity` (m/s) at the end of the next step, or of the open
- *  one, and `displacement` (m) there from where the wall was added, both along the normal (into the
- *  fluid), one value a node (mps_fluid_boundary_def.nodes; else one). `displacement` NULL: the mean
- *  of the velocities before and after takes it there. It is used for one step; afterwards the wall
- *  continues at its velocity. The acceleration of the wall is the change of velocity over dt.
- *  MPS_ERROR_ARGUMENT: no wall `number`, one with a signal, or a value beyond 1e6 m/s or 1e12 m;
- *  MPS_ERROR_STATE: a callback of the solver is running. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_set_wall_motion(mps_fluid *fluid, int32_t number,
-                                                           const double *displacement,
-                                                           const double *velocity);
-
-/** Force, impulse and work of a wall on the fluid. Force and moment are those of its pressures,
- *  summed over the points of mps_fluid_get_wall. Impulse, moment_impulse and work include
- *  collisions with the wall and the smoothing of velocities at it: in breakers some hundredths of
- *  the impulse. MPS_ERROR_ARGUMENT: no wall `number`, NULL, or a `size` unknown to this library. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_reaction_sized(const mps_fluid *fluid,
-                                                              int32_t number, mps_reaction *out,
-                                                              size_t size);
-static inline mps_status mps_fluid_get_reaction(const mps_fluid *fluid, int32_t number,
-                                                mps_reaction *out) {
-  return mps_fluid_get_reaction_sized(fluid, number, out, sizeof *out);
-}
-
-/** Pressure along a wall after the last step (within an open step: of the last solution), at its
- *  wetted points every l0. Writes at most `capacity` points: `x` (3 values a point, m) and
- *  `pressure` (Pa), each may be NULL; `count` receives their number. Each point has the area l0
- *  times `measure`. MPS_ERROR_ARGUMENT: no wall `number`, or `capacity` below 0; MPS_ERROR_STATE:
- *  the open step's pressure has not been solved; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_wall(const mps_fluid *fluid, int32_t number,
-                                                    int64_t capacity, int64_t *count, double *x,
-                                                    double *pressure);
-/** Pressure (Pa) at `count` points of a wall, likewise: x[3 * k], ... in m, within 0.01 l0 of the
- *  wall's present or initial position; 0 where there is no water. MPS_ERROR_ARGUMENT: no wall
- *  `number`, `count` below 0, or a point off the wall; MPS_ERROR_STATE: the open step's pressure
- *  has not been solved; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(const mps_fluid *fluid, int32_t number,
-                                                        int64_t count, const double *x,
-                                                        double *pressure);
-/** Forces on the fluid by the segments of a polyline (N, 3 values each), in the order of its
- * corners, and their moments about the origin (N m, one value each), as in its reaction: writes at
- * most `capacity` segments, either may be NULL; `count` receives their number. MPS_ERROR_ARGUMENT:
- * no polyline `number`, `count` NULL, or `capacity` below 0. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_segments(const mps_fluid *fluid, int32_t number,
-                                                        int64_t capacity, int64_t *count,
-                                                        double *force, double *moment);
-/** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
- *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
- *  where there is no surface. It follows from the fields `position` and `surface_rise`; in an open
- *  step these are of its beginning. MPS_ERROR_ARGUMENT: `count` below 0, or a station that is not
- *  finite. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, int64_t count,
-                                                      const double *station, double *level);
-
-/* ---- bodies ---------------------------------------------------------------------------------- */
-
-typedef struct mps_fluid_contact_def {
-  uint32_t struct_size;
-  int32_t kind;   /* mps_boundary_kind of the body's surface: HELD (no slip, default) or ROLLER */
-  int32_t floats; /* 1: the fluid moves the body, see mps_fluid_float_body; 0 (default): the caller
-                     or another solver */
-  int32_t reserved;
-} mps_fluid_contact_def;
-
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a `size` unknown
- *  to this library. */
-MPS_API mps_status mps_fluid_contact_def_init(mps_fluid_contact_def *def, size_t size);
-static inline mps_fluid_contact_def mps_fluid_contact_defaults(void) {
-  mps_fluid_contact_def def;
-  memset(&def, 0, sizeof def);
-  if (mps_fluid_contact_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
-  return def;
-}
-
-/** Adds a rigid body to the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
- *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
- *  together may have 50 000 edges. Bodies side by side make a face of several parts, with concave
- * corners between them too. `def` NULL: the defaults. The caller moves it (mps_body_advance,
- *  mps_body_set_motion), or another solver does: its pose and velocity when a step is made, or
- *  solved for in parts, are those of the end of that step. At the end of each step it receives
- *  the water's forces (mps_body_get_reaction; a free body moves by them), in addition to those of
- * other solvers that it is in contact with. It is kept alive.
- *
- *  `out` (may be NULL) receives the handle (mps/contact.h): mps_contact_destroy removes the body
- *  from the water, in an open step at the end of that step; mps_contact_get_reaction gives the
- * water's action on it, by parts, in an open step of the last solution: moments about its reference
- * point, moment_impulse about its present position; `count` is that of wetted points. Force and
- * moment are those of the pressures, impulses include collisions and smoothing, as those of
- * mps_body_get_reaction; they act on a floating body one step later. mps_contact_get_particles is
- * MPS_ERROR_UNSUPPORTED.
- *
- *  MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less than 15 degrees
- *  of fluid between an edge and the boundary that it stands on (a body that rolls there later has a
- *  warning in the log, once); nearer than re to a polyline; too many edges. MPS_ERROR_STATE: the
- * fluid has the body already. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_add_contact(mps_fluid *fluid, mps_body *body,
-                                                       const mps_fluid_contact_def *def,
-                                                       mps_contact **out);
-/** Pressure (Pa) at `count` points of a body (3 values each, m), within 0.01 l0 of its present
- *  surface, as mps_fluid_get_pressure. MPS_ERROR_ARGUMENT: the contact is none of this fluid's,
- *  `count` below 0, or a point off the body; MPS_ERROR_STATE: the open step's pressure has not been
- *  solved; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_pressure(const mps_fluid *fluid,
-                                                             const mps_contact *contact,
-                                                             int64_t count, const double *x,
-                                                             double *pressure);
-/** `floats` 1: from now on the fluid moves the body in each of its steps, such that the water's
- *  pressure, the body's mass, gravity and load (mps_body_set_load), and the impulses of other
- *  solvers since its last step are in balance, however light the body is. Its draft is right to 1
- *  %, its height to .02 l0, as the level of the water. No boundary acts on it: keep it off the
- *  ground. 0: the caller or another solver moves it, by the forces of the last step, which is
- *  unstable where it is lighter than the water that it accelerates. MPS_ERROR_ARGUMENT: the contact
- *  is none of this fluid's, or the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE:
- *  another solver moves it. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, mps_contact *contact,
-                                                      int32_t floats);
-
-/* ---- loads ----------------------------------------------------------------------------------- */
-
-typedef enum mps_fluid_load_kind {
-  MPS_FLUID_LOAD_BODY = 0,     /* `acceleration` on the particles chosen: a shaken tank, wind */
-  MPS_FLUID_LOAD_PRESSURE = 1, /* `pressure` on the free surface that the chosen particles make: a
-                                 squall, the air in a chamber. Not with the classical scheme */
-  MPS_FLUID_LOAD_DAMPING = 2   /* -`rate` u: a zone in which waves fade */
-} mps_fluid_load_kind;
-
-/** A load, times factor times signal in each component, on the particles of a list, those in a box
- *  at the beginning of a step, or all where neither is given. Loads add up. Forces that another
- *  code computes go into the field `external_force` instead. */
-typedef struct mps_fluid_load_def {
-  uint32_t struct_size;
-  int32_t kind;       /* mps_fluid_load_kind, default BODY */
-  const int64_t *ids; /* copied; ids that are not in the set are ignored. NULL (default): the box */
-  int64_t id_count;   /* 0 (default): the box */
-  double lower[3], upper[3]; /* m; +-infinity is allowed; NaN (default): no bound */
-  double acceleration[3];    /* m/s2, |a| at most 1e6; [2] must be 0; default 0 */
-  double pressure;           /* Pa, |p| at most 1e12, above the air's elsewhere; default 0. Where it
-                                is negative the water below may have as much suction: let the box
-                                reach three spacings into it */
-  mps_signal *signal[3];     /* of PRESSURE [0]: its displacement is read as a number, at the time
-                                that a step begins with; NULL (default): 1. Kept alive */
-  double factor[3];          /* finite; of PRESSURE and DAMPING [0]; default 1 */
-  double rate;  /* 1/s, DAMPING: 0 to 1e6, where factor and signal are 1; more than 1/dt counts
-                   as that. Of a zone one wave length L long R = .01 to .04 with 10 a period, for
-                   depths of L/12 to L/3; default 0 */
-  int32_t side; /* DAMPING: 1: the rate rises from 0 at lower[0] with the square of the distance to
-                   `rate` at upper[0], -1: from 0 at upper[0]; both are finite then. 0 (default):
-                   it is the same in all the box */
-  int32_t reserved;
-} mps_fluid_load_def;
-
-/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
- *  this library. */
-MPS_API mps_status mps_fluid_load_def_init(mps_fluid_load_def *def, size_t size);
-static inline mps_fluid_load_def mps_fluid_load_defaults(void) {
-  mps_fluid_load_def def;
-  memset(&def, 0, sizeof def);
-  if (mps_fluid_load_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
-  return def;
-}
-
-/** Adds a load, between steps; `number` (may be NULL) receives the lowest free number, from 0.
- *  MPS_ERROR_ARGUMENT: a member of `def` out of range, or too many loads; MPS_ERROR_STATE: a step
- *  is open, or a callback of the solver is running; MPS_ERROR_UNSUPPORTED: a pressure with the
- *  classical scheme; MPS_ERROR_MEMORY. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_add_load(mps_fluid *fluid, const mps_fluid_load_def *def,
-                                                    int32_t *number);
-/** Gives load `number` another definition. MPS_ERROR_ARGUMENT: no load `number`; otherwise errors
- *  as mps_fluid_add_load. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_set_load(mps_fluid *fluid, int32_t number,
-                                                    const mps_fluid_load_def *def);
-/** Removes load `number`. MPS_ERROR_ARGUMENT: no load of that number; MPS_ERROR_STATE: a step is
- *  open, or a callback of the solver is running. */
-MPS_API MPS_NODISCARD mps_status mps_fluid_remove_load(mps_fluid *fluid, int32_t number);
-
 /* ---- running --------------------------------------------------------------------------------- */
 
 /** Takes `count` (>= 0) steps. A step that fails is undone: MPS_ERROR_NUMERIC, the pressure
@@ -429,6 +182,14 @@ MPS_API mps_particles *mps_fluid_particles(const mps_fluid *fluid);
 /** The context of the solver; lent. */
 MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
 
+/** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
+ *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
+ *  where there is no surface. It follows from the fields `position` and `surface_rise`; in an open
+ *  step these are of its beginning. MPS_ERROR_ARGUMENT: `count` below 0, or a station that is not
+ *  finite. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(const mps_fluid *fluid, int64_t count,
+                                                      const double *station, double *level);
+
 /** Sums over the fluid. `strain` is the potential energy in the field of gravity, above the level
  *  of the definition; `work_loads` that of loads and `external_force`, with the mean velocity of
  *  each step; `dissipated` (by the scheme and the viscosity) is the remainder of the budget. From
@@ -488,4 +249,9 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_restore(mps_fluid *fluid, const char 
                                                    mps_checkpoint *info);
 
 MPS_EXTERN_C_END
+
+#include "fluid_boundary.h"
+#include "fluid_contact.h"
+#include "fluid_load.h"
+
 #endif

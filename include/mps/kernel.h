@@ -34,7 +34,7 @@ MPS_API int32_t mps_kernel_get_kind(const mps_kernel *kernel);
 /** Radius of influence re (m). */
 MPS_API double mps_kernel_radius(const mps_kernel *kernel);
 /** w(r), r in m, without a unit. Zero at r >= re and r < 0; re/r - 1 is 0 at r = 0 too: a particle
- * is not its own neighbour. */
+ *  is not its own neighbour. */
 MPS_API double mps_kernel_weight(const mps_kernel *kernel, double r);
 /** dw/dr (1/m). Zero where the weight is. */
 MPS_API double mps_kernel_derivative(const mps_kernel *kernel, double r);

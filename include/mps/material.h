@@ -87,9 +87,9 @@ typedef enum mps_material_softening {
   MPS_MATERIAL_SOFTENING_LINEAR = 1
 } mps_material_softening;
 
-/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), with a cut-off s1 <= T
- *  (Rankine) whose flow is normal to it. Perfectly plastic unless softening is given. Tresca:
- * friction 0, cohesion su. */
+/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), with a cut-off s1 <= T (Rankine)
+ *  whose flow is normal to it. Perfectly plastic unless softening is given. Tresca: friction 0,
+ *  cohesion su. */
 typedef struct mps_material_mohr_coulomb_def {
   uint32_t struct_size;
   uint32_t reserved;

@@ -72,7 +72,7 @@ typedef mps_status (*mps_material_fn)(void *user, const mps_material_block *bloc
 /** Writes an upper bound of K + 4G/3 (Pa, finite and > 0) of each particle of the block in its
  *  present state: by it the solver limits its step. Reads `stress`, `volume_ratio`, `history`,
  *  `temperature`; `gradient` and `deformation` are those of the last step. Called by several
- * threads at once. Any other value is MPS_ERROR_DIVERGED of the step, which names the particle. */
+ *  threads at once. Any other value is MPS_ERROR_DIVERGED of the step, which names the particle. */
 typedef void (*mps_material_moduli_fn)(void *user, const mps_material_block *block, double *moduli);
 
 typedef struct mps_material_user_def {
@@ -102,7 +102,8 @@ typedef struct mps_material_user_def {
    *  and "opening", the volume strain of the gap between the grains, >= 0; `bulk_modulus` must be
    *  stated and needs_deformation be 0. The filter changes the mean stress and the opening, with
    *  p + K opening for the mean stress of grains that have parted, and calls `update` once more
-   *  with velocity gradients 0: it returns to the yield surface then. 0 (default): not so */
+   *  with velocity gradients 0: it returns to the yield surface then. 0 (default): a law
+   *  without such grains */
   int32_t frictional;
   int32_t reserved;
 } mps_material_user_def;
@@ -112,7 +113,7 @@ typedef struct mps_material_user_def {
  *  NTENS are 1 and 4 in plane strain and axisymmetry (11, 22, 33, 12), 3 and 6 in 3D (11, 22, 33,
  *  12, 13, 23); shear strains are engineering ones; matrices are stored by columns, as Fortran has
  *  them. Integers are of 32 bits (not -fdefault-integer-8), reals of 64. docs/materials.md says
- * what each argument holds. `cmname_length` is the hidden length of CMNAME, 80. */
+ *  what each argument holds. `cmname_length` is the hidden length of CMNAME, 80. */
 typedef void (*mps_material_umat_fn)(
     double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,
     double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,

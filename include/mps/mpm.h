@@ -148,11 +148,11 @@ MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 
 /** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the
  *  first step or between steps. The material is kept alive. Its history in these particles is set
- * to the law's initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as
- * they are (0: 1, and all 0: no deformation). Fields that only this law needs are added to the set;
- * the field `material` has each particle's law. The Courant limit, and the stiffness of penalty
- * contacts without a `penalty` of their own, follow at once. MPS_ERROR_ARGUMENT: an unknown id or a
- *  volume ratio below 0; MPS_ERROR_STATE: a step has failed, or a callback of the
+ *  to the law's initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as
+ *  they are (0: 1, and all 0: no deformation). Fields that only this law needs are added to the
+ *  set; the field `material` has each particle's law. The Courant limit, and the stiffness of
+ *  penalty contacts without a `penalty` of their own, follow at once. MPS_ERROR_ARGUMENT: an
+ *  unknown id or a volume ratio below 0; MPS_ERROR_STATE: a step has failed, or a callback of the
  *  solver is running; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
                                                       int64_t count, const int64_t *ids);

@@ -9,11 +9,12 @@
  * `strain` is recoverable work: for elastic laws the whole work of the stress on the strain
  * increments of the laws; for elastic-plastic laws the change of the stress's energy by Hooke's
  * law; for the small-strain law the work less what its layers dissipate; for fluids the work of the
- * pressure; for users' laws, whose dissipation is unknown, the whole work; and the energy of penalty contacts. Loads do work by the velocity that the nodes give
- * the particles, boundaries and bodies by their own: a free body by the mean of before and after
- * the step, so that `work_bodies` is minus the `work_contacts` of mps_body_totals, to rounding, of
- * bodies that this solver alone moves. One that another solver moves does its work by the velocity
- * that it has in this solver's step.
+ * pressure; for users' laws, whose dissipation is unknown, the whole work; and the energy of
+ * penalty contacts. Loads do work by the velocity that the nodes give the particles, boundaries and
+ * bodies by their own: a free body by the mean of before and after the step, so that `work_bodies`
+ * is minus the `work_contacts` of mps_body_totals, to rounding, of bodies that this solver alone
+ * moves. One that another solver moves does its work by the velocity that it has in this solver's
+ * step.
  *
  * Thread rule: as mps/mpm.h.
  * SPDX-License-Identifier: BSD-3-Clause */

@@ -1,7 +1,8 @@
 /* mps/mpm_settle.h - static equilibrium of WLS-MPM: ground that settles under its weight or a load,
  * in far fewer steps than a slow loading takes.
  *
- * The particles swing towards equilibrium, and stop whenever their kinetic energy has passed a peak
+ * The particles oscillate about equilibrium, and are stopped when their kinetic energy has passed a
+ * peak
  * (dynamic relaxation with kinetic damping). Steps are those of mps_mpm_step, with these
  * differences: the time is constant, so signals of loads keep their value; boundaries and bodies in
  * contact are at rest, also driven ones. Reactions are those of the last step; impulses, works, the
@@ -53,9 +54,9 @@ typedef struct mps_mpm_settled {
  *  as an uninterrupted call, the counts of `out` included. If mps_mpm_step or mps_mpm_run is called
  *  first, the particles are stopped before it. MPS_ERROR_NUMERIC: not within `max_steps`, as where
  *  ground flows; the particles stay at rest at their present positions, and `out` is written:
- *  another call continues from there. MPS_ERROR_UNSUPPORTED: a body in contact moves freely, or pore water flows
- *  (mps/pore_water.h).
- *  MPS_ERROR_STATE: no particles, and so no dt. MPS_ERROR_DIVERGED as of mps_mpm_step. */
+ *  another call continues from there. MPS_ERROR_UNSUPPORTED: a body in contact moves freely, or
+ *  pore water flows (mps/pore_water.h). MPS_ERROR_STATE: no particles, and so no dt.
+ *  MPS_ERROR_DIVERGED as of mps_mpm_step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *def,
                                                       mps_mpm_settled *out, size_t size);
 static inline mps_status mps_mpm_settle(mps_mpm *mpm, const mps_mpm_settle_def *def,

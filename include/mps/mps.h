@@ -1,4 +1,4 @@
-/* mps/mps.h - all of libmps but mps/experimental.h.
+/* mps/mps.h - all of libmps but mps/experimental.h and mps/petsc.h (a library of its own).
  *
  *   base.h        status codes, version, views of arrays
  *   context.h     errors, memory, threads, hooks
@@ -7,19 +7,23 @@
  *   neighbours.h  pairs of particles that are near one another
  *   kernel.h      weight functions
  *   signal.h      functions of time, recorded motions
- *   material.h    constitutive laws
+ *   material.h    constitutive laws;  material_law.h  laws of your own, laws at one point
  *   geostatic.h   stress of ground at rest
  *   soil.h        Cam-Clay, its state at rest, laws along paths of stress and strain
  *   body.h        rigid bodies
  *   contact.h     contact of particles with bodies
  *   solver.h      what the solvers have in common
- *   mpm.h         WLS-MPM: large deformation and contact
+ *   mpm.h         WLS-MPM: large deformation and contact;  mpm_boundary.h  boundaries, loads
  *   grid.h        its grid: nodes, fields at points
  *   mpm_energy.h  where the energy of a run of WLS-MPM goes
  *   mpm_settle.h  static equilibrium of WLS-MPM
- *   dynamics.h    explicit elastodynamics
- *   elastic.h     implicit elasticity;  elastic_solver.h  another solver of its equations
- *   fluid.h       free-surface flow
+ *   pore_water.h  water in the pores of its ground
+ *   dynamics.h    explicit elastodynamics;  dynamics_limit.h  its stable step
+ *   elastic.h     implicit elasticity;  elastic_motion.h  its motions, vibration;
+ *                 elastic_solver.h  another solver of its equations
+ *   fluid.h       free-surface flow;  fluid_boundary.h, fluid_contact.h, fluid_load.h  its walls,
+ *                 bodies and loads;  fluid_rock.h  rock in it;
+ *                 fluid_solver.h  another solver of its pressure equation
  *   couple.h      implicit coupling of two codes
  *   waves.h       seas, wave makers, absorption, reflection;  wave_loads.h  loads on walls
  *   io.h          series of results, restart files
@@ -42,6 +46,9 @@
 #include "elastic_motion.h"
 #include "elastic_solver.h"
 #include "fluid.h"
+#include "fluid_boundary.h"
+#include "fluid_contact.h"
+#include "fluid_load.h"
 #include "fluid_rock.h"
 #include "fluid_solver.h"
 #include "geostatic.h"

@@ -176,12 +176,11 @@ private:
 };
 } // namespace detail
 
-/** Throws what a mps::callback of the context has thrown, or mps::error where `status` is not
- * MPS_OK.
- */
-inline void check(const mps_context *context, mps_status status) {
-  detail::thrown::rethrow(context);
-  if (status != MPS_OK) throw error(context, status);
+/** Throws what a mps::callback of the context `owner` has thrown, or mps::error where `status` is
+ * not MPS_OK. */
+inline void check(const mps_context *owner, mps_status status) {
+  detail::thrown::rethrow(owner);
+  if (status != MPS_OK) throw error(owner, status);
 }
 
 /** A C++ function as a callback of the library: `C` is its type in the headers (mps_material_fn,
@@ -197,7 +196,7 @@ template <class C> class callback;
 template <class R, class... A> class callback<R (*)(void *, A...)> {
 public:
   template <class F>
-  callback(const mps_context *context, F f) : body_(new typed<F>(context, std::move(f))) {}
+  callback(const mps_context *owner, F f) : body_(new typed<F>(owner, std::move(f))) {}
   auto function() const noexcept -> R (*)(void *, A...) {
     return [](void *user, A... arguments) -> R {
       return static_cast<body *>(user)->answer(arguments...);

@@ -30,7 +30,7 @@ static inline mps_neighbours_def mps_neighbours_defaults(void) {
 }
 
 /** Creates an object without lists, which keeps the context alive. MPS_ERROR_ARGUMENT: NULL, `dim`
- * or `radius` out of range. */
+ *  or `radius` out of range. */
 MPS_API MPS_NODISCARD mps_status mps_neighbours_create(mps_context *context,
                                                        const mps_neighbours_def *def,
                                                        mps_neighbours **out);

@@ -33,8 +33,8 @@ static inline mps_particles_def mps_particles_defaults(void) {
 }
 
 /** Creates an empty set, which keeps the context alive. It has the fields `id` and `position`;
- * others are added by name. MPS_ERROR_ARGUMENT: NULL, `dim` or `spacing` out of range, a place
- * beyond 1e15 m; MPS_ERROR_MEMORY. */
+ *  others are added by name. MPS_ERROR_ARGUMENT: NULL, `dim` or `spacing` out of range, a place
+ *  beyond 1e15 m; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_create(mps_context *context,
                                                       const mps_particles_def *def,
                                                       mps_particles **out);
@@ -130,7 +130,7 @@ typedef struct mps_particles_field_info {
 MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particles, const char *name,
                                                          int32_t components);
 /** Borrows a field for reading (MPS_VIEW_READONLY), until the epoch changes. MPS_ERROR_FIELD when
- * the set has none of that name (the message lists the names it has). */
+ *  the set has none of that name (the message lists the names it has). */
 MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, const char *name,
                                                     mps_view *out);
 /** Borrows a field for writing, until mps_particles_commit or _abandon: meanwhile steps of solvers,

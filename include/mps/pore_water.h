@@ -64,14 +64,14 @@ static inline mps_pore_water_def mps_pore_water_defaults(void) {
 }
 
 /** Saturates the ground of `mpm`, once and before its first step, with the pressures of the field
- *  `pore_pressure` (where the set has none: 0). The limit of the step follows at once: waves with
- *  K + 4G/3 + K_w/n, and where water flows 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever
+ *  `pore_pressure` (where the set has none: 0). The limit of the step follows at once: waves with K
+ *  + 4G/3 + K_w/n, and where water flows 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever
  *  `courant`; with implicit pressures it is that of dry ground, and steps may fail with
  *  MPS_ERROR_NUMERIC where these are not found. `def` NULL: the defaults. MPS_ERROR_ARGUMENT: a
- * member of `def` or a field out of range (the message names the particle), a density below that of
- * the water in the pores, a law without a modulus at rest and no `bulk`, or a fixed dt above the
- * new limit; MPS_ERROR_STATE: the solver has taken steps or has water already;
- * MPS_ERROR_UNSUPPORTED: the energy budget, or implicit pressures on several ranks;
+ *  member of `def` or a field out of range (the message names the particle), a density below that
+ *  of the water in the pores, a law without a modulus at rest and no `bulk`, or a fixed dt above
+ *  the new limit; MPS_ERROR_STATE: the solver has taken steps or has water already;
+ *  MPS_ERROR_UNSUPPORTED: the energy budget, or implicit pressures on several ranks;
  *  MPS_ERROR_MEMORY. On an error the solver is as before. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_pore_water(mps_mpm *mpm,
                                                         const mps_pore_water_def *def);
@@ -87,7 +87,7 @@ static inline mps_status mps_mpm_get_pore_water(const mps_mpm *mpm, mps_pore_wat
 /** Sets the pressures of water at rest with its level at `point` (m; 2 or 3 components, on the
  *  level): rho_w b.(x - point), 0 above. Needs gravity. MPS_ERROR_ARGUMENT: NULL, not finite, or no
  *  gravity; MPS_ERROR_STATE: no water, a step has failed, or a callback of the solver is running.
- */
+ *  */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_pore_level(mps_mpm *mpm, const double *point);
 
 typedef enum mps_pore_face {

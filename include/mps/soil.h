@@ -56,12 +56,12 @@ MPS_API MPS_NODISCARD mps_status mps_material_create_cam_clay(mps_context *conte
 /** Stiffness that falls with the shear strain, and rises again where the strain turns: on first
  *  loading tau = G0 gamma/(1 + (gamma/gamma_r)^a) (Hardin and Drnevich 1972 with a = 1, Darendeli
  *  2001) up to the strength, tau = sqrt(J2), gamma = 2 sqrt(J2 of the strain deviator), counted
- * from the first state, whose stress stays; unloading and reloading by Masing's rules, small loops
- * within large ones included. Ten layers of elastic, perfectly plastic solids side by side (Iwan
- * 1967): the curve within 1.2 %, G0 and strength exactly; strains below gamma_r/100 dissipate
- * nothing. K stays. No friction: the strength does not follow the pressure. Its history is
- * `plastic_strain`, `dissipated` (J/m3) and the deviators of the layers, 52 columns. The HSsmall
- * threshold gamma_0.7 is 0.385 gamma_r. */
+ *  from the first state, whose stress stays; unloading and reloading by Masing's rules, small loops
+ *  within large ones included. Ten layers of elastic, perfectly plastic solids side by side (Iwan
+ *  1967): the curve within 1.2 %, G0 and strength exactly; strains below gamma_r/100 dissipate
+ *  nothing. K stays. No friction: the strength does not follow the pressure. Its history is
+ *  `plastic_strain`, `dissipated` (J/m3) and the deviators of the layers, 52 columns. The HSsmall
+ *  threshold gamma_0.7 is 0.385 gamma_r. */
 typedef struct mps_material_small_strain_def {
   uint32_t struct_size;
   uint32_t reserved;
@@ -87,9 +87,9 @@ static inline mps_material_small_strain_def mps_material_small_strain_defaults(v
 }
 
 /** Small-strain stiffness. Constants are copied. MPS_MATERIAL_FLAG_PLASTIC is set where the
- * strength is reached. mps_material_wave_modulus and mps_material_get_moduli are those of zero
- * strain, which limit a solver's step. MPS_ERROR_ARGUMENT: a constant out of range, which the
- * message names; MPS_ERROR_MEMORY. */
+ *  strength is reached. mps_material_wave_modulus and mps_material_get_moduli are those of zero
+ *  strain, which limit a solver's step. MPS_ERROR_ARGUMENT: a constant out of range, which the
+ *  message names; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_small_strain(
     mps_context *context, const mps_material_small_strain_def *def, mps_material **out);
 
@@ -135,22 +135,20 @@ MPS_API MPS_NODISCARD mps_status mps_particles_set_consolidation(mps_particles *
                                                                  const mps_consolidation_def *def);
 
 /** K0 of one-dimensional virgin compression of a Cam-Clay; NaN of another law or NULL. Thread safe.
- */
+ *  */
 MPS_API double mps_material_normal_k0(const mps_material *material);
 
 /* ---- strength and stiffness that vary in the ground -------------------------------------------
  */
 
 /** The law `law` with moduli and strengths of each particle: its fields `stiffness_factor`
- * multiplies E and the hardening modulus, `strength_factor` the yield stress, cohesion and tension
- * (the last and residual ones too). The caller sets these two fields, mps_particles_set_profile by
- * depth; 0, as in particles that have none, is 1. Constants are copied. Its history has the two as
- * last columns; mps_material_wave_modulus and mps_material_get_moduli are those of factor 1, and
- * the step of a solver follows the factors.
- *  MPS_ERROR_ARGUMENT: NULL, or a law of another context; MPS_ERROR_UNSUPPORTED: another law than
- *  linear elastic, von Mises, Drucker-Prager, Mohr-Coulomb and small strain, or one made by this
- *  function;
- *  MPS_ERROR_MEMORY. */
+ *  multiplies E and the hardening modulus, `strength_factor` the yield stress, cohesion and tension
+ *  (the last and residual ones too). The caller sets these two fields, mps_particles_set_profile by
+ *  depth; 0, as in particles that have none, is 1. Constants are copied. Its history has the two as
+ *  last columns; mps_material_wave_modulus and mps_material_get_moduli are those of factor 1, and
+ *  the step of a solver follows the factors. MPS_ERROR_ARGUMENT: NULL, or a law of another context;
+ *  MPS_ERROR_UNSUPPORTED: another law than linear elastic, von Mises, Drucker-Prager, Mohr-Coulomb
+ *  and small strain, or one made by this function; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_by_field(mps_context *context,
                                                               const mps_material *law,
                                                               mps_material **out);

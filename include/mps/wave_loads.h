@@ -43,8 +43,8 @@ typedef struct mps_sainflou {
   double trough_moment; /* N m/m */
 } mps_sainflou;
 /** Standing wave at a vertical wall, reflected fully: Sainflou (1928), with pressures linear from
- * the surface to the bed. MPS_ERROR_ARGUMENT: a member of `def` out of range, a height above .142 L
- * tanh kd (Miche 1944: it breaks), a trough at the bed. */
+ *  the surface to the bed. MPS_ERROR_ARGUMENT: a member of `def` out of range, a height above .142
+ *  L tanh kd (Miche 1944: it breaks), a trough at the bed. */
 MPS_API MPS_NODISCARD mps_status mps_sainflou_evaluate_sized(mps_context *context,
                                                              const mps_sainflou_def *def,
                                                              mps_sainflou *out, size_t size);
@@ -100,7 +100,7 @@ typedef struct mps_goda {
   double overturning;           /* (weight arm - uplift_moment)/moment; NaN without weight */
 } mps_goda;
 /** Pressures of the highest wave on a caisson, and its safeties. MPS_ERROR_ARGUMENT: a member of
- * `def` out of range. */
+ *  `def` out of range. */
 MPS_API MPS_NODISCARD mps_status mps_goda_evaluate_sized(mps_context *context,
                                                          const mps_goda_def *def, mps_goda *out,
                                                          size_t size);
@@ -160,8 +160,8 @@ typedef struct mps_eurotop {
   int32_t reserved;
 } mps_eurotop;
 /** Mean overtopping discharge of a storm by the formula that the wall, its foreshore and the number
- * of impulsiveness depth^2/(Hm0 L(m-1,0)) choose. MPS_ERROR_ARGUMENT: a member of `def` out of
- * range; a crest above 3.5 Hm0; a slope with xi(m-1,0) of 5 or more. */
+ *  of impulsiveness depth^2/(Hm0 L(m-1,0)) choose. MPS_ERROR_ARGUMENT: a member of `def` out of
+ *  range; a crest above 3.5 Hm0; a slope with xi(m-1,0) of 5 or more. */
 MPS_API MPS_NODISCARD mps_status mps_eurotop_evaluate_sized(mps_context *context,
                                                             const mps_eurotop_def *def,
                                                             mps_eurotop *out, size_t size);

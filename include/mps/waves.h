@@ -25,14 +25,14 @@ MPS_EXTERN_C_BEGIN
 
 /** Wave number k (rad/m) of waves of `period` (s) in water of `depth` (m) at rest: omega^2 = g k
  *  tanh(k depth), `gravity` g (m/s2); all > 0, omega^2 depth/g from 1e-6 to 1e4. `number` may not
- * be NULL. MPS_ERROR_ARGUMENT: a value out of range. */
+ *  be NULL. MPS_ERROR_ARGUMENT: a value out of range. */
 MPS_API MPS_NODISCARD mps_status mps_waves_find_number(mps_context *context, double period,
                                                        double depth, double gravity,
                                                        double *number);
 /** A piston of stroke amplitude X (m) in water of `depth`: amplitude of the waves far from it over
- * X, `progressive` = 4 sinh^2 kd/(sinh 2kd + 2kd) (Biesel and Suquet), and of the level at the
- * piston that is in phase with its displacement, `evanescent`, the sum over the evanescent modes.
- * Either may be NULL. MPS_ERROR_ARGUMENT as mps_waves_find_number. */
+ *  X, `progressive` = 4 sinh^2 kd/(sinh 2kd + 2kd) (Biesel and Suquet), and of the level at the
+ *  piston that is in phase with its displacement, `evanescent`, the sum over the evanescent modes.
+ *  Either may be NULL. MPS_ERROR_ARGUMENT as mps_waves_find_number. */
 MPS_API MPS_NODISCARD mps_status mps_waves_find_piston(mps_context *context, double period,
                                                        double depth, double gravity,
                                                        double *progressive, double *evanescent);
@@ -112,10 +112,10 @@ static inline mps_waves_def mps_waves_defaults(void) {
 }
 
 /** Creates a sea. The piston's motion over `repeat` is examined: MPS_ERROR_ARGUMENT names a member
- * of `def` that is out of range, a piston that would go beyond `stroke` or `speed` (with the value
- * and its time), a regular wave that would break (height above .142 L tanh kd, Miche 1944), and
- * with SECOND one whose height L^2/depth^3 is 8 pi^2/3 or more, where the second order has crests
- * of its own. SECOND takes at most 1024 components, the others 4096. MPS_ERROR_MEMORY. */
+ *  of `def` that is out of range, a piston that would go beyond `stroke` or `speed` (with the value
+ *  and its time), a regular wave that would break (height above .142 L tanh kd, Miche 1944), and
+ *  with SECOND one whose height L^2/depth^3 is 8 pi^2/3 or more, where the second order has crests
+ *  of its own. SECOND takes at most 1024 components, the others 4096. MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_waves_create(mps_context *context, const mps_waves_def *def,
                                                   mps_waves **out);
 /** Releases and nulls; accepts NULL. Objects that use the sea keep their own reference. */
@@ -142,22 +142,22 @@ static inline mps_status mps_waves_get_report(const mps_waves *waves, mps_waves_
 
 /** Components of first order in ascending frequency: at most `capacity` (>= 0) are written, `count`
  *  receives their number. `frequency` (Hz), `amplitude` (m), `phase` (rad, of the cosine at x = 0,
- * t = 0) may be NULL. MPS_ERROR_ARGUMENT: `count` NULL, `capacity` below 0. */
+ *  t = 0) may be NULL. MPS_ERROR_ARGUMENT: `count` NULL, `capacity` below 0. */
 MPS_API MPS_NODISCARD mps_status mps_waves_get_components(const mps_waves *waves, int64_t capacity,
                                                           int64_t *count, double *frequency,
                                                           double *amplitude, double *phase);
 /** Level (m above the water at rest) of the progressive waves that are asked for, at `station` (m
- * from the piston, >= 0) at `count` times t (s): `linear` and, with second order, `level`; either
- * may be NULL. The mean level is left out, as is the ramp; nearer than 3 depths to the piston its
- * evanescent modes come to this. MPS_ERROR_ARGUMENT: `station`, `count` or a time out of range;
+ *  from the piston, >= 0) at `count` times t (s): `linear` and, with second order, `level`; either
+ *  may be NULL. The mean level is left out, as is the ramp; nearer than 3 depths to the piston its
+ *  evanescent modes come to this. MPS_ERROR_ARGUMENT: `station`, `count` or a time out of range;
  *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_waves_get_levels(const mps_waves *waves, double station,
                                                       int64_t count, const double *t,
                                                       double *linear, double *level);
 /** Motion of the piston with its ramp at `count` times t (s): displacement (m, into the water),
  *  velocity (m/s), acceleration (m/s2), and the level (m) at the piston that is asked for,
- * evanescent modes of first order included. Each but `t` may be NULL. At rest before t = 0.
- * MPS_ERROR_ARGUMENT: `count` below 0, a time that is not finite. */
+ *  evanescent modes of first order included. Each but `t` may be NULL. At rest before t = 0.
+ *  MPS_ERROR_ARGUMENT: `count` below 0, a time that is not finite. */
 MPS_API MPS_NODISCARD mps_status mps_waves_get_piston(const mps_waves *waves, int64_t count,
                                                       const double *t, double *displacement,
                                                       double *velocity, double *acceleration,
@@ -217,23 +217,23 @@ static inline mps_absorber_def mps_absorber_defaults(void) {
 }
 
 /** Creates the controller of one piston, at rest. MPS_ERROR_ARGUMENT names a member of `def` that
- * is out of range; `depth` and `gravity` must be those of `waves`. MPS_ERROR_MEMORY. */
+ *  is out of range; `depth` and `gravity` must be those of `waves`. MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_absorber_create(mps_context *context,
                                                      const mps_absorber_def *def,
                                                      mps_absorber **out);
 /** Destroys and nulls; accepts NULL. */
 MPS_API void mps_absorber_destroy(mps_absorber **absorber);
 /** One step from t to t + dt (s; dt > 0): takes the `level` (m above the water at rest) at the face
- * at time t, NaN where there is none (no correction then), and gives `displacement` (m) and
- * `velocity` (m/s) at t + dt, into the water, the mean velocity between leading from the last
- * displacement to this one. MPS_ERROR_ARGUMENT: a time that is not finite, `dt` not > 0, a level
- * that is infinite, NULL. On an error nothing has changed. */
+ *  at time t, NaN where there is none (no correction then), and gives `displacement` (m) and
+ *  `velocity` (m/s) at t + dt, into the water, the mean velocity between leading from the last
+ *  displacement to this one. MPS_ERROR_ARGUMENT: a time that is not finite, `dt` not > 0, a level
+ *  that is infinite, NULL. On an error nothing has changed. */
 MPS_API MPS_NODISCARD mps_status mps_absorber_advance(mps_absorber *absorber, double t, double dt,
                                                       double level, double *displacement,
                                                       double *velocity);
 /** Reflection coefficient (0 to 1) of the piston by linear theory for waves of `period` (s, > 0)
- * that come to it, without limits of stroke and acceleration and without the time between level and
- *  motion. MPS_ERROR_ARGUMENT as mps_waves_find_number. */
+ *  that come to it, without limits of stroke and acceleration and without the time between level
+ *  and motion. MPS_ERROR_ARGUMENT as mps_waves_find_number. */
 MPS_API MPS_NODISCARD mps_status mps_absorber_get_reflection(const mps_absorber *absorber,
                                                              double period, double *reflection);
 
@@ -253,11 +253,11 @@ static inline mps_status mps_absorber_get_report(const mps_absorber *absorber,
 
 #define MPS_ABSORBER_MEMORY 5
 /** The state as MPS_ABSORBER_MEMORY numbers, to keep with a checkpoint. MPS_ERROR_ARGUMENT: NULL.
- */
+ *  */
 MPS_API MPS_NODISCARD mps_status mps_absorber_get_memory(const mps_absorber *absorber,
                                                          double *values);
 /** Restores it: the run continues bit for bit. MPS_ERROR_FORMAT: a number that is not finite, or
- * that is beyond the limits of this absorber; MPS_ERROR_ARGUMENT: NULL. */
+ *  that is beyond the limits of this absorber; MPS_ERROR_ARGUMENT: NULL. */
 MPS_API MPS_NODISCARD mps_status mps_absorber_set_memory(mps_absorber *absorber,
                                                          const double *values);
 
@@ -300,12 +300,11 @@ typedef struct mps_separation {
 } mps_separation;
 
 /** Incident and reflected waves by least squares over the gauges at each frequency, multiples of
- * 1/(to
- *  - from): Mansard and Funke (1980). Of at most `capacity` (>= 0) frequencies in the band
- * `frequency` (Hz), `incident` and `reflected` amplitudes (m; 0 where the gauges do not resolve it)
- * are written, each may be NULL; `count` (may be NULL) receives their number, `out` the sums.
- * MPS_ERROR_ARGUMENT: a member of `def` out of range, gauges that coincide, a band without a
- * frequency, `capacity` below 0; MPS_ERROR_MEMORY. */
+ *  1/(to - from): Mansard and Funke (1980). Of at most `capacity` (>= 0) frequencies in the band
+ *  `frequency` (Hz), `incident` and `reflected` amplitudes (m; 0 where the gauges do not resolve
+ *  it) are written, each may be NULL; `count` (may be NULL) receives their number, `out` the sums.
+ *  MPS_ERROR_ARGUMENT: a member of `def` out of range, gauges that coincide, a band without a
+ *  frequency, `capacity` below 0; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_separation_find_sized(
     mps_context *context, const mps_separation_def *def, int64_t capacity, int64_t *count,
     double *frequency, double *incident, double *reflected, mps_separation *out, size_t size);

@@ -2,6 +2,7 @@
 
 import difflib
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -174,8 +175,11 @@ class Call:
                 return 1
             if blocks:
                 block = _block.Block(values[blocks[0]])
-                answer = function(block)
-                block._end()
+                try:
+                    answer = function(block)
+                    block._write()
+                finally:
+                    block._end()
             else:
                 answer = function(*[self.wrap(value) for value in values])
             if kind.result.kind == "void":
@@ -230,7 +234,7 @@ class Call:
 
     def measure(self, owner, name, kind, value):
         """Notes how long an array is that C reads or writes."""
-        plain = not isinstance(value, (ffi.CData, str, bytes, dict)) and not hasattr(type(value), "pointer")
+        plain = not isinstance(value, (ffi.CData, str, bytes, Mapping, Result)) and not hasattr(type(value), "pointer")
         if kind.kind == "pointer" and plain and hasattr(value, "__len__"):
             self._arrays.append((owner, name, numpy.size(value) if kind.item.kind == "primitive"
                                  else len(value)))
@@ -250,8 +254,12 @@ class Call:
             for k, item in enumerate(value):
                 getattr(made, name)[k] = self.to_c(item, kind.item, True)
         elif kind.kind == "array":
-            self.fits(name, kind, value)
-            getattr(made, name)[0:len(value)] = [float(x) for x in value]
+            try:
+                numbers = [float(x) for x in value]
+            except (TypeError, ValueError) as error:
+                raise type(error)(f"{name!r} is {value!r}: up to {kind.length} numbers are wanted") from error
+            self.fits(name, kind, numbers)
+            getattr(made, name)[0:len(numbers)] = numbers
         else:
             try:
                 setattr(made, name, self.to_c(value, kind, True))
@@ -266,9 +274,8 @@ class Call:
     def to_c(self, value, kind, constant):
         if value is None:
             return ffi.NULL
-        if getattr(value, "pointer", None) is not None:
-            self.alive.append(value)
-            return value.pointer
+        if hasattr(type(value), "pointer"):
+            return self.object(value, kind)
         if kind.kind == "function" and not isinstance(value, ffi.CData):
             return self.callback(kind, value)
         if kind.kind == "pointer" and kind.item.cname == "char":
@@ -283,8 +290,8 @@ class Call:
             self.alive.append(made)
             return made
         if kind.kind == "pointer" and kind.item.kind == "struct":
-            if isinstance(value, dict):
-                return self.struct(kind.item, value)
+            if isinstance(value, (Mapping, Result)):
+                return self.struct(kind.item, vars(value) if isinstance(value, Result) else value)
             if isinstance(value, (list, tuple)) and kind.item.fields:
                 return self.structs(kind.item, value)
             if not isinstance(value, ffi.CData):
@@ -293,6 +300,16 @@ class Call:
         if kind.kind == "pointer" and not isinstance(value, ffi.CData):
             return self.array(value, kind.item, constant)
         return value
+
+    def object(self, value, kind):
+        """The pointer of an object of the library, which is kept alive."""
+        if value.pointer is None:
+            raise ValueError("it is closed")
+        wanted = class_name(kind.item.cname) if _is_object(kind) else "number or array"
+        if ffi.typeof(value.pointer) is not kind and kind.cname != "void *":
+            raise TypeError(f"a {class_name(value.kind)} is no {wanted}")
+        self.alive.append(value)
+        return value.pointer
 
     def structs(self, kind, rows):
         """An array of structs from a list of dictionaries."""

@@ -49,6 +49,10 @@ class Object:
     def __exit__(self, *_):
         self.close()
 
+    def __reduce_ex__(self, _protocol):
+        raise TypeError(f"a {class_name(self.kind)} is neither copied nor pickled: a checkpoint (save, restore) keeps the state of "
+                        "a solver, and numpy.array(set[name]) a field")
+
     def __repr__(self):
         return _show.text(self)
 
@@ -141,11 +145,11 @@ class Context(Object):
         raised = []
         members = {**members, "cancel": members.get("cancel") or _go_on}
         state, made, text = Call(raised), ffi.new("mps_context *[1]"), ffi.new("char[512]")
-        definition = state.struct(ffi.typeof("mps_context_def"), members)
+        definition = state.struct(ffi.typeof("mps_context_def"), members, "Context() has no keyword")
         status = library.mps_context_create(definition, made, text, 512)
         if status != 0:
             error = Error("mps_context_create", status)
-            error.args = (f"mps_context_create: {ffi.string(text).decode()}",)
+            error.args = (ffi.string(text).decode(),)
             raise error
         super().__init__(made[0], None, state.alive)
         self._raised = raised

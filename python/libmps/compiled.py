@@ -13,6 +13,11 @@
 Other callbacks may be numba.cfunc of the C type (mps/*.h); the package takes their address.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
 import numba
 from numba import carray, cfunc, njit, types
 from numba.core import cgutils
@@ -49,7 +54,7 @@ def _place(words, count, k):
     return _column(words[k], count)
 
 
-def law(update=None, *, history=0):
+def law(update: Callable[..., Any] | None = None, *, history: int = 0) -> Any:
     """Decorator: a constitutive law as a compiled callback for material_create_user.
 
     update(dt, gradient, stress, volume_ratio, history) is called with a block of n particles: dt in s; `gradient`,

@@ -13,12 +13,24 @@ that field, else by its `volume_ratio`, else with the set's spacing. A set in 3D
 Functions return the axes, to which anything of matplotlib may be added; they neither show nor save.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
 import matplotlib.pyplot as pyplot
 import numpy
 from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.collections import PolyCollection
 
 from . import _show
+
+if TYPE_CHECKING:  # of the stubs: what the package makes of the headers has no names to import
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
+
+    from . import Body, Dynamics, Fluid, Mpm, Particles
 
 AXES = "xyz"
 
@@ -101,8 +113,10 @@ def _draw_bodies(ax, bodies, axes, plane, box):
             ax.contour(x, y, distance, [0], colors="black", linewidths=1, zorder=4)
 
 
-def particles(particles, field=None, *, bodies=(), plane=None, limits=None, label=None, size=1.0,
-              cmap="viridis", ax=None):
+def particles(particles: Particles, field: str | tuple[str, int] | ArrayLike | None = None, *,
+              bodies: Iterable[Body] = (), plane: tuple[str, float] | None = None,
+              limits: Sequence[float] | None = None, label: str | None = None, size: float = 1.0,
+              cmap: Any = "viridis", ax: Axes | None = None) -> Axes:
     """Draws the particles as deformed squares, coloured by `field`, and the outlines of `bodies`.
 
     field   name of a field (a vector is drawn by its length), (name, component), an array of one value a particle,
@@ -149,8 +163,9 @@ def particles(particles, field=None, *, bodies=(), plane=None, limits=None, labe
     return ax
 
 
-def curve(x, y, *, x_label="displacement (m)", y_label="force (N)", label=None, theory=None, theory_label="theory",
-          ax=None):
+def curve(x: ArrayLike, y: ArrayLike, *, x_label: str = "displacement (m)", y_label: str = "force (N)",
+          label: str | None = None, theory: ArrayLike | None = None, theory_label: str = "theory",
+          ax: Axes | None = None) -> Axes:
     """Draws a curve, such as force over displacement. `theory` is a number, drawn as a level line, or an array as
     long as x. Values that are not finite leave a gap. Returns the axes; ValueError: x, y or `theory` of different
     lengths."""
@@ -173,7 +188,9 @@ def curve(x, y, *, x_label="displacement (m)", y_label="force (N)", label=None, 
     return ax
 
 
-def animation(path, solver, t_end, frames, draw, *, fps=20, dpi=100, size=(6.4, 4.8)):
+def animation(path: str | PathLike[str], solver: Mpm | Fluid | Dynamics, t_end: float, frames: int,
+              draw: Callable[[Axes], Any], *, fps: float = 20, dpi: float = 100,
+              size: tuple[float, float] = (6.4, 4.8)) -> None:
     """Runs `solver` to t_end (s) and writes `frames` pictures of equal steps in time to `path`, a .gif (by Pillow) or
     .mp4 (by ffmpeg); the first shows the present state. `draw(ax)` draws each into the axes that it is given; what it
     raises ends the run. ValueError: another ending, or `frames` below 2."""

@@ -1,7 +1,7 @@
 /* coupling.c - the coupling as an object: definition, guesses, the next values to try, memory.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "coupling_private.h"
-#include "core/base/digits.h"
+#include "core/base/members.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,11 +26,7 @@ mps_status mps_coupling_def_init(mps_coupling_def *def, size_t size) {
 }
 
 static mps_status check_def(mps_context *context, const mps_coupling_def *d) {
-  const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
-  } checks[] = {
+  const mpsi_member checks[] = {
       {"method", "0, 1 or 2", d->method,
        d->method >= 0 && d->method <= MPS_COUPLING_METHOD_CONSTANT},
       {"size", "1 to 2^31", (double)d->size, d->size >= 1 && d->size <= INT64_C(1) << 31},
@@ -43,12 +39,7 @@ static mps_status check_def(mps_context *context, const mps_coupling_def *d) {
       {"columns", "1 to 64", d->columns, d->columns >= 1 && d->columns <= MOST_COLUMNS},
       {"order", "0, 1 or 2", d->order, d->order >= 0 && d->order < MPSI_COUPLING_PAST},
   };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good)
-      return mpsi_fail(context, "mps_coupling_create", MPS_ERROR_ARGUMENT,
-                       "%s of the coupling is %s, allowed is %s", checks[k].name,
-                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
-  return MPS_OK;
+  return MPSI_CHECK_MEMBERS(context, "mps_coupling_create", "the coupling", checks);
 }
 
 static bool allocate(mps_coupling *c) {

@@ -9,9 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- a share as a message: head, runs of rows, then for each field its head and columns ------ */
+/* ---- the message of a rank: head, runs of rows, then the head and columns of each field -------
+ */
 
-/* Fields to send: those of the list, id and position; NULL: all. */
+/* Fields to send: id, position and those of the list; with `names` NULL all. */
 typedef struct choice {
   int32_t count;
   const char *const *names;
@@ -75,7 +76,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
 
 /* ---- rank 0 ---------------------------------------------------------------------------------- */
 
-/* Offsets of the columns of each field in a message. */
+/* The parts of one rank's message. */
 typedef struct share {
   mpsi_rows_head h;
   const mpsi_row_run *run;
@@ -83,14 +84,14 @@ typedef struct share {
   const char *field; /* the next field's head */
 } share;
 
-/* Rows of a rank, in the order of the whole. */
+/* A run of rows of one rank; the whole set consists of these, sorted. */
 typedef struct piece {
   mpsi_row_run run;
-  int32_t rank, number; /* of a piece in the order of ranks */
-  int64_t first;        /* its first row there */
+  int32_t rank, number; /* of the piece, counted rank by rank */
+  int64_t first;        /* its first row among those of the rank */
 } piece;
 
-/* Data of rank 0 to assemble the whole. */
+/* Rank 0: the messages of all ranks, and the set made from them. */
 typedef struct assembly {
   mps_domain *domain;
   const char *function;
@@ -155,7 +156,7 @@ static bool find_owners(assembly *a) {
   return true;
 }
 
-/* Columns of a piece to the rows from `row` on; returns how many. */
+/* Copies the rows of a piece that this rank owns to `to`, from `row` on; returns their number. */
 static int64_t put_piece(const assembly *a, const piece *p, mpsi_value *to, int64_t row) {
   const share *s = &a->share[p->rank];
   const char *data = s->field + sizeof(mpsi_field_head);
@@ -228,7 +229,7 @@ static mps_status assemble(assembly *a) {
   return status;
 }
 
-/* Makes the set, or fills it again. */
+/* Creates the set where *whole is NULL; else replaces its contents. */
 static mps_status put(assembly *a, mps_particles **whole) {
   mps_particles_def def = mps_particles_defaults();
   mps_particles *set = *whole;
@@ -266,7 +267,7 @@ static mps_status make_whole(mps_domain *domain, const char *function, const mps
   return status;
 }
 
-/* Without other ranks: a message to itself. */
+/* Every rank, the first too, sends its particles to rank 0. */
 static mps_status send_to_first(mps_domain *domain, const char *function, char *data, int64_t bytes,
                                 mpsi_mailbox *box) {
   const mps_domain_message message = {.rank = 0, .bytes = bytes, .data = data};

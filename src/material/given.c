@@ -1,6 +1,13 @@
 /* given.c - the constants of a law, as named numbers. SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
+#include <stddef.h>
+
+enum { CONSTANTS = 37 }; /* doubles of mpsi_law before its layers, all of them listed below */
+_Static_assert(offsetof(mpsi_law, layer_shear) - offsetof(mpsi_law, shear) ==
+                   CONSTANTS * sizeof(double),
+               "a constant that is new in mpsi_law is to be listed in mpsi_material_give");
+
 /* For functions of the caller: whether there is one; addresses differ between processes. */
 void mpsi_material_give(mpsi_given *list, const mps_material *material) {
   mpsi_give(list, "having a material", material != NULL);
@@ -43,6 +50,7 @@ void mpsi_material_give(mpsi_given *list, const mps_material *material) {
                    {"G/K of the material", law->shear_ratio},
                    {"the Lode option of the material", law->lode},
                    {"the least pressure of the material", law->least_pressure},
+                   {"the logarithm of the material's least pressure", law->log_least},
                    {"the material's having factors by field", material->by_field},
                    {"pc of the material", law->first_pc},
                    {"the void ratio of the material", law->first_void},
@@ -52,6 +60,7 @@ void mpsi_material_give(mpsi_given *list, const mps_material *material) {
                    {"the material's having no tension", law->no_tension},
                    {"turning the stress of the material", law->turns_stress},
                    {"the material's need of a deformation", law->needs_deformation},
+                   {"the material's having grains that part", law->frictional},
                    {"the wave modulus of the material", material->wave_modulus},
                    {"the material's number of histories", material->history_count},
                    {"stating the moduli of the material", law->has_moduli}};
@@ -60,6 +69,10 @@ void mpsi_material_give(mpsi_given *list, const mps_material *material) {
                   (size_t)material->owned_count * sizeof *material->owned_constants);
   for (size_t k = 0; k < sizeof constants / sizeof *constants; k++)
     mpsi_give(list, constants[k].name, constants[k].value);
+  mpsi_give_bytes(list, "a hash of the shear moduli of the material's layers", law->layer_shear,
+                  sizeof law->layer_shear);
+  mpsi_give_bytes(list, "a hash of the strengths of the material's layers", law->layer_strength,
+                  sizeof law->layer_strength);
   mpsi_give_text(list, "a hash of the material's name", material->name);
   uint64_t hash = MPSI_HASH;
   for (int32_t h = 0; h < material->history_count; h++) {

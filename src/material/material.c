@@ -136,34 +136,6 @@ bool mpsi_material_may_refuse(const mps_material *material) {
 
 double mpsi_material_viscosity(const mps_material *material) { return material->law.viscosity; }
 
-void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *user) {
-  const mpsi_law *l = &m->law;
-  const double constants[] = {
-      l->shear,         l->bulk,      l->lambda,       l->per_bulk,    l->yield,
-      l->hardening,     l->alpha,     l->kappa,        l->alpha_flow,  l->cone,
-      l->tension,       l->q_tension, l->sin_phi,      l->sin_psi,     l->c_cos_phi,
-      l->apex,          l->cut,       l->residual,     l->per_strain,  l->rate_factor,
-      l->per_rate,      l->tan_phi,   l->tan_phi_last, l->tan_psi,     l->cohesion,
-      l->cohesion_last, l->given_cut, l->slope,        l->compression, l->swelling,
-      l->shear_ratio,   l->lode,      l->first_pc,     l->first_void,  l->least_pressure,
-      l->log_least,     l->viscosity};
-  const double settings[] = {
-      l->tait,         l->no_tension,    l->turns_stress, l->needs_deformation, l->has_moduli,
-      m->wave_modulus, m->history_count, l->softens,      l->softens_linearly,  l->moduli != NULL, m->by_field};
-  _Static_assert(sizeof constants == offsetof(mpsi_law, layer_shear) - offsetof(mpsi_law, shear),
-                 "every constant of a law stands in the list");
-  add(user, (double)m->type->kind);
-  for (size_t k = 0; k < sizeof constants / sizeof *constants; k++) add(user, constants[k]);
-  for (size_t k = 0; k < sizeof settings / sizeof *settings; k++) add(user, settings[k]);
-  if (l->frictional) add(user, 1.0); /* files of laws without it stay valid */
-  for (int i = 0; i < MPSI_LAYERS && l->layer_shear[0] > 0.0; i++) { /* likewise */
-    add(user, l->layer_shear[i]);
-    add(user, l->layer_strength[i]);
-  }
-  for (int32_t c = 0; c < m->history_count; c++) add(user, m->history_initial[c]);
-  for (int32_t k = 0; k < m->owned_count; k++) add(user, m->owned_constants[k]);
-}
-
 void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
                          int64_t end) {
   const bool starts = mpsi_material_has_start(material) || material->by_field;

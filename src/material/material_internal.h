@@ -106,11 +106,6 @@ mpsi_kept mpsi_material_kept(const mps_material *material);
 int32_t mpsi_material_dissipated(void);
 /* Pa s; 0 for all but fluids and users' laws. */
 double mpsi_material_viscosity(const mps_material *material);
-/* Calls `add` with every constant of the law, its kind first, in an order of its kind: two
- * materials are alike if these and the names of material and history columns are. Addresses, as of
- * a user's function, are not among them. */
-typedef void (*mpsi_constant_fn)(void *user, double value);
-void mpsi_material_constants(const mps_material *material, mpsi_constant_fn add, void *user);
 /* Fills the history columns of new particles [begin, end). */
 void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
                          int64_t end);

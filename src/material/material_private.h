@@ -20,7 +20,7 @@ typedef enum mpsi_geometry_kind {
 /* The constants of a law, in the form of its loop. */
 typedef struct mpsi_law {
   bool has_moduli; /* shear and bulk are those of an elastic solid at zero strain */
-  /* from here to `layer_strength` only doubles: mpsi_material_constants has each of them */
+  /* from here to `layer_strength` only doubles: mpsi_material_give has each of them */
   double shear, bulk, lambda; /* Pa */
   double per_bulk;            /* 1/K */
   double yield, hardening;    /* von Mises, Pa */

@@ -96,13 +96,13 @@ mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, d
 
 bool mpsi_signal_may_fail(const mps_signal *signal) { return signal && signal->fn; }
 
-/* Continues with a hash (core/hash.h) over what the signal is made of; of a function of the caller,
- * over that it is one. */
+/* Continues `hash` (core/base/hash.h) over the constants of a signal and samples of its motion. A
+ * function of the caller adds its kind alone: its address differs between processes. */
 static uint64_t hash_of(const mps_signal *signal, uint64_t hash) {
   const double kind = !signal ? 0.0 : signal->fn ? 1.0 : 2.0;
   hash = mpsi_hash(hash, &kind, sizeof kind);
   if (kind < 2.0) return hash;
-  for (double t = 0.1; t < 20.0; t *= 5.0) { /* the kinds differ in their motion */
+  for (double t = 0.1; t < 20.0; t *= 5.0) { /* they distinguish the kinds */
     const mpsi_signal_motion m = signal->at(signal, t);
     const double sample[3] = {m.u, m.v, m.a};
     hash = mpsi_hash(hash, sample, sizeof sample);
@@ -117,7 +117,7 @@ void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *sign
   mpsi_give(list, name, mpsi_hash_short(hash_of(signal, MPSI_HASH)));
 }
 
-/* For the caller: NaN is the value of a signal that has none. */
+/* For the public queries, which return no status: NaN where the signal fails or is not finite. */
 static mpsi_signal_motion motion(const mps_signal *signal, double t) {
   const mpsi_signal_use use = {.owner = "caller", .number = -1, .component = -1};
   mpsi_signal_motion at = {NAN, NAN, NAN};

@@ -18,6 +18,7 @@
  * C(w) and c0(w) the transfers of a piston (dispersion.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
+#include "core/base/members.h"
 #include "dispersion.h"
 #include "waves_private.h"
 
@@ -46,35 +47,25 @@ mps_status mps_absorber_def_init(mps_absorber_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_absorber_def, def, size, &defaults);
 }
 
-static bool above(double value) { return value > 0.0 && value <= 1e12; }
-static bool unset_or_above(double value) { return isnan(value) || above(value); }
 static bool unset_or_least(double value) { return isnan(value) || (value >= 0.0 && value <= 1e12); }
 
 static mps_status check_def(mps_context *context, const mps_absorber_def *d) {
   const mps_waves *w = d->waves;
-  const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
-  } checks[] = {
+  const mpsi_member checks[] = {
       {"form", "0 or 1", d->form, d->form == 0 || d->form == 1},
-      {"depth", "in (0, 1e12] m", d->depth, above(d->depth)},
+      {"depth", "in (0, 1e12] m", d->depth, mpsi_waves_positive(d->depth)},
       {"depth", "that of waves", d->depth, !w || d->depth == w->def.depth},
-      {"gravity", "in (0, 1e12] m/s2", d->gravity, above(d->gravity)},
+      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
       {"gravity", "that of waves", d->gravity, !w || d->gravity == w->def.gravity},
       {"period", "in (0, 1e12] s, as there are no waves", d->period,
-       above(d->period) || (w && isnan(d->period))},
+       mpsi_waves_positive(d->period) || (w && isnan(d->period))},
       {"high_pass", "in 0 to 1e12 rad/s", d->high_pass, unset_or_least(d->high_pass)},
       {"leak", "in 0 to 1e12 1/s", d->leak, unset_or_least(d->leak)},
-      {"stroke", "in (0, 1e12] m", d->stroke, unset_or_above(d->stroke)},
-      {"acceleration", "in (0, 1e12] m/s2", d->acceleration, unset_or_above(d->acceleration)},
+      {"stroke", "in (0, 1e12] m", d->stroke, mpsi_waves_positive_or_unset(d->stroke)},
+      {"acceleration", "in (0, 1e12] m/s2", d->acceleration,
+       mpsi_waves_positive_or_unset(d->acceleration)},
   };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good)
-      return mpsi_fail(context, "mps_absorber_create", MPS_ERROR_ARGUMENT,
-                       "%s of the absorber is %s, must be %s", checks[k].name,
-                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
-  return MPS_OK;
+  return MPSI_CHECK_MEMBERS(context, "mps_absorber_create", "the absorber", checks);
 }
 
 /* The rates that are not given, and the gain. */

@@ -10,6 +10,7 @@
  *
  * L and s = Hm0/L of deep water for T(m-1,0). SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
+#include "core/base/members.h"
 #include "waves_private.h"
 
 #include <mps/wave_loads.h>
@@ -36,7 +37,6 @@ mps_status mps_eurotop_def_init(mps_eurotop_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_eurotop_def, def, size, &defaults);
 }
 
-static bool above(double value) { return value > 0.0 && value <= 1e12; }
 static bool factor(double value) { return value > 0.0 && value <= 1.0; }
 
 static double breaker(const mps_eurotop_def *d) {
@@ -46,19 +46,15 @@ static double breaker(const mps_eurotop_def *d) {
 
 static mps_status check_def(mps_context *context, const mps_eurotop_def *d) {
   const bool slope = d->wall == MPS_EUROTOP_WALL_SLOPE;
-  const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
-  } checks[] = {
+  const mpsi_member checks[] = {
       {"wall", "0 or 1", d->wall, d->wall == 0 || d->wall == 1},
       {"foreshore", "0 or 1", d->foreshore, d->foreshore == 0 || d->foreshore == 1},
       {"design", "0 or 1", d->design, d->design == 0 || d->design == 1},
-      {"height", "in (0, 1e12] m", d->height, above(d->height)},
-      {"period", "in (0, 1e12] s", d->period, above(d->period)},
-      {"depth", "in (0, 1e12] m", d->depth, above(d->depth)},
-      {"crest", "in (0, 1e12] m", d->crest, above(d->crest)},
-      {"gravity", "in (0, 1e12] m/s2", d->gravity, above(d->gravity)},
+      {"height", "in (0, 1e12] m", d->height, mpsi_waves_positive(d->height)},
+      {"period", "in (0, 1e12] s", d->period, mpsi_waves_positive(d->period)},
+      {"depth", "in (0, 1e12] m", d->depth, mpsi_waves_positive(d->depth)},
+      {"crest", "in (0, 1e12] m", d->crest, mpsi_waves_positive(d->crest)},
+      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
       {"cotangent", "in 2 to 8", d->cotangent,
        !slope || (d->cotangent >= 2.0 && d->cotangent <= 8.0)},
       {"berm", "in (0, 1]", d->berm, !slope || factor(d->berm)},
@@ -67,11 +63,9 @@ static mps_status check_def(mps_context *context, const mps_eurotop_def *d) {
       {"crown", "in (0, 1]", d->crown, !slope || factor(d->crown)},
       {"promenade", "in (0, 1]", d->promenade, !slope || factor(d->promenade)},
   };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good)
-      return mpsi_fail(context, "mps_eurotop_evaluate_sized", MPS_ERROR_ARGUMENT,
-                       "%s of the wall is %s, must be %s", checks[k].name,
-                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
+  const mps_status status =
+      MPSI_CHECK_MEMBERS(context, "mps_eurotop_evaluate_sized", "the wall", checks);
+  if (status != MPS_OK) return status;
   if (d->crest > CREST_MOST * d->height)
     return mpsi_fail(context, "mps_eurotop_evaluate_sized", MPS_ERROR_ARGUMENT,
                      "crest of the wall is %s m, must be at most %g m, 3.5 times height",

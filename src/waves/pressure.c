@@ -11,31 +11,13 @@
  * d11 = .93 (B/L - .12) + .36 ((h - d)/h - .6) and d22 = -.36 (B/L - .12) + .93 ((h - d)/h - .6),
  * d1 = 20 or 15 d11 and d2 = 4.9 or 3 d22 where these are negative or positive, aI1 = cos d2/cosh
  * d1 for d2 <= 0, else 1/(cosh d1 (cosh d2)^1/2). SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/digits.h"
+#include "core/base/members.h"
 #include "dispersion.h"
 #include "waves_private.h"
 
 #include <mps/wave_loads.h>
 
 #define HALF_PI (0.5 * MPSI_WAVES_PI)
-
-typedef struct check {
-  const char *name, *allowed;
-  double value;
-  bool good;
-} check;
-
-static mps_status check_all(mps_context *context, const char *function, const char *owner,
-                            int count, const check *checks) {
-  for (int k = 0; k < count; k++)
-    if (!checks[k].good)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s of %s is %s, must be %s",
-                       checks[k].name, owner,
-                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
-  return MPS_OK;
-}
-
-static bool above(double value) { return value > 0.0 && value <= 1e12; }
 
 static double wave_number(double period, double depth, double gravity) {
   const double omega = 2.0 * MPSI_WAVES_PI / period;
@@ -58,12 +40,12 @@ mps_status mps_sainflou_def_init(mps_sainflou_def *def, size_t size) {
 }
 
 static mps_status check_sainflou(mps_context *context, const mps_sainflou_def *d) {
-  const check checks[] = {
-      {"height", "in (0, 1e12] m", d->height, above(d->height)},
-      {"density", "in (0, 1e12] kg/m3", d->density, above(d->density)},
+  const mpsi_member checks[] = {
+      {"height", "in (0, 1e12] m", d->height, mpsi_waves_positive(d->height)},
+      {"density", "in (0, 1e12] kg/m3", d->density, mpsi_waves_positive(d->density)},
   };
   const char *function = "mps_sainflou_evaluate_sized";
-  mps_status status = check_all(context, function, "the waves", 2, checks);
+  mps_status status = MPSI_CHECK_MEMBERS(context, function, "the waves", checks);
   if (status == MPS_OK)
     status = mpsi_waves_check_range(context, function, d->period, d->depth, d->gravity);
   if (status != MPS_OK) return status;
@@ -136,16 +118,16 @@ static mps_status check_goda(mps_context *context, const char *function, mps_god
   if (isnan(d->seaward)) d->seaward = d->depth;
   if (isnan(d->berm_depth)) d->berm_depth = d->depth;
   if (isnan(d->base)) d->base = d->depth;
-  const check checks[] = {
+  const mpsi_member checks[] = {
       {"impulsive", "0 or 1", d->impulsive, d->impulsive == 0 || d->impulsive == 1},
-      {"height", "in (0, 1e12] m", d->height, above(d->height)},
+      {"height", "in (0, 1e12] m", d->height, mpsi_waves_positive(d->height)},
       {"seaward", "depth or more, to 1e12 m", d->seaward,
        d->seaward >= d->depth && d->seaward <= 1e12},
       {"berm_depth", "above 0 and at most depth", d->berm_depth,
        d->berm_depth > 0.0 && d->berm_depth <= d->depth},
       {"base", "in berm_depth to depth", d->base, d->base >= d->berm_depth && d->base <= d->depth},
-      {"crest", "in (0, 1e12] m", d->crest, above(d->crest)},
-      {"width", "in (0, 1e12] m", d->width, above(d->width)},
+      {"crest", "in (0, 1e12] m", d->crest, mpsi_waves_positive(d->crest)},
+      {"width", "in (0, 1e12] m", d->width, mpsi_waves_positive(d->width)},
       {"berm_width", "in 0 to 1e12 m", d->berm_width,
        d->berm_width >= 0.0 && d->berm_width <= 1e12},
       {"angle", "in 0 to pi/2", d->angle, d->angle >= 0.0 && d->angle <= HALF_PI},
@@ -153,11 +135,10 @@ static mps_status check_goda(mps_context *context, const char *function, mps_god
        isnan(d->weight) || (d->weight > 0.0 && d->weight <= 1e15)},
       {"arm", "above 0 and at most width", d->arm,
        isnan(d->arm) || (d->arm > 0.0 && d->arm <= d->width)},
-      {"friction", "in (0, 1e12]", d->friction, above(d->friction)},
-      {"density", "in (0, 1e12] kg/m3", d->density, above(d->density)},
+      {"friction", "in (0, 1e12]", d->friction, mpsi_waves_positive(d->friction)},
+      {"density", "in (0, 1e12] kg/m3", d->density, mpsi_waves_positive(d->density)},
   };
-  status =
-      check_all(context, function, "the caisson", (int)(sizeof checks / sizeof *checks), checks);
+  status = MPSI_CHECK_MEMBERS(context, function, "the caisson", checks);
   if (status == MPS_OK && isnan(d->arm)) d->arm = 0.5 * d->width;
   return status;
 }

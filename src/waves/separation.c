@@ -6,7 +6,7 @@
  * with the least sum |e_p|^2. The normal matrix {P, S; S*, P}, S = sum exp(2 i k x_p), is singular
  * where all gauges lie half a wavelength apart: frequencies with 1 - |S|^2/P^2 below a bound are
  * left out. SPDX-License-Identifier: BSD-3-Clause */
-#include "core/base/digits.h"
+#include "core/base/members.h"
 #include "dispersion.h"
 #include "waves_private.h"
 
@@ -32,26 +32,17 @@ mps_status mps_separation_def_init(mps_separation_def *def, size_t size) {
 
 #define FUNCTION "mps_separation_find_sized"
 
-static bool above(double value) { return value > 0.0 && value <= 1e12; }
-
 static mps_status check_numbers(mps_context *context, const mps_separation_def *d) {
-  const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
-  } checks[] = {
+  const mpsi_member checks[] = {
       {"gauges", "2 to 16", d->gauges, d->gauges >= 2 && d->gauges <= GAUGES},
-      {"depth", "in (0, 1e12] m", d->depth, above(d->depth)},
-      {"gravity", "in (0, 1e12] m/s2", d->gravity, above(d->gravity)},
+      {"depth", "in (0, 1e12] m", d->depth, mpsi_waves_positive(d->depth)},
+      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
       {"samples", "8 or more", (double)d->samples, d->samples >= 8 && d->samples <= 1 << 28},
       {"lower", "above 0 and below upper", d->lower, d->lower > 0.0 && d->lower < d->upper},
       {"upper", "at most 1e12 Hz", d->upper, d->upper <= 1e12},
   };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good)
-      return mpsi_fail(context, FUNCTION, MPS_ERROR_ARGUMENT,
-                       "%s of the separation is %s, must be %s", checks[k].name,
-                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
+  const mps_status status = MPSI_CHECK_MEMBERS(context, FUNCTION, "the separation", checks);
+  if (status != MPS_OK) return status;
   if (!d->position || !d->times || !d->levels)
     return mpsi_fail(context, FUNCTION, MPS_ERROR_ARGUMENT, "%s is NULL",
                      !d->position ? "position"
@@ -223,6 +214,29 @@ static void add_up(const analysis *a, double incident, double reflected, double 
   out->bands = a->bands;
 }
 
+/* Rows of the caller, `capacity` values each; NULL: not wanted. */
+typedef struct rows {
+  int64_t capacity;
+  double *frequency, *incident, *reflected;
+} rows;
+
+/* Waves of all bands: amplitudes to `to`, sums to `out`. */
+static void separate_bands(analysis *a, const rows *to, mps_separation *out) {
+  double in = 0.0, back = 0.0, total = 0.0, residual = 0.0;
+  for (int64_t n = 0; n < a->bands; n++) {
+    const band b = separate(a, a->first + n);
+    out->unresolved += !b.resolved;
+    a->energy[n] = 0.5 * creal(b.incident * conj(b.incident));
+    in += a->energy[n], back += 0.5 * creal(b.reflected * conj(b.reflected));
+    if (b.resolved) total += b.total, residual += b.residual;
+    if (n >= to->capacity) continue;
+    if (to->frequency) to->frequency[n] = (double)(a->first + n) / (a->to - a->from);
+    if (to->incident) to->incident[n] = cabs(b.incident);
+    if (to->reflected) to->reflected[n] = cabs(b.reflected);
+  }
+  add_up(a, in, back, total, residual, out);
+}
+
 mps_status mps_separation_find_sized(mps_context *context, const mps_separation_def *user_def,
                                      int64_t capacity, int64_t *count, double *frequency,
                                      double *incident, double *reflected, mps_separation *out,
@@ -249,20 +263,8 @@ mps_status mps_separation_find_sized(mps_context *context, const mps_separation_
     return mpsi_fail_memory(context, __func__, (size_t)(a.count * def.gauges) * sizeof *a.level);
   }
   resample(&a);
-  double in = 0.0, back = 0.0, total = 0.0, residual = 0.0;
-  for (int64_t n = 0; n < a.bands; n++) {
-    const band b = separate(&a, a.first + n);
-    result.unresolved += !b.resolved;
-    a.energy[n] = 0.5 * creal(b.incident * conj(b.incident));
-    in += a.energy[n], back += 0.5 * creal(b.reflected * conj(b.reflected));
-    if (b.resolved) total += b.total, residual += b.residual;
-    if (n >= capacity) continue;
-    if (frequency) frequency[n] = (double)(a.first + n) / (a.to - a.from);
-    if (incident) incident[n] = cabs(b.incident);
-    if (reflected) reflected[n] = cabs(b.reflected);
-  }
+  separate_bands(&a, &(rows){capacity, frequency, incident, reflected}, &result);
   if (count) *count = a.bands;
-  add_up(&a, in, back, total, residual, &result);
   mpsi_free(context, a.level);
   mpsi_free(context, a.energy);
   return mpsi_out_write(context, __func__, out, size, &result, sizeof result);

@@ -1,6 +1,7 @@
 /* waves.c - the sea as an object: its definition, what is refused before it is made, its limits,
  * the signal of its piston. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
+#include "core/base/members.h"
 #include "core/context/retain.h"
 #include "dispersion.h"
 #include "signal/signal_internal.h"
@@ -36,50 +37,34 @@ mps_status mps_waves_def_init(mps_waves_def *def, size_t size) {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static bool above(double value) { return value > 0.0 && value <= 1e12; }
-static bool unset_or_above(double value) { return isnan(value) || above(value); }
-
-static mps_status refuse(mps_context *context, const char *name, double value,
-                         const char *allowed) {
-  return mpsi_fail(context, "mps_waves_create", MPS_ERROR_ARGUMENT,
-                   "%s of the waves is %s, must be %s", name,
-                   mpsi_outside(value, -INFINITY, INFINITY).text, allowed);
-}
-
 static mps_status check_numbers(mps_context *context, const mps_waves_def *d) {
   const int32_t kind = d->kind;
   const bool regular = kind == MPS_WAVES_KIND_REGULAR, record = kind == MPS_WAVES_KIND_RECORD;
   const bool table = kind == MPS_WAVES_KIND_SPECTRUM, focus = d->phases == MPS_WAVES_PHASES_FOCUSED;
-  const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
-  } checks[] = {
+  const mpsi_member checks[] = {
       {"kind", "0 to 4", kind, kind >= 0 && kind <= MPS_WAVES_KIND_RECORD},
       {"phases", "0, 1 or 2", d->phases, d->phases >= 0 && d->phases <= 2},
       {"phases", "RANDOM (0) with a regular wave or a record", d->phases,
        !(regular || record) || d->phases == 0},
       {"theory", "0, 1 or 2", d->theory, d->theory >= 0 && d->theory <= 2},
-      {"depth", "in (0, 1e12] m", d->depth, above(d->depth)},
-      {"gravity", "in (0, 1e12] m/s2", d->gravity, above(d->gravity)},
+      {"depth", "in (0, 1e12] m", d->depth, mpsi_waves_positive(d->depth)},
+      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
       {"height", "in (0, 1e12] m", d->height,
-       above(d->height) || record || focus || (table && isnan(d->height))},
+       mpsi_waves_positive(d->height) || record || focus || (table && isnan(d->height))},
       {"period", "in (0, 1e12] s", d->period,
-       above(d->period) || ((table || record) && isnan(d->period))},
+       mpsi_waves_positive(d->period) || ((table || record) && isnan(d->period))},
       {"gamma", "in 1 to 20", d->gamma, d->gamma >= 1.0 && d->gamma <= 20.0},
-      {"repeat", "in (0, 1e12] s", d->repeat, unset_or_above(d->repeat)},
+      {"repeat", "in (0, 1e12] s", d->repeat, mpsi_waves_positive_or_unset(d->repeat)},
       {"lower", "above 0 and below upper", d->lower, d->lower > 0.0 && d->lower < d->upper},
       {"upper", "at most 10", d->upper, d->upper <= 10.0},
-      {"crest", "in (0, 1e12] m", d->crest, !focus || above(d->crest)},
+      {"crest", "in (0, 1e12] m", d->crest, !focus || mpsi_waves_positive(d->crest)},
       {"position", "in 0 to 1e12 m", d->position, d->position >= 0.0 && d->position <= 1e12},
       {"time", "within 1e12 s", d->time, !focus || fabs(d->time) <= 1e12},
       {"ramp", "in 0 to 1e12 s", d->ramp, isnan(d->ramp) || (d->ramp >= 0.0 && d->ramp <= 1e12)},
-      {"stroke", "in (0, 1e12] m", d->stroke, unset_or_above(d->stroke)},
-      {"speed", "in (0, 1e12] m/s", d->speed, unset_or_above(d->speed)},
+      {"stroke", "in (0, 1e12] m", d->stroke, mpsi_waves_positive_or_unset(d->stroke)},
+      {"speed", "in (0, 1e12] m/s", d->speed, mpsi_waves_positive_or_unset(d->speed)},
   };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good) return refuse(context, checks[k].name, checks[k].value, checks[k].allowed);
-  return MPS_OK;
+  return MPSI_CHECK_MEMBERS(context, "mps_waves_create", "the waves", checks);
 }
 
 static mps_status check_repeat(mps_context *context, const mps_waves_def *d) {

@@ -59,10 +59,7 @@ static void run_half(void *user, team *t, int32_t rank) {
 }
 
 static void run_halves(cut_run *c, int32_t size) {
-  team t;
-  team_begin(&t, size);
-  team_run(&t, run_half, c);
-  team_end(&t);
+  team_compute(size, run_half, c);
   for (int32_t r = 0; r < size; r++)
     if (c->rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, c->rank[r].message);
 }

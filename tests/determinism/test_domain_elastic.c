@@ -356,10 +356,7 @@ static void load_scales(void *user, team *t, int32_t rank) {
 static int64_t heaviest(int32_t size) {
   scales s[8] = {{0}};
   int64_t most = 0;
-  team t;
-  team_begin(&t, size);
-  team_run(&t, load_scales, s);
-  team_end(&t);
+  team_compute(size, load_scales, s);
   for (int32_t r = 0; r < size; r++) {
     assert_true(s[r].most > 0);
     assert_int_equal(s[r].now, 0);

@@ -38,10 +38,11 @@ refused() {
   if "$programs/mps-consolidation" --out "$work/refused" "$@" 2>"$work/log"; then fail "$* is not refused"; fi
 }
 refused --M 1
-refused --case strip --scheme implicit
 refused --case mcc --young 1MPa
 refused --case mcc --kappa 0.3
 refused --case mcc --load 1e8
 run strip --cells 2
+within strip 0.03 0
+run strip --cells 2 --scheme implicit
 within strip 0.03 0
 exit 0

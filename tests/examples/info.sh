@@ -33,7 +33,7 @@ cp "$run/checkpoint.h5" "$work/flipped.h5"
 printf 'x' | dd of="$work/flipped.h5" bs=1 seek=30000 conv=notrunc 2>/dev/null
 head -c 3000 "$run/column.vtkhdf" >"$work/cut.vtkhdf"
 : >"$work/empty"
-for file in cut.h5 flipped.h5 cut.vtkhdf empty run run/summary.json none; do
+for file in cut.h5 flipped.h5 cut.vtkhdf empty run run/summary.json run/column.xdmf none; do
   code=0
   "$1/mps-info" "$work/$file" "$run/checkpoint.h5" >"$work/text" 2>"$work/error" || code=$?
   [ $code -eq 1 ] || fail "exit code $code for $file"

@@ -51,6 +51,29 @@ in_range "$work/blunt/summary.json" particles_inside 0 0
 "$1/mps-penetrometer" $blunt --threads 3 --out "$work/blunt3" >/dev/null
 cmp "$work/blunt/force.csv" "$work/blunt3/force.csv" || fail "three threads give another force.csv"
 
+# In clay far from the surface, from a hole that the cone fills: more than the cavity of a smooth cone, 4/3 (1 + ln Ir),
+# and less than that of a rough one under a tip that is a cell wider, (1 + 1/4)^2 (4/3 (1 + ln Ir) + sqrt(3)); stiffer clay
+# bears more.
+deep="--axisymmetric --no-space --h 0.025 --corner 0 --rate 1 --threads 1"
+for ir in 50 200; do
+  "$1/mps-penetrometer" $deep --soil 8x8x6 --start 0.25 --depth 0.35 --sides stress --law tresca --ir $ir --out "$work/$ir" >"$work/log"
+  has "$work/log" "net cone factor N_kt"
+  in_range "$work/$ir/summary.json" rigidity_index "$ir" "$ir.01"
+  in_range "$work/$ir/summary.json" n_kt "$(awk "BEGIN { print 4 / 3 * (1 + log($ir)) }")" \
+    "$(awk "BEGIN { print 1.5625 * (4 / 3 * (1 + log($ir)) + sqrt(3)) }")"
+  in_range "$work/$ir/summary.json" particles_inside 0 0
+done
+in_range "$work/200/summary.json" n_kt "$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p' "$work/50/summary.json")" 100
+
+# Cam-Clay with water in its pores: su of the law, (M/2) p (pc/(2 p))^Lambda after K0 = 0.748 for 100 kPa.
+"$1/mps-penetrometer" $deep --law mcc --surcharge 100kPa --soil 5x5x4 --start 0.2 --depth 0.26 --out "$work/mcc" >"$work/log"
+has "$work/log" "net cone factor N_kt"
+su=$(awk 'BEGIN { K = 0.74797; M = 0.92; p = 1e5 * (1 + 2 * K) / 3; q = 1e5 * (1 - K); pc = p + q * q / (M * M * p)
+  print M / 2 * p * exp((1 - 0.044 / 0.205) * log(pc / (2 * p))) }')
+in_range "$work/mcc/summary.json" su "$(awk "BEGIN { print $su * 0.999 }")" "$(awk "BEGIN { print $su * 1.001 }")"
+in_range "$work/mcc/summary.json" n_kt 6.5 20
+in_range "$work/mcc/summary.json" particles_inside 0 0
+
 # A mesh: an octahedron, tip down, by its STL file. Its widest section is 0.637 of the circle that N is
 # reckoned with: 5.14 at least, and the deep cavity's 9.2 at most with corners a cell further out.
 awk -v a=50 -v b=-50 'function facet(p, q, r) { printf "facet normal 0 0 0\nouter loop\nvertex %s\nvertex %s\nvertex %s\nendloop\nendfacet\n", p, q, r }

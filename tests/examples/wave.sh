@@ -33,6 +33,15 @@ has "$work/layers/summary.json" '"energy_drift": null'
 "$wave" --radius 1 --height 20 --wave P --courant 0.2 --duration 1.5 --out "$work/p" >/dev/null
 in_range "$work/p/summary.json" energy_drift 0 0.01
 
+# Frames: as many as the option says, the first and the last of the run among them; one alone is the last.
+for frames in 1 2 3; do
+  "$wave" --width 4 --height 10 --duration 0.2 --frames $frames --out "$work/frames" >/dev/null
+  "$1/mps-info" "$work/frames/wave.vtkhdf" | tr -s '[:space:]' ' ' >"$work/info" || fail "mps-info"
+  first=$([ $frames = 1 ] && echo 0.2 || echo 0)
+  has "$work/info" "frames $frames first $first s last 0.2 s"
+  rm -r "$work/frames"
+done
+
 # A slope writes its crest and toe.
 "$wave" --radius 1 --width 40 --height 20 --slope 15,25,12 --sides freefield --courant 0.5 \
   --duration 0.3 --out "$work/slope" >/dev/null

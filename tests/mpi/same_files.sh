@@ -63,6 +63,9 @@ same plate mps-tank --case plate --duration 0.003 --frames 1
 same water mps-dam-break --method mps --duration 0.02 --frames 2
 same rock mps-flume --spacing 0.02 --length 5 --duration 0.03 --frames 1 --wall slope --rock 4.8,0,5,0.08,5.16,0.08,5,0 \
   --stone 2cm
+# Water passes a crest, and returns.
+same storm mps-flume --spacing 0.05 --waves jonswap --height 0.16 --wall caisson --crest 0.05 --length 2 --duration 7 \
+  --frames 0
 if [ -x "$programs/mps-seawall" ]; then
   same seawall mps-seawall --duration 0.02 --frames 0
   same coupled mps-seawall --coupled --duration 0.02 --frames 0

@@ -6,6 +6,7 @@ import gc
 import pickle
 import re
 import signal
+import types
 import unittest
 
 import numpy as np
@@ -105,6 +106,19 @@ class Values(unittest.TestCase):
         np.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-13)
         self.assertGreater(np.abs(np.diff(places[0][:, 0])).max(), 0.1)
 
+    def test_a_struct_is_a_mapping_or_a_result(self):
+        context = mps.Context()
+        body = context.body_create_disc(0.1, position=[1.0, 2.0])
+        body.set_motion({"velocity": [0.5, 0.0, 0.0]})
+        self.assertEqual(list(body.get_state().velocity), [0.5, 0.0, 0.0])
+        body.set_motion(types.MappingProxyType({"velocity": [0.25, 0.0, 0.0]}))
+        self.assertEqual(list(body.get_state().velocity), [0.25, 0.0, 0.0])
+        body.set_motion(mps.BodyMotion(velocity=[0.0, 3.0, 0.0]))
+        state = body.get_state()
+        self.assertEqual((list(state.velocity), list(state.position[:2])), ([0.0, 3.0, 0.0], [1.0, 2.0]))
+        with self.assertRaisesRegex(TypeError, "no member 'velocty' .is it 'velocity'"):
+            body.set_motion(mps.BodyMotion(velocty=[0.0, 3.0, 0.0]))
+
     def test_layers_are_dictionaries_and_hooks_are_functions(self):
         """Stress at rest under two layers; a warning through the log hook."""
         said = []
@@ -184,6 +198,26 @@ class Errors(unittest.TestCase):
             falling(context, sand).stepp
         with self.assertRaises(AttributeError):
             mps.nonsense
+
+    def test_values_of_the_wrong_kind_are_named(self):
+        context = mps.Context()
+        sand = block(context)
+        law = context.material_create_linear_elastic(1e6, 0.3)
+        other = context.particles_create(spacing=0.1)
+        other.close()
+        for call, kind, text in [
+                (lambda: context.mpm_create(law, sand, cell=0.2), TypeError, "'particles' is .*a Material is no Particles"),
+                (lambda: context.mpm_create(sand, law, cell=0.2, kernel=law), TypeError, "'kernel' is .*Material is no Kernel"),
+                (lambda: context.mpm_create(sand, law, cell=law), TypeError, "'cell' is .*no number"),
+                (lambda: context.mpm_create(sand, law, cell=0.2, gravity=9.81), TypeError, "'gravity' is 9.81: up to 3 numbers"),
+                (lambda: context.mpm_create(sand, law, cell=0.2, lower=[0, "a"]), ValueError, "'lower' is .*up to 3 numbers"),
+                (lambda: context.mpm_create(other, law, cell=0.2), ValueError, "'particles' is .*it is closed"),
+                (lambda: mps.Context(thread=2), TypeError, r"Context\(\) has no keyword 'thread' \(is it 'threads'\?\)"),
+                (lambda: mps.Context(threads=-3), mps.Error, "^mps_context_create: threads is -3"),
+                (lambda: copy.copy(sand), TypeError, "a Particles is neither copied nor pickled"),
+                (lambda: pickle.dumps(law), TypeError, "a Material is neither copied nor pickled")]:
+            with self.assertRaisesRegex(kind, text):
+                call()
 
     def test_an_exception_in_a_callback_comes_out(self):
         context = mps.Context()

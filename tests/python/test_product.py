@@ -2,6 +2,7 @@
 compiled laws against the library's own, exceptions with their traceback, arrays that C fills, pictures."""
 
 import ast
+import builtins
 import importlib.util
 import inspect
 import pathlib
@@ -87,6 +88,22 @@ class Documents(unittest.TestCase):
             self.assertTrue(inspect.isclass(getattr(mps, name)), name)
         self.assertTrue(pathlib.Path(mps.__file__).with_name("py.typed").exists())
 
+    def test_stubs_name_nothing_that_they_lack(self):
+        stubs = ast.parse(pathlib.Path(mps.__file__).with_name("__init__.pyi").read_text())
+        known = set(dir(builtins))
+        for node in ast.walk(stubs):
+            if isinstance(node, ast.ClassDef):
+                known.add(node.name)
+            elif isinstance(node, (ast.Import, ast.ImportFrom)):
+                known.update(name.asname or name.name for name in node.names)
+            elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+                known.add(node.target.id)
+            elif isinstance(node, ast.Assign):
+                known.update(target.id for target in node.targets if isinstance(target, ast.Name))
+        named = {node.id for node in ast.walk(stubs) if isinstance(node, ast.Name)}
+        self.assertGreater(len(named), 30)
+        self.assertEqual(named - known, set())
+
 
 class Shown(unittest.TestCase):
     def test_objects_say_what_they_are(self):
@@ -171,6 +188,28 @@ class Laws(unittest.TestCase):
         for stress, gradient, ids in kept:
             self.assertTrue(stress.base is None and stress.flags.owndata)
             self.assertTrue(np.isfinite(gradient).all() and (ids >= 0).all())
+
+    def test_a_block_that_is_kept_gives_nothing_more(self):
+        kept = []
+
+        def update(b):
+            if len(kept) == 1:
+                kept.append(b)
+                raise ZeroDivisionError
+            kept.append(b)
+            b.stress[0] += 0.0
+
+        context = mps.Context(threads=1)
+        solver = context.mpm_create(block(context), context.material_create_user(
+            update=update, name="kept", bulk_modulus=YOUNG, shear_modulus=SHEAR), cell=0.2, dt=5e-4)
+        with self.assertRaises(ZeroDivisionError):
+            solver.step(1)
+        for b in kept[:2]:  # one has returned, the other raised
+            self.assertGreater(b.count, 0)
+            for name in ("gradient", "ids", "history", "position", "volume_ratio", "flags"):
+                with self.assertRaises(mps.StaleError, msg=name):
+                    getattr(b, name)
+        self.assertEqual(kept[0].stress.shape, (4, kept[0].count))  # taken in the law
 
     def test_history_and_assignment(self):
         def update(block):

@@ -106,13 +106,20 @@ static mps_context *rank_context(scene *s, int32_t rank) {
   return test_allocator_context(&s->allocator[rank]);
 }
 
+/* The domain of a rank, whose context it makes; the status of its creation is the first. */
+static mps_domain *join_domain(scene *s, team *t, int32_t rank, mps_context **own) {
+  const mps_domain_def def = team_domain_def(t, rank);
+  mps_domain *domain = NULL;
+  *own = rank_context(s, rank);
+  s->rank[rank].status[0] = mps_domain_create(*own, &def, &domain);
+  return domain;
+}
+
 static void run_sums(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_domain *domain = NULL;
-  mps_context *own = rank_context(s, rank);
-  const mps_domain_def def = team_domain_def(t, rank);
-  f->status[0] = mps_domain_create(own, &def, &domain);
+  mps_context *own = NULL;
+  mps_domain *domain = join_domain(s, t, rank, &own);
   mpsi_exact sum = {{0}};
   mpsi_exact_add(&sum, ldexp(1.0, 60 * rank));
   mpsi_exact_add(&sum, -1e-3);
@@ -132,10 +139,7 @@ static void test_reductions(void **state) {
   (void)state;
   for (int32_t size = 1; size <= 7; size += 3) {
     scene s = {.what = 0};
-    team t;
-    team_begin(&t, size);
-    team_run(&t, run_sums, &s);
-    team_end(&t);
+    team_compute(size, run_sums, &s);
     mpsi_exact sum = {{0}};
     for (int32_t r = 0; r < size; r++) {
       mpsi_exact_add(&sum, ldexp(1.0, 60 * r));
@@ -156,10 +160,8 @@ static void test_reductions(void **state) {
 static void run_errors(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_domain *domain = NULL;
-  mps_context *own = rank_context(s, rank);
-  const mps_domain_def def = team_domain_def(t, rank);
-  f->status[0] = mps_domain_create(own, &def, &domain);
+  mps_context *own = NULL;
+  mps_domain *domain = join_domain(s, t, rank, &own);
   mps_status status = MPS_OK;
   if (rank == 2) status = mpsi_fail(own, "mps_two", MPS_ERROR_ARGUMENT, "two is %d", 2);
   if (rank == 3) {
@@ -182,10 +184,7 @@ static void run_errors(void *user, team *t, int32_t rank) {
 static void test_errors_are_shared(void **state) {
   (void)state;
   scene s = {.what = 0};
-  team t;
-  team_begin(&t, 4);
-  team_run(&t, run_errors, &s);
-  team_end(&t);
+  team_compute(4, run_errors, &s);
   for (int32_t r = 0; r < 4; r++) {
     assert_int_equal(s.rank[r].status[0], MPS_OK);
     assert_int_equal(s.rank[r].status[1], MPS_ERROR_MEMORY);
@@ -218,11 +217,9 @@ static mps_status make_share(mps_context *own, int32_t rank, int32_t size, mps_p
 static void run_gather(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_domain *domain = NULL;
   mps_particles *share = NULL, *whole = NULL;
-  mps_context *own = rank_context(s, rank);
-  const mps_domain_def def = team_domain_def(t, rank);
-  f->status[0] = mps_domain_create(own, &def, &domain);
+  mps_context *own = NULL;
+  mps_domain *domain = join_domain(s, t, rank, &own);
   if (f->status[0] == MPS_OK)
     f->status[1] = mps_domain_agree(domain, make_share(own, rank, t->size, &share));
   if (f->status[0] == MPS_OK && f->status[1] == MPS_OK) {
@@ -259,10 +256,7 @@ static void run_gather(void *user, team *t, int32_t rank) {
 static void assert_gathered(team_fn work) {
   for (int32_t size = 1; size <= 5; size += 2) {
     scene s = {.what = 0};
-    team t;
-    team_begin(&t, size);
-    team_run(&t, work, &s);
-    team_end(&t);
+    team_compute(size, work, &s);
     for (int32_t r = 0; r < size; r++) {
       for (int k = 0; k < 8; k++) assert_int_equal(s.rank[r].status[k], MPS_OK);
       assert_int_equal(s.rank[r].count, r == 0 ? 12 : 0);
@@ -276,10 +270,7 @@ static void test_gather(void **state) {
   (void)state;
   assert_gathered(run_gather);
   scene s = {.what = 1};
-  team t;
-  team_begin(&t, 2);
-  team_run(&t, run_gather, &s);
-  team_end(&t);
+  team_compute(2, run_gather, &s);
   for (int32_t r = 0; r < 2; r++) {
     assert_int_equal(s.rank[r].status[2], MPS_ERROR_FIELD);
     assert_non_null(strstr(s.rank[r].message, "the set has 3 fields"));
@@ -293,11 +284,9 @@ static void run_fields(void *user, team *t, int32_t rank) {
   static const char *const wanted[] = {"density"}, *const wrong[] = {"density", "density_of"};
   const int64_t ids[4] = {7, 0, 3, 7}, missing[2] = {3, 99}, other[1] = {rank};
   double density[4] = {0.0}, place[8] = {0.0}, id[4] = {0.0};
-  mps_domain *domain = NULL;
   mps_particles *share = NULL, *whole = NULL;
-  mps_context *own = rank_context(s, rank);
-  const mps_domain_def def = team_domain_def(t, rank);
-  f->status[0] = mps_domain_create(own, &def, &domain);
+  mps_context *own = NULL;
+  mps_domain *domain = join_domain(s, t, rank, &own);
   f->status[1] = mps_domain_agree(domain, make_share(own, rank, t->size, &share));
   f->status[2] = mps_domain_agree(domain, mps_particles_set(share, "pressure", 0, 1.0));
   f->status[3] = mps_domain_gather_fields(domain, share, 1, wanted, &whole);
@@ -363,11 +352,9 @@ static void test_refused_memory(void **state) {
 static void run_calls(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_domain *domain = NULL;
   mps_particles *share = NULL, *whole = NULL;
-  mps_context *own = rank_context(s, rank);
-  const mps_domain_def def = team_domain_def(t, rank);
-  f->status[0] = mps_domain_create(own, &def, &domain);
+  mps_context *own = NULL;
+  mps_domain *domain = join_domain(s, t, rank, &own);
   double value = rank;
   f->status[1] = rank == 1 ? mps_domain_max(domain, 1, &value) : mps_domain_agree(domain, MPS_OK);
   snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
@@ -421,10 +408,8 @@ static void test_different_calls(void **state) {
 static void run_lost(void *user, team *t, int32_t rank) {
   scene *s = user;
   found *f = &s->rank[rank];
-  mps_domain *domain = NULL;
-  mps_context *own = rank_context(s, rank);
-  const mps_domain_def def = team_domain_def(t, rank);
-  f->status[0] = mps_domain_create(own, &def, &domain);
+  mps_context *own = NULL;
+  mps_domain *domain = join_domain(s, t, rank, &own);
   for (int k = 1; domain && k < 4; k++) f->status[k] = mps_domain_agree(domain, MPS_OK);
   snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
   mps_domain_destroy(&domain);

@@ -112,10 +112,7 @@ static void measure(void *user, team *t, int32_t rank) {
 
 static measured run(int what, int32_t size) {
   measured m = {.what = what};
-  team t;
-  team_begin(&t, size);
-  team_run(&t, measure, &m);
-  team_end(&t);
+  team_compute(size, measure, &m);
   for (int32_t r = 0; r < size; r++) {
     assert_int_equal(m.status[r], MPS_OK);
     assert_false(m.sorted[r]);
@@ -143,7 +140,9 @@ static void test_alone(void **state) { (void)state, expect(SLIDE, 1, 0, 0, 1, 40
 
 /* Bodies by impulses: what is reached and the tiles; ready, partners, contacts, loads and the end,
  * with how much the sweeps have left; twice the filter of the sand's stress, each eighth step. */
-static void test_bodies(void **state) { (void)state, expect(PILES, 5, 2 * (STEPS / 8), 1, 2, 60000); }
+static void test_bodies(void **state) {
+  (void)state, expect(PILES, 5, 2 * (STEPS / 8), 1, 2, 60000);
+}
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_alone), cmocka_unit_test(test_bodies)};

@@ -267,6 +267,7 @@ static void dashpots_on_one_particle(void **state) {
       assert_int_equal(mps_particles_count(set), 1);
       mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 0.3));
       mps_assert_ok(context, mps_particles_set(set, "velocity", 1, -0.2));
+      mps_assert_ok(context, mps_particles_add_field(set, "reaction", 0));
       mps_dynamics *d = solver(set, integrator, dt);
       mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
       def.density = 2000.0;
@@ -284,6 +285,7 @@ static void dashpots_on_one_particle(void **state) {
       const double c2[2] = {corner ? 200.0 / D : 0.0, corner ? 100.0 / D : 0.0};
       double v[2] = {0.3, -0.2};
       for (int k = 0; k < 20; k++) {
+        const double before[2] = {v[0], v[1]};
         for (int m = 0; m < 2; m++) {
           const double c = c1[m] + c2[m];
           const double in = m == 0 ? 1.5 * mps_signal_velocity(wave, mps_dynamics_time(d)) : 0.0;
@@ -293,8 +295,12 @@ static void dashpots_on_one_particle(void **state) {
                      : (v[m] * (1.0 - 0.5 * c * dt) + pull) / (1.0 + 0.5 * c * dt);
         }
         mps_assert_ok(context, mps_dynamics_step(d, 1));
-        for (int m = 0; m < 2; m++)
+        for (int m = 0; m < 2; m++) {
           mps_assert_near(value(set, "velocity", id, m), v[m], 1e-11 * (1.0 + fabs(v[m])));
+          const double acceleration = (v[m] - before[m]) / dt;
+          mps_assert_near(value(set, "acceleration", id, m), acceleration, 1e-8);
+          mps_assert_near(value(set, "reaction", id, m), 1500.0 * area * acceleration, 1e-5);
+        }
       }
       mps_dynamics_destroy(&d);
       mps_particles_destroy(&set);

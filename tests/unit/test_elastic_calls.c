@@ -70,6 +70,8 @@ static void a_set_of_another_context_is_refused(void **state) {
   mps_assert_fails(other, mps_elastic_create(other, b.particles, NULL, &e), MPS_ERROR_ARGUMENT,
                    "another context");
   assert_null(e);
+  assert_ptr_equal(mps_elastic_context(b.elastic), one);
+  assert_null(mps_elastic_context(NULL));
   test_body_end(&b);
   mps_context_destroy(&one);
   mps_context_destroy(&other);

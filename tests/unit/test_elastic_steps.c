@@ -370,10 +370,11 @@ static void facets_come_as_arrays(void **state) {
   const int64_t all = mps_elastic_facet_count(b.elastic);
   assert_int_equal(all, 2 * (8 + 4));
   int64_t particle[24];
-  double centre[72], normal[72], area[24], u[72], v[72], total = 0.0;
+  double centre[72], normal[72], extent[72], area[24], u[72], v[72], total = 0.0;
   const mps_elastic_facet_arrays arrays = {.particle = particle,
                                            .centre = centre,
                                            .normal = normal,
+                                           .extent = extent,
                                            .area = area,
                                            .displacement = u,
                                            .velocity = v};
@@ -382,6 +383,9 @@ static void facets_come_as_arrays(void **state) {
     total += area[k];
     mps_assert_near(u[3 * k], 0.05 * (centre[3 * k] - 0.25), 1e-14);
     mps_assert_near(fabs(normal[3 * k]) + fabs(normal[3 * k + 1]), 1.0, 0.0);
+    const int across = normal[3 * k] != 0.0; /* the axis along the edge */
+    mps_assert_near(3.0 * extent[3 * k + across], area[k], 1e-14);
+    mps_assert_near(fabs(extent[3 * k + 1 - across]) + fabs(extent[3 * k + 2]), 0.0, 0.0);
     mps_assert_near(u[3 * k + 2] + v[3 * k] + v[3 * k + 1], 0.0, 0.0);
   }
   mps_assert_near(total, 3.0 * 11.5, 1e-12); /* half cells at the wall */

@@ -157,6 +157,8 @@ static void the_definition_comes_back_completed(void **state) {
   mps_assert_near(now.level, 0.5, 1e-12); /* half a spacing above the highest row, at .45 */
   assert_int_equal(mps_fluid_get_def(NULL, &now), MPS_ERROR_ARGUMENT);
   mps_assert_fails(context, mps_fluid_get_def(f, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  assert_ptr_equal(mps_fluid_context(f), context);
+  assert_null(mps_fluid_context(NULL));
   mps_fluid_destroy(&f);
   mps_particles_destroy(&p);
 }
@@ -331,6 +333,35 @@ static void a_drop_falls_freely_and_an_empty_tank_goes_on(void **state) {
   mps_fluid_report report;
   mps_assert_ok(context, mps_fluid_get_report(f, &report));
   assert_int_equal(report.apart, 1);
+  mps_fluid_destroy(&f);
+  mps_particles_destroy(&p);
+}
+
+/* Without gravity the shortest step is a share of the run, wherever on the axis of time it begins:
+ * a drop of 1 m/s takes 40 steps a second, after a million seconds too. */
+static void a_late_run_has_steps_of_its_own_length(void **state) {
+  (void)state;
+  mps_particles *p = NULL;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid *f = NULL;
+  mps_fluid_def def = mps_fluid_defaults();
+  const double alone[2] = {0.0, 0.0};
+  set.spacing = 0.1;
+  def.gravity[1] = 0.0, def.dt = 1e6;
+  mps_assert_ok(context, mps_particles_create(context, &set, &p));
+  mps_assert_ok(context, mps_particles_append(p, 1, alone));
+  mps_assert_ok(context, mps_fluid_create(context, p, &def, &f));
+  mps_assert_ok(context, mps_fluid_step(f, 1));
+  mps_assert_ok(context, mps_fluid_set_dt(f, NAN));
+  mps_edit u;
+  mps_assert_ok(context, mps_particles_edit(p, "velocity", &u));
+  *mps_edit_f64(&u, 0, 0) = 1.0;
+  mps_assert_ok(context, mps_particles_commit(p, &u));
+  mps_assert_ok(context, mps_fluid_run(f, 1e6 + 1.0, 1000, NULL, NULL));
+  assert_in_range(mps_fluid_steps(f), 41, 42); /* .25 l0/|u| is 1/40 s */
+  mps_view x;
+  mps_assert_ok(context, mps_particles_view(p, "position", &x));
+  mps_assert_near(*mps_view_f64(&x, 0, 0), 1.0, 1e-9);
   mps_fluid_destroy(&f);
   mps_particles_destroy(&p);
 }
@@ -818,6 +849,7 @@ int main(void) {
       cmocka_unit_test(a_run_ends_on_time_and_its_callback_only_reads),
       cmocka_unit_test(a_solution_that_does_not_converge_keeps_the_state),
       cmocka_unit_test(a_drop_falls_freely_and_an_empty_tank_goes_on),
+      cmocka_unit_test(a_late_run_has_steps_of_its_own_length),
       cmocka_unit_test(a_film_one_particle_thick_lies_still),
       cmocka_unit_test(a_tank_runs_empty),
       cmocka_unit_test(a_rollback_repeats_the_steps_bit_for_bit),

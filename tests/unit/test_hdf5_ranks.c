@@ -106,10 +106,7 @@ static void compare_sets(mps_context *context, mps_particles *a, mps_particles *
 
 static memory_peaks save_on(int32_t size, memory_fn *save, char *path, mps_status expected) {
   memory_peaks p = {.run = save, .user = path};
-  team t;
-  team_begin(&t, size);
-  team_run(&t, memory_measure, &p);
-  team_end(&t);
+  team_compute(size, memory_measure, &p);
   for (int32_t r = 0; r < size; r++) assert_int_equal(p.status[r], expected);
   return p;
 }

@@ -7,6 +7,7 @@
 #include "material/material_private.h"
 
 #include <mps/geostatic.h>
+#include <mps/soil.h>
 
 #define E 1e6
 #define NU 0.3
@@ -200,23 +201,14 @@ static void moduli_of_users_laws_are_checked(void **state) {
 
 /* ---- constants ------------------------------------------------------------------------------ */
 
-typedef struct listed {
-  double value[64];
-  int32_t count;
-} listed;
-
-static void list(void *user, double value) {
-  listed *all = user;
-  assert_true(all->count < 64);
-  all->value[all->count++] = value;
-}
-
-/* What the constants of one value more are. */
-static void expect_other_constants(mps_material **a, mps_material **b, int32_t differing) {
-  listed first = {{0.0}, 0}, second = {{0.0}, 0};
+/* Of the numbers that ranks compare, how many differ between two materials. */
+static void expect_other_constants(const mps_material *a, mps_material **b, int32_t differing) {
+  mpsi_given first, second;
   int32_t other = 0;
-  mpsi_material_constants(*a, list, &first);
-  mpsi_material_constants(*b, list, &second);
+  mpsi_given_begin(&first);
+  mpsi_given_begin(&second);
+  mpsi_material_give(&first, a);
+  mpsi_material_give(&second, *b);
   assert_int_equal(first.count, second.count);
   for (int32_t k = 0; k < first.count; k++) other += !(first.value[k] == second.value[k]);
   assert_int_equal(other, differing);
@@ -231,10 +223,10 @@ static void constants_tell_materials_apart(void **state) {
   mises.young = E, mises.yield_stress = 1e3;
   mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &a));
   mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &b));
-  expect_other_constants(&a, &b, 0);
+  expect_other_constants(a, &b, 0);
   mises.hardening = 10.0;
   mps_assert_ok(context, mps_material_create_von_mises(context, &mises, &b));
-  expect_other_constants(&a, &b, 1);
+  expect_other_constants(a, &b, 1);
   mps_material_destroy(&a);
   double props[] = {1.0, 2.0};
   mps_material_umat_def umat = mps_material_umat_defaults();
@@ -242,10 +234,19 @@ static void constants_tell_materials_apart(void **state) {
   umat.props = props, umat.props_count = 2;
   mps_assert_ok(context, mps_material_create_umat(context, &umat, &a));
   mps_assert_ok(context, mps_material_create_umat(context, &umat, &b));
-  expect_other_constants(&a, &b, 0);
+  expect_other_constants(a, &b, 0);
   props[1] = 3.0, umat.temperature = 20.0;
   mps_assert_ok(context, mps_material_create_umat(context, &umat, &b));
-  expect_other_constants(&a, &b, 2);
+  expect_other_constants(a, &b, 1); /* one hash of them */
+  mps_material_destroy(&a);
+  mps_material_small_strain_def soil = mps_material_small_strain_defaults();
+  soil.shear_modulus = 1e7, soil.reference_strain = 1e-4;
+  mps_assert_ok(context, mps_material_create_small_strain(context, &soil, &a));
+  mps_assert_ok(context, mps_material_create_small_strain(context, &soil, &b));
+  expect_other_constants(a, &b, 0);
+  soil.reference_strain = 2e-4; /* the layers' strengths, and not their moduli */
+  mps_assert_ok(context, mps_material_create_small_strain(context, &soil, &b));
+  expect_other_constants(a, &b, 1);
   mps_material_destroy(&a);
   mps_context_destroy(&context);
 }

@@ -192,7 +192,7 @@ static void restarts_change_no_bit(void **state) {
   compare_restarts(MPS_PORE_SCHEME_IMPLICIT, 10);
 }
 
-/* Implicit pressures leave the step that dry ground has, and there is no settling with them. */
+/* Implicit pressures leave the step that dry ground has; where water flows there is no settling. */
 static void implicit_steps_are_long(void **state) {
   (void)state;
   pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 4.0, 10.0, 0.0);
@@ -202,10 +202,42 @@ static void implicit_steps_are_long(void **state) {
   mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &def));
   mps_assert_near(mps_mpm_limit(c.s.mpm), dry, 1e-12 * dry);
   assert_int_equal(mps_mpm_settle(c.s.mpm, NULL, NULL), MPS_ERROR_UNSUPPORTED);
-  assert_non_null(strstr(mps_context_error(context)->message, "scheme"));
+  assert_non_null(strstr(mps_context_error(context)->message, "flows"));
   mps_assert_ok(context, mps_mpm_get_pore_water(c.s.mpm, &def));
   assert_int_equal(def.scheme, MPS_PORE_SCHEME_IMPLICIT);
   mpm_scene_end(&c.s);
+}
+
+/* Undrained ground settles under its weight: its water bears the part 1/(1 + n M'/K_w) of it. */
+static void settles_undrained(int32_t scheme) {
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 16.0, 10.0, 0.0);
+  mps_pore_water_def def = mps_pore_water_defaults();
+  mps_mpm_settled settled;
+  double worst = 0.0;
+  def.porosity = 0.4, def.scheme = scheme;
+  def.bulk = 0.4 * 9.0 * c.modulus;
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &def));
+  const double limit = mps_mpm_limit(c.s.mpm);
+  mps_assert_ok(context, mps_mpm_set_dt(c.s.mpm, 0.5 * limit)); /* implicit: of dry ground */
+  mps_assert_ok(context, mps_mpm_settle(c.s.mpm, NULL, &settled));
+  mps_assert_ok(context, mps_mpm_get_pore_water(c.s.mpm, &def));
+  assert_int_equal(def.scheme, scheme);
+  mps_assert_near(mps_mpm_limit(c.s.mpm), limit, 0.01 * limit);
+  mps_assert_ok(context, mps_mpm_step(c.s.mpm, 50)); /* the equilibrium is that of both schemes */
+  const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
+  for (int64_t k = 0; k < u.shape[0]; k++) {
+    const double depth = 1.0 - *mps_view_f64(&x, k, 1);
+    worst = fmax(worst, fabs(*mps_view_f64(&u, k, 0) / (2000.0 * 10.0) - 0.9 * depth));
+  }
+  print_message("settled, scheme %d: %d steps, pressures within %.2f %% of the greatest weight\n",
+                scheme, (int)settled.steps, 100.0 * worst);
+  assert_true(worst < 0.02);
+  mpm_scene_end(&c.s);
+}
+static void undrained_ground_settles(void **state) {
+  (void)state;
+  settles_undrained(MPS_PORE_SCHEME_EXPLICIT);
+  settles_undrained(MPS_PORE_SCHEME_IMPLICIT);
 }
 
 /* Water at a pressure of its own leaves through the surface, but not where a body lies on it. */
@@ -246,9 +278,9 @@ static void bodies_are_impervious(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(definitions_are_checked), cmocka_unit_test(fields_are_checked),
-      cmocka_unit_test(faces_are_checked),       cmocka_unit_test(threads_change_no_bit),
-      cmocka_unit_test(restarts_change_no_bit),  cmocka_unit_test(implicit_steps_are_long),
-      cmocka_unit_test(bodies_are_impervious)};
+      cmocka_unit_test(definitions_are_checked),  cmocka_unit_test(fields_are_checked),
+      cmocka_unit_test(faces_are_checked),        cmocka_unit_test(threads_change_no_bit),
+      cmocka_unit_test(restarts_change_no_bit),   cmocka_unit_test(implicit_steps_are_long),
+      cmocka_unit_test(undrained_ground_settles), cmocka_unit_test(bodies_are_impervious)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -83,10 +83,51 @@ static void flow_between_walls_of_no_slip_decays_as_the_stokes_mode(void **state
   mps_assert_near(error[1], 0.0, 0.04);
 }
 
+/* Viscous water between two walls that move alike and a bed that holds it: the walls' reactions
+ * include the friction, so that they make up the change of its momentum but for some hundredths. */
+static void walls_feel_the_friction(void **state) {
+  (void)state;
+  const double l0 = 0.02, length = 0.4, depth = 0.2;
+  mps_particles *water = NULL;
+  mps_fluid *fluid = NULL;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  set.spacing = l0;
+  def.dt = 2e-3, def.level = depth, def.viscosity = 1000.0 * NU;
+  mps_assert_ok(context, mps_particles_create(context, &set, &water));
+  tank_fill(context, water, length, depth, NULL, NULL);
+  mps_assert_ok(context, mps_fluid_create(context, water, &def, &fluid));
+  mps_fluid_boundary_def bed = mps_fluid_boundary_defaults(); /* no slip */
+  bed.normal[1] = 1.0;
+  mps_assert_ok(context, mps_fluid_add_boundary(fluid, &bed, NULL));
+  tank_wall(context, fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(context, fluid, length, 0.0, -1.0, 0.0, NULL);
+  for (int k = 1; k <= 200; k++) {
+    const double u = 0.1 * fmin(1.0, k / 50.0), against = -u;
+    mps_assert_ok(context, mps_fluid_set_wall_motion(fluid, TANK_LEFT, NULL, &u));
+    mps_assert_ok(context, mps_fluid_set_wall_motion(fluid, TANK_RIGHT, NULL, &against));
+    mps_assert_ok(context, mps_fluid_step(fluid, 1));
+  }
+  mps_totals sum;
+  mps_reaction r[3];
+  mps_assert_ok(context, mps_fluid_get_totals(fluid, &sum));
+  for (int32_t b = 0; b < 3; b++) mps_assert_ok(context, mps_fluid_get_reaction(fluid, b, &r[b]));
+  const double push = r[TANK_LEFT].impulse[0];
+  print_message("impulse of the left wall %.2f N s, of the right one %.2f, of the bed %.2f, of the "
+                "scheme %.2f; momentum %.2f\n",
+                push, r[TANK_RIGHT].impulse[0], r[TANK_BED].impulse[0], sum.impulse_scheme[0],
+                sum.linear[0]);
+  assert_true(r[TANK_BED].impulse[0] < -0.05 * push); /* it holds back what slides on it */
+  assert_true(fabs(sum.impulse_scheme[0]) < 0.05 * push);
+  mps_fluid_destroy(&fluid);
+  mps_particles_destroy(&water);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_vortex_between_slip_walls_decays_as_exact),
       cmocka_unit_test(flow_between_walls_of_no_slip_decays_as_the_stokes_mode),
+      cmocka_unit_test(walls_feel_the_friction),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -124,6 +124,25 @@ static void cohesion_pulls_only_on_opening(void **state) {
   }
 }
 
+/* Shear of cohesive soil whose grains have a gap: the mean stress stays, the deviator goes to the
+ * pyramid at that mean stress, s1 - s3 = 2 c cos(phi) - (s1 + s3) sin(phi), and nothing dilates. */
+static void shear_beside_a_gap_has_the_strength_of_its_mean_stress(void **state) {
+  (void)state;
+  const double phi = 38.0 * PI / 180.0, apex = C / tan(phi);
+  mps_material *material = soil(LAWS - 1, 10.0, C, INFINITY);
+  mps_material_point point = point_under(material, 0.0);
+  swell(material, &point, apex / bulk + 0.02);
+  swell(material, &point, -0.5 * apex / bulk); /* elastic */
+  step(material, &point, 3e-3, -2e-3, -1e-3, 0.0);
+  const double *s = point.stress;
+  assert_true(s[0] > s[2] && s[2] > s[1]);
+  mps_assert_near(mean_stress(s), 0.5 * apex, 1e-8);
+  mps_assert_near(s[0] - s[1], 2.0 * C * cos(phi) - (s[0] + s[1]) * sin(phi), 1e-8);
+  mps_assert_near((s[2] - s[1]) / (s[0] - s[1]), 0.2, 1e-12); /* as in the strain */
+  mps_assert_near(point.history[1], 0.02, 1e-12);
+  mps_material_destroy(&material);
+}
+
 static double elastic_energy(const double *s) {
   const double p = mean_stress(s), q = root_j2(s);
   return 0.5 * p * p / bulk + 0.5 * q * q / shear;
@@ -199,6 +218,7 @@ int main(void) {
       cmocka_unit_test(sand_closes_its_gap_before_it_resists),
       cmocka_unit_test(trembling_does_not_wear_the_volume_away),
       cmocka_unit_test(cohesion_pulls_only_on_opening),
+      cmocka_unit_test(shear_beside_a_gap_has_the_strength_of_its_mean_stress),
       cmocka_unit_test(no_path_gives_energy),
       cmocka_unit_test(a_thrown_column_lands_as_high_as_it_was),
   };

@@ -187,6 +187,73 @@ static void flows_through_layers(void **state) {
   mpm_scene_end(&c.s);
 }
 
+/* u/u0 at height z of two layers of the same M', c = c_v below 1/2 and above, drained at z = 1 and
+ * impervious at 0: the series of the products X(z) exp(-b^2 t) with
+ * X = cos(b z/sqrt(c0)) sin(x1), sin(b (1 - z)/sqrt(c1)) cos(x0), x = b/(2 sqrt(c)),
+ * whose flow is the same on both sides where sqrt(c0) sin x0 sin x1 = sqrt(c1) cos x0 cos x1. */
+static double jump_of(const double *root, double b) {
+  const double x0 = 0.5 * b / root[0], x1 = 0.5 * b / root[1];
+  return root[0] * sin(x0) * sin(x1) - root[1] * cos(x0) * cos(x1);
+}
+static double two_layers(const double *c, double z, double t) {
+  const double root[2] = {sqrt(c[0]), sqrt(c[1])}, step = 1e-3 * root[0];
+  double sum = 0.0;
+  for (double b = step; b * b * t < 40.0; b += step) {
+    if (jump_of(root, b - step) * jump_of(root, b) > 0.0) continue;
+    double low = b - step, high = b;
+    for (int i = 0; i < 60; i++) {
+      const double middle = 0.5 * (low + high);
+      *(jump_of(root, low) * jump_of(root, middle) > 0.0 ? &low : &high) = middle;
+    }
+    const double x0 = 0.5 * low / root[0], x1 = 0.5 * low / root[1];
+    const double whole = (sin(x1) * root[0] * sin(x0) + cos(x0) * root[1] * (1.0 - cos(x1))) / low;
+    const double square = sin(x1) * sin(x1) * (0.25 + 0.25 * root[0] / low * sin(2.0 * x0)) +
+                          cos(x0) * cos(x0) * (0.25 - 0.25 * root[1] / low * sin(2.0 * x1));
+    const double X =
+        z < 0.5 ? cos(low * z / root[0]) * sin(x1) : sin(low * (1.0 - z) / root[1]) * cos(x0);
+    sum += whole / square * X * exp(-low * low * t);
+  }
+  return sum;
+}
+
+static void two_layers_consolidate(void **state) {
+  (void)state;
+  static const double k[] = {1e-4, 4e-4}, times[] = {4.6, 9.1};
+  pore_column c = pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 20, 0.0, 10.0);
+  mps_pore_water_def water = mps_pore_water_defaults();
+  mps_pore_face_def surface = mps_pore_face_defaults();
+  double worst = 0.0, diffusivity[2];
+  for (int l = 0; l < 2; l++) {
+    const mps_view x = mpm_scene_view(&c.s, "position");
+    diffusivity[l] = k[l] * c.modulus / (1000.0 * MPS_PORE_GRAVITY);
+    if (l == 0) mps_assert_ok(context, mps_particles_add_field(c.s.particles, "permeability", 0));
+    mps_edit edit;
+    mps_assert_ok(context, mps_particles_edit(c.s.particles, "permeability", &edit));
+    for (int64_t p = 0; p < x.shape[0]; p++)
+      if ((*mps_view_f64(&x, p, 1) > 0.5) == (l == 1)) *mps_edit_f64(&edit, p, 0) = k[l];
+    mps_assert_ok(context, mps_particles_commit(c.s.particles, &edit));
+  }
+  water.scheme = MPS_PORE_SCHEME_IMPLICIT;
+  water.porosity = 0.4;
+  water.bulk = 0.4 * 100.0 * c.modulus;
+  mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+  surface.kind = MPS_PORE_FACE_DRAINED;
+  surface.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
+  surface.pressure = -LOAD; /* pressures less the load */
+  mps_assert_ok(context, mps_mpm_add_pore_face(c.s.mpm, &surface, NULL));
+  for (int t = 0; t < 2; t++) {
+    mps_assert_ok(context, mps_mpm_run(c.s.mpm, times[t], 1000000, NULL, NULL));
+    const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
+    for (int64_t p = 0; p < x.shape[0]; p++) {
+      const double exact = two_layers(diffusivity, *mps_view_f64(&x, p, 1), times[t]);
+      worst = fmax(worst, fabs(*mps_view_f64(&u, p, 0) / LOAD + 1.0 - exact));
+    }
+  }
+  print_message("two layers: u/q within %.2f %%\n", 100.0 * worst);
+  assert_true(worst < 0.01);
+  mpm_scene_end(&c.s);
+}
+
 /* ---- undrained ------------------------------------------------------------------------------- */
 
 /* A load on undrained ground between rollers: p = q/(1 + n M'/K_w). */
@@ -219,6 +286,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stays_at_rest),          cmocka_unit_test(flows_through_layers),
       cmocka_unit_test(undrained_column),       cmocka_unit_test(consolidates_in_the_plane),
-      cmocka_unit_test(consolidates_in_a_ring), cmocka_unit_test(consolidates_in_space)};
+      cmocka_unit_test(consolidates_in_a_ring), cmocka_unit_test(consolidates_in_space),
+      cmocka_unit_test(two_layers_consolidate)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

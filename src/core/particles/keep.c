@@ -1,11 +1,11 @@
-/* keep.c - a set keeps a rank's part of its particles, with a backup of the whole.
+/* keep.c - reduces a set to the particles of one rank, with a backup that restores the whole.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
 #include <string.h>
 
 struct mpsi_storage {
-  mpsi_field *field; /* as they were */
+  mpsi_field *field; /* the former ones, of the whole set */
   int32_t fields;
   int64_t count, capacity;
 };
@@ -15,7 +15,7 @@ static void notify_holders(const mps_particles *p) {
     if (h->renew && h->kind == MPSI_USE_LOOK) h->renew(h->self);
 }
 
-/* The map from ids, of particles that the set has now. */
+/* Builds the map from ids to rows again. */
 static void index_ids(mps_particles *p) {
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
   mpsi_ids_renew(&p->ids, p->next_id, p->count, id);

@@ -7,8 +7,8 @@
 
 #include "layout.h"
 
-/* Bounds of particles begin to end - 1 of those that are here, of one block and near one another.
- */
+/* Particles [begin, end) of this rank that belong to one block and lie near one another, with their
+ * bounds. */
 typedef struct mpsi_dynamics_piece {
   int64_t block, begin, end;
   double lo[2], hi[2]; /* m */
@@ -27,7 +27,7 @@ static inline bool mpsi_dynamics_within_reach(const mpsi_dynamics_piece *a,
   return false;
 }
 
-/* Sorted particles by number, and the bounds of those of each block. */
+/* The particles among which pairs are sought, sorted, and the pieces of each block. */
 typedef struct mpsi_dynamics_source {
   mps_context *context;
   const char *function;       /* that errors name */
@@ -42,16 +42,17 @@ typedef struct mpsi_dynamics_source {
 mps_status mpsi_dynamics_source_open(mpsi_dynamics_source *source);
 void mpsi_dynamics_source_close(mpsi_dynamics_source *source);
 
-/* How many of so many blocks make a batch: all of a body with free-field columns. */
+/* Number of blocks in a batch of a body of `blocks`; all of a body with free-field columns. */
 int64_t mpsi_dynamics_batch_size(const mpsi_dynamics_source *source, int64_t blocks);
 
-/* All pairs that act on a particle of these blocks (with columns, all pairs): an array for
- * mpsi_free. `distinct` of them, the first, are ordinary pairs. */
+/* All pairs with an end in one of these blocks (with columns, all pairs): an array that the caller
+ * releases by mpsi_free. The first `distinct` of them are ordinary pairs. */
 mps_status mpsi_dynamics_source_pairs(mpsi_dynamics_source *source, int64_t blocks,
                                       const int32_t *block, int64_t *count,
                                       mpsi_dynamics_pair **pairs, int64_t *distinct);
 
-/* Are all offsets whole spacings? Those of a lattice have been made exact. */
+/* Whether all offsets are whole multiples of `spacing`, exactly: those of a lattice are rounded to
+ * that when pairs are made. */
 bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair);
 
 #endif

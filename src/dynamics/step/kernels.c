@@ -29,12 +29,27 @@ typedef struct ends {
   const double *dxj, *dyj, *cj, *sj, *mj, *bj;
 } ends;
 
+/* Constants of a chunk of pairs: reference vector (m) from i to j, coefficients of the shear and
+ * normal forces and of the divergence. */
+typedef struct pair_constants {
+  const double *r0x, *r0y, *kf, *kc;
+} pair_constants;
+
 /* Terms of a pair: force on i (minus on j), torque and divergence of both; with damping by pairs
  * also force and torque times the pair's beta. */
 typedef struct pair_terms {
   double *fx, *fy, *torque, *div;
   double *sx, *sy, *st;
 } pair_terms;
+
+/* The first pass over one block. */
+typedef struct first_pass {
+  const mpsi_dynamics_state *s;
+  int32_t begin;    /* number of the block's first particle, which has the sums [0] */
+  pair_terms sums;  /* over the pairs of each particle of the block */
+  pair_terms terms; /* of each pair of a chunk */
+  double *ends;     /* 12 rows of MPSI_DYN_CHUNK: copies of the ends of scattered pairs */
+} first_pass;
 
 /* Seven rows of a length from `room`. */
 MPSI_INLINE pair_terms seven_rows(double *room, int64_t length) {
@@ -47,11 +62,13 @@ MPSI_INLINE pair_terms seven_rows(double *room, int64_t length) {
                       room + 6 * length};
 }
 
-/* Pair terms of a chunk. PER = 0: one offset for the chunk; 1: one a pair. */
+/* Terms of n pairs, and kc e of each in s->ex, s->ey from `slot` on. PER = 0: all have the same
+ * constants; 1: each its own. */
 MPSI_INLINE void pair_chunk(const int removal, const int want, const int PER, int32_t n, ends e,
-                            const double *r0x, const double *r0y, const double *kf,
-                            const double *kc, pair_terms out, double *restrict ex,
-                            double *restrict ey) {
+                            pair_constants pair, const first_pass *pass, int64_t slot) {
+  const pair_terms out = pass->terms;
+  const double *r0x = pair.r0x, *r0y = pair.r0y, *kf = pair.kf, *kc = pair.kc;
+  double *restrict ex = pass->s->ex + slot, *restrict ey = pass->s->ey + slot;
   double *restrict fx = out.fx, *restrict fy = out.fy;
   double *restrict torque = out.torque, *restrict div = out.div;
   double *restrict sx = out.sx, *restrict sy = out.sy, *restrict st = out.st;
@@ -109,21 +126,23 @@ MPSI_INLINE void add_terms(const int want, pair_terms sums, pair_terms terms, in
   add(sums.st + at, terms.st, 1.0, n);
 }
 
-MPSI_INLINE void pass1_run(const int removal, const int want, const mpsi_dynamics_state *s,
-                           const mpsi_dynamics_pair_run *run, int32_t begin, pair_terms sums,
-                           pair_terms terms, double *ex, double *ey) {
+/* The pairs (i0 + t, j0 + t) of a run, which have the same constants; their slots begin at `slot`.
+ */
+MPSI_INLINE void pass1_run(const int removal, const int want, const first_pass *pass,
+                           const mpsi_dynamics_pair_run *run, int64_t slot) {
+  const mpsi_dynamics_state *s = pass->s;
+  const pair_constants pair = {&run->r0x, &run->r0y, &run->kf, &run->kc};
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
     const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
     const int64_t i = run->i0 + t0, j = run->j0 + t0;
     const ends e = {s->dx + i, s->dy + i, s->c + i, s->s + i, s->mu + i, s->beta + i,
                     s->dx + j, s->dy + j, s->c + j, s->s + j, s->mu + j, s->beta + j};
-    pair_chunk(removal, want, 0, n, e, &run->r0x, &run->r0y, &run->kf, &run->kc, terms, ex + t0,
-               ey + t0);
+    pair_chunk(removal, want, 0, n, e, pair, pass, slot + t0);
     /* j > i, so that a particle is j of an earlier pair than that of which it is i: in this order
      * its sums do not depend on the ends of chunks, nor on those of a run that is whole on another
      * rank. */
-    if (run->own_j) add_terms(want, sums, terms, j - begin, -1.0, n);
-    if (run->own_i) add_terms(want, sums, terms, i - begin, 1.0, n);
+    if (run->own_j) add_terms(want, pass->sums, pass->terms, j - pass->begin, -1.0, n);
+    if (run->own_i) add_terms(want, pass->sums, pass->terms, i - pass->begin, 1.0, n);
   }
 }
 
@@ -133,27 +152,29 @@ MPSI_INLINE void gather(double *restrict to, const double *restrict from,
   for (int32_t t = 0; t < n; t++) to[t] = from[index[t]];
 }
 
-MPSI_INLINE void pass1_scattered(const int removal, const int want, const mpsi_dynamics_state *s,
+/* n scattered pairs from the k-th of the list on; their slots begin at `slot`. */
+MPSI_INLINE void pass1_scattered(const int removal, const int want, const first_pass *pass,
                                  const mpsi_dynamics_scattered *list, int64_t k, int32_t n,
-                                 int32_t begin, pair_terms sums, pair_terms terms, double *room,
-                                 double *ex, double *ey) {
+                                 int64_t slot) {
+  const mpsi_dynamics_state *s = pass->s;
+  const pair_terms sums = pass->sums, terms = pass->terms;
   const double *from[6] = {s->dx, s->dy, s->c, s->s, s->mu, s->beta};
   for (int f = 0; f < 4 + want; f++) {
-    gather(room + f * MPSI_DYN_CHUNK, from[f], list->i + k, n);
-    gather(room + (6 + f) * MPSI_DYN_CHUNK, from[f], list->j + k, n);
+    gather(pass->ends + f * MPSI_DYN_CHUNK, from[f], list->i + k, n);
+    gather(pass->ends + (6 + f) * MPSI_DYN_CHUNK, from[f], list->j + k, n);
   }
-#define ROOM(f) (room + (f)*MPSI_DYN_CHUNK)
-  const ends e = {ROOM(0), ROOM(1), ROOM(2), ROOM(3), ROOM(4),  ROOM(5),
-                  ROOM(6), ROOM(7), ROOM(8), ROOM(9), ROOM(10), ROOM(11)};
-#undef ROOM
-  pair_chunk(removal, want, 1, n, e, list->r0x + k, list->r0y + k, list->kf + k, list->kc + k,
-             terms, ex, ey);
-  for (int32_t t = 0; t < n;
-       t++) { /* pair by pair: the order does not depend on the ends of chunks */
+#define ROW(f) (pass->ends + (f)*MPSI_DYN_CHUNK)
+  const ends e = {ROW(0), ROW(1), ROW(2), ROW(3), ROW(4),  ROW(5),
+                  ROW(6), ROW(7), ROW(8), ROW(9), ROW(10), ROW(11)};
+#undef ROW
+  const pair_constants pair = {list->r0x + k, list->r0y + k, list->kf + k, list->kc + k};
+  pair_chunk(removal, want, 1, n, e, pair, pass, slot);
+  /* pair by pair: the order does not depend on the ends of chunks */
+  for (int32_t t = 0; t < n; t++) {
     const int32_t target[2] = {list->ti[k + t], list->tj[k + t]};
     for (int side = 0; side < 2; side++) {
       const double sign = side == 0 ? 1.0 : -1.0;
-      const int32_t at = target[side] - begin;
+      const int32_t at = target[side] - pass->begin;
       if (target[side] < 0) continue;
       sums.div[at] += terms.div[t];
       if (want == PRESSURES) continue;
@@ -174,19 +195,18 @@ MPSI_INLINE void pass1(const int removal, const int want, const mpsi_dynamics_st
   const int32_t begin = block->begin, n = block->end - begin;
   const int64_t rows = want == DAMPED_FORCES ? 7 : 4;
   const pair_terms sums = seven_rows(scratch, MPSI_DYN_BLOCK);
-  const pair_terms terms = seven_rows(scratch + 7 * MPSI_DYN_BLOCK, MPSI_DYN_CHUNK);
-  double *room = scratch + 7 * (MPSI_DYN_BLOCK + MPSI_DYN_CHUNK);
+  const first_pass pass = {s, begin, sums, seven_rows(scratch + 7 * MPSI_DYN_BLOCK, MPSI_DYN_CHUNK),
+                           scratch + 7 * (MPSI_DYN_BLOCK + MPSI_DYN_CHUNK)};
   for (int64_t row = 0; row < rows; row++) /* of another rank's block few particles are here */
     for (int32_t t = 0; t < n; t++) scratch[row * MPSI_DYN_BLOCK + t] = 0.0;
 
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; slot += mesh->run[r++].count)
-    pass1_run(removal, want, s, &mesh->run[r], begin, sums, terms, s->ex + slot, s->ey + slot);
+    pass1_run(removal, want, &pass, &mesh->run[r], slot);
   for (int64_t k = block->scattered_begin; k < block->scattered_end; k += MPSI_DYN_CHUNK) {
     const int64_t left = block->scattered_end - k;
     const int32_t m = left < MPSI_DYN_CHUNK ? (int32_t)left : MPSI_DYN_CHUNK;
-    pass1_scattered(removal, want, s, &mesh->scattered, k, m, begin, sums, terms, room,
-                    s->ex + slot, s->ey + slot);
+    pass1_scattered(removal, want, &pass, &mesh->scattered, k, m, slot);
     slot += m;
   }
 
@@ -262,12 +282,22 @@ typedef struct forces {
   double *fx, *fy, *ft, *sx, *sy, *st;
 } forces;
 
+/* The second pass over one block. */
+typedef struct second_pass {
+  const mpsi_dynamics_state *s;
+  int32_t begin; /* number of the block's first particle, which has the forces [0] */
+  forces f;
+  double *pair; /* 4 rows of MPSI_DYN_CHUNK: pressure forces of a chunk, and the same times beta */
+} second_pass;
+
 /* Subtracts the pressure forces (p_i + p_j) kc e of a run from its ends (A10); with damping by
  * pairs also (beta_i p_i + beta_j p_j) kc e. */
-MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_dynamics_state *s,
-                              const mpsi_dynamics_pair_run *run, int32_t begin, int64_t slot,
-                              forces f, double *restrict bx, double *restrict by,
-                              double *restrict cx, double *restrict cy) {
+MPSI_INLINE void pressure_run(const int by_pairs, const second_pass *pass,
+                              const mpsi_dynamics_pair_run *run, int64_t slot) {
+  const mpsi_dynamics_state *s = pass->s;
+  const forces f = pass->f;
+  double *restrict bx = pass->pair, *restrict by = pass->pair + MPSI_DYN_CHUNK;
+  double *restrict cx = pass->pair + 2 * MPSI_DYN_CHUNK, *restrict cy = cx + MPSI_DYN_CHUNK;
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
     const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
     const int64_t i = run->i0 + t0, j = run->j0 + t0;
@@ -286,7 +316,7 @@ MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_dynamics_state *s,
     }
     const int own[2] = {run->own_i, run->own_j};
     for (int side = 0; side < 2; side++) {
-      const int64_t at = (side == 0 ? i : j) - begin;
+      const int64_t at = (side == 0 ? i : j) - pass->begin;
       const double sign = side == 0 ? -1.0 : 1.0;
       if (!own[side]) continue;
       add(f.fx + at, bx, sign, n);
@@ -298,14 +328,15 @@ MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_dynamics_state *s,
   }
 }
 
-MPSI_INLINE void pressure_scattered(const int by_pairs, const mpsi_dynamics_state *s,
-                                    const mpsi_dynamics_scattered *list, int64_t k, int32_t begin,
-                                    int64_t slot, forces f) {
+MPSI_INLINE void pressure_scattered(const int by_pairs, const second_pass *pass,
+                                    const mpsi_dynamics_scattered *list, int64_t k, int64_t slot) {
+  const mpsi_dynamics_state *s = pass->s;
+  const forces f = pass->f;
   const int32_t i = list->i[k], j = list->j[k];
   const double sum = s->p[i] + s->p[j], damp = s->beta[i] * s->p[i] + s->beta[j] * s->p[j];
   const int32_t target[2] = {list->ti[k], list->tj[k]};
   for (int side = 0; side < 2; side++) {
-    const int32_t at = target[side] - begin;
+    const int32_t at = target[side] - pass->begin;
     const double sign = side == 0 ? -1.0 : 1.0;
     if (target[side] < 0) continue;
     f.fx[at] += sign * (sum * s->ex[slot]);
@@ -316,30 +347,31 @@ MPSI_INLINE void pressure_scattered(const int by_pairs, const mpsi_dynamics_stat
   }
 }
 
-MPSI_INLINE void pressure_forces(const int by_pairs, const mpsi_dynamics_state *s,
-                                 const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block,
-                                 forces f, double *room) {
+MPSI_INLINE void pressure_forces(const int by_pairs, const second_pass *pass,
+                                 const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block) {
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; slot += mesh->run[r++].count)
-    pressure_run(by_pairs, s, &mesh->run[r], block->begin, slot, f, room, room + MPSI_DYN_CHUNK,
-                 room + 2 * MPSI_DYN_CHUNK, room + 3 * MPSI_DYN_CHUNK);
+    pressure_run(by_pairs, pass, &mesh->run[r], slot);
   for (int64_t k = block->scattered_begin; k < block->scattered_end; k++)
-    pressure_scattered(by_pairs, s, &mesh->scattered, k, block->begin, slot++, f);
+    pressure_scattered(by_pairs, pass, &mesh->scattered, k, slot++);
 }
 
-/* One degree of freedom of a block. */
+/* One degree of freedom of the particles of a block. */
 typedef struct freedom {
-  double *d, *o, *v, *h;
+  double *d, *o, *v, *h;      /* columns of mpsi_dynamics_state: dx, ox, vx, hx and so on */
+  double *g;                  /* restoring accelerations; `advance` leaves the total ones */
+  double *sk;                 /* the same times beta, of which the damping is the rate (A24) */
+  const double *alpha, *beta; /* Rayleigh coefficients */
+  double *drag;               /* receives the accelerations by damping; NULL: not stored */
 } freedom;
 
-/* Damping, then the integrator. `g` holds the restoring accelerations, and receives the total
- * ones; `sk` the same times beta, of which the damping is the rate (A24). */
+/* Damping, then the integrator, for n particles. */
 MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_dynamics_step *step,
-                         int32_t n, double *restrict g, double *restrict sk, freedom f,
-                         const double *restrict alpha, const double *restrict beta,
-                         double *restrict drag) {
+                         int32_t n, freedom f) {
   const double dt = step->dt, kick = step->kick, rdt = 1.0 / dt, rate = step->rate;
   double *restrict d = f.d, *restrict o = f.o, *restrict v = f.v, *restrict h = f.h;
+  double *restrict g = f.g, *restrict sk = f.sk, *restrict drag = f.drag;
+  const double *restrict alpha = f.alpha, *restrict beta = f.beta;
   if (damping == BY_PARTICLES) SIMD for (int32_t t = 0; t < n; t++) sk[t] = beta[t] * g[t];
   if (damping && step->first) SIMD for (int32_t t = 0; t < n; t++) h[t] = sk[t];
   if (damping && drag) SIMD for (int32_t t = 0; t < n; t++) {
@@ -370,9 +402,10 @@ MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_dyn
 }
 
 /* Restoring accelerations of a block: forces of the first pass, pressure forces, inverse masses. */
-MPSI_INLINE void restoring(const int by_pairs, const mpsi_dynamics_state *s,
-                           const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block,
-                           forces f, double *room) {
+MPSI_INLINE void restoring(const int by_pairs, const second_pass *pass,
+                           const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block) {
+  const mpsi_dynamics_state *s = pass->s;
+  const forces f = pass->f;
   const int32_t begin = block->begin, n = block->end - begin;
   const double *restrict gx = s->gx + begin, *restrict gy = s->gy + begin;
   const double *restrict gth = s->gth + begin;
@@ -384,7 +417,7 @@ MPSI_INLINE void restoring(const int by_pairs, const mpsi_dynamics_state *s,
   const double *restrict pth = s->sth + begin;
   SIMD for (int32_t t = 0; t < n; t++) fx[t] = gx[t], fy[t] = gy[t];
   if (by_pairs) SIMD for (int32_t t = 0; t < n; t++) sx[t] = px[t], sy[t] = py[t];
-  pressure_forces(by_pairs, s, mesh, block, f, room);
+  pressure_forces(by_pairs, pass, mesh, block);
   SIMD for (int32_t t = 0; t < n; t++) {
     fx[t] *= ix[t];
     fy[t] *= iy[t];
@@ -408,17 +441,21 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
                     scratch + 3 * MPSI_DYN_BLOCK,
                     scratch + 4 * MPSI_DYN_BLOCK,
                     scratch + 5 * MPSI_DYN_BLOCK};
-  restoring(damping == BY_PAIRS, s, mesh, block, f, scratch + 7 * MPSI_DYN_BLOCK);
+  const second_pass pass = {s, begin, f, scratch + 7 * MPSI_DYN_BLOCK};
+  restoring(damping == BY_PAIRS, &pass, mesh, block);
   const double *alpha = s->alpha + begin, *beta = s->beta + begin;
-  const freedom x = {s->dx + begin, s->ox + begin, s->vx + begin, s->hx + begin};
-  const freedom y = {s->dy + begin, s->oy + begin, s->vy + begin, s->hy + begin};
-  const freedom th = {s->th + begin, s->oth + begin, s->vth + begin, s->hth + begin};
   double *drag[3] = {NULL, NULL, NULL};
   for (int c = 0; damping && step->drag && c < 3; c++)
     drag[c] = step->drag + c * step->stride + begin;
-  advance(integrator, damping, step, n, f.fx, f.sx, x, alpha, beta, drag[0]);
-  advance(integrator, damping, step, n, f.fy, f.sy, y, alpha, beta, drag[1]);
-  advance(integrator, damping, step, n, f.ft, f.st, th, alpha, beta, drag[2]);
+  const freedom x = {s->dx + begin, s->ox + begin, s->vx + begin, s->hx + begin, f.fx,
+                     f.sx,          alpha,         beta,          drag[0]};
+  const freedom y = {s->dy + begin, s->oy + begin, s->vy + begin, s->hy + begin, f.fy,
+                     f.sy,          alpha,         beta,          drag[1]};
+  const freedom th = {s->th + begin, s->oth + begin, s->vth + begin, s->hth + begin, f.ft,
+                      f.st,          alpha,          beta,           drag[2]};
+  advance(integrator, damping, step, n, x);
+  advance(integrator, damping, step, n, y);
+  advance(integrator, damping, step, n, th);
   trig(removal, s, begin, block->end);
 
   const double *restrict fx = f.fx, *restrict fy = f.fy;

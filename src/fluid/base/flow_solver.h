@@ -70,7 +70,8 @@ struct mps_fluid {
   mpsi_holder holder; /* of the particles */
   mps_fluid_def def;
   const mpsi_fluid_loops *loops;
-  mpsi_fluid_weight weight;
+  mpsi_fluid_weight weight; /* of water without rock near */
+  double reach;             /* m, the largest radius of weights: in rock it may be more (rock.c) */
   double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */
   mpsi_fluid_wall *wall;      /* boundaries by number, from `boundaries` on the faces of bodies */
   mpsi_fluid_body *body;      /* by number */
@@ -153,7 +154,7 @@ static inline double mpsi_fluid_larger(double a, double b) { return a > b ? a : 
 
 static inline double mpsi_fluid_w(const mpsi_fluid_weight *weight, double r) {
   const double a = 1.0 - r * weight->inverse;
-  return a * a * a * a * (5.0 - 4.0 * a);
+  return weight->scale * (a * a * a * a * (5.0 - 4.0 * a));
 }
 
 /* The first of particle i's pairs. */

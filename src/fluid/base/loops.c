@@ -9,10 +9,10 @@
 #define JOIN(a, b) JOIN_(a, b)
 #define LEAST 0.0025 /* l0^2: squares of distances are not taken as less */
 
-static int64_t search(const mps_fluid *f, int64_t i, int64_t begin, int64_t end, int64_t found,
-                      int32_t *index, double *r2) {
+static int64_t search(const mps_fluid *f, int64_t i, double radius, int64_t begin, int64_t end,
+                      int64_t found, int32_t *index, double *r2) {
   enum { PART = 64 };
-  const double x = f->x[0][i], y = f->x[1][i], re2 = f->weight.re * f->weight.re;
+  const double x = f->x[0][i], y = f->x[1][i], re2 = radius * radius;
   double square[PART];
   for (int64_t first = begin; first < end; first += PART) {
     const int32_t count = (int32_t)(end - first < PART ? end - first : PART);
@@ -31,9 +31,10 @@ static int64_t search(const mps_fluid *f, int64_t i, int64_t begin, int64_t end,
   return found;
 }
 
-static int32_t weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *r2,
-                     float *w) {
-  const double inverse = f->weight.inverse, least = LEAST * f->l0 * f->l0, re = f->weight.re;
+static int32_t weigh(const mps_fluid *f, const mpsi_fluid_weight *weight, int64_t i, int64_t count,
+                     int32_t *index, double *r2, float *w) {
+  const double inverse = weight->inverse, scale = weight->scale, re = weight->re;
+  const double least = LEAST * f->l0 * f->l0;
   const int32_t all = mpsi_fluid_padded((int32_t)count), particles = (int32_t)f->count;
   int32_t images = 0;
   for (int32_t k = (int32_t)count; k < all; k++) index[k] = (int32_t)i, r2[k] = re * re;
@@ -48,7 +49,7 @@ static int32_t weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *inde
 #pragma omp simd
   for (int32_t k = 0; k < all; k++) {
     const double d2 = r2[k] > least ? r2[k] : least, a = 1.0 - sqrt(d2) * inverse;
-    w[k] = (float)(a * a * a * a * (5.0 - 4.0 * a));
+    w[k] = (float)(scale * (a * a * a * a * (5.0 - 4.0 * a)));
   }
   for (int32_t k = (int32_t)count; k < all; k++) w[k] = 0.0f;
   double closest2 = closest[0];

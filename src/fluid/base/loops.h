@@ -17,14 +17,14 @@ typedef struct mpsi_fluid_sums {
 } mpsi_fluid_sums;
 
 struct mpsi_fluid_loops {
-  /* Appends slots [begin, end) of the sorted cloud within re of particle i; `index` and `r2` have
-   * room for all and one more. Returns the new length of the list. */
-  int64_t (*search)(const mps_fluid *f, int64_t i, int64_t begin, int64_t end, int64_t found,
-                    int32_t *index, double *r2);
+  /* Appends slots [begin, end) of the sorted cloud within `radius` (m) of particle i; `index` and
+   * `r2` have room for all and one more. Returns the new length of the list. */
+  int64_t (*search)(const mps_fluid *f, int64_t i, double radius, int64_t begin, int64_t end,
+                    int64_t found, int32_t *index, double *r2);
   /* Weights of squares of distances, both filled up as the list is; MPSI_FLUID_NEAR_IMAGES and
    * _CLOSE. */
-  int32_t (*weigh)(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *r2,
-                   float *w);
+  int32_t (*weigh)(const mps_fluid *f, const mpsi_fluid_weight *weight, int64_t i, int64_t count,
+                   int32_t *index, double *r2, float *w);
   void (*add_up)(const mps_fluid *f, int64_t i, mpsi_fluid_sums *out);
   /* Rows [begin, end) of the pressure's matrix times v, to `out`; v . out over these rows. */
   double (*times)(const mps_fluid *f, int64_t begin, int64_t end, const double *v, double *out);

@@ -212,7 +212,7 @@ int mpsi_fluid_face_of(const mps_fluid *f, const mpsi_fluid_body *body, bool mov
 bool mpsi_fluid_inside_body(const mps_fluid *f, int besides, const double *x) {
   for (int b = 0; b < f->bodies; b++) {
     double d; /* the box is that of the beginning of the step */
-    if (b + 1 == besides || !mpsi_fluid_beside(&f->body[b], x, 2.0 * f->weight.re)) continue;
+    if (b + 1 == besides || !mpsi_fluid_beside(&f->body[b], x, 2.0 * f->reach)) continue;
     mpsi_fluid_face_of(f, &f->body[b], f->stage == MPSI_FLUID_MOVED, x, &d);
     if (d < 0.0) return true;
   }

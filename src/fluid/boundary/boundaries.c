@@ -81,7 +81,7 @@ static bool cut_off(const mps_fluid *f, const mpsi_fluid_wall *w, int b, int32_t
   for (int k = 0; k < f->boundaries; k++) {
     const mpsi_fluid_wall *other = &f->wall[k];
     if (k != b && k != number && other->used &&
-        mpsi_fluid_distance(other, other->now.s, x, y) < -f->weight.re)
+        mpsi_fluid_distance(other, other->now.s, x, y) < -f->reach)
       return true;
   }
   return false;

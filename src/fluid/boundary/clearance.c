@@ -58,14 +58,14 @@ static const mpsi_fluid_segment *too_close(const mps_fluid *f, const mpsi_fluid_
                                            bool next, const mpsi_fluid_polyline *line,
                                            double *distance) {
   double middle[2];
-  const double radius = extent(body, next, middle), far = radius + f->weight.re;
+  const double radius = extent(body, next, middle), far = radius + f->reach;
   for (int64_t k = 0; k < line->count; k++) {
     const mpsi_fluid_segment *s = &line->segment[k];
     if (fabs(mpsi_fluid_before_segment(s, middle)) > far ||
         mpsi_fluid_from_segment(s, middle) > far * far)
       continue;
     *distance = gap(body, next, s);
-    if (*distance < f->weight.re) return s;
+    if (*distance < f->reach) return s;
   }
   return NULL;
 }
@@ -81,12 +81,12 @@ mps_status mpsi_fluid_check_clearance(mps_fluid *f, const char *function, bool n
       return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                        "step %lld, t = %g s: body %d comes within %g m of segment %d of the "
                        "polyline of boundary %d, must stay re = %g m away; the step is not made",
-                       (long long)f->steps, f->time, number, distance, s->number, b, f->weight.re);
+                       (long long)f->steps, f->time, number, distance, s->number, b, f->reach);
     if (s)
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "body is %g m from segment %d of the polyline of boundary %d, must be at "
                        "least re = %g m away",
-                       distance, s->number, b, f->weight.re);
+                       distance, s->number, b, f->reach);
   }
   return MPS_OK;
 }
@@ -101,7 +101,7 @@ mps_status mpsi_fluid_check_bodies(mps_fluid *f, const char *function,
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "corners: segment %d of the polyline, from (%g, %g) m, is %g m from body "
                        "%d, must be at least re = %g m away",
-                       s->number, s->end[0][0], s->end[0][1], distance, b, f->weight.re);
+                       s->number, s->end[0][0], s->end[0][1], distance, b, f->reach);
   }
   return MPS_OK;
 }

@@ -49,7 +49,7 @@ static bool add_image(mps_fluid *f, int64_t i, const mpsi_fluid_segment *s) {
 
 /* Whether entry i of the cloud is in front of a segment and within re of it. */
 static bool in_reach(const mps_fluid *f, int64_t i, const mpsi_fluid_segment *s) {
-  const double x[2] = {f->x[0][i], f->x[1][i]}, re = f->weight.re;
+  const double x[2] = {f->x[0][i], f->x[1][i]}, re = f->reach;
   const double d = mpsi_fluid_before_segment(s, x);
   if (!(d > 0.0 && d < re)) return false;
   return mpsi_fluid_from_segment(s, x) < re * re;
@@ -161,7 +161,7 @@ typedef struct vicinity {
 static void look_about(const mps_fluid *f, int64_t i, const double *x, vicinity *near) {
   enum { MOST = sizeof near->own / sizeof *near->own };
   const mpsi_fluid_listed list = mpsi_fluid_near_chunk(f, i / MPSI_FLUID_CHUNK);
-  const double re2 = f->weight.re * f->weight.re;
+  const double re2 = f->reach * f->reach;
   near->count = 0, near->segment = near->own;
   for (int64_t n = 0; n < list.count; n++) {
     const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, list.item[n]);
@@ -216,7 +216,7 @@ static double way_around(const mps_fluid *f, const vicinity *near, const double 
     const double *tip = s->end[1];
     if (s->infinite[1] || !(s->angle[1] > PI + STRAIGHT)) continue;
     const double way = hypot(a[0] - tip[0], a[1] - tip[1]) + hypot(b[0] - tip[0], b[1] - tip[1]);
-    if (way < least && way < f->weight.re && first_mirror(f, near, -1, a, tip, &share) < 0 &&
+    if (way < least && way < f->reach && first_mirror(f, near, -1, a, tip, &share) < 0 &&
         first_mirror(f, near, -1, b, tip, &share) < 0)
       least = way;
   }
@@ -227,7 +227,7 @@ static double way_around(const mps_fluid *f, const vicinity *near, const double 
 static bool plain(const mps_fluid *f, const vicinity *near, const double *x) {
   if (near->count != 1) return false;
   const mpsi_fluid_segment *s = mpsi_fluid_segment_of(f, near->segment[0]);
-  const double along = mpsi_fluid_along(&s->wall, x[0], x[1]), re = f->weight.re;
+  const double along = mpsi_fluid_along(&s->wall, x[0], x[1]), re = f->reach;
   return along > s->wall.from + re && along < s->wall.to - re;
 }
 
@@ -248,7 +248,7 @@ int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32
     } else if (!follows(f, &near, x, j)) {
       const double other[2] = {f->x[0][j], f->x[1][j]};
       const double way = j < f->count ? way_around(f, &near, x, other) : INFINITY;
-      if (!(way < f->weight.re)) continue;
+      if (!(way < f->reach)) continue;
       square = way * way;
     }
     index[kept] = index[k], r2[kept] = square;

@@ -174,12 +174,12 @@ mps_status mpsi_fluid_check_meeting(mps_fluid *f, const char *function,
                        "degrees: must be 90, or one polyline of both",
                        (long long)k, s->end[0][0], s->end[0][1], number,
                        90.0 - asin(fmin(fabs(turn), 1.0)) * 180.0 / PI);
-    if (fabs(s->angle[1] - PI) > 1e-9 && fabs(d[1]) < f->weight.re)
+    if (fabs(s->angle[1] - PI) > 1e-9 && fabs(d[1]) < f->reach)
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "corners, point and normal: the polyline's corner at (%g, %g) m is %g m "
                        "from boundary %d: must be at "
                        "least re = %g m",
-                       s->end[1][0], s->end[1][1], fabs(d[1]), number, f->weight.re);
+                       s->end[1][0], s->end[1][1], fabs(d[1]), number, f->reach);
   }
   return MPS_OK;
 }

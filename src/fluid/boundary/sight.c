@@ -174,7 +174,7 @@ static bool sees(const mps_fluid *f, int64_t i, int64_t j) {
 /* Whether the list of particle i may have invisible entries: images are up to re behind and beyond
  * a wall that ends. */
 static bool near_limit(const mps_fluid *f, int64_t i) {
-  const double x[2] = {f->x[0][i], f->x[1][i]}, reach = 2.0 * f->weight.re;
+  const double x[2] = {f->x[0][i], f->x[1][i]}, reach = 2.0 * f->reach;
   for (int k = 0; f->limited > f->faces && k < f->boundaries; k++)
     if (f->wall[k].limited && fabs(ahead(&f->wall[k], x)) < reach) return true;
   for (int n = 0; n < f->bodies; n++) {
@@ -209,14 +209,13 @@ static double way_around(const mps_fluid *f, const double *a, const double *b) {
   double least = INFINITY;
   for (int n = 0; n < f->bodies; n++) {
     const mpsi_fluid_body *body = &f->body[n];
-    if (!mpsi_fluid_beside(body, a, 2.0 * f->weight.re)) continue;
+    if (!mpsi_fluid_beside(body, a, 2.0 * f->reach)) continue;
     for (int k = body->first; k < body->first + body->faces; k++) {
       const mpsi_fluid_wall *w = &f->wall[k];
       if (!w->used || w->from < 0.0) continue; /* that corner stands on a boundary */
       const double way =
           hypot(a[0] - w->at[0], a[1] - w->at[1]) + hypot(b[0] - w->at[0], b[1] - w->at[1]);
-      if (way < least && way < f->weight.re && !hidden(f, none, a, w->at) &&
-          !hidden(f, none, w->at, b))
+      if (way < least && way < f->reach && !hidden(f, none, a, w->at) && !hidden(f, none, w->at, b))
         least = way;
     }
   }
@@ -234,7 +233,7 @@ int64_t mpsi_fluid_keep_visible(const mps_fluid *f, int64_t i, int64_t count, in
     if (!sees(f, i, j)) {
       const double other[2] = {f->x[0][j], f->x[1][j]};
       const double way = j < f->count && f->faces ? way_around(f, own, other) : INFINITY;
-      if (!(way < f->weight.re)) continue;
+      if (!(way < f->reach)) continue;
       square = way * way;
     }
     index[kept] = index[k], r2[kept] = square;

@@ -138,7 +138,7 @@ void mpsi_fluid_drop_lines(mps_fluid *f) {
 
 /* ---- chunks ---------------------------------------------------------------------------------- */
 
-double mpsi_fluid_listed_reach(const mps_fluid *f) { return f->weight.re * (1.0 + 1e-9) + f->l0; }
+double mpsi_fluid_listed_reach(const mps_fluid *f) { return f->reach * (1.0 + 1e-9) + f->l0; }
 
 /* The chunks near each segment, ascending, from the segments near each chunk. */
 static bool turn_round(mps_fluid *f, mpsi_fluid_lines *l, int64_t chunks) {
@@ -196,7 +196,7 @@ mpsi_fluid_listed mpsi_fluid_chunks_near(const mps_fluid *f, int64_t segment) {
 
 mpsi_fluid_listed mpsi_fluid_near_place(const mps_fluid *f, const double *x) {
   mpsi_fluid_lines *l = f->lines;
-  const double size = WINDOW * f->weight.re, *w = l->window;
+  const double size = WINDOW * f->reach, *w = l->window;
   const bool inside =
       l->in_window >= 0 && x[0] >= w[0] && x[1] >= w[1] && x[0] <= w[2] && x[1] <= w[3];
   if (!inside) {

@@ -142,7 +142,7 @@ static mpsi_fluid_flips with(mpsi_fluid_flips flips, int wall) {
 }
 
 static bool beyond_the_ends(const mps_fluid *f, const mpsi_fluid_wall *w, double x, double y) {
-  const double along = mpsi_fluid_along(w, x, y), re = f->weight.re;
+  const double along = mpsi_fluid_along(w, x, y), re = f->reach;
   return along < w->from - re || along > w->to + re;
 }
 
@@ -156,7 +156,7 @@ static bool mirror(mps_fluid *f, int wall, int64_t begin, int64_t end) {
     const double x = f->x[0][i], y = f->x[1][i];
     const double s = mpsi_fluid_of_wall(w, mpsi_fluid_places(f, w), f->x[0][own], f->x[1][own]);
     const double d = (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] - s;
-    if (d >= f->weight.re || d < 0.0) continue;
+    if (d >= f->reach || d < 0.0) continue;
     if (ghost >= 0 && !mirrors_again(f, wall, f->flips[ghost])) continue;
     const double to[2] = {x - 2.0 * d * w->normal[0], y - 2.0 * d * w->normal[1]};
     if (w->of_body && beyond_the_ends(f, w, x, y)) continue;
@@ -188,12 +188,12 @@ static bool box_is_near(const mps_fluid *f, const mpsi_fluid_wall *w, double mos
   double least = -most;
   for (int c = 0; c < 2; c++)
     least += w->normal[c] * (box[w->normal[c] > 0.0 ? c : 2 + c] - w->at[c]);
-  return !(least > f->weight.re * (1.0 + 10.0 * SQUARE));
+  return !(least > f->reach * (1.0 + 10.0 * SQUARE));
 }
 
 /* Whether all of the box is beyond the ends of a face, as far as its images reach. */
 static bool box_is_beyond(const mps_fluid *f, const mpsi_fluid_wall *w, const double *box) {
-  const double walk[2] = {-w->normal[1], w->normal[0]}, re = f->weight.re * (1.0 + 1e-9);
+  const double walk[2] = {-w->normal[1], w->normal[0]}, re = f->reach * (1.0 + 1e-9);
   double low = 0.0, high = 0.0;
   for (int c = 0; c < 2; c++) {
     low += walk[c] * (box[walk[c] > 0.0 ? c : 2 + c] - w->at[c]);

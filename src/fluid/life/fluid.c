@@ -1,16 +1,16 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, queries.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/access.h"
-#include "fluid/life/material.h"
+#include "fluid/life/properties.h"
+#include "fluid/particles/holder.h"
 #include "fluid/particles/look.h"
-#include "fluid/particles/particles.h"
 #include "fluid/step/exchange.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"
 #include "fluid/pressure/coarse.h"
 #include "fluid/base/loops.h"
 #include "fluid/ranks/partition.h"
-#include "core/base/digits.h"
+#include "core/base/members.h"
 
 #include <mps/body.h>
 
@@ -40,11 +40,7 @@ static bool within(double value, double low, double high) { return value >= low 
 static mps_status check_def(mps_context *context, const mps_fluid_def *d, double l0) {
   const double g = hypot(d->gravity[0], d->gravity[1]);
   const double longest = g > 0.0 ? 0.5 * sqrt(l0 / g) : INFINITY;
-  const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
-  } checks[] = {
+  const mpsi_member checks[] = {
       {"iterations", ">= 1", d->iterations, d->iterations >= 1},
       {"density", "in [1e-3, 1e6] kg/m3", d->density, within(d->density, 1e-3, 1e6)},
       {"|gravity|", "at most 1e6 m/s2", g, g <= 1e6},
@@ -56,11 +52,8 @@ static mps_status check_def(mps_context *context, const mps_fluid_def *d, double
       {"radius_ratio", "in [2.6, 4]", d->radius_ratio, within(d->radius_ratio, 2.6, 4.0)},
       {"tolerance", "in [1e-14, 1e-2]", d->tolerance, within(d->tolerance, 1e-14, 1e-2)},
   };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good)
-      return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
-                       "%s of the fluid is %s, allowed is %s", checks[k].name,
-                       mpsi_outside(checks[k].value, -INFINITY, INFINITY).text, checks[k].allowed);
+  const mps_status status = MPSI_CHECK_MEMBERS(context, "mps_fluid_create", "the fluid", checks);
+  if (status != MPS_OK) return status;
   return mpsi_fluid_check_viscosity(context, "mps_fluid_create", d->viscosity);
 }
 
@@ -169,7 +162,8 @@ static void release(mps_fluid *f) {
 static mps_status start(mps_fluid *f, const char *function) {
   f->count = mps_particles_count(f->particles);
   f->l0 = mps_particles_spacing(f->particles);
-  f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
+  f->reach = f->def.radius_ratio * f->l0;
+  f->weight = mpsi_fluid_make_weight(f->l0, f->reach, f->reach);
   f->most_near = 31, f->most_lower = 15;
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);

@@ -2,7 +2,7 @@
  * follow from the particles' positions, neighbours and the surface are computed again when needed.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid/base/access.h"
-#include "fluid/particles/particles.h"
+#include "fluid/particles/holder.h"
 #include "fluid/boundary/polyline.h"
 #include "fluid/particles/rock.h"
 

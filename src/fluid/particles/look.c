@@ -4,7 +4,7 @@
 #include "fluid/base/access.h"
 #include "fluid/boundary/sight.h"
 #include "fluid/boundary/walls.h"
-#include "fluid/particles/rock.h"
+#include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 
 #include <string.h>

@@ -6,9 +6,11 @@
  *
  * A particle is at the free surface where |m| > .15 n0 l0 and no particle is within 2.1 l0 inside
  * the cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010), but
- * not where e points into an acute corner between a body and a boundary (sight.c). The surface then
- * lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half a spacing
- * outside. A particle with n < .12 n0 is isolated and falls freely.
+ * not where e points into an acute corner between a body and a boundary (sight.c). At a rock's face
+ * the lattices of water and rock may part, so that n is small within the fluid: there the cone
+ * alone decides, as long as the larger spacing asks. The surface then lies at x + h e, h = l0 (1/2
+ * + (n - n_half)/n_slope): in an undisturbed lattice half a spacing outside. A particle with n <
+ * .12 n0 is isolated and falls freely.
  *
  * Particles of the second row have missing neighbours beyond the surface too (|m| = .06 n0 l0 in a
  * lattice). Without a surface term their row of the pressure equation is not exact for a linear q,
@@ -20,7 +22,7 @@
 #include "fluid/boundary/sight.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
-#include "fluid/particles/rock.h"
+#include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 
 #define APART 0.12     /* n/n0 */
@@ -48,9 +50,15 @@ static void regularise(double *M) {
   if (add > 0.0) M[0] += add, M[2] += add;
 }
 
+/* Spacing of a particle, m; at a rock's face the largest of all. */
+static double spacing_at(const mps_fluid *f, int64_t i) {
+  if (mpsi_fluid_is_mixed(f, i)) return f->rocks->spacing;
+  return f->rocks ? mpsi_fluid_pore_of(f, i)->spacing : f->l0;
+}
+
 /* True where no particle is in the cone about e. */
 static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
-  const double spacing = f->rocks ? mpsi_fluid_pore_of(f, i)->spacing : f->l0;
+  const double spacing = spacing_at(f, i);
   const double reach2 = CONE_REACH * CONE_REACH * spacing * spacing;
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   for (int32_t k = 0; k < f->near[i]; k++) {
@@ -69,7 +77,8 @@ static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m,
   const bool few = n < FEW * n0;
   if (!few && !(length > ONE_SIDED * n0 * spacing)) return false;
   const bool wedge = f->company[i] & MPSI_FLUID_NEAR_WEDGE;
-  return (few || sees_out(f, i, e)) && !(wedge && mpsi_fluid_near_wedge(f, i, e));
+  const bool sure = few && !mpsi_fluid_is_mixed(f, i); /* lattices part at a rock's face */
+  return (sure || sees_out(f, i, e)) && !(wedge && mpsi_fluid_near_wedge(f, i, e));
 }
 
 /* Position of the surface, and M with it. */

@@ -12,6 +12,7 @@ typedef struct mpsi_fluid_weight {
   double half;        /* ... over the rows at and below a particle of a level surface */
   double slope;       /* growth of sum w with a surface that rises by l0 */
   double square;      /* sum w r^2/4 over the lattice, m2 */
+  double scale;       /* of w: 1, in rock (rock.h) the water's radius over re to the power 4 */
 } mpsi_fluid_weight;
 
 /* Moments of a particle's neighbourhood; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy.

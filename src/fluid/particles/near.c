@@ -10,6 +10,7 @@
 #include "fluid/boundary/sight.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
+#include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 
 #include <string.h>
@@ -19,8 +20,9 @@
 #define CROWD 4096     /* candidates in the cells around a particle */
 #define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
 
-mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re) {
-  mpsi_fluid_weight w = {.re = re, .inverse = 1.0 / re};
+mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re, double water) {
+  const double ratio = water / re;
+  mpsi_fluid_weight w = {.re = re, .inverse = 1.0 / re, .scale = ratio * ratio * ratio * ratio};
   const int reach = (int)(re / l0) + 1, samples = 2000;
   for (int a = -reach; a <= reach; a++)
     for (int b = -reach; b <= reach; b++) {
@@ -112,28 +114,30 @@ static void sort_cloud(mps_fluid *f, cells *c) {
 
 /* ---- pairs ----------------------------------------------------------------------------------- */
 
-/* Slots [begin, end) of the cells that particle i searches in one column of cells. */
-static void column_range(const cells *c, int64_t column, double y, int64_t *begin, int64_t *end) {
+/* Slots [begin, end) of the cells within `reach` of y in one column of cells. */
+static void column_range(const cells *c, int64_t column, int64_t reach, double y, int64_t *begin,
+                         int64_t *end) {
   const int64_t at = cell_along(c, 1, y), last = c->n[1] - 1;
-  const int64_t low = at > REACH ? at - REACH : 0, high = at + REACH < last ? at + REACH : last;
+  const int64_t low = at > reach ? at - reach : 0, high = at + reach < last ? at + reach : last;
   *begin = c->first[column * c->n[1] + low];
   *end = c->first[column * c->n[1] + high + 1];
 }
 
-/* Neighbours of particle i and the squares of their distances; at most `room` - 1 are written, and
- * one that is not counted. Returns their number. */
-static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t room, int32_t *index,
-                      double *r2) {
+/* Neighbours of particle i within `radius` and the squares of their distances; at most `room` - 1
+ * are written, and one that is not counted. Returns their number. */
+static int64_t search(const mps_fluid *f, const cells *c, int64_t i, double radius, int64_t room,
+                      int32_t *index, double *r2) {
   const double y = f->x[1][i];
   const int64_t at = cell_along(c, 0, f->x[0][i]);
-  const int64_t low = at > REACH ? at - REACH : 0;
-  const int64_t high = at + REACH < c->n[0] - 1 ? at + REACH : c->n[0] - 1;
+  const int64_t reach = radius > f->weight.re ? (int64_t)ceil(radius * c->inverse) : REACH;
+  const int64_t low = at > reach ? at - reach : 0;
+  const int64_t high = at + reach < c->n[0] - 1 ? at + reach : c->n[0] - 1;
   int64_t found = 0;
   for (int64_t column = low; column <= high; column++) {
     int64_t begin, end;
-    column_range(c, column, y, &begin, &end);
+    column_range(c, column, reach, y, &begin, &end);
     if (found + end - begin >= room) return room;
-    found = f->loops->search(f, i, begin, end, found, index, r2);
+    found = f->loops->search(f, i, radius, begin, end, found, index, r2);
   }
   return found;
 }
@@ -155,7 +159,7 @@ static void average_weights(const mps_fluid *f, int64_t i, int64_t count, const 
     double x[2] = {f->x[0][i], f->x[1][i]};
     mpsi_fluid_mirror_point(f, f->flips[ghost], x);
     const double r = hypot(x[0] - f->x[0][own], x[1] - f->x[1][own]);
-    const float back = r < f->weight.re ? (float)mpsi_fluid_w(&f->weight, r) : 0.0f;
+    const float back = (float)mpsi_fluid_pair_w(f, i, own, r);
     w[k] = 0.5f * (w[k] + back);
   }
 }
@@ -191,7 +195,7 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     const int64_t left = limit - at;
     int32_t *index = left >= CROWD + MPSI_FLUID_WIDE ? f->index + at : apart;
     float *w = f->w + at;
-    int64_t found = search(f, p->cells, i, CROWD, index, r2);
+    int64_t found = search(f, p->cells, i, mpsi_fluid_search_radius(f, chunk, i), CROWD, index, r2);
     const bool crowded = found >= CROWD;
     if (crowded || mpsi_fluid_padded((int32_t)found) > left) {
       atomic_store(crowded ? &p->crowded : &p->full, true);
@@ -200,7 +204,10 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     if (index == apart) index = memcpy(f->index + at, apart, (size_t)found * sizeof *index);
     if (f->limited) found = mpsi_fluid_keep_visible(f, i, found, index, r2);
     if (f->segments > 0) found = mpsi_fluid_keep_seen(f, i, found, index, r2);
-    int32_t company = f->loops->weigh(f, i, found, index, r2, w);
+    if (f->rocks && (cornered || f->limited || mpsi_fluid_near_rock(f, chunk)))
+      found = mpsi_fluid_keep_in_pores(f, i, found, index, r2);
+    int32_t company = f->loops->weigh(f, mpsi_fluid_weight_of(f, i), i, found, index, r2, w);
+    if (mpsi_fluid_is_mixed(f, i)) mpsi_fluid_weigh_mixed(f, i, found, index, r2, w);
     if (f->bent) average_weights(f, i, found, index, w);
     if (cornered) company |= corners_near(f, i);
     f->company[i] = (uint8_t)company;
@@ -213,6 +220,7 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
 mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   cells c;
   mps_status status = make_cells(f, function, &c);
+  if (status == MPS_OK) status = mpsi_fluid_mark_regions(f, function);
   if (status == MPS_OK) sort_cloud(f, &c);
   for (;;) {
     const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK,

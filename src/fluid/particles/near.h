@@ -22,7 +22,8 @@ enum {
 
 #define MPSI_FLUID_CLOSE 0.7 /* l0 */
 
-mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
+/* Of a lattice of spacing l0; `water`: the radius where there is no rock, m. */
+mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re, double water);
 /* Room for a sorted cloud of so many: five values of 4 bytes each lie in lower_room. */
 int64_t mpsi_fluid_sorted_room(int64_t all);
 mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);

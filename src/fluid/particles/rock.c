@@ -1,20 +1,20 @@
-/* rock.c - permeable regions. The velocity of a particle is the discharge velocity U = e v, so that
- * the sums of the step, divergence, smoothing and images, are those of a continuous field. Where
- * the spacing changes at a face, neighbours count with e_i/e_j: as if they had the spacing of
- * particle i. With k = e/(lambda (1 + Cm)), lambda = 1 + dt e (a + b |U|)/(1 + Cm), the pressure
- * equation is
+/* rock.c - permeable regions: their definitions, and what follows from them. What they are to
+ * particles and pairs is in pores.c.
  *
- *   sum w e_i/e_j 2 k_i k_j/(k_i + k_j) (q_j - q_i) + k_i c (q_s - q_i) = S (rho/dt) div(U/lambda),
- *
- * over e_i^2, which makes it symmetric. SPDX-License-Identifier: BSD-3-Clause */
+ * The radius of the weights in rock is 2.4 spacings l0/e^.5 of its particles, at most 3.6 l0 and at
+ * least that in water: with the 3.1 l0 of water they have too few neighbours there, and forces on
+ * what stands on the rock are noise. SPDX-License-Identifier: BSD-3-Clause */
+#include "rock.h"
 #include "fluid/base/access.h"
-#include "fluid/particles/rock.h"
 #include "core/base/digits.h"
+#include "fluid/particles/near.h"
 #include "fluid/ranks/partition.h"
 
 #include <string.h>
 
 #define MOST_CORNERS 10000
+#define WIDE 2.4   /* spacings of rock: radius of weights in it */
+#define WIDEST 3.6 /* l0 */
 
 static const mps_fluid_rock_def defaults = {.struct_size = sizeof(mps_fluid_rock_def),
                                             .porosity = NAN,
@@ -27,143 +27,6 @@ static const mps_fluid_rock_def defaults = {.struct_size = sizeof(mps_fluid_rock
 
 mps_status mps_fluid_rock_def_init(mps_fluid_rock_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_fluid_rock_def, def, size, &defaults);
-}
-
-/* ---- of particles ---------------------------------------------------------------------------- */
-
-/* By the parity of the edges that the ray along x crosses. */
-static bool contains(const mpsi_fluid_rock *rock, double x, double y) {
-  bool inside = false;
-  if (!(x >= rock->low[0] && x <= rock->high[0] && y >= rock->low[1] && y <= rock->high[1]))
-    return false;
-  for (int64_t k = 0, last = rock->count - 1; k < rock->count; last = k++) {
-    const double *p = rock->xy + 2 * k, *q = rock->xy + 2 * last;
-    if ((p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]))
-      inside = !inside;
-  }
-  return inside;
-}
-
-static const mpsi_fluid_rock *rock_at(const mps_fluid *f, double x, double y) {
-  for (int32_t k = 0; k < f->rocks->room; k++)
-    if (f->rocks->rock[k].used && contains(&f->rocks->rock[k], x, y)) return &f->rocks->rock[k];
-  return NULL;
-}
-
-/* Whether all particles of a chunk are farther than re from all rock. */
-static bool is_free(const mps_fluid *f, int64_t begin, int64_t end) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-  const double reach = f->weight.re * (1.0 + 1e-9);
-  bool apart = true;
-  for (int64_t i = begin; i < end; i++)
-    for (int c = 0; c < 2; c++) {
-      low[c] = f->x[c][i] < low[c] ? f->x[c][i] : low[c];
-      high[c] = f->x[c][i] > high[c] ? f->x[c][i] : high[c];
-    }
-  for (int32_t k = 0; k < f->rocks->room; k++) {
-    const mpsi_fluid_rock *rock = &f->rocks->rock[k];
-    bool near = rock->used;
-    for (int c = 0; c < 2; c++)
-      near = near && low[c] <= rock->high[c] + reach && high[c] >= rock->low[c] - reach;
-    apart = apart && !near;
-  }
-  return apart;
-}
-
-static void find_pores(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  ((bool *)f->rocks->free_room.item)[chunk] = is_free(f, begin, end);
-  for (int64_t i = begin; i < end; i++) {
-    const mpsi_fluid_rock *rock = rock_at(f, f->x[0][i], f->x[1][i]);
-    const double e = rock ? rock->def.porosity : 1.0, mass = rock ? rock->mass : 1.0;
-    const double U = sqrt(f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i]);
-    const double lambda = rock ? 1.0 + f->dt * e * (rock->a + rock->b * U) / mass : 1.0;
-    *mpsi_fluid_pore_of(f, i) = (mpsi_fluid_pore){.porosity = e,
-                                                  .ease = e / (lambda * mass),
-                                                  .weight = rock ? &rock->weight : &f->weight,
-                                                  .spacing = f->l0 / sqrt(e)};
-    for (int c = 0; c < 2; c++) f->u[c][i] /= lambda;
-  }
-}
-
-mps_status mpsi_fluid_find_pores(mps_fluid *f, const char *function, double dt) {
-  if (!f->rocks) return MPS_OK;
-  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
-  if (!mpsi_room_ensure(f->context, &f->rocks->part_room, f->count, sizeof(mpsi_fluid_pore)) ||
-      !mpsi_room_ensure(f->context, &f->rocks->free_room, chunks, sizeof(bool)))
-    return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof(mpsi_fluid_pore));
-  const double step = f->dt;
-  f->dt = dt;
-  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, find_pores);
-  f->dt = step;
-  return MPS_OK;
-}
-
-static double porosity_of(const mps_fluid *f, int64_t j) {
-  return mpsi_fluid_pore_of(f, j < f->count ? j : f->parent[j - f->count])->porosity;
-}
-
-/* Whether all neighbours of particle i have its porosity: the sums are right as they are. */
-static bool alike(const mps_fluid *f, int64_t i) {
-  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
-  const double own = mpsi_fluid_pore_of(f, i)->porosity;
-  for (int32_t k = 0; k < f->near[i]; k++)
-    if (porosity_of(f, index[k]) != own) return false;
-  return true;
-}
-
-void mpsi_fluid_sum_pores(const mps_fluid *f, int64_t i, mpsi_fluid_sums *s) {
-  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
-  const float *w = f->w + mpsi_fluid_pairs(f, i);
-  mpsi_fluid_pore *own = mpsi_fluid_pore_of(f, i);
-  double n = 0.0, m[2] = {0.0, 0.0}, square = 0.0, shift[2] = {0.0, 0.0};
-  own->fill = s->n;
-  if (alike(f, i)) return;
-  for (int32_t k = 0; k < f->near[i]; k++) {
-    const int64_t j = index[k];
-    const double part = w[k] * own->porosity / porosity_of(f, j);
-    const double d[2] = {f->x[0][j] - f->x[0][i], f->x[1][j] - f->x[1][i]};
-    const double r2 = fmax(d[0] * d[0] + d[1] * d[1], 0.0025 * f->l0 * f->l0);
-    n += part, square += part * r2;
-    for (int c = 0; c < 2; c++) m[c] += part * d[c], shift[c] += part * d[c] / sqrt(r2);
-  }
-  own->fill = n;
-  s->r2 = square;
-  for (int c = 0; c < 2; c++) s->m[c] = m[c], s->shift[c] = shift[c];
-}
-
-/* ---- of pairs -------------------------------------------------------------------------------- */
-
-static void weigh_flow(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  float *flow = f->rocks->flow_room.item;
-  if (!mpsi_fluid_near_rock(f, chunk)) { /* w itself */
-    const int64_t first = mpsi_fluid_pairs(f, begin);
-    const int64_t last = mpsi_fluid_pairs(f, end - 1) + mpsi_fluid_padded(f->near[end - 1]);
-    memcpy(flow + first, f->w + first, (size_t)(last - first) * sizeof *flow);
-    return;
-  }
-  for (int64_t i = begin; i < end; i++) {
-    const int64_t first = mpsi_fluid_pairs(f, i);
-    const mpsi_fluid_pore *a = mpsi_fluid_pore_of(f, i);
-    for (int32_t k = 0; k < mpsi_fluid_padded(f->near[i]); k++) {
-      const int64_t j = f->index[first + k];
-      const mpsi_fluid_pore *b = mpsi_fluid_pore_of(f, j < f->count ? j : f->parent[j - f->count]);
-      const double ease = 2.0 * a->ease * b->ease / (a->ease + b->ease);
-      flow[first + k] = (float)(f->w[first + k] * (ease / (a->porosity * b->porosity)));
-    }
-  }
-}
-
-mps_status mpsi_fluid_weigh_flow(mps_fluid *f, const char *function) {
-  const int64_t pairs = f->w_room.capacity;
-  if (!f->rocks) return MPS_OK;
-  if (!mpsi_room_fit(f->context, &f->rocks->flow_room, pairs, sizeof(float)))
-    return mpsi_fail_memory(f->context, function, (size_t)pairs * sizeof(float));
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh_flow);
-  return MPS_OK;
-}
-
-void mpsi_fluid_use_flow(mps_fluid *f, bool flow) {
-  if (f->rocks) f->w = flow ? f->rocks->flow_room.item : f->w_room.item;
 }
 
 /* ---- regions --------------------------------------------------------------------------------- */
@@ -236,8 +99,18 @@ static void fill_in(mps_fluid *f, mpsi_fluid_rock *rock, const mps_fluid_rock_de
   rock->a = d->alpha * solid * solid / (e * e * e) * d->viscosity / (D * D);
   rock->b = d->beta * (1.0 + (isnan(d->KC) ? 0.0 : 7.5 / d->KC)) * solid / (e * e * e * D);
   rock->mass = 1.0 + d->gamma * solid / e;
-  rock->weight = mpsi_fluid_make_weight(f->l0 / sqrt(e), f->weight.re);
+  const double spacing = f->l0 / sqrt(e);
+  rock->weight = mpsi_fluid_make_weight(
+      spacing, fmax(fmin(WIDE * spacing, WIDEST * f->l0), f->weight.re), f->weight.re);
   rock->used = true;
+}
+
+static void find_reach(mps_fluid *f) {
+  f->reach = f->weight.re;
+  for (int32_t k = 0; f->rocks && k < f->rocks->room; k++)
+    if (f->rocks->rock[k].used) f->reach = fmax(f->reach, f->rocks->rock[k].weight.re);
+  if (!f->rocks) return;
+  f->rocks->spacing = f->l0 / sqrt(mpsi_fluid_least_porosity(f));
 }
 
 /* Without regions there is nothing to look at in a step. */
@@ -300,6 +173,7 @@ mps_status mps_fluid_add_rock(mps_fluid *f, const mps_fluid_rock_def *user, int3
   }
   f->rocks->rock[k].xy = xy;
   fill_in(f, &f->rocks->rock[k], &def);
+  find_reach(f);
   f->stale = true, f->unknown = 1;
   if (number) *number = k;
   return MPS_OK;
@@ -322,6 +196,7 @@ mps_status mps_fluid_remove_rock(mps_fluid *f, int32_t number) {
   mpsi_free(f->context, f->rocks->rock[number].xy);
   f->rocks->rock[number] = (mpsi_fluid_rock){.used = false};
   drop_if_none(f);
+  find_reach(f);
   f->stale = true, f->unknown = 1;
   return MPS_OK;
 }
@@ -334,6 +209,8 @@ void mpsi_fluid_drop_rocks(mps_fluid *f) {
   mpsi_free(f->context, rocks->part_room.item);
   mpsi_free(f->context, rocks->flow_room.item);
   mpsi_free(f->context, rocks->free_room.item);
+  mpsi_free(f->context, rocks->region_room.item);
+  mpsi_free(f->context, rocks->start_room.item);
   mpsi_free(f->context, rocks);
   f->rocks = NULL;
 }

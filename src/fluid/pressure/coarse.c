@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define LEAST 5000       /* particles: below, the solution is faster without */
-#define TILE 16.0        /* l0, side of an aggregate */
+#define TILE 8.0         /* l0, side of an aggregate */
 #define COARSER 1.5      /* of the side, where there are too many aggregates */
 #define MOST_WORK 300    /* additions of a factorisation, a particle */
 #define CLOSED 1e-6      /* tolerance of a fluid without surface, at least */

@@ -1,12 +1,12 @@
 /* coarse.h - the coarse space of the pressure's conjugate gradients (pcg.c): functions that are
- * constant over aggregates, tiles of about 16 by 16 particles, columns of Z. Without it the number
+ * constant over aggregates, tiles of about 8 by 8 particles, columns of Z. Without it the number
  * of iterations grows as the number of particles along the fluid's side; with it iterations reduce
  * the error within aggregates only.
  *
  * Deflation (Nicolaides 1987): with E = Z^T A Z, the residual r stays at right angles to Z, and the
  * preconditioned one, v, becomes v - Z E^-1 (A Z)^T v. pcg.c has no product with A; it needs U^-T A
  * (v - Z e) = U^-T (A v - A Z e), so that A Z e joins what its solution with U^T begins from. A Z
- * has entries only near edges of aggregates and at the free surface, about 1.4 a row.
+ * has entries only near edges of aggregates and at the free surface, some 2 a row.
  *
  * An aggregate lies in one block of the preconditioner. A block sums the contributions of its rows
  * to its own aggregates and to others near by, its slots; the sums over blocks are then taken in

@@ -32,18 +32,21 @@
 
 #define MODIFIED 0.95    /* fraction of the fill that is added to the pivots */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
-#define LOOK_FROM                                                                                  \
-  4.0 /* of the rz at which the residual would be small enough if both fell in proportion */
-#define LOOK_AGAIN 0.25 /* of rz, at the soonest */
-#define SINGLE 1e-6     /* tolerance that factors in single precision allow */
-#define DEFLATED 1e-4   /* of the residual, in one go with the coarse space: see mpsi_fluid_pcg */
+/* The residual is computed first at LOOK_FROM times the rz at which it would be small enough if
+ * both fell in proportion, and again when rz has fallen by LOOK_AGAIN or less. */
+#define LOOK_FROM 4.0
+#define LOOK_AGAIN 0.25
+#define SINGLE 1e-6   /* tolerance that factors in single precision allow */
+#define DEFLATED 1e-4 /* of the residual, in one go with the coarse space: see mpsi_fluid_pcg */
 
 /* ---- preconditioner -------------------------------------------------------------------------- */
 
-/* Row i of U^T but its 1; the pivot of row i, and the entries right of it; diag A - 2 D, in the
- * place of u_new[1], which has no other use before the pressure is known. A neighbour and its image
- * are two entries. Rounding of an entry to single precision is added to the diagonals, so that the
- * row sums stay exact: without a free surface the matrix would become indefinite otherwise. */
+/* Row i of the unit lower triangular U^T, without the 1 on its diagonal: the entries go to `column`
+ * and `lower`, their number is returned. Also the pivot (s->r, its reciprocal s->inverse), the sum
+ * of the entries right of the diagonal (s->z) and diag A - 2 D (u_new[1], which has no other use
+ * before the pressure is known). A neighbour and its image are two entries. Rounding of an entry to
+ * single precision is added to the diagonals, so that the row sums stay exact: without a free
+ * surface the matrix would become indefinite otherwise. */
 static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, uint16_t *column,
                          float *lower) {
   const mpsi_fluid_system *s = &f->system;
@@ -139,7 +142,7 @@ typedef struct iteration {
   double alpha, beta;
 } iteration;
 
-/* Sum over the chunks or blocks of the one or the other of their two sums. */
+/* Sum over `count` chunks or blocks of sum `which` (0 or 1) of the two that each has stored. */
 static double total(const mps_fluid *f, int64_t count, int which) {
   double sum = 0.0;
   for (int64_t k = 0; k < count; k++) sum += f->system.sums[2 * k + which];

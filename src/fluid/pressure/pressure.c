@@ -15,7 +15,7 @@
 #include "fluid/boundary/closed.h"
 #include "fluid/boundary/walls.h"
 #include "fluid/pressure/pcg.h"
-#include "fluid/particles/rock.h"
+#include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 
 #define DENSITY 0.003       /* k over the excess of n/n0 */

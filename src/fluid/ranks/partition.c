@@ -6,7 +6,7 @@
 #include "fluid/base/access.h"
 #include "partition.h"
 
-#include "fluid/particles/rock.h"
+#include "fluid/particles/pores.h"
 
 #include "body/body_internal.h"
 #include "domain/halo.h"

@@ -17,7 +17,7 @@
 #include "fluid/step/keep_off.h"
 #include "fluid/base/loops.h"
 #include "fluid/boundary/polyline.h"
-#include "fluid/particles/rock.h"
+#include "fluid/particles/pores.h"
 #include "fluid/ranks/partition.h"
 #include "fluid/step/exchange.h"
 #include "fluid/step/smooth.h"

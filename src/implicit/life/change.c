@@ -5,7 +5,7 @@
 #include "change.h"
 #include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
-#include "implicit/life/body.h"
+#include "implicit/life/elastic_body.h"
 
 #include <stdio.h>
 #include <stdlib.h>

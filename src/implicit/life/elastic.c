@@ -3,7 +3,7 @@
 #include "implicit/base/defs.h"
 #include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
-#include "implicit/life/body.h"
+#include "implicit/life/elastic_body.h"
 #include "implicit/life/change.h"
 
 #include "core/particles/particles_internal.h"

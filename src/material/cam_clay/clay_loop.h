@@ -1,7 +1,7 @@
 /* clay_loop.h - Cam-Clay on a block, in vectors: trial, Newton's method of cam_clay.c for the
  * particles that yield, which are packed for it, and the results. The equations are those of
- * cam_clay.c with y = ln(p/p0) for ln p, so that a small step needs no logarithm and only
- * exponentials of small numbers, by their series. A particle with an open gap, less pressure than
+ * cam_clay.c with y = ln(p/p0) for ln p, so that a step needs no logarithm and only exponentials
+ * of numbers up to 1, by their series. A particle with an open gap, less pressure than
  * `least_pressure`, a long step, or one for which Newton's method needs more takes the step of
  * cam_clay.c; which of the two depends on the particle alone. Both agree to rounding.
  * Included by laws.c alone, which compiles it for each instruction set. SPDX-License-Identifier:
@@ -12,9 +12,10 @@
 #include "material/tensor.h"
 
 #define CLAY_CHUNK 64
-#define CLAY_LONGEST 1e-2  /* strain of an undivided step, as in cam_clay.c */
-#define CLAY_LARGEST 0.125 /* argument of the series */
-#define CLAY_ROUNDS 8      /* of Newton's method */
+#define CLAY_LANES 8      /* doubles of the longest vector: a divisor of CLAY_CHUNK */
+#define CLAY_LONGEST 1e-2 /* strain of an undivided step, as in cam_clay.c */
+#define CLAY_LARGEST 1.0  /* argument of the exponentials */
+#define CLAY_ROUNDS 12    /* of Newton's method */
 
 /* What a particle is; doubles, as the vectors' other values. */
 #define CLAY_ELASTIC 0.0
@@ -29,23 +30,52 @@ typedef struct clay_trial {
   double kind[CLAY_CHUNK];
 } clay_trial;
 
-/* The particles that yield, in units of their pc0. */
+/* The particles that yield: of their trials, and what is solved, in units of their pc0. */
 typedef struct clay_packed {
+  double pc0[CLAY_CHUNK], q[CLAY_CHUNK], m2[CLAY_CHUNK], shear[CLAY_CHUNK];
+  double v0[CLAY_CHUNK], ratio[CLAY_CHUNK];
   double p0[CLAY_CHUNK], dv[CLAY_CHUNK], vm[CLAY_CHUNK], q2[CLAY_CHUNK], rate[CLAY_CHUNK];
   double y[CLAY_CHUNK], g[CLAY_CHUNK];
   double p[CLAY_CHUNK], pc[CLAY_CHUNK], D[CLAY_CHUNK];
-  double state[CLAY_CHUNK]; /* 0: Newton's method works on it, 1: solved, 2: not */
+  double state[CLAY_CHUNK];  /* 0: Newton's method works on it, 1: solved, 2: not */
+  double strain[CLAY_CHUNK]; /* growth of the plastic strain */
   int64_t at[CLAY_CHUNK];
 } clay_packed;
 
-/* exp(x), |x| <= CLAY_LARGEST: 1e-17. */
-MPSI_INLINE double clay_exp(double x) {
-  const double x2 = x * x, x4 = x2 * x2;
-  const double a = 1.0 + x, b = 1.0 / 2.0 + x * (1.0 / 6.0);
-  const double c = 1.0 / 24.0 + x * (1.0 / 120.0), d = 1.0 / 720.0 + x * (1.0 / 5040.0);
-  const double e = 1.0 / 40320.0 + x * (1.0 / 362880.0) + x2 * (1.0 / 3628800.0);
-  return a + x2 * b + x4 * (c + x2 * d + x4 * e);
+/* Vectors of particles, as long as the processor's: gcc leaves the round of Newton's method below
+ * as a loop with branches. */
+#if MPSI_LEVEL == 4
+#define CLAY_WIDE 8
+#elif MPSI_LEVEL == 3
+#define CLAY_WIDE 4
+#else
+#define CLAY_WIDE 2
+#endif
+typedef double clay_wide __attribute__((vector_size(8 * CLAY_WIDE)));
+typedef double clay_wide_any __attribute__((vector_size(8 * CLAY_WIDE), aligned(8), may_alias));
+typedef int64_t clay_mask __attribute__((vector_size(8 * CLAY_WIDE))); /* of comparisons: 0 or -1 */
+
+MPSI_INLINE clay_wide clay_get(const double *from) { return *(const clay_wide_any *)from; }
+MPSI_INLINE void clay_put(double *to, clay_wide a) { *(clay_wide_any *)to = a; }
+MPSI_INLINE clay_wide clay_select(clay_mask which, clay_wide a, clay_wide b) {
+  return (clay_wide)((which & (clay_mask)a) | (~which & (clay_mask)b));
 }
+MPSI_INLINE clay_wide clay_sizes(clay_wide a) { return clay_select(a < 0.0, -a, a); }
+
+/* exp(x), |x| <= CLAY_LARGEST: the series of exp(x/8) - 1, whose square, that of its square and so
+ * on follow from (1 + a)^2 - 1 = a (2 + a). */
+#define CLAY_EXP(type, name)                                                                       \
+  MPSI_INLINE type name(type argument) {                                                           \
+    const type x = 0.125 * argument, x2 = x * x, x4 = x2 * x2;                                     \
+    const type b = 1.0 / 2.0 + x * (1.0 / 6.0), c = 1.0 / 24.0 + x * (1.0 / 120.0);                \
+    const type d = 1.0 / 720.0 + x * (1.0 / 5040.0);                                               \
+    const type e = 1.0 / 40320.0 + x * (1.0 / 362880.0) + x2 * (1.0 / 3628800.0);                  \
+    const type once = x + (x2 * b + x4 * (c + x2 * d + x4 * e));                                   \
+    const type twice = once * (2.0 + once), four = twice * (2.0 + twice);                          \
+    return 1.0 + four * (2.0 + four);                                                              \
+  }
+CLAY_EXP(double, clay_exp)
+CLAY_EXP(clay_wide, clay_exp_wide)
 
 MPSI_INLINE double clay_size(double x) { return x < 0.0 ? -x : x; }
 
@@ -103,71 +133,100 @@ MPSI_INLINE void clay_try(const int geometry, const bool lode, const mpsi_law *c
   }
 }
 
+/* How many particles the vectors work on: those after the last are copies of it. */
+MPSI_INLINE int64_t clay_padded(int64_t n) {
+  return (n + CLAY_LANES - 1) / CLAY_LANES * CLAY_LANES;
+}
+
 MPSI_INLINE int64_t clay_pack(const mps_material_block *block, int64_t begin, int64_t count,
                               const clay_trial *t, clay_packed *c) {
+  const double *pcs = block->history[MPSI_CLAY_PC] + begin;
   int64_t n = 0;
   for (int64_t k = 0; k < count; k++) {
-    if (t->kind[k] != CLAY_YIELDS) continue;
-    const double per_pc = 1.0 / block->history[MPSI_CLAY_PC][begin + k], per_m2 = 1.0 / t->m2[k];
-    const double v1 = t->v0[k] * t->ratio[k], q = t->q[k] * per_pc;
-    c->p0[n] = t->p0[k] * per_pc;
-    c->dv[n] = t->v0[k] - v1, c->vm[n] = 0.5 * (t->v0[k] + v1);
-    c->q2[n] = q * q * per_m2;
-    c->rate[n] = 6.0 * t->shear[k] * per_pc * per_m2;
-    c->y[n] = t->y[k], c->g[n] = 0.0, c->state[n] = 0.0;
-    c->at[n++] = k;
+    c->at[n] = k; /* kept where n grows */
+    n += t->kind[k] == CLAY_YIELDS;
+  }
+  const int64_t padded = clay_padded(n);
+  for (int64_t j = n; j < padded; j++) c->at[j] = c->at[n - 1];
+  for (int64_t j = 0; j < padded; j++) {
+    const int64_t k = c->at[j];
+    c->pc0[j] = pcs[k], c->m2[j] = t->m2[k], c->q[j] = t->q[k], c->shear[j] = t->shear[k];
+    c->p0[j] = t->p0[k], c->y[j] = t->y[k], c->v0[j] = t->v0[k], c->ratio[j] = t->ratio[k];
+  }
+  _Pragma("omp simd") for (int64_t j = 0; j < padded; j++) {
+    const double per_pc = 1.0 / c->pc0[j], per_m2 = 1.0 / c->m2[j], q = c->q[j] * per_pc;
+    const double v0 = c->v0[j], v1 = v0 * c->ratio[j];
+    c->p0[j] *= per_pc;
+    c->dv[j] = v0 - v1, c->vm[j] = 0.5 * (v0 + v1);
+    c->q2[j] = q * q * per_m2;
+    c->rate[j] = 6.0 * c->shear[j] * per_pc * per_m2;
+    c->g[j] = 0.0, c->state[j] = 0.0;
   }
   return n;
 }
 
-/* One round of Newton's method; returns how many particles are left. */
-MPSI_INLINE double clay_round(const mpsi_law *law, int64_t n, clay_packed *c) {
-  const double kappa = law->swelling, per_plastic = 1.0 / (law->compression - kappa);
+/* One round of Newton's method for the particles from k on; those that it moves are marked. */
+MPSI_INLINE clay_mask clay_move(double kappa, double per_plastic, int64_t k, clay_packed *c) {
   const double fall = kappa * per_plastic;
-  double left = 0.0;
-  _Pragma("omp simd reduction(+ : left)") for (int64_t k = 0; k < n; k++) {
-    const double y = c->y[k], g = c->g[k], vm = c->vm[k], rate = c->rate[k];
-    const double elastic = kappa * y, plastic = (c->dv[k] - elastic) * per_plastic;
-    const double p = c->p0[k] * clay_exp(y), pc = clay_exp(plastic), D = 1.0 + rate * g;
-    const double per_D = 1.0 / D, cut = c->q2[k] * per_D * per_D, twice = 2.0 * p - pc;
-    const double r1 = (c->dv[k] - elastic) - vm * g * twice, r2 = cut + p * (p - pc);
-    const int volume = clay_size(r1) <= 1e-14 * vm, yields = clay_size(r2) <= 1e-13 * (1.0 + p * p);
-    const int done = volume & yields;
-    const double yy = -kappa - vm * g * (2.0 * p + fall * pc), yg = -vm * twice;
-    const double gy = p * twice + fall * p * pc, gg = -2.0 * cut * rate * per_D;
-    const double det = yy * gg - yg * gy;
-    const int regular = clay_size(det) > 1e-300, near = clay_size(y) <= CLAY_LARGEST;
-    const int within = clay_size(plastic) <= CLAY_LARGEST, lost = !(regular & near & within);
-    const double per_det = 1.0 / det;
-    const double next = g + (gy * r1 - yy * r2) * per_det;
-    const double state = done ? 1.0 : 0.0, now = lost ? 2.0 : state;
-    const int works = c->state[k] == 0.0, moves = works & (now == 0.0);
-    c->p[k] = works ? p : c->p[k], c->pc[k] = works ? pc : c->pc[k];
-    c->D[k] = works ? D : c->D[k];
-    c->y[k] = moves ? y + (yg * r2 - gg * r1) * per_det : y;
-    c->g[k] = moves ? (next > 0.0 ? next : 0.0) : g;
-    c->state[k] = works ? now : c->state[k];
-    left += moves ? 1.0 : 0.0;
-  }
-  return left;
+  const clay_wide y = clay_get(c->y + k), g = clay_get(c->g + k), vm = clay_get(c->vm + k);
+  const clay_wide dv = clay_get(c->dv + k), rate = clay_get(c->rate + k);
+  const clay_wide state = clay_get(c->state + k);
+  const clay_wide elastic = kappa * y, plastic = (dv - elastic) * per_plastic;
+  const clay_wide p = clay_get(c->p0 + k) * clay_exp_wide(y), pc = clay_exp_wide(plastic);
+  const clay_wide D = 1.0 + rate * g, per_D = 1.0 / D, twice = 2.0 * p - pc;
+  const clay_wide cut = clay_get(c->q2 + k) * per_D * per_D;
+  const clay_wide r1 = (dv - elastic) - vm * g * twice, r2 = cut + p * (p - pc);
+  const clay_mask done = (clay_sizes(r1) <= 1e-14 * vm) & (clay_sizes(r2) <= 1e-13 * (1.0 + p * p));
+  const clay_wide yy = -kappa - vm * g * (2.0 * p + fall * pc), yg = -vm * twice;
+  const clay_wide gy = p * twice + fall * p * pc, gg = -2.0 * cut * rate * per_D;
+  const clay_wide det = yy * gg - yg * gy, per_det = 1.0 / det;
+  const clay_mask near = (clay_sizes(y) <= CLAY_LARGEST) & (clay_sizes(plastic) <= CLAY_LARGEST);
+  const clay_mask lost = ~((clay_sizes(det) > 1e-300) & near);
+  const clay_wide step = (yg * r2 - gg * r1) * per_det, next = g + (gy * r1 - yy * r2) * per_det;
+  const clay_wide zero = {0.0}, up = clay_select(step > -1.0, step, zero - 1.0);
+  const clay_mask works = state == 0.0, moves = works & ~(done | lost);
+  const clay_wide now = clay_select(lost, zero + 2.0, clay_select(done, zero + 1.0, zero));
+  clay_put(c->p + k, clay_select(works, p, clay_get(c->p + k)));
+  clay_put(c->pc + k, clay_select(works, pc, clay_get(c->pc + k)));
+  clay_put(c->D + k, clay_select(works, D, clay_get(c->D + k)));
+  clay_put(c->y + k, clay_select(moves, y + clay_select(up < 1.0, up, zero + 1.0), y));
+  clay_put(c->g + k, clay_select(moves, clay_select(next > 0.0, next, zero), g));
+  clay_put(c->state + k, clay_select(works, now, state));
+  return moves;
+}
+
+/* One round of Newton's method; whether particles are left. */
+MPSI_INLINE bool clay_round(const mpsi_law *law, int64_t n, clay_packed *c) {
+  const double kappa = law->swelling, per_plastic = 1.0 / (law->compression - kappa);
+  clay_mask left = {0};
+  int64_t any = 0;
+  for (int64_t k = 0; k < n; k += CLAY_WIDE) left |= clay_move(kappa, per_plastic, k, c);
+  for (int i = 0; i < CLAY_WIDE; i++) any |= left[i];
+  return any != 0;
 }
 
 /* The results of the packed particles, in their places. */
 MPSI_INLINE void clay_unpack(const mpsi_law *law, const mps_material_block *block, int64_t begin,
-                             int64_t n, const clay_packed *c, clay_trial *t) {
+                             int64_t n, clay_packed *c, clay_trial *t) {
+  const double least = 2.0 * law->least_pressure;
+  const int64_t padded = clay_padded(n);
+  _Pragma("omp simd") for (int64_t j = 0; j < padded; j++) {
+    const double pc = c->pc[j] * c->pc0[j], scale = 1.0 / c->D[j];
+    c->strain[j] = 2.0 * c->g[j] * (c->q[j] / c->pc0[j]) * scale / c->m2[j];
+    c->p[j] *= c->pc0[j];
+    c->D[j] = scale;
+    c->pc[j] = pc > least ? pc : least;
+  }
   for (int64_t j = 0; j < n; j++) {
     const int64_t k = c->at[j];
     if (c->state[j] != 1.0) {
       t->kind[k] = CLAY_ALONE;
       continue;
     }
-    double *pc = &block->history[MPSI_CLAY_PC][begin + k];
-    const double next = c->pc[j] * *pc, least = 2.0 * law->least_pressure;
-    t->p[k] = c->p[j] * *pc;
-    t->scale[k] = 1.0 / c->D[j];
-    block->history[MPSI_CLAY_STRAIN][begin + k] +=
-        2.0 * c->g[j] * (t->q[k] / *pc) * t->scale[k] / t->m2[k];
-    *pc = next > least ? next : least;
+    t->p[k] = c->p[j];
+    t->scale[k] = c->D[j];
+    block->history[MPSI_CLAY_STRAIN][begin + k] += c->strain[j];
+    block->history[MPSI_CLAY_PC][begin + k] = c->pc[j];
   }
 }
 
@@ -202,16 +261,24 @@ MPSI_INLINE void clay_finish(const int geometry, const mpsi_law *law,
                              const mps_material_block *block, int64_t begin, int64_t count,
                              const clay_trial *t) {
   double *voids = block->history[MPSI_CLAY_VOID] + begin, *volume = block->volume_ratio + begin;
-  for (int64_t k = 0; k < count; k++) {
-    if (t->kind[k] == CLAY_ALONE) {
-      clay_step_alone(geometry, law, block, begin + k);
-      continue;
+  int64_t *flags = block->flags + begin;
+  int64_t alone = 0;
+  for (int64_t k = 0; k < count; k++) alone += t->kind[k] == CLAY_ALONE;
+  for (int64_t k = 0; k < count && alone > 0; k++)
+    if (t->kind[k] == CLAY_ALONE) clay_step_alone(geometry, law, block, begin + k);
+  for (int c = 0; c < (geometry == MPSI_SPACE ? 6 : 4); c++) {
+    double *stress = block->stress[c] + begin;
+    const double part = c < 3 ? 1.0 : 0.0;
+    _Pragma("omp simd") for (int64_t k = 0; k < count; k++) {
+      const double now = t->scale[k] * t->dev[c][k] - part * t->p[k];
+      stress[k] = t->kind[k] == CLAY_ALONE ? stress[k] : now;
     }
-    for (int c = 0; c < (geometry == MPSI_SPACE ? 6 : 4); c++)
-      block->stress[c][begin + k] = t->scale[k] * t->dev[c][k] - (c < 3 ? t->p[k] : 0.0);
-    voids[k] = t->v0[k] * t->ratio[k] - 1.0;
-    volume[k] *= t->ratio[k];
-    block->flags[begin + k] = t->kind[k] == CLAY_YIELDS ? MPS_MATERIAL_FLAG_PLASTIC : 0;
+  }
+  _Pragma("omp simd") for (int64_t k = 0; k < count; k++) {
+    const int here = t->kind[k] != CLAY_ALONE, yields = t->kind[k] == CLAY_YIELDS;
+    voids[k] = here ? t->v0[k] * t->ratio[k] - 1.0 : voids[k];
+    volume[k] = here ? volume[k] * t->ratio[k] : volume[k];
+    flags[k] = here ? (yields ? MPS_MATERIAL_FLAG_PLASTIC : 0) : flags[k];
   }
 }
 
@@ -226,8 +293,8 @@ MPSI_INLINE mps_status cam_clay_loop(const int geometry, const mpsi_law *law,
     else
       clay_try(geometry, true, law, block, begin, count, &t);
     const int64_t n = clay_pack(block, begin, count, &t, &c);
-    double works = (double)n;
-    for (int round = 0; round < CLAY_ROUNDS && works > 0.0; round++) works = clay_round(law, n, &c);
+    bool works = n > 0;
+    for (int round = 0; round < CLAY_ROUNDS && works; round++) works = clay_round(law, n, &c);
     clay_unpack(law, block, begin, n, &c, &t);
     clay_finish(geometry, law, block, begin, count, &t);
   }

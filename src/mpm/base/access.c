@@ -1,7 +1,7 @@
 /* access.c - queries of a solver between its steps: whether it may be used, Courant limit, time
  * step and time. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 mps_status mpsi_mpm_between_steps(mps_context *context, const mpsi_run *run, const char *function) {
   return mpsi_guard_check(&run->guard, context, function);

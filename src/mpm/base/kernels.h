@@ -1,5 +1,5 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * cut_scatter.c, cut_gather.c, search.c, sweep.c; common code is in loops.h.
+ * cut_scatter.c, cut_gather.c, search.c, sweep.c, cell_loops.c; common code is in loops.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H
@@ -46,6 +46,8 @@ typedef struct mpsi_kernels {
   mpsi_transfer_fn flush;            /* second half: from the tile to the nodes */
   const mpsi_transfer_fn (*g2p)[2];  /* G2P: velocities and positions; then law and speed */
   mpsi_transfer_fn speed;            /* largest c + |v| of a block */
+  mpsi_transfer_fn pore_sum;  /* water in the pores: sums of a block in the worker's tiles, which */
+  mpsi_transfer_fn pore_give; /* are clear; and back from the tiles (water/cell_loops.c) */
   mpsi_fit_fn fit;
   mpsi_foot_fn foot;
   /* search.c, of particles [begin, end): the largest speed (m/s); the first that is not known to be

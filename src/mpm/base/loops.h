@@ -274,5 +274,7 @@ void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constra
 void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mpsi_impulses *all, int64_t constraint, double *v);
 void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work);
 void MPSI_LEVELLED(mpsi_mpm_flush)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_give)(const mpsi_transfer *work);
 
 #endif

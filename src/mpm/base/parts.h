@@ -12,9 +12,6 @@ typedef struct mpsi_kernels mpsi_kernels;             /* base/kernels.h */
 typedef struct mpsi_transfer mpsi_transfer;           /* base/kernels.h */
 typedef struct mpsi_contact_stage mpsi_contact_stage; /* base/kernels.h */
 typedef struct mpsi_inside_search mpsi_inside_search; /* base/kernels.h */
-typedef struct mpsi_transfer mpsi_transfer;           /* base/kernels.h */
-typedef struct mpsi_contact_stage mpsi_contact_stage; /* base/kernels.h */
-typedef struct mpsi_inside_search mpsi_inside_search; /* base/kernels.h */
 typedef struct mpsi_grid mpsi_grid;                   /* grid/blocks.h */
 typedef struct mpsi_cell_block mpsi_cell_block;       /* grid/blocks.h */
 typedef struct mpsi_laws mpsi_laws;                   /* particles/laws.h */

@@ -1,7 +1,7 @@
 /* boundaries.c - the boundaries of a solver: sides of the domain, boxes of nodes, lists of
  * particles; their definitions and reactions. Their action in a step: walls.c, absorb.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 #include "core/base/boundary_kind.h"
 #include "core/context/retain.h"

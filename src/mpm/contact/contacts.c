@@ -2,7 +2,7 @@
  * in a step: pairs.c, inside.c, constraints.c, impulses.c, penalty.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particle.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 #include "core/particles/particles_internal.h"
 

@@ -5,7 +5,7 @@
 #define MPSI_MPM_PAIRS_H
 
 #include "thin_bodies.h"
-#include "contact/contact.h"
+#include "contact/penalty_contact.h"
 #include "exchange.h"
 #include "impulses.h"
 #include "partners.h"

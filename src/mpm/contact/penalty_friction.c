@@ -34,15 +34,15 @@ void mpsi_mpm_apply_friction(const mpsi_grid *grid, const mpsi_contacts *contact
     if (contacts->handle[b]->def.friction == 0.0 || contacts->node_pair[t].mass == 0.0) continue;
     mpsi_contact_node *at = contacts->node + (int64_t)t * grid->block_nodes;
     for (int k = 0; k < grid->block_nodes; k++) {
-      const double m = node[k][MPSI_MASS];
-      double x[3], f[3];
-      mpsi_node_place(grid, nodes->at, k, x);
-      const bool frictional =
-          mpsi_contact_friction(contacts->handle[b], grid->dim, &at[k], contacts->state[b].mass, x,
-                                node[k] + MPSI_VECTOR, side[k] + MPSI_VECTOR, m, dt, f);
+      mpsi_contact_motion motion = {
+          .mass = node[k][MPSI_MASS], .v = node[k] + MPSI_VECTOR, .v0 = side[k] + MPSI_VECTOR};
+      double f[3];
+      mpsi_node_place(grid, nodes->at, k, motion.x);
+      const bool frictional = mpsi_contact_friction(contacts->handle[b], grid->dim, &at[k], &motion,
+                                                    contacts->state[b].mass, dt, f);
       for (int c = 0; c < 3; c++) {
         at[k].slip[c] = frictional ? f[c] / at[k].mass : 0.0;
-        if (frictional) node[k][MPSI_VECTOR + c] += dt * f[c] / m;
+        if (frictional) node[k][MPSI_VECTOR + c] += dt * f[c] / motion.mass;
       }
     }
   }

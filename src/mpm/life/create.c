@@ -1,7 +1,7 @@
 /* create.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 #include "core/particles/particles_internal.h"

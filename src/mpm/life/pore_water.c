@@ -2,7 +2,7 @@
  * faces, budget. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
 #include "mpm/base/kernels.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "restart.h"
 
 #include "rank_files.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 #include <stdio.h>

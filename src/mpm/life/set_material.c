@@ -1,7 +1,7 @@
 /* set_material.c - another law for some particles, or all of them, between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 /* Number of particles of a list, NULL being all; index of the i-th of them. */
 static int64_t listed(const mpsi_columns *p, int64_t count, const int64_t *ids) {

@@ -1,7 +1,7 @@
 /* loads.c - forces on particles besides gravity: the fields `body_acceleration` and
  * `external_force`, and dead loads on lists of particles, which are found by their ids so that
  * sorting does not matter. SPDX-License-Identifier: BSD-3-Clause */
-#include "particles.h"
+#include "mpm_particles.h"
 
 #include "core/particles/particles_internal.h"
 #include "core/context/retain.h"

@@ -3,7 +3,7 @@
 #include "mpm/base/kernels.h"
 
 #include "core/particles/particles_internal.h"
-#include "particles.h"
+#include "mpm_particles.h"
 
 /* ---- one law --------------------------------------------------------------------------------- */
 

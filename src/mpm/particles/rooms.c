@@ -1,6 +1,6 @@
 /* rooms.c - memory with an entry for each particle, besides its fields: for the sort, loads, means
  * of the change of volume and the filter of stresses. SPDX-License-Identifier: BSD-3-Clause */
-#include "particles.h"
+#include "mpm_particles.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
  * laid over the bounds of all blocks. Results do not depend on the owners.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain/curve.h"
 #include "domain/migrate.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 #include <stdlib.h>
 #include <string.h>

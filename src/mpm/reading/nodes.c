@@ -3,7 +3,7 @@
  * memory changes, or what the next step would change first.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/ranks/parcels.h"
 #include "mpm/step/tiles.h"
 

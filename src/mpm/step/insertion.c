@@ -8,7 +8,7 @@
  *
  * On several ranks each is given all that is added, and keeps what lies in its blocks (owners.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 static mps_status add_particles(mps_mpm *mpm, const char *function, int64_t first, int64_t count) {
   mps_status status = mpsi_mpm_usable(mpm, function);

@@ -1,7 +1,7 @@
 /* outflow.c - particles that leave the set at the end of a step: those that have passed an open
  * side of the domain (removal by bodies, before a step: contact/removal.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * something: blocks of the present positions, masses, boundaries, the Courant limit.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/kernels.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {

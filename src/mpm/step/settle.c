@@ -3,7 +3,7 @@
  * since there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
 #include "settle.h"
 
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 #include <mps/mpm_settle.h>
@@ -24,10 +24,6 @@ mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
 
 static mps_status check_still(mps_context *context, const mpsi_contacts *contacts,
                               mpsi_water *water, const char *function) {
-  if (water && water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
-    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                     "pressures of the pore water are implicit (scheme is 1), and settling needs "
-                     "explicit ones (0)");
   if (water && water->flows)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the solver has pore water that flows, and no time passes while the particles "
@@ -181,11 +177,17 @@ static mps_status sum_balance(const mpsi_grid *grid, const mpsi_contacts *contac
   return status;
 }
 
+/* The given dt may be that of implicit pressures, which are explicit here: below. */
+static double settling_dt(const mps_mpm *mpm) {
+  const double dt = mps_mpm_dt(mpm), most = mpm->def.courant * mps_mpm_limit(mpm);
+  return mpm->water && most < dt ? most : dt;
+}
+
 /* One step of the relaxation; the time of the run does not change. */
 static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now) {
   const double time = mpm->run.time;
   mps_status status = mpsi_mpm_check_bounded(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
+  if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, function, settling_dt(mpm));
   mpm->run.time = time;
   double sums[SUMS];
   if (status == MPS_OK)
@@ -226,6 +228,20 @@ static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_
                    "%.4g N, above the tolerance %.3g; more steps, or there is none (the ground "
                    "flows)",
                    (long long)now->steps, now->unbalanced, now->applied, def->tolerance);
+}
+
+/* Pressures of undrained ground follow from its volumes at rest, whatever the scheme. Explicit ones
+ * do so without an error in time, and stay stable where particles are stopped again and again. */
+static mps_status relax_with_explicit_pressures(mps_mpm *mpm, const char *function,
+                                                const mps_mpm_settle_def *def,
+                                                mps_mpm_settled *now) {
+  mpsi_pore_set_scheme(mpm, MPS_PORE_SCHEME_EXPLICIT);
+  mps_status status = mpsi_mpm_collect_block_results(mpm, function);
+  if (status == MPS_OK) status = relax_until(mpm, function, def, now);
+  mpsi_pore_set_scheme(mpm, MPS_PORE_SCHEME_IMPLICIT);
+  if (mpm->run.broken) return status;
+  const mps_status limit = mpsi_mpm_collect_block_results(mpm, function);
+  return status == MPS_OK ? limit : status;
 }
 
 static mps_status read_def(mps_context *context, const char *function,
@@ -287,7 +303,10 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   settling->on = true;
   settling->cut = false;
   mpsi_guard_enter(&mpm->run.guard, mpm->context, function);
-  status = relax_until(mpm, function, &def, &now);
+  if (mpm->water && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
+    status = relax_with_explicit_pressures(mpm, function, &def, &now);
+  else
+    status = relax_until(mpm, function, &def, &now);
   mpsi_guard_end(&mpm->run.guard);
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
   release_bodies(&mpm->contact);

@@ -3,7 +3,7 @@
 #include "stages.h"
 
 #include "core/particles/particles_internal.h"
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "means.h"
 #include "tiles.h"
 

@@ -16,7 +16,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "stages.h"
 
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
 static mps_status prepare(mps_mpm *mpm, const char *function) {

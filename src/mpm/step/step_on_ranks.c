@@ -10,7 +10,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "stages.h"
 
-#include "mpm/particles/particles.h"
+#include "mpm/particles/mpm_particles.h"
 #include "means.h"
 #include "mpm/ranks/parcels.h"
 #include "mpm/water/water.h"

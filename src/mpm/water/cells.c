@@ -5,17 +5,13 @@
  * worker's tile first and then added to the cells, block by block in the order of their colours: on
  * several ranks the tiles of border blocks travel, and the cells have the bits of one rank.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "cell_loops.h"
 #include "layers.h"
-#include "water.h"
+#include "mpm/base/kernels.h"
 
 #include <string.h>
 
 /* ---- to the tile ----------------------------------------------------------------------------- */
-
-/* Values of a cell in the worker's two tiles: sums over its particles of V, dV, V p, V n; V k and
- * V g. */
-enum { VOLUME, CHANGE, PRESSURE, POROSITY };
-enum { PERMEABILITY, SLOPE };
 
 static void clear_region(const mpsi_cell_block *cells, const mpsi_worker *worker) {
   int low[3], high[3];
@@ -28,80 +24,12 @@ static void clear_region(const mpsi_cell_block *cells, const mpsi_worker *worker
     }
 }
 
-/* The first node of a tile, and the first and last of its cells, or those of the domain. */
-typedef struct region {
-  double first[3];
-  int low[3], last[3];
-} region;
-
-static region region_of(const mpsi_grid *grid, const mpsi_cell_block *cells) {
-  region out = {{0.0}, {0}, {0}};
-  mpsi_pore_region(cells, out.low, out.last);
-  for (int c = 0; c < grid->dim; c++) {
-    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, most = grid->high[c] - 1 - first;
-    out.first[c] = (double)first;
-    out.last[c] = most < out.last[c] - 1 ? (int)most : out.last[c] - 1;
-  }
-  return out;
-}
-
-/* The cell of a particle in the tile. One that has left the domain is in the nearest. */
-MPSI_INLINE int find_place(const mpsi_grid *grid, const mpsi_columns *p, const region *in, int dim,
-                           int64_t particle) {
-  int place = 0;
-  for (int c = 0, stride = 1; c < dim; c++, stride *= MPSI_TILE_SIDE) {
-    const double X = mpsi_grid_at(grid, c, p->x[c][particle]) - in->first[c];
-    int cell = X > 0.0 ? (int)X : 0; /* without a call of floor */
-    cell = cell < in->last[c] ? cell : in->last[c];
-    cell = cell > in->low[c] ? cell : in->low[c];
-    place += stride * cell;
-  }
-  return place;
-}
-
-/* Particles of a stencil are neighbours: those in a row that are in the same cell are summed before
- * they are added to it. */
-MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
-                          int64_t b, const mpsi_worker *worker, int dim) {
-  const mpsi_cell_block *cells = &grid->cells[b];
-  const double *former = water->former;
-  uint16_t *place = water->place;
-  const region in = region_of(grid, cells);
-  clear_region(cells, worker);
-  for (int64_t k = cells->begin; k < cells->end; k++)
-    place[k] = (uint16_t)find_place(grid, p, &in, dim, k);
-  for (int64_t k = cells->begin; k < cells->end;) {
-    const int at = place[k];
-    double centre[3], sum[4] = {0.0}, flow[4] = {0.0};
-    (void)mpsi_pore_cell_at(grid, water, cells, at, centre);
-    for (; k < cells->end && place[k] == at; k++) {
-      const double V = p->V[k];
-      double there = p->u[k];
-      for (int c = 0; c < dim; c++) {
-        there += p->g[c][k] * (centre[c] - p->x[c][k]);
-        flow[SLOPE + c] += V * p->g[c][k];
-      }
-      sum[VOLUME] += V;
-      sum[CHANGE] += V - former[k];
-      sum[PRESSURE] += V * there;
-      sum[POROSITY] += V * p->n[k];
-      if (p->k) flow[PERMEABILITY] += V * p->k[k];
-    }
-    for (int c = 0; c < 4; c++) {
-      worker->tile[at][c] += sum[c];
-      worker->force[at][c] += flow[c];
-    }
-  }
-}
-
 /* To the tiles of the worker. */
 static void sum_block(void *data, int64_t b, int32_t number) {
   mps_mpm *mpm = data;
-  const mpsi_worker *worker = &mpm->grid.workers[number];
-  if (mpm->grid.dim == 2)
-    sum_body(&mpm->grid, &mpm->p, mpm->water, b, worker, 2);
-  else
-    sum_body(&mpm->grid, &mpm->p, mpm->water, b, worker, 3);
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
+  clear_region(work.cells, work.worker);
+  mpm->kernels->pore_sum(&work);
 }
 
 /* ---- to the cells ---------------------------------------------------------------------------- */
@@ -115,12 +43,31 @@ static void clear(void *data, int64_t g, int32_t worker) {
 
 /* The first sums of a cell take the place of what it had in the last step. */
 static void add_to_cell(mpsi_pore_cell *cell, bool first, const double *sum, const double *flow) {
-  cell->volume = (first ? 0.0 : cell->volume) + sum[VOLUME];
-  cell->change = (first ? 0.0 : cell->change) + sum[CHANGE];
-  cell->p = (first ? 0.0 : cell->p) + sum[PRESSURE];
-  cell->n = (first ? 0.0 : cell->n) + sum[POROSITY];
-  cell->k = (first ? 0.0 : cell->k) + flow[PERMEABILITY];
-  for (int c = 0; c < 3; c++) cell->g[c] = (first ? 0.0 : cell->g[c]) + flow[SLOPE + c];
+  if (first) {
+    cell->volume = sum[MPSI_PORE_VOLUME];
+    cell->change = sum[MPSI_PORE_CHANGE];
+    cell->p = sum[MPSI_PORE_PRESSURE];
+    cell->n = sum[MPSI_PORE_POROSITY];
+    cell->k = flow[MPSI_PORE_PERMEABILITY];
+    for (int c = 0; c < 3; c++) cell->g[c] = flow[MPSI_PORE_SLOPE + c];
+    return;
+  }
+  cell->volume += sum[MPSI_PORE_VOLUME];
+  cell->change += sum[MPSI_PORE_CHANGE];
+  cell->p += sum[MPSI_PORE_PRESSURE];
+  cell->n += sum[MPSI_PORE_POROSITY];
+  cell->k += flow[MPSI_PORE_PERMEABILITY];
+  for (int c = 0; c < 3; c++) cell->g[c] += flow[MPSI_PORE_SLOPE + c];
+}
+
+static void add_row(mpsi_pore_cell *cell, uint64_t *filled, int local, int cells, mpsi_node *sum,
+                    mpsi_node *flow) {
+  for (int i = 0; i < cells; i++) {
+    if (sum[i][MPSI_PORE_VOLUME] == 0.0) continue;
+    const bool first = !mpsi_pore_marked(filled, local + i);
+    mpsi_pore_mark(filled, local + i);
+    add_to_cell(cell + i, first, sum[i], flow[i]);
+  }
 }
 
 static void add_tile(const mpsi_grid *grid, mpsi_water *water, int64_t b,
@@ -130,15 +77,12 @@ static void add_tile(const mpsi_grid *grid, mpsi_water *water, int64_t b,
   mpsi_pore_region(cells, low, high);
   for (int k = low[2]; k < high[2]; k++)
     for (int j = low[1]; j < high[1]; j++)
-      for (int i = low[0]; i < high[0]; i++) {
-        const int at = mpsi_tile_index(i, j, k);
-        if (worker->tile[at][VOLUME] == 0.0) continue;
+      for (int i = low[0], end; i < high[0]; i = end) {
         const int32_t g = mpsi_block_under(cells, i, j, k);
-        const int local = mpsi_local_under(i, j, k);
-        const bool first = !mpsi_pore_marked(water->block[g].filled, local);
-        mpsi_pore_mark(water->block[g].filled, local);
-        add_to_cell(water->cell + mpsi_first_node(grid, g) + local, first, worker->tile[at],
-                    worker->force[at]);
+        const int local = mpsi_local_under(i, j, k), at = mpsi_tile_index(i, j, k);
+        end = i < MPSI_SIDE && high[0] > MPSI_SIDE ? MPSI_SIDE : high[0];
+        add_row(water->cell + mpsi_first_node(grid, g) + local, water->block[g].filled, local,
+                end - i, worker->tile + at, worker->force + at);
       }
 }
 

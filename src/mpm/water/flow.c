@@ -9,9 +9,10 @@
  * opposite faces, so that it is exact for a parabola at a surface and for layers of different
  * permeability; at an impervious face it is that of water at rest.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "cell_loops.h"
 #include "implicit.h"
 #include "layers.h"
-#include "water.h"
+#include "mpm/base/kernels.h"
 
 #include <string.h>
 
@@ -332,43 +333,59 @@ static double permeability_after(const mps_pore_water_def *def, double k, double
   return k;
 }
 
-MPSI_INLINE void give_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
-                           const mps_mpm_def *def, double dt, int64_t b, int dim) {
-  const mpsi_cell_block *cells = &grid->cells[b];
+void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end) {
+  const mpsi_columns *p = work->p;
+  mpsi_water *water = work->water;
+  const mps_pore_water_def *def = &water->def;
   const double weight = weight_of_water(water);
-  for (int64_t k = cells->begin; k < cells->end;) {
-    const int at = water->place[k];
-    double centre[3];
-    const mpsi_pore_cell *cell = mpsi_pore_cell_at(grid, water, cells, at, centre);
-    const double gain =
-        water->flows ? water->def.density * dt * cell->gain * grid->measure / cell->volume : 0.0;
-    for (int c = 0; c < dim; c++) centre[c] += mpsi_pore_edge_of(water, cell)->shift[c];
-    for (; k < cells->end && water->place[k] == at; k++) {
-      double now = cell->now;
-      for (int c = 0; c < dim; c++) {
-        now += cell->g[c] * (p->x[c][k] - centre[c]);
-        p->g[c][k] = cell->g[c];
-      }
-      p->u[k] = now;
-      if (water->flows) {
-        p->k[k] = permeability_after(&water->def, p->k[k], p->n[k], p->V[k] / water->former[k]);
-        p->m[k] += gain * p->V[k];
-        for (int c = 0; c < dim && water->seepage[0]; c++)
-          water->seepage[c][k] =
-              -p->k[k] / weight * (cell->g[c] - water->def.density * def->gravity[c]);
-      }
-      p->n[k] = 1.0 - (1.0 - p->n[k]) * (water->former[k] / p->V[k]);
-    }
+  if (def->exponent != 0.0 || def->ratio_slope < INFINITY)
+    for (int64_t k = begin; k < end; k++)
+      p->k[k] = permeability_after(def, p->k[k], p->n[k], p->V[k] / water->former[k]);
+  for (int c = 0; c < work->grid->dim && water->seepage[0]; c++)
+    for (int64_t k = begin; k < end; k++)
+      water->seepage[c][k] =
+          -p->k[k] / weight * (p->g[c][k] - def->density * work->def->gravity[c]);
+}
+
+static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, const uint64_t *filled,
+                     int local, int cells, mpsi_node *tile, mpsi_node *gain) {
+  mpsi_water *water = work->water;
+  const double amount = water->def.density * work->run->dt * work->grid->measure;
+  for (int i = 0; i < cells; i++) {
+    if (!mpsi_pore_marked(filled, local + i)) continue;
+    double centre = cell[i].now; /* of the filled part; then of the box */
+    for (int c = 0; c < work->grid->dim && !cell[i].inside; c++)
+      centre -= cell[i].g[c] * mpsi_pore_edge_of(water, cell + i)->shift[c];
+    tile[i][0] = centre;
+    for (int c = 0; c < 3; c++) tile[i][1 + c] = cell[i].g[c];
+    if (water->flows) gain[i][0] = amount * cell[i].gain / cell[i].volume;
   }
 }
 
-static void give_to_particles(void *data, int64_t b, int32_t worker) {
+/* For the particles of a block, to the worker's tiles: of each cell the pressure at the centre of
+ * its box and its slopes; kg/m3 that its particles gain. */
+static void load_tile(const mpsi_transfer *work) {
+  const mpsi_grid *grid = work->grid;
+  const mpsi_cell_block *cells = work->cells;
+  int low[3], high[3];
+  mpsi_pore_region(cells, low, high);
+  for (int k = low[2]; k < high[2]; k++)
+    for (int j = low[1]; j < high[1]; j++)
+      for (int i = low[0], end; i < high[0]; i = end) {
+        const int32_t g = mpsi_block_under(cells, i, j, k);
+        const int local = mpsi_local_under(i, j, k), at = mpsi_tile_index(i, j, k);
+        end = i < MPSI_SIDE && high[0] > MPSI_SIDE ? MPSI_SIDE : high[0];
+        load_row(work, work->water->cell + mpsi_first_node(grid, g) + local,
+                 work->water->block[g].filled, local, end - i, work->worker->tile + at,
+                 work->worker->force + at);
+      }
+}
+
+static void give_to_particles(void *data, int64_t b, int32_t number) {
   mps_mpm *mpm = data;
-  (void)worker;
-  if (mpm->grid.dim == 2)
-    give_body(&mpm->grid, &mpm->p, mpm->water, &mpm->def, mpm->run.dt, b, 2);
-  else
-    give_body(&mpm->grid, &mpm->p, mpm->water, &mpm->def, mpm->run.dt, b, 3);
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
+  load_tile(&work);
+  mpm->kernels->pore_give(&work);
 }
 
 /* ---- implicit pressures ---------------------------------------------------------------------- */
@@ -447,7 +464,7 @@ mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function) {
   const mpsi_pass pressures = {.data = mpm, .finish = find_pressures};
   const mpsi_pass particles = {.data = mpm, .finish = find_slopes, .gather = give_to_particles};
   mps_status status = MPS_OK;
-  if (mpm->water->system) {
+  if (mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT) {
     status = find_implicit(mpm, function);
   } else if (mpm->water->flows) {
     mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pressures);

@@ -20,6 +20,8 @@
 
 #define TOLERANCE 1e-9 /* of the residual, over the right-hand side */
 enum { MOST_ITERATIONS = 5000 };
+/* Below so many terms of G a loop is over before a second thread has begun it. */
+enum { FEWEST_TERMS = 32 * MPSI_SIDE * MPSI_SIDE * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
 
 typedef struct mpsi_pore_system system_of;
 
@@ -133,7 +135,12 @@ static void run_block(void *data, int64_t g, int32_t worker) {
 static void for_blocks(mps_mpm *mpm, void (*task)(mps_mpm *, system_of *, int64_t, double),
                        double factor) {
   block_loop loop = {mpm, task, factor};
-  mpsi_parallel_for(mpm->context, mpm->grid.node_count, run_block, &loop);
+  const int64_t blocks = mpm->grid.node_count;
+  if (blocks * mpm->grid.block_nodes * span_nodes(&mpm->grid) >= FEWEST_TERMS) {
+    mpsi_parallel_for(mpm->context, blocks, run_block, &loop);
+    return;
+  }
+  for (int64_t g = 0; g < blocks; g++) run_block(&loop, g, 0);
 }
 
 static double sum_blocks(mps_mpm *mpm, void (*task)(mps_mpm *, system_of *, int64_t, double),

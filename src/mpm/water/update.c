@@ -2,6 +2,7 @@
  * particles have moved. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit.h"
 #include "layers.h"
+#include "mpm/base/kernels.h"
 #include "water.h"
 
 #include <string.h>
@@ -101,6 +102,17 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   link_blocks(&mpm->grid, mpm->water);
   mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, keep_volumes, mpm);
   return MPS_OK;
+}
+
+static void find_speed(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  mpm->kernels->speed(&work);
+}
+
+void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme) {
+  mpm->water->def.scheme = scheme;
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, find_speed, mpm);
 }
 
 /* ---- after ----------------------------------------------------------------------------------- */

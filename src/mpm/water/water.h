@@ -101,19 +101,6 @@ static inline void mpsi_pore_region(const mpsi_cell_block *cells, int *low, int 
   }
 }
 
-/* The cell at `place` of a block's tile. Its centre to centre[3] (m). */
-static inline mpsi_pore_cell *mpsi_pore_cell_at(const mpsi_grid *grid, mpsi_water *water,
-                                                const mpsi_cell_block *cells, int place,
-                                                double *centre) {
-  int at[3];
-  mpsi_unravel(place, MPSI_TILE_SIDE, at);
-  for (int c = 0; c < grid->dim; c++) {
-    const int64_t cell = (int64_t)cells->at[c] * MPSI_SIDE + at[c];
-    centre[c] = grid->origin[c] + grid->cell * ((double)cell + 0.5);
-  }
-  return water->cell + mpsi_node_under(grid, cells, at[0], at[1], at[2]);
-}
-
 static inline bool mpsi_pore_marked(const uint64_t *marks, int k) {
   return (marks[k >> 6] >> (k & 63) & 1) != 0;
 }
@@ -167,6 +154,8 @@ mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function);
 /* update.c: before the scatter of a step: room for its cells. On several ranks collective where the
  * blocks are others than in the last step; `status`: of the step so far on this rank. */
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status);
+/* update.c: how the pressures are advanced from now on, with the wave speeds of the blocks. */
+void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme);
 /* update.c: after a step whose values are numbers. Collective. */
 mps_status mpsi_pore_update(mps_mpm *mpm, const char *function);
 /* state.c: values that the caller has written: MPS_ERROR_ARGUMENT names the particle. */

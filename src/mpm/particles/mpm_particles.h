@@ -1,4 +1,4 @@
-/* particles.h - columns, checks and memory of the solver's particles (particles.c, rooms.c).
+/* mpm_particles.h - columns, checks and memory of the solver's particles (mpm_particles.c, rooms.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_PARTICLES_H
 #define MPSI_MPM_PARTICLES_H

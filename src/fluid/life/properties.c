@@ -1,7 +1,7 @@
-/* material.c - what the fluid is made of: the viscosity of a Newtonian material, the density of the
+/* properties.c - what the fluid is made of: the viscosity of a Newtonian material, the density of the
  * set's field. The fluid is one material, incompressible: a bulk modulus has no part in it.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "material.h"
+#include "properties.h"
 #include "fluid/base/access.h"
 #include "fluid/ranks/partition.h"
 

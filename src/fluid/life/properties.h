@@ -1,7 +1,7 @@
-/* material.h - density and viscosity from the set and a material.
+/* properties.h - density and viscosity from the set and a material.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_MATERIAL_H
-#define MPSI_FLUID_MATERIAL_H
+#ifndef MPSI_FLUID_PROPERTIES_H
+#define MPSI_FLUID_PROPERTIES_H
 
 #include <mps/fluid.h>
 

@@ -1,6 +1,6 @@
-/* particles.c - particles edited, added and removed between steps.
+/* holder.c - particles edited, added and removed between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "particles.h"
+#include "holder.h"
 #include "fluid/base/access.h"
 #include "fluid/boundary/walls.h"
 #include "fluid/boundary/polyline.h"

@@ -1,19 +1,23 @@
-/* particles.h - the set: insertion, removal, edits, outflow.
+/* holder.h - the fluid as a holder of its particle set (mpsi_holder): particles edited, added and
+ * removed between steps, and those that have left through an open side.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_PARTICLES_H
-#define MPSI_FLUID_PARTICLES_H
+#ifndef MPSI_FLUID_HOLDER_H
+#define MPSI_FLUID_HOLDER_H
 
 #include <mps/fluid.h>
 
 #include <stdbool.h>
 
-void mpsi_fluid_remove_outflow(
-    mps_fluid *fluid); /* removes particles beyond an open side, at the end of a step */
-
 #define MPSI_FLUID_MOST_PARTICLES (INT32_MAX / 4)
 
+/* Memory for `count` particles; false: refused. */
 bool mpsi_fluid_reserve(mps_fluid *fluid, int64_t count);
+/* Finds the largest speed (m/s), which limits the next step. */
 void mpsi_fluid_find_speed(mps_fluid *fluid);
+/* Removes the particles beyond an open side, at the end of a step. */
+void mpsi_fluid_remove_outflow(mps_fluid *fluid);
+
+/* Callbacks of the set: see mpsi_holder. */
 mps_status mpsi_fluid_commit(void *fluid, const char *function, const char *field,
                              const double *former);
 mps_status mpsi_fluid_insert(void *fluid, const char *function, int64_t first, int64_t count);

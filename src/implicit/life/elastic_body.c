@@ -1,6 +1,6 @@
-/* body.c - the body of a solver: its material, its cuts, and derived data.
+/* elastic_body.c - the body of a solver: its material, its cuts, and derived data.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body.h"
+#include "elastic_body.h"
 #include "implicit/base/implicit_solver.h"
 #include "implicit/base/motion_state.h"
 #include "implicit/body/window.h"

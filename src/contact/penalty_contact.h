@@ -1,11 +1,11 @@
-/* contact.h - contact of particles with rigid bodies, whatever the solver: the normal force on a
- * particle, Nakamura (27), (28); Coulomb friction at a node, (31)-(34); which nodes of a grid a
- * particle at a surface may use, Nakamura 5.1; and the force on the body. How a solver finds what
+/* penalty_contact.h - contact of particles with rigid bodies, whatever the solver: the normal force
+ * on a particle, Nakamura (27), (28); Coulomb friction at a node, (31)-(34); which nodes of a grid
+ * a particle at a surface may use, Nakamura 5.1; and the force on the body. How a solver finds what
  * is near a body, and keeps sums at its nodes, is its own: WLS-MPM does so in mpm/contact/pairs.c
  * and inside.c. Vectors have three components, of which the last is 0 in 2D.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_CONTACT_H
-#define MPSI_CONTACT_H
+#ifndef MPSI_PENALTY_CONTACT_H
+#define MPSI_PENALTY_CONTACT_H
 
 #include "body/contact_internal.h"
 
@@ -62,13 +62,6 @@ static inline void mpsi_contact_add_load(mpsi_load *load, const double *arm, con
 
 /* ---- a node ---------------------------------------------------------------------------------- */
 
-/* The same-side test: whether a particle is outside a body that holds a node, as the node sees it
- * along the surface's `normal` there; s is from the particle to the node. Without it momentum
- * passes through thin walls. */
-static inline bool mpsi_contact_same_side(const double *normal, const double *s) {
-  return normal[0] * s[0] + normal[1] * s[1] + normal[2] * s[2] < 0.0;
-}
-
 /* A node and a body: sums over the particles in contact. */
 typedef struct mpsi_contact_node {
   double mass;     /* W: sum phi m of the particles in contact, Nakamura (30) */
@@ -76,12 +69,19 @@ typedef struct mpsi_contact_node {
   double force[3]; /* N, normal force fn, Nakamura (29) */
 } mpsi_contact_node;
 
-/* Tangential force (N) of the body on the node at x (m) of mass m (kg), whose velocity is `before`
- * without and v with the forces of the step dt; `contact_mass` (kg) is that of all nodes in contact
- * with the body. It stops the sliding, but is at most friction times the normal force. False where
- * there is none. */
+/* A node of a grid in a step. */
+typedef struct mpsi_contact_motion {
+  double x[3];      /* m */
+  double mass;      /* kg */
+  const double *v;  /* m/s, with the forces of the step */
+  const double *v0; /* m/s, without them */
+} mpsi_contact_motion;
+
+/* Tangential force (N) of the body on a node in a step of dt (s): it stops the sliding, but is at
+ * most friction times the normal force. `all_mass` (kg) is that of all nodes in contact with the
+ * body. False where there is none. */
 bool mpsi_contact_friction(const mps_contact *contact, int dim, const mpsi_contact_node *at,
-                           double contact_mass, const double *x, const double *v,
-                           const double *before, double m, double dt, double *force);
+                           const mpsi_contact_motion *node, double all_mass, double dt,
+                           double *force);
 
 #endif

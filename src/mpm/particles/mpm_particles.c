@@ -1,6 +1,6 @@
-/* particles.c - the particles as the solver uses them: columns over the fields of the set, initial
+/* mpm_particles.c - the particles as the solver uses them: columns over the fields of the set, initial
  * state, and what changes when the caller writes a field. SPDX-License-Identifier: BSD-3-Clause */
-#include "particles.h"
+#include "mpm_particles.h"
 
 #include "mpm/contact/particle.h"
 

@@ -1,4 +1,4 @@
-/* body.h - material, cuts and derived data of the present body.
+/* elastic_body.h - material, cuts and derived data of the present body.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_ELASTIC_BODY_H
 #define MPSI_ELASTIC_BODY_H

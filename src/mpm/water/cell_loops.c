@@ -1,0 +1,190 @@
+/* cell_loops.c - the loops of the water over particles: their sums in the cells of a worker's tile,
+ * and back to them what the cells of a block have. Compiled once for each instruction set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "cell_loops.h"
+
+#include "mpm/base/loops.h"
+
+/* ---- places ---------------------------------------------------------------------------------- */
+
+/* The first node of a tile (cells), and the first and last of its cells, or those of the domain. */
+typedef struct region {
+  double first[3];
+  int low[3], last[3];
+} region;
+
+static region region_of(const mpsi_grid *grid, const mpsi_cell_block *cells) {
+  region out = {{0.0}, {0}, {0}};
+  mpsi_pore_region(cells, out.low, out.last);
+  for (int c = 0; c < grid->dim; c++) {
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, most = grid->high[c] - 1 - first;
+    out.first[c] = (double)first;
+    out.last[c] = most < out.last[c] - 1 ? (int)most : out.last[c] - 1;
+  }
+  return out;
+}
+
+/* Of the particles of a chunk: their cells in the tile, and how far they are from their centres. */
+typedef struct places {
+  double from[3][MPSI_COLUMN] MPSI_LINE; /* m, x less that of the centre */
+  int32_t at[MPSI_COLUMN];
+} places;
+
+/* A particle that has left the domain is in the nearest cell. */
+MPSI_INLINE void find_cells(const mpsi_grid *grid, const mpsi_columns *p, const region *in, int dim,
+                            int64_t begin, int n, places *out) {
+  int32_t *at = out->at;
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    const double *x = p->x[c] + begin, origin = grid->origin[c], inverse = grid->inverse;
+    const double first = in->first[c], h = grid->cell;
+    const int32_t low = in->low[c], last = in->last[c];
+    const int32_t stride = c == 0 ? 1 : c == 1 ? MPSI_TILE_SIDE : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
+    double *from = out->from[c];
+    MPSI_SIMD for (int k = 0; k < n; k++) {
+      const double X = (x[k] - origin) * inverse - first;
+      int32_t cell = (int32_t)X; /* of negative ones the next above, which `low` raises */
+      cell = cell < last ? cell : last;
+      cell = cell > low ? cell : low;
+      from[k] = x[k] - (origin + h * ((double)cell + (first + 0.5)));
+      at[k] = c == 0 ? cell : at[k] + stride * cell;
+    }
+  }
+}
+
+/* ---- to the tile ----------------------------------------------------------------------------- */
+
+/* Contributions of the particles of a chunk to their cells, as MPSI_PORE_VOLUME and so on. */
+typedef struct sums {
+  double part[8][MPSI_COLUMN] MPSI_LINE;
+} sums;
+
+MPSI_INLINE void find_sums(const mpsi_columns *p, const double *former, const places *in, int dim,
+                           int64_t begin, int n, sums *out) {
+  const double *V = p->V + begin, *u = p->u + begin, *porosity = p->n + begin;
+  const double *g0 = p->g[0] + begin, *g1 = p->g[1] + begin, *g2 = dim == 3 ? p->g[2] + begin : g1;
+  const double *past = former + begin;
+  MPSI_SIMD for (int k = 0; k < n; k++) {
+    double there = u[k] - (g0[k] * in->from[0][k] + g1[k] * in->from[1][k]);
+    if (dim == 3) there -= g2[k] * in->from[2][k];
+    out->part[MPSI_PORE_VOLUME][k] = V[k];
+    out->part[MPSI_PORE_CHANGE][k] = V[k] - past[k];
+    out->part[MPSI_PORE_PRESSURE][k] = V[k] * there;
+    out->part[MPSI_PORE_POROSITY][k] = V[k] * porosity[k];
+    out->part[4 + MPSI_PORE_SLOPE][k] = V[k] * g0[k];
+    out->part[5 + MPSI_PORE_SLOPE][k] = V[k] * g1[k];
+    out->part[6 + MPSI_PORE_SLOPE][k] = dim == 3 ? V[k] * g2[k] : 0.0;
+  }
+  for (int k = 0; k < n; k++)
+    out->part[4 + MPSI_PORE_PERMEABILITY][k] = p->k ? V[k] * p->k[begin + k] : 0.0;
+}
+
+MPSI_INLINE void add_sums(const places *in, int n, const sums *from, const mpsi_worker *worker) {
+  for (int k = 0; k < n; k += 4) {
+    mpsi_quad sum[4], flow[4];
+    MPSI_UNROLL for (int c = 0; c < 4; c++) {
+      sum[c] = mpsi_get(from->part[c] + k);
+      flow[c] = mpsi_get(from->part[4 + c] + k);
+    }
+    mpsi_transpose(sum);
+    mpsi_transpose(flow);
+    MPSI_UNROLL for (int i = 0; i < 4; i++) {
+      if (k + i >= n) break;
+      double *to = worker->tile[in->at[k + i]], *flow_to = worker->force[in->at[k + i]];
+      mpsi_put(to, mpsi_get(to) + sum[i]);
+      mpsi_put(flow_to, mpsi_get(flow_to) + flow[i]);
+    }
+  }
+}
+
+MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
+                          const mpsi_cell_block *cells, const mpsi_worker *worker, int dim) {
+  const region in = region_of(grid, cells);
+  places at;
+  sums part;
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
+    find_cells(grid, p, &in, dim, k, n, &at);
+    find_sums(p, water->former, &at, dim, k, n, &part);
+    for (int i = 0; i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
+    add_sums(&at, n, &part, worker);
+  }
+}
+
+void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work) {
+  if (work->grid->dim == 2)
+    sum_body(work->grid, work->p, work->water, work->cells, work->worker, 2);
+  else
+    sum_body(work->grid, work->p, work->water, work->cells, work->worker, 3);
+}
+
+/* ---- to the particles ------------------------------------------------------------------------ */
+
+/* What the particles of a chunk take from their cells. */
+typedef struct taken {
+  double p[MPSI_COLUMN] MPSI_LINE, g[3][MPSI_COLUMN], gain[MPSI_COLUMN];
+} taken;
+
+MPSI_INLINE void take_cells(const places *in, int n, const mpsi_worker *worker, bool flows,
+                            taken *out) {
+  for (int k = 0; k < n; k += 4) {
+    mpsi_quad a[4];
+    MPSI_UNROLL for (int i = 0; i < 4; i++) a[i] =
+        mpsi_get(worker->tile[in->at[k + i < n ? k + i : n - 1]]);
+    mpsi_transpose(a);
+    mpsi_put(out->p + k, a[0]);
+    MPSI_UNROLL for (int c = 0; c < 3; c++) mpsi_put(out->g[c] + k, a[1 + c]);
+  }
+  for (int k = 0; flows && k < n; k++) out->gain[k] = worker->force[in->at[k]][0];
+}
+
+MPSI_INLINE void give_pressures(const mpsi_columns *p, const places *in, const taken *from, int dim,
+                                int64_t begin, int n) {
+  double *u = p->u + begin, *g0 = p->g[0] + begin, *g1 = p->g[1] + begin;
+  double *g2 = dim == 3 ? p->g[2] + begin : NULL;
+  MPSI_SIMD for (int k = 0; k < n; k++) {
+    double now = from->p[k] + (from->g[0][k] * in->from[0][k] + from->g[1][k] * in->from[1][k]);
+    if (dim == 3) now += from->g[2][k] * in->from[2][k];
+    u[k] = now;
+    g0[k] = from->g[0][k];
+    g1[k] = from->g[1][k];
+    if (dim == 3) g2[k] = from->g[2][k];
+  }
+}
+
+/* v = 1/(1 - n) follows the volume. */
+MPSI_INLINE void give_porosities(const mpsi_columns *p, const double *former, int64_t begin,
+                                 int n) {
+  double *porosity = p->n + begin;
+  const double *V = p->V + begin, *past = former + begin;
+  MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] = 1.0 - (1.0 - porosity[k]) * (past[k] / V[k]);
+}
+
+MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
+  const mpsi_columns *p = work->p;
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_grid *grid = work->grid;
+  const region in = region_of(grid, cells);
+  const bool flows = work->water->flows;
+  places at;
+  taken from;
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
+    find_cells(grid, p, &in, dim, k, n, &at);
+    take_cells(&at, n, work->worker, flows, &from);
+    give_pressures(p, &at, &from, dim, k, n);
+    if (flows) {
+      double *m = p->m + k;
+      const double *V = p->V + k;
+      MPSI_SIMD for (int i = 0; i < n; i++) m[i] += from.gain[i] * V[i];
+      mpsi_pore_give_flow(work, k, k + n);
+    }
+    give_porosities(p, work->water->former, k, n);
+  }
+}
+
+void MPSI_LEVELLED(mpsi_pore_give)(const mpsi_transfer *work) {
+  if (work->grid->dim == 2)
+    give_body(work, 2);
+  else
+    give_body(work, 3);
+}

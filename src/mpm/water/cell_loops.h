@@ -1,0 +1,16 @@
+/* cell_loops.h - what the loops of the water over particles (cell_loops.c, compiled once for each
+ * instruction set) share with its cells. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_WATER_CELL_LOOPS_H
+#define MPSI_MPM_WATER_CELL_LOOPS_H
+
+#include "water.h"
+
+/* Values of a cell in the worker's two tiles as sums over its particles: of V, dV, V p at the
+ * cell's centre, V n; of V k and V g. */
+enum { MPSI_PORE_VOLUME, MPSI_PORE_CHANGE, MPSI_PORE_PRESSURE, MPSI_PORE_POROSITY };
+enum { MPSI_PORE_PERMEABILITY, MPSI_PORE_SLOPE };
+
+/* flow.c: permeability and seepage of particles [begin, end), before their porosities change. */
+void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end);
+
+#endif
