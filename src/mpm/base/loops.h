@@ -161,7 +161,27 @@ MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
   return out;
 }
 
+/* Origin of a block's tile: that of the grid (m), and the block's first node from there (cells). A
+ * local copy, as stores of vectors may alias what is behind a pointer. */
+typedef struct mpsi_frame {
+  double origin[3], corner[3], inverse; /* 1/m, cells in a metre */
+} mpsi_frame;
+
+MPSI_INLINE mpsi_frame mpsi_frame_of(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim) {
+  mpsi_frame out = {{0.0}, {0.0}, grid->inverse};
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    out.origin[c] = grid->origin[c];
+    out.corner[c] = (double)cells->at[c] * MPSI_SIDE;
+  }
+  return out;
+}
+
 /* Distance (cells) from the block's first node, along axis c, of four particles at x. */
+MPSI_INLINE mpsi_quad mpsi_in_frame(const mpsi_frame *frame, int c, mpsi_quad x) {
+  return (x - frame->origin[c]) * frame->inverse - frame->corner[c];
+}
+
+/* The same, where few particles are asked for. */
 MPSI_INLINE mpsi_quad mpsi_from_block(const mpsi_grid *grid, const mpsi_cell_block *cells, int c,
                                       mpsi_quad x) {
   return (x - grid->origin[c]) * grid->inverse - (double)cells->at[c] * MPSI_SIDE;
@@ -186,13 +206,15 @@ MPSI_INLINE void mpsi_lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
  * (a bit each), and weights times s along those of `slopes`, a subset of these; both literal. */
 MPSI_INLINE void mpsi_find_places(const mpsi_transfer *work, int dim, int spline, int weights,
                                   int slopes, int64_t begin, int n, mpsi_places *out) {
+  const mpsi_frame frame = mpsi_frame_of(work->grid, work->cells, dim);
+  const double *x[3] = {NULL};
+  for (int c = 0; c < dim; c++) x[c] = work->p->x[c] + begin;
   out->chunk = begin, out->count = n;
   for (int k = 0; k < n; k += 4) {
     mpsi_index first = {0};
     for (int c = 0, stride = 1; c < dim; c++, stride *= MPSI_TILE_SIDE) {
       /* from the block's first node: not negative, so that truncation is floor */
-      const mpsi_quad X = mpsi_from_block(work->grid, work->cells, c,
-                                          mpsi_get_some(work->p->x[c] + begin + k, n - k));
+      const mpsi_quad X = mpsi_in_frame(&frame, c, mpsi_get_some(x[c] + k, n - k));
       const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
                                           : __builtin_convertvector(X - 0.5, mpsi_index);
       const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);

@@ -102,16 +102,16 @@ typedef struct lanes {
   const polynomials *rows;
 } lanes;
 
-/* At place i along x, for the component in `lane` of a node. */
-MPSI_INLINE plane_sums sum_plane(int dim, int spline, bool at_wall, const lanes *of, int lane,
-                                 int i) {
+/* At place i along x, for the component in `lane` of a node; `lowest`: node of the stencil. */
+MPSI_INLINE plane_sums sum_plane(int dim, int spline, bool at_wall, const lanes *of,
+                                 const mpsi_node *lowest, int lane, int i) {
   const mpsi_places *places = of->places;
   const int k = of->k;
   const mpsi_lanes f = mpsi_get_lanes(places->t[1] + k) - 1.0;
   plane_sums out = {{0.0}, {{0.0}}, {{0.0}}};
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
     const mpsi_node *term = of->rows->term[plane][i];
-    const mpsi_node *node = of->rows->lowest + mpsi_tile_index(i, 0, plane);
+    const mpsi_node *node = lowest + mpsi_tile_index(i, 0, plane);
     const row_sums row =
         at_wall ? sum_weights(spline, places, k, node, lane) : sum_splines(spline, term, lane, f);
     const double rise = term[spline][lane];
@@ -136,19 +136,22 @@ MPSI_INLINE plane_sums sum_plane(int dim, int spline, bool at_wall, const lanes 
  * `plain` (-1: none) is the slope of the fit. */
 MPSI_INLINE void gather_body(const mpsi_transfer *work, int dim, int spline, bool at_wall,
                              const lanes *of, int plain, mpsi_gathered *out, int to) {
-  const double scale = mpsi_inverse_moment(spline) * work->grid->inverse;
+  /* copies: stores of vectors may alias what is behind a pointer */
+  const lanes own = *of;
+  const double inverse = work->grid->inverse, scale = mpsi_inverse_moment(spline) * inverse;
   const double factorial = spline == 3 ? 6.0 : 2.0;
-  const mpsi_places *places = of->places;
-  const int k = of->k;
+  const mpsi_places *places = own.places;
+  const mpsi_node *lowest = own.rows->lowest;
+  const int k = own.k;
   mpsi_lanes excess[3] = {{0.0}}; /* see mpsi_excess */
   MPSI_UNROLL for (int d = 0; d < dim; d++) excess[d] =
-      work->grid->inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
+      inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
   excess[1] *= factorial;
 #pragma GCC unroll 1 /* all components would fill the instruction cache */
   for (int c = 0; c < dim; c++) {
     mpsi_lanes v = {0.0}, slope[3] = {{0.0}}, rise[3] = {{0.0}};
     MPSI_UNROLL for (int i = 0; i <= spline; i++) {
-      const plane_sums sum = sum_plane(dim, spline, at_wall, of, MPSI_VECTOR + c, i);
+      const plane_sums sum = sum_plane(dim, spline, at_wall, &own, lowest, MPSI_VECTOR + c, i);
       const mpsi_lanes w = mpsi_get_lanes(places->w[0][i] + k);
       v += w * sum.value;
       slope[0] += mpsi_get_lanes(places->ws[0][i] + k) * sum.value;
@@ -161,7 +164,7 @@ MPSI_INLINE void gather_body(const mpsi_transfer *work, int dim, int spline, boo
     mpsi_put_lanes(out->v[c] + to, v);
     MPSI_UNROLL for (int d = 0; d < dim; d++) {
       const mpsi_lanes more = excess[d] * rise[d];
-      slope[d] = d == 1 && !at_wall ? work->grid->inverse * slope[d] - more : scale * slope[d];
+      slope[d] = d == 1 && !at_wall ? inverse * slope[d] - more : scale * slope[d];
       mpsi_put_lanes(out->slope[dim * c + d] + to, slope[d]);
       mpsi_put_lanes(out->derivative[dim * c + d] + to,
                      d == plain || plain == EVERY_AXIS ? slope[d] : slope[d] + more);
@@ -231,25 +234,49 @@ typedef struct moved_lanes {
   mpsi_mask outside, left;
 } moved_lanes;
 
-/* Writes velocities and gradients of the `n` (at most 4) particles from number k on of a chunk,
- * gathered in `from`, and advances their positions, x += dt v. Sets the lanes that are outside the
- * domain or have left the block. */
-MPSI_INLINE void move_four(const mpsi_transfer *work, int geometry, int spline, int64_t chunk,
-                           int k, int n, const mpsi_gathered *from, moved_lanes *out) {
-  const int64_t at = chunk + k;
-  const int dim = mpsi_dim_of(geometry);
+/* Limits, by axis, of the positions from the block's first node (cells): of the domain and of
+ * particles whose stencil stays in the tile. */
+typedef struct limits {
+  double low[3], high[3], least[3], below[3];
+} limits;
+
+MPSI_INLINE void find_limits(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
+                             int spline, limits *out) {
   const double first = spline == 3 ? 1.0 : 0.5; /* least distance from the lowest node, cells */
-  const mpsi_columns *p = work->p;
-  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
+    const double corner = (double)cells->at[c] * MPSI_SIDE;
+    out->low[c] = (double)grid->low[c] - corner;
+    out->high[c] = (double)grid->high[c] - corner;
+    out->least[c] = first + cells->low[c];
+    out->below[c] = first + (cells->high[c] - reach);
+  }
+}
+
+/* What moves the particles of a chunk, and how far. */
+typedef struct motion {
+  const mpsi_columns *p;
+  const mpsi_gathered *from;
+  int64_t chunk; /* its first particle */
+  double dt;     /* s */
+  mpsi_frame frame;
+  limits within;
+} motion;
+
+/* Writes velocities and gradients of the `n` (at most 4) particles from number k on of a chunk, and
+ * advances their positions, x += dt v. Sets the lanes that are outside the domain or have left the
+ * block. */
+MPSI_INLINE void move_four(const motion *m, int geometry, int k, int n, moved_lanes *out) {
+  const int64_t at = m->chunk + k;
+  const int dim = mpsi_dim_of(geometry);
+  const mpsi_columns *p = m->p;
+  const mpsi_gathered *from = m->from;
+  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const mpsi_quad v = mpsi_get(from->v[c] + k), x = mpsi_get_some(p->x[c] + at, n);
-    const mpsi_quad to = x + work->run->dt * v, X = mpsi_from_block(work->grid, work->cells, c, to);
-    const double corner = (double)work->cells->at[c] * MPSI_SIDE;
-    const mpsi_mask good =
-        (X >= (double)work->grid->low[c] - corner) & (X <= (double)work->grid->high[c] - corner);
-    const mpsi_mask here =
-        (X >= first + work->cells->low[c]) & (X < first + (work->cells->high[c] - reach));
+    const mpsi_quad to = x + m->dt * v, X = mpsi_in_frame(&m->frame, c, to);
+    const mpsi_mask good = (X >= m->within.low[c]) & (X <= m->within.high[c]);
+    const mpsi_mask here = (X >= m->within.least[c]) & (X < m->within.below[c]);
     out->outside |= there & ~good;
     out->left |= there & ~here;
     store_some(p->v[c] + at, v, n);
@@ -262,12 +289,20 @@ MPSI_INLINE void move_four(const mpsi_transfer *work, int geometry, int spline, 
 
 MPSI_INLINE moved move(const mpsi_transfer *work, int geometry, int spline, int64_t chunk, int n,
                        const mpsi_gathered *from) {
+  const int dim = mpsi_dim_of(geometry);
   moved_lanes m = {{0}, {0}};
+  motion by = {work->p,
+               from,
+               chunk,
+               work->run->dt,
+               mpsi_frame_of(work->grid, work->cells, dim),
+               {{0.0}, {0.0}, {0.0}, {0.0}}};
+  find_limits(work->grid, work->cells, dim, spline, &by.within);
   for (int k = 0; k < n; k += 4) {
     if (n - k >= 4) /* four lanes: no test in the loop */
-      move_four(work, geometry, spline, chunk, k, 4, from, &m);
+      move_four(&by, geometry, k, 4, &m);
     else
-      move_four(work, geometry, spline, chunk, k, n - k, from, &m);
+      move_four(&by, geometry, k, n - k, &m);
   }
   return (moved){(m.outside[0] | m.outside[1] | m.outside[2] | m.outside[3]) != 0,
                  (m.left[0] | m.left[1] | m.left[2] | m.left[3]) != 0};

@@ -20,23 +20,38 @@ typedef struct quad_parts {
   mpsi_quad sum[4][4], force[4][4];
 } quad_parts;
 
+/* Where the contributions come from: the particles' columns, and factors of these. Local, as stores
+ * of vectors may alias what is behind a pointer. */
+typedef struct sources {
+  const mpsi_columns *p;
+  double h, stiff, dt, fall[3]; /* m; 1/m, of stresses; s, or 1 if momentum and force are apart; dt
+                                   times gravity */
+} sources;
+
+MPSI_INLINE sources find_sources(const mpsi_transfer *work, int dim, int spline, bool split) {
+  sources out = {.p = work->p,
+                 .h = work->grid->cell,
+                 .stiff = -mpsi_inverse_moment(spline) * work->grid->inverse,
+                 .dt = split ? 1.0 : work->run->dt};
+  MPSI_UNROLL for (int c = 0; c < dim; c++) out.fall[c] = out.dt * work->def->gravity[c];
+  return out;
+}
+
 /* Contributions of the four particles from index `at` on. `split`: momentum in `sum`, force in
  * `force`; else `sum` has momentum + dt force. */
-MPSI_INLINE void find_quad_parts(const mpsi_transfer *work, int geometry, int spline, bool split,
-                                 int64_t at, quad_parts *out) {
+MPSI_INLINE void find_quad_parts(const sources *s, int geometry, bool split, int64_t at,
+                                 quad_parts *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int dim = mpsi_dim_of(geometry);
-  const mpsi_columns *p = work->p;
-  const double h = work->grid->cell;
-  const double stiff = -mpsi_inverse_moment(spline) * work->grid->inverse;
-  const double dt = split ? 1.0 : work->run->dt;
+  const mpsi_columns *p = s->p;
+  const double dt = s->dt;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
-  const mpsi_quad mh = m * h, Vs = V * stiff, u = p->u ? mpsi_get(p->u + at) : zero;
+  const mpsi_quad mh = m * s->h, Vs = V * s->stiff, u = p->u ? mpsi_get(p->u + at) : zero;
   out->sum[0][MPSI_MASS] = m + zero; /* gcc compiles a plain copy to a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int to = MPSI_VECTOR + c;
-    mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * work->def->gravity[c]);
+    mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * s->fall[c];
     if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
     if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
       force -= V * (mpsi_get(p->s[2] + at) - u) / mpsi_get(p->x[0] + at);
@@ -60,9 +75,10 @@ MPSI_INLINE void put_columns(int dim, mpsi_quad from[4][4], int k, columns to) {
 
 MPSI_INLINE void find_parts(const mpsi_transfer *work, int geometry, int spline, bool split,
                             int64_t begin, int n, parts *out) {
+  const sources s = find_sources(work, mpsi_dim_of(geometry), spline, split);
   for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(work, geometry, spline, split, begin + k, &part);
+    find_quad_parts(&s, geometry, split, begin + k, &part);
     put_columns(mpsi_dim_of(geometry), part.sum, k, out->sum);
     if (split) put_columns(mpsi_dim_of(geometry), part.force, k, out->force);
   }
@@ -217,9 +233,12 @@ MPSI_INLINE void shift_parts(const mpsi_places *places, int k, mpsi_quad part[4]
 
 MPSI_INLINE void find_full_parts(const mpsi_transfer *work, int spline, bool split,
                                  const mpsi_places *places, node_parts *sum, node_parts *force) {
-  for (int k = 0; k < places->count; k += 4) {
+  const sources s = find_sources(work, 3, spline, split);
+  const int64_t chunk = places->chunk;
+  const int n = places->count;
+  for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(work, MPS_MPM_GEOMETRY_SPACE, spline, split, places->chunk + k, &part);
+    find_quad_parts(&s, MPS_MPM_GEOMETRY_SPACE, split, chunk + k, &part);
     shift_parts(places, k, part.sum);
     put_nodes(part.sum, k, sum);
     if (!split) continue;
@@ -312,9 +331,12 @@ MPSI_INLINE void put_pairs(const mpsi_places *places, mpsi_quad from[4][4], int 
 
 MPSI_INLINE void find_pair_parts(const mpsi_transfer *work, int geometry, int spline, bool split,
                                  const mpsi_places *places, pair_parts *sum, pair_parts *force) {
-  for (int k = 0; k < places->count; k += 4) {
+  const sources s = find_sources(work, mpsi_dim_of(geometry), spline, split);
+  const int64_t chunk = places->chunk;
+  const int n = places->count;
+  for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(work, geometry, spline, split, places->chunk + k, &part);
+    find_quad_parts(&s, geometry, split, chunk + k, &part);
     put_pairs(places, part.sum, k, sum);
     if (split) put_pairs(places, part.force, k, force);
   }
@@ -506,11 +528,13 @@ MPSI_INLINE void add_chunk(int dim, int spline, const mpsi_places *places, const
 MPSI_INLINE void p2g_chunk(const mpsi_transfer *work, int geometry, int spline, int64_t begin,
                            int n) {
   const int dim = mpsi_dim_of(geometry);
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_worker *worker = work->worker;
   mpsi_places places;
   chunk all;
   mpsi_find_places(work, dim, spline, dim == 2 ? 3 : 7, dim == 2 && MPSI_WIDE == 1 ? 3 : 0, begin,
                    n, &places);
-  if (work->cells->split)
+  if (cells->split)
     find_chunk(work, geometry, spline, true, &places, &all);
   else
     find_chunk(work, geometry, spline, false, &places, &all);
@@ -518,16 +542,15 @@ MPSI_INLINE void p2g_chunk(const mpsi_transfer *work, int geometry, int spline, 
     for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
       end++;
     const uint32_t state =
-        work->cells->cut ? mpsi_support_state(work->worker, dim, spline, places.first[k]) : 0;
+        cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
     if (state != 0) {
       const mpsi_segment segment = {&places, k, end};
-      const int axis = mpsi_wall_axis(work->grid, work->cells, dim, spline, state, places.first[k]);
+      const int axis = mpsi_wall_axis(work->grid, cells, dim, spline, state, places.first[k]);
       if (axis >= 0) add_at_wall(work, geometry, spline, &segment, axis);
       if (axis >= 0 || MPSI_LEVELLED(mpsi_mpm_scatter_cut)(work, &segment)) continue;
     }
-    add_chunk(dim, spline, &places, &all, &all.sum, k, end, work->worker->tile);
-    if (work->cells->split)
-      add_chunk(dim, spline, &places, &all, &all.force, k, end, work->worker->force);
+    add_chunk(dim, spline, &places, &all, &all.sum, k, end, worker->tile);
+    if (cells->split) add_chunk(dim, spline, &places, &all, &all.force, k, end, worker->force);
   }
 }
 
