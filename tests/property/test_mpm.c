@@ -96,12 +96,13 @@ static void check_sums(int dim, double h, const mpsi_stencil *at, const mpsi_sha
 static void check_shapes(mps_mpm *mpm, int64_t *fitted) {
   double least_phi = 1.0, least_determinant = 1.0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    mpsi_mpm_find_states(mpm, cells, &mpm->grid.workers[0]);
+    const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+    const mpsi_cell_block *cells = work.cells;
+    mpsi_mpm_find_states(&work);
     for (int64_t k = cells->begin; k < cells->end; k++) {
       mpsi_stencil at;
       mpsi_shape_values f;
-      mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
+      mpm->kernels->fit(&work, k, &at, &f);
       check_sums(mpm->grid.dim, mpm->grid.cell, &at, &f);
       double weight = 0.0;
       for (int n = 0; n < MPSI_STENCIL; n++) {
@@ -135,9 +136,15 @@ static void shapes_are_a_partition(void **state) {
 /* To the nodes and back; nothing else acts. */
 static void there_and_back(mps_mpm *mpm, int geometry, int spline) {
   for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->kernels->p2g[geometry][spline](mpm, b, 0);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+    mpm->kernels->p2g[geometry][spline](&work);
+  }
   for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->kernels->g2p[geometry][spline](mpm, b, 0);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+    mpm->kernels->g2p[geometry][spline](&work);
+  }
 }
 
 /* A linear velocity field goes to the nodes and back unchanged, twice: first as written, then with
@@ -185,14 +192,15 @@ static void affine_round_trip(void **state) {
  */
 typedef double node_sums[8];
 
-static void add_by_fit(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k, node_sums *sums) {
+static void add_by_fit(const mps_mpm *mpm, const mpsi_transfer *work, int64_t k, node_sums *sums) {
+  const mpsi_cell_block *cells = work->cells;
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const mpsi_columns *p = &mpm->p;
   const int dim = mpm->grid.dim;
   const double m = p->m[k], h = mpm->grid.cell;
   mpsi_stencil at;
   mpsi_shape_values f;
-  mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
+  mpm->kernels->fit(work, k, &at, &f);
   for (int n = 0; n < MPSI_STENCIL; n++) {
     if (f.w[n] == 0.0) continue;
     const int i = n % 4, j = n / 4 % 4, l = n / 16;
@@ -246,12 +254,12 @@ static bool near_bodies(const mps_mpm *mpm, const double *x) {
 
 /* Velocity and gradient that a particle should get by the general fit; beside bodies, in the plane
  * and in space, with the spin by the nodes' moment about it. */
-static void gather_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k,
-                          double *out) {
+static void gather_by_fit(const mps_mpm *mpm, const mpsi_transfer *work, int64_t k, double *out) {
+  const mpsi_cell_block *cells = work->cells;
   const int dim = mpm->grid.dim;
   mpsi_stencil at;
   mpsi_shape_values f;
-  mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
+  mpm->kernels->fit(work, k, &at, &f);
   memset(out, 0, 12 * sizeof *out);
   double moment[3][3] = {{0.0}};
   const double h = mpm->grid.cell, full = h * h / (mpm->grid.spline == 3 ? 3.0 : 4.0);
@@ -305,23 +313,29 @@ static void transfers_agree_with_the_fit(void **state) {
     node_sums *sums =
         test_calloc((size_t)(mpm->grid.node_count * mpm->grid.block_nodes), sizeof *sums);
     for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-      mpsi_mpm_find_states(mpm, &mpm->grid.cells[b], &mpm->grid.workers[0]);
+      const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+      mpsi_mpm_find_states(&work);
       for (int64_t k = mpm->grid.cells[b].begin; k < mpm->grid.cells[b].end; k++)
-        add_by_fit(mpm, &mpm->grid.cells[b], k, sums);
+        add_by_fit(mpm, &work, k, sums);
     }
     for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
-    for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-      mpm->kernels->p2g[geometry][spline](mpm, b, 0);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+      const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+      mpm->kernels->p2g[geometry][spline](&work);
+    }
     check_nodes(mpm, sums);
     test_free(sums);
     for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
     for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-      mpsi_mpm_find_states(mpm, &mpm->grid.cells[b], &mpm->grid.workers[0]);
+      const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+      mpsi_mpm_find_states(&work);
       for (int64_t k = mpm->grid.cells[b].begin; k < mpm->grid.cells[b].end; k++)
-        gather_by_fit(mpm, &mpm->grid.cells[b], k, got[k]);
+        gather_by_fit(mpm, &work, k, got[k]);
     }
-    for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-      mpm->kernels->g2p[geometry][spline](mpm, b, 0);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+      const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+      mpm->kernels->g2p[geometry][spline](&work);
+    }
     for (int64_t k = 0; k < COUNT; k++)
       for (int c = 0; c < dim; c++) {
         mps_assert_near(mpm->p.v[c][k], got[k][c], 1e-13);

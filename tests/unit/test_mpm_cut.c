@@ -13,10 +13,8 @@
 
 /* ---- the functions of the level that the context has ----------------------------------------- */
 
-typedef bool (*scatter_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
-                           const mpsi_places *, int64_t, int, int);
-typedef bool (*gather_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
-                          const mpsi_places *, int64_t, int, int, mpsi_gathered *);
+typedef bool (*scatter_fn)(const mpsi_transfer *, const mpsi_segment *);
+typedef bool (*gather_fn)(const mpsi_transfer *, const mpsi_segment *, mpsi_gathered *);
 typedef struct functions {
   scatter_fn scatter;
   gather_fn gather;
@@ -24,11 +22,9 @@ typedef struct functions {
 
 /* Weak: those of a level that this library does not have are NULL. */
 #define DECLARE(level)                                                                             \
-  bool mpsi_mpm_scatter_cut_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,      \
-                                     const mpsi_places *, int64_t, int, int)                       \
+  bool mpsi_mpm_scatter_cut_v##level(const mpsi_transfer *, const mpsi_segment *)                  \
       __attribute__((weak));                                                                       \
-  bool mpsi_mpm_gather_cut_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,       \
-                                    const mpsi_places *, int64_t, int, int, mpsi_gathered *)       \
+  bool mpsi_mpm_gather_cut_v##level(const mpsi_transfer *, const mpsi_segment *, mpsi_gathered *)  \
       __attribute__((weak));
 DECLARE(3)
 DECLARE(4)
@@ -151,17 +147,17 @@ static double difference(const mps_mpm *mpm, double (*one)[4], double (*other)[4
 }
 
 /* The weights at a foot, by the fits that the scatter has kept. */
-static void compare_feet(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end,
+static void compare_feet(const mps_mpm *mpm, const mpsi_transfer *work, int64_t begin, int64_t end,
                          compared *out) {
-  const mpsi_worker *worker = &mpm->grid.workers[0];
+  const mpsi_cell_block *cells = work->cells;
   for (int64_t p = begin; p < end; p++) {
     const double d[3] = {uniform(-CELL, CELL), uniform(-CELL, CELL), uniform(-CELL, CELL)};
     mpsi_foot_weights foot;
     mpsi_stencil at;
     mpsi_shape_values f;
     assert_true(mpm->grid.fitted[cells->first_fit + p - cells->begin] != 0);
-    mpm->kernels->foot(mpm, cells, worker, p, d, &foot);
-    mpm->kernels->fit(mpm, cells, worker, p, &at, &f);
+    mpm->kernels->foot(work, p, d, &foot);
+    mpm->kernels->fit(work, p, &at, &f);
     for (int n = 0; n < MPSI_STENCIL; n++) {
       double psi = f.phi[n];
       for (int a = 0; a < mpm->grid.dim; a++) psi += f.gradient[a][n] * d[a];
@@ -184,16 +180,17 @@ static bool spins(const mps_mpm *mpm, uint32_t held) {
   return held && mpm->grid.geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC;
 }
 
-static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
-                            int64_t chunk, int begin, int end, compared *out) {
+static void compare_scatter(mps_mpm *mpm, const mpsi_transfer *work, const mpsi_segment *segment,
+                            compared *out) {
   static double batch[2][MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE][4];
-  const mpsi_worker *worker = &mpm->grid.workers[0];
-  const int64_t nodes = mpm->grid.tile_nodes;
-  const uint32_t held = held_by(mpm, places, begin);
+  const mpsi_worker *worker = work->worker;
+  const int64_t nodes = mpm->grid.tile_nodes, chunk = segment->places->chunk;
+  const int begin = segment->begin, end = segment->end;
+  const uint32_t held = held_by(mpm, segment->places, begin);
   clear_tiles(mpm, worker);
-  if (!functions_of(mpm).scatter(mpm, cells, worker, places, chunk, begin, end)) {
+  if (!functions_of(mpm).scatter(work, segment)) {
     /* the kept fit says so; by themselves they have the same */
-    compare_feet(mpm, cells, chunk + begin, chunk + end, out);
+    compare_feet(mpm, work, chunk + begin, chunk + end, out);
     out->full++;
     return;
   }
@@ -203,30 +200,30 @@ static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
   for (int k = begin; k < end; k++) {
     mpsi_stencil at;
     mpsi_shape_values f;
-    mpm->kernels->fit(mpm, cells, worker, chunk + k, &at, &f);
+    mpm->kernels->fit(work, chunk + k, &at, &f);
     reference_scatter(mpm, &at, &f, chunk + k, mpm->run.moments && spins(mpm, held), worker->tile,
                       worker->force);
   }
   out->scatter = fmax(out->scatter, difference(mpm, worker->tile, batch[0]));
   out->scatter = fmax(out->scatter, difference(mpm, worker->force, batch[1]));
-  if (cells->first_fit >= 0) compare_feet(mpm, cells, chunk + begin, chunk + end, out);
+  if (work->cells->first_fit >= 0) compare_feet(mpm, work, chunk + begin, chunk + end, out);
   out->sides += !held;
   out->batches[end - begin < 4 ? end - begin : 4]++;
 }
 
-static void compare_gather(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
-                           int64_t chunk, int begin, int end, compared *out) {
-  const mpsi_worker *worker = &mpm->grid.workers[0];
-  const uint32_t held = held_by(mpm, places, begin);
+static void compare_gather(mps_mpm *mpm, const mpsi_transfer *work, const mpsi_segment *segment,
+                           compared *out) {
+  const mpsi_worker *worker = work->worker;
+  const uint32_t held = held_by(mpm, segment->places, segment->begin);
   mpsi_gathered batch;
   for (int64_t n = 0; n < mpm->grid.tile_nodes; n++)
     for (int c = 0; c < 4; c++) worker->tile[n][c] = uniform(-1.0, 1.0);
-  if (!functions_of(mpm).gather(mpm, cells, worker, places, chunk, begin, end, &batch)) return;
-  for (int k = begin; k < end; k++) {
+  if (!functions_of(mpm).gather(work, segment, &batch)) return;
+  for (int k = segment->begin; k < segment->end; k++) {
     mpsi_stencil at;
     mpsi_shape_values f;
-    mpm->kernels->fit(mpm, cells, worker, chunk + k, &at, &f);
-    const reference one = reference_gather(mpm, cells, &at, &f, held != 0, spins(mpm, held),
+    mpm->kernels->fit(work, segment->places->chunk + k, &at, &f);
+    const reference one = reference_gather(mpm, work->cells, &at, &f, held != 0, spins(mpm, held),
                                            (const mpsi_node *)worker->tile);
     for (int c = 0; c < mpm->grid.dim; c++) {
       out->gather = fmax(out->gather, fabs(batch.v[c][k] - one.v[c]));
@@ -240,19 +237,21 @@ static void compare_gather(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
   }
 }
 
-static void compare_block(mps_mpm *mpm, const mpsi_cell_block *cells, compared *out) {
-  mpsi_mpm_find_states(mpm, cells, &mpm->grid.workers[0]);
+static void compare_block(mps_mpm *mpm, int64_t b, compared *out) {
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, 0);
+  const mpsi_cell_block *cells = work.cells;
+  const int dim = mpm->grid.dim, spline = mpm->grid.spline;
+  mpsi_mpm_find_states(&work);
   for (int64_t chunk = cells->begin; chunk < cells->end; chunk += MPSI_CHUNK) {
     const int n = cells->end - chunk < MPSI_CHUNK ? (int)(cells->end - chunk) : MPSI_CHUNK;
     mpsi_places places;
-    mpsi_find_places(mpm, cells, mpm->grid.dim, mpm->grid.spline, 7, 7, chunk, n, &places);
+    mpsi_find_places(&work, dim, spline, 7, 7, chunk, n, &places);
     for (int k = 0, end; k < n; k = end) {
       for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
-      if (mpsi_support_state(&mpm->grid.workers[0], mpm->grid.dim, mpm->grid.spline,
-                             places.first[k]) == 0)
-        continue;
-      compare_scatter(mpm, cells, &places, chunk, k, end, out);
-      compare_gather(mpm, cells, &places, chunk, k, end, out);
+      const mpsi_segment segment = {&places, k, end};
+      if (mpsi_support_state(work.worker, dim, spline, places.first[k]) == 0) continue;
+      compare_scatter(mpm, &work, &segment, out);
+      compare_gather(mpm, &work, &segment, out);
     }
   }
 }
@@ -268,7 +267,7 @@ static void vectors_do_as_the_reference(void **state) {
     compared c = {.scatter = 0.0};
     s.mpm->run.moments = (variant & 4) != 0; /* spins of particles beside bodies */
     for (int64_t b = 0; b < s.mpm->grid.cell_count; b++)
-      if (s.mpm->grid.cells[b].cut) compare_block(s.mpm, &s.mpm->grid.cells[b], &c);
+      if (s.mpm->grid.cells[b].cut) compare_block(s.mpm, b, &c);
     print_message(
         "%d, spline %d, walls %d, moments %d: %lld %lld %lld %lld batches, %lld full, %lld sides, "
         "scatter %.2g, gather %.2g, feet %.2g\n",

@@ -6,15 +6,30 @@
 
 #include "shape.h"
 
+/* What the transfer between the particles of a block of cells and the nodes works on. */
+typedef struct mpsi_transfer {
+  const mpsi_grid *grid;
+  mpsi_columns *p;
+  const mpsi_contacts *contact;
+  const mpsi_boundaries *boundaries;
+  const mpsi_mirrors *mirrors;
+  mpsi_water *water; /* NULL: none */
+  const mpsi_energy *energy;
+  const mpsi_run *run;
+  const mps_mpm_def *def;
+  mpsi_cell_block *cells;
+  mpsi_worker *worker;
+} mpsi_transfer;
+
+typedef void (*mpsi_transfer_fn)(const mpsi_transfer *work);
+
 /* Stencil and fitted shape functions of a particle; the states of its block's nodes are known. */
-typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                            const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
+typedef void (*mpsi_fit_fn)(const mpsi_transfer *work, int64_t particle, mpsi_stencil *stencil,
                             mpsi_shape_values *out);
 
 /* Shape functions extrapolated to the distance d[3] (m) from a particle, after the scatter of the
  * step. */
-typedef void (*mpsi_foot_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                             const mpsi_worker *worker, int64_t particle, const double *d,
+typedef void (*mpsi_foot_fn)(const mpsi_transfer *work, int64_t particle, const double *d,
                              mpsi_foot_weights *out);
 
 /* Region known to be far from a body: the ball about x and, for a convex body, the points before
@@ -26,13 +41,13 @@ typedef struct mpsi_far {
 
 typedef struct mpsi_kernels {
   /* Indexed by geometry (mps_mpm_geometry) and degree of the spline less 2. */
-  const mpsi_mpm_task (*p2g)[2];  /* P2G of a block of cells */
-  const mpsi_mpm_task (*tile)[2]; /* first half of P2G: sums in the worker's tile */
-  mpsi_mpm_task flush;            /* second half: from the tile to the nodes */
-  const mpsi_mpm_task (*g2p)[2];  /* G2P: velocities and positions; then law and speed */
-  mpsi_mpm_task speed;            /* largest c + |v| of a block */
-  mpsi_mpm_task pore_sum;  /* water in the pores: sums of a block in the worker's tiles, which */
-  mpsi_mpm_task pore_give; /* are clear; and back from the cells (water/cell_loops.c) */
+  const mpsi_transfer_fn (*p2g)[2];  /* P2G of a block of cells */
+  const mpsi_transfer_fn (*tile)[2]; /* first half of P2G: sums in the worker's tile */
+  mpsi_transfer_fn flush;            /* second half: from the tile to the nodes */
+  const mpsi_transfer_fn (*g2p)[2];  /* G2P: velocities and positions; then law and speed */
+  mpsi_transfer_fn speed;            /* largest c + |v| of a block */
+  mpsi_transfer_fn pore_sum;  /* water in the pores: sums of a block in the worker's tiles, which */
+  mpsi_transfer_fn pore_give; /* are clear; and back from the tiles (water/cell_loops.c) */
   mpsi_fit_fn fit;
   mpsi_foot_fn foot;
   /* search.c, of particles [begin, end): the largest speed (m/s); the first that is not known to be
@@ -53,7 +68,67 @@ typedef struct mpsi_kernels {
 /* kernels.c: the kernels of an x86-64 level; 0: the best that processor and build have. */
 const mpsi_kernels *mpsi_mpm_kernels(int32_t isa);
 
-/* inside.c: states of the nodes under a cut block's tile, to worker->state and worker->inside. */
-void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
+/* inside.c: states of the nodes under a cut block's tile, to worker->state. */
+void mpsi_mpm_find_states(const mpsi_transfer *work);
+
+/* What the contact stage of a step works on. */
+typedef struct mpsi_contact_stage {
+  mps_context *context;
+  mpsi_transfer transfer; /* of no block of cells yet */
+  mpsi_contacts *contact;
+  mpsi_partition *partition; /* NULL: one rank */
+  const mpsi_kernels *kernels;
+  double dt, next_dt; /* s, of this step and of the next one */
+  bool settling;      /* bodies do not move freely */
+} mpsi_contact_stage;
+
+/* The stage's transfer of block of cells b by a worker. */
+static inline mpsi_transfer mpsi_contact_transfer(const mpsi_contact_stage *stage, int64_t b,
+                                                  int32_t worker) {
+  mpsi_transfer work = stage->transfer;
+  work.cells = &work.grid->cells[b];
+  work.worker = &work.grid->workers[worker];
+  return work;
+}
+
+/* inside.c: what the search for nodes inside bodies works on. */
+typedef struct mpsi_inside_search {
+  const mpsi_grid *grid;
+  const mpsi_columns *p;
+  const mpsi_contacts *contact;
+  const mpsi_kernels *kernels;
+} mpsi_inside_search;
+
+/* The transfer of a solver, of no block of cells yet. */
+static inline mpsi_transfer mpsi_transfer_begin(mps_mpm *mpm) {
+  return (mpsi_transfer){.grid = &mpm->grid,
+                         .p = &mpm->p,
+                         .contact = &mpm->contact,
+                         .boundaries = &mpm->boundaries,
+                         .mirrors = &mpm->mirrors,
+                         .water = mpm->water,
+                         .energy = &mpm->energy,
+                         .run = &mpm->run,
+                         .def = &mpm->def};
+}
+
+/* The transfer of block of cells b by a worker. */
+static inline mpsi_transfer mpsi_transfer_of(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_transfer work = mpsi_transfer_begin(mpm);
+  work.cells = &mpm->grid.cells[b];
+  work.worker = &mpm->grid.workers[worker];
+  return work;
+}
+
+static inline mpsi_contact_stage mpsi_contact_stage_of(mps_mpm *mpm) {
+  return (mpsi_contact_stage){.context = mpm->context,
+                              .transfer = mpsi_transfer_begin(mpm),
+                              .contact = &mpm->contact,
+                              .partition = mpm->partition,
+                              .kernels = mpm->kernels,
+                              .dt = mpm->run.dt,
+                              .next_dt = mps_mpm_dt(mpm),
+                              .settling = mpm->settling.on};
+}
 
 #endif

@@ -134,10 +134,18 @@ MPSI_INLINE double mpsi_difference(int spline, int i) {
 
 /* Positions in the tile, in cells, and weights of the particles of a chunk. */
 typedef struct mpsi_places {
+  int64_t chunk;                      /* index of its first particle */
+  int count;                          /* of its particles */
   double t[3][MPSI_COLUMN] MPSI_LINE; /* distance from the lowest node of the stencil */
   double w[3][4][MPSI_COLUMN], ws[3][4][MPSI_COLUMN]; /* w and w s, by axis and node */
   int32_t first[MPSI_CHUNK]; /* lowest node of the stencil, index in the tile */
 } mpsi_places;
+
+/* A segment: consecutive particles, numbers `begin` to `end` - 1 of a chunk, with one stencil. */
+typedef struct mpsi_segment {
+  const mpsi_places *places;
+  int begin, end;
+} mpsi_segment;
 
 /* Weights along x of each particle, the four nodes of a row side by side. */
 typedef struct mpsi_rows {
@@ -153,7 +161,27 @@ MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
   return out;
 }
 
+/* Origin of a block's tile: that of the grid (m), and the block's first node from there (cells). A
+ * local copy, as stores of vectors may alias what is behind a pointer. */
+typedef struct mpsi_frame {
+  double origin[3], corner[3], inverse; /* 1/m, cells in a metre */
+} mpsi_frame;
+
+MPSI_INLINE mpsi_frame mpsi_frame_of(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim) {
+  mpsi_frame out = {{0.0}, {0.0}, grid->inverse};
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    out.origin[c] = grid->origin[c];
+    out.corner[c] = (double)cells->at[c] * MPSI_SIDE;
+  }
+  return out;
+}
+
 /* Distance (cells) from the block's first node, along axis c, of four particles at x. */
+MPSI_INLINE mpsi_quad mpsi_in_frame(const mpsi_frame *frame, int c, mpsi_quad x) {
+  return (x - frame->origin[c]) * frame->inverse - frame->corner[c];
+}
+
+/* The same, where few particles are asked for. */
 MPSI_INLINE mpsi_quad mpsi_from_block(const mpsi_grid *grid, const mpsi_cell_block *cells, int c,
                                       mpsi_quad x) {
   return (x - grid->origin[c]) * grid->inverse - (double)cells->at[c] * MPSI_SIDE;
@@ -176,15 +204,17 @@ MPSI_INLINE void mpsi_lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
 
 /* Positions of particles [begin, begin + n) in the tile, their weights along the axes of `weights`
  * (a bit each), and weights times s along those of `slopes`, a subset of these; both literal. */
-MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                  int spline, int weights, int slopes, int64_t begin, int n,
-                                  mpsi_places *out) {
+MPSI_INLINE void mpsi_find_places(const mpsi_transfer *work, int dim, int spline, int weights,
+                                  int slopes, int64_t begin, int n, mpsi_places *out) {
+  const mpsi_frame frame = mpsi_frame_of(work->grid, work->cells, dim);
+  const double *x[3] = {NULL};
+  for (int c = 0; c < dim; c++) x[c] = work->p->x[c] + begin;
+  out->chunk = begin, out->count = n;
   for (int k = 0; k < n; k += 4) {
     mpsi_index first = {0};
     for (int c = 0, stride = 1; c < dim; c++, stride *= MPSI_TILE_SIDE) {
       /* from the block's first node: not negative, so that truncation is floor */
-      const mpsi_quad X =
-          mpsi_from_block(&mpm->grid, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
+      const mpsi_quad X = mpsi_in_frame(&frame, c, mpsi_get_some(x[c] + k, n - k));
       const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
                                           : __builtin_convertvector(X - 0.5, mpsi_index);
       const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);
@@ -240,23 +270,17 @@ typedef struct mpsi_gathered {
 
 /* ---- cut_scatter.c, cut_gather.c: particles whose support is cut ----------------------------- */
 
-/* P2G and G2P of particles [begin, end) of a chunk (whose first particle is `chunk`), all of one
- * stencil, with a cut support. P2G also sums penalty contact and stores fits. They do nothing and
- * return false if all supports are full: such particles are treated as others with full supports,
- * except that the laws take the slopes of the fit. */
-bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                         const mpsi_worker *worker, const mpsi_places *places,
-                                         int64_t chunk, int begin, int end);
-bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                        const mpsi_worker *worker, const mpsi_places *places,
-                                        int64_t chunk, int begin, int end, mpsi_gathered *out);
+/* P2G and G2P of a segment with a cut support. P2G also sums penalty contact and stores fits. They
+ * do nothing and return false if all supports are full: such particles are treated as others with
+ * full supports, except that the laws take the slopes of the fit. */
+bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(const mpsi_transfer *work, const mpsi_segment *segment);
+bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(const mpsi_transfer *work, const mpsi_segment *segment,
+                                        mpsi_gathered *out);
 
 /* The functions of mpsi_kernels. */
-void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                 const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
+void MPSI_LEVELLED(mpsi_mpm_fit)(const mpsi_transfer *work, int64_t particle, mpsi_stencil *stencil,
                                  mpsi_shape_values *out);
-void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                  const mpsi_worker *worker, int64_t particle, const double *d,
+void MPSI_LEVELLED(mpsi_mpm_foot)(const mpsi_transfer *work, int64_t particle, const double *d,
                                   mpsi_foot_weights *out);
 double MPSI_LEVELLED(mpsi_mpm_fastest)(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin,
                                        int64_t end);
@@ -270,9 +294,9 @@ void MPSI_LEVELLED(mpsi_mpm_warm)(mpsi_impulses *all, double dt,
 void MPSI_LEVELLED(mpsi_mpm_sweep)(mpsi_impulses *all, int32_t dim, mpsi_constraint_block *block,
                                    bool back);
 void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mpsi_impulses *all, int64_t constraint, double *v);
-void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
-void MPSI_LEVELLED(mpsi_pore_sum)(mps_mpm *mpm, int64_t b, int32_t worker);
-void MPSI_LEVELLED(mpsi_pore_give)(mps_mpm *mpm, int64_t b, int32_t worker);
-void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
+void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_mpm_flush)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_give)(const mpsi_transfer *work);
 
 #endif

@@ -52,6 +52,14 @@ mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function);
 /* ready.c: likewise for a step outside a run; without particles dt must be given. */
 mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function);
+/* ready.c: sorts the particles by blocks and rebuilds the lists of blocks. */
+mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+/* cut.c: before a step, pairs of blocks and bodies, nodes inside bodies, and which blocks are cut
+ * and split (contact/pairs.h). `status`: of the step so far on this rank; collective where there
+ * are bodies. */
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status);
+/* ready.c: the largest c + |v| of each block of cells, and its first bad particle. */
+void mpsi_mpm_find_speeds(mps_mpm *mpm);
 /* block_results.c: results of all blocks: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);
 

@@ -119,10 +119,12 @@ void mpsi_mpm_boundary_add_works(const mpsi_boundaries *boundaries, mpsi_exact *
 void mpsi_mpm_begin_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int64_t g);
 /* walls.c: applies the mirrors alone, before friction with bodies, which must use nodes on a mirror
  * as their own images; to the velocities before the forces too. */
-void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_prescribe_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                                const mpsi_mirrors *mirrors, double dt, int64_t g);
 /* walls.c: applies all boundaries to the nodes of a block. `fixed`: of each node, bit c where a
  * boundary alone determines component c; not written where none acts. */
-void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed);
+void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, double dt,
+                              int64_t g, uint8_t *fixed);
 void mpsi_mpm_sum_boundaries(const mpsi_grid *grid, mpsi_boundaries *boundaries,
                              const mpsi_mirrors *mirrors, mpsi_energy *energy, double dt);
 /* walls.c: after G2P, prescribes the velocities of listed particles. */

@@ -1,7 +1,7 @@
 /* mirror.c - folding of ghosts on mirrors, and their images: see mirror.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/kernels.h"
 
 #include <string.h>
 
@@ -76,6 +76,7 @@ int mpsi_mpm_mirror_partner(const mpsi_grid *grid, const mpsi_cell_block *cells,
 /* ---- one side under a tile ------------------------------------------------------------------- */
 
 typedef struct side {
+  const mpsi_grid *grid;
   const mpsi_cell_block *cells;
   int axis;
   int wall, inwards;  /* tile node of the wall along the axis; +1 or -1 */
@@ -91,7 +92,8 @@ static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
   const mpsi_boundary *hold = &boundaries->hold[k];
   const int c = k / 2;
   const int64_t node = k % 2 ? grid->high[c] : grid->low[c];
-  side out = {.cells = cells,
+  side out = {.grid = grid,
+              .cells = cells,
               .axis = c,
               .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
               .inwards = k % 2 ? -1 : 1};
@@ -114,14 +116,13 @@ typedef struct couple {
   double x_ghost[3], x_partner[3];
 } couple;
 
-typedef void (*couple_fn)(const mps_mpm *mpm, const side *s, const couple *at, int layer,
-                          void *data);
+typedef void (*couple_fn)(const side *s, const couple *at, int layer, void *data);
 
 static bool in_use(const side *s, int node) {
   return node >= s->cells->low[s->axis] && node < s->cells->high[s->axis];
 }
 
-static void for_couples(const mps_mpm *mpm, const side *s, couple_fn work, void *data) {
+static void for_couples(const side *s, couple_fn work, void *data) {
   const int c = s->axis, a = (c + 1) % 3, b = (c + 2) % 3;
   const int first = a < b ? a : b, second = a < b ? b : a;
   for (int layer = 1; layer <= LAYERS; layer++) {
@@ -134,11 +135,10 @@ static void for_couples(const mps_mpm *mpm, const side *s, couple_fn work, void 
         for (int image = 0; image < 2; image++) {
           at[c] = image ? ghost : partner;
           const double local[3] = {at[0], at[1], at[2]};
-          mpsi_node_position(&mpm->grid, s->cells->at, local,
-                             image ? pair.x_ghost : pair.x_partner);
+          mpsi_node_position(s->grid, s->cells->at, local, image ? pair.x_ghost : pair.x_partner);
           *(image ? &pair.ghost : &pair.partner) = mpsi_tile_index(at[0], at[1], at[2]);
         }
-        work(mpm, s, &pair, layer, data);
+        work(s, &pair, layer, data);
       }
   }
 }
@@ -159,11 +159,12 @@ static void add_change(mpsi_mirror *to, const double *x_after, const double *aft
 typedef struct tiles {
   mpsi_node *tile, *force;
   bool across;
+  double dt; /* s */
 } tiles;
 
 /* ---- folding --------------------------------------------------------------------------------- */
 
-static void fold_node(const mps_mpm *mpm, const side *s, const couple *at, int layer, void *data) {
+static void fold_node(const side *s, const couple *at, int layer, void *data) {
   const tiles *of = data;
   double *ghost = of->tile[at->ghost], *partner = of->tile[at->partner];
   const bool apart = s->cells->apart;
@@ -176,9 +177,9 @@ static void fold_node(const mps_mpm *mpm, const side *s, const couple *at, int l
     const double folded = s->keeps[c] * q + m * s->velocity[c];
     partner[MPSI_VECTOR + c] += folded;
     if (apart) to[MPSI_VECTOR + c] += s->keeps[c] * f;
-    before[c] = q + mpm->run.dt * f;
-    after[c] = folded + mpm->run.dt * s->keeps[c] * f;
-    s->mirror->passed += mpm->run.dt * f * s->velocity[c];
+    before[c] = q + of->dt * f;
+    after[c] = folded + of->dt * s->keeps[c] * f;
+    s->mirror->passed += of->dt * f * s->velocity[c];
   }
   add_change(s->mirror, at->x_partner, after, at->x_ghost, before);
   partner[MPSI_MASS] += m;
@@ -188,30 +189,29 @@ static void fold_node(const mps_mpm *mpm, const side *s, const couple *at, int l
   memset(force, 0, sizeof(mpsi_node));
 }
 
-static void fold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
+static void fold_tiles(const mpsi_transfer *work, tiles *of) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
-    if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, k, of->across);
-    for_couples(mpm, &s, fold_node, of);
+    if (!(work->cells->mirrors >> k & 1)) continue;
+    const side s = side_of(work->grid, work->boundaries, work->mirrors, work->cells, k, of->across);
+    for_couples(&s, fold_node, of);
   }
 }
 
-void mpsi_mpm_fold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
-  tiles own = {worker->tile, worker->force, false};
-  tiles across = {worker->across_tile, worker->across_force, true};
-  fold_tiles(mpm, cells, &own);
-  if (cells->thin) fold_tiles(mpm, cells, &across);
+void mpsi_mpm_fold(const mpsi_transfer *work) {
+  const mpsi_worker *worker = work->worker;
+  tiles own = {worker->tile, worker->force, false, work->run->dt};
+  tiles across = {worker->across_tile, worker->across_force, true, work->run->dt};
+  fold_tiles(work, &own);
+  if (work->cells->thin) fold_tiles(work, &across);
 }
 
 /* ---- mirroring back -------------------------------------------------------------------------- */
 
-static void mirror_node(const mps_mpm *mpm, const side *s, const couple *at, int layer,
-                        void *data) {
+static void mirror_node(const side *s, const couple *at, int layer, void *data) {
   const tiles *of = data;
   double *ghost = of->tile[at->ghost], m = layer == 1 ? s->mass[at->place] : 0.0;
   const double *partner = of->tile[at->partner];
   double before[3], after[3];
-  (void)mpm;
   ghost[MPSI_MASS] = partner[MPSI_MASS];
   for (int c = 0; c < 3; c++) {
     ghost[MPSI_VECTOR + c] = s->keeps[c] * partner[MPSI_VECTOR + c] + s->velocity[c];
@@ -221,33 +221,34 @@ static void mirror_node(const mps_mpm *mpm, const side *s, const couple *at, int
   if (m != 0.0) add_change(s->mirror, at->x_ghost, after, at->x_partner, before);
 }
 
-static void unfold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
+static void unfold_tiles(const mpsi_transfer *work, tiles *of) {
   for (int32_t k = MPSI_SIDES - 1; k >= 0; k--) {
-    if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, k, of->across);
-    for_couples(mpm, &s, mirror_node, of);
+    if (!(work->cells->mirrors >> k & 1)) continue;
+    const side s = side_of(work->grid, work->boundaries, work->mirrors, work->cells, k, of->across);
+    for_couples(&s, mirror_node, of);
   }
 }
 
-void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
-  tiles own = {worker->tile, NULL, false}, across = {worker->across_tile, NULL, true};
-  unfold_tiles(mpm, cells, &own);
-  if (cells->thin) unfold_tiles(mpm, cells, &across);
+void mpsi_mpm_unfold(const mpsi_transfer *work) {
+  const mpsi_worker *worker = work->worker;
+  tiles own = {.tile = worker->tile}, across = {.tile = worker->across_tile, .across = true};
+  unfold_tiles(work, &own);
+  if (work->cells->thin) unfold_tiles(work, &across);
 }
 
 /* ---- bodies near a mirror -------------------------------------------------------------------- */
 
-static void copy_state(const mps_mpm *mpm, const side *s, const couple *at, int layer, void *data) {
+static void copy_state(const side *s, const couple *at, int layer, void *data) {
   mpsi_worker *worker = data;
-  (void)mpm, (void)s, (void)layer;
+  (void)s, (void)layer;
   worker->state[at->ghost] = worker->state[at->partner];
 }
 
-void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+void mpsi_mpm_mirror_states(const mpsi_transfer *work) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
-    if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, k, false);
-    for_couples(mpm, &s, copy_state, worker);
+    if (!(work->cells->mirrors >> k & 1)) continue;
+    const side s = side_of(work->grid, work->boundaries, work->mirrors, work->cells, k, false);
+    for_couples(&s, copy_state, work->worker);
   }
 }
 

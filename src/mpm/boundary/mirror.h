@@ -32,7 +32,10 @@ typedef struct mpsi_mirrors {
   mpsi_room mirror_room, mass_room;
 } mpsi_mirrors;
 
-#define mpsi_is_mirror(mpm, k) ((k) < MPSI_SIDES && ((mpm)->mirrors.sides >> (k)&1) != 0)
+/* Whether boundary k is a side that is a mirror. */
+static inline bool mpsi_is_mirror(const mpsi_mirrors *mirrors, int32_t k) {
+  return k < MPSI_SIDES && (mirrors->sides >> k & 1) != 0;
+}
 
 /* Number of nodes of a plane across a tile. */
 static inline int64_t mpsi_mirror_plane(int32_t tile_nodes) { return tile_nodes / MPSI_TILE_SIDE; }
@@ -45,10 +48,10 @@ mps_status mpsi_mpm_list_mirrors(mps_context *context, mpsi_grid *grid,
 /* Sets the impulses of a block's mirrors to zero, before P2G. */
 void mpsi_mpm_begin_mirrors(const mpsi_mirrors *mirrors, const mpsi_cell_block *cells);
 /* Folds the tile of a block after P2G; mirrors it back before G2P. */
-void mpsi_mpm_fold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
-void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
+void mpsi_mpm_fold(const mpsi_transfer *work);
+void mpsi_mpm_unfold(const mpsi_transfer *work);
 /* Copies the states of partners to ghosts: these are in the same bodies. */
-void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
+void mpsi_mpm_mirror_states(const mpsi_transfer *work);
 /* After the step: adds the impulses of the mirrors to the reactions of their sides. */
 void mpsi_mpm_sum_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                           const mpsi_mirrors *mirrors, mpsi_energy *energy);

@@ -151,7 +151,9 @@ mps_status mpsi_mpm_restore_dashpots(mps_mpm *mpm, const char *function) {
 
 /* A block of nodes whose boundary conditions are applied. */
 typedef struct block {
-  mps_mpm *mpm;
+  const mpsi_grid *grid;
+  const mpsi_boundaries *boundaries;
+  double dt;              /* s */
   mpsi_node *node, *side; /* side: NULL where the block has none */
   uint8_t *held;          /* bit c: a boundary alone determines component c */
   bool again;             /* values across thin bodies, whose nodes have been counted already */
@@ -167,7 +169,7 @@ static void set(block *b, const mpsi_boundary *hold, mpsi_held *held, int k, int
   double *at = &b->node[k][MPSI_VECTOR + c];
   const double impulse = b->node[k][MPSI_MASS] * (v - *at);
   double x[3];
-  mpsi_node_place(&b->mpm->grid, held->at, k, x);
+  mpsi_node_place(b->grid, held->at, k, x);
   held->impulse[c] += impulse;
   held->moment[(c + 2) % 3] -= x[(c + 1) % 3] * impulse; /* x cross impulse */
   held->moment[(c + 1) % 3] += x[(c + 2) % 3] * impulse;
@@ -184,10 +186,9 @@ static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) 
   if (!(b->node[k][MPSI_MASS] > 0.0)) return;
   double v[3];
   const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
-  mpsi_dashpot *dashpot =
-      &b->mpm->boundaries.dashpot[held->dashpot + mpsi_plane_index(hold->axis, k)];
-  mpsi_mpm_apply_dashpot(&b->mpm->grid, b->mpm->run.dt, hold, dashpot, b->node[k], before, v);
-  for (int c = 0; c < b->mpm->grid.dim; c++)
+  mpsi_dashpot *dashpot = &b->boundaries->dashpot[held->dashpot + mpsi_plane_index(hold->axis, k)];
+  mpsi_mpm_apply_dashpot(b->grid, b->dt, hold, dashpot, b->node[k], before, v);
+  for (int c = 0; c < b->grid->dim; c++)
     if (!(b->held[k] >> c & 1)) set(b, hold, held, k, c, v[c]);
 }
 
@@ -205,7 +206,7 @@ static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held,
   const double most = hold->friction * b->normal_impulse[held->hold][k], m = b->node[k][MPSI_MASS];
   double slip[3] = {0.0}, square = 0.0;
   if (!(most > 0.0) || !(m > 0.0)) return;
-  for (int c = 0; c < b->mpm->grid.dim; c++) {
+  for (int c = 0; c < b->grid->dim; c++) {
     if (b->held[k] >> c & 1) continue;
     slip[c] = b->node[k][MPSI_VECTOR + c] - hold->v[c];
     square += slip[c] * slip[c];
@@ -213,13 +214,13 @@ static void apply_friction(block *b, const mpsi_boundary *hold, mpsi_held *held,
   const double speed = sqrt(square);
   if (!(speed > 0.0)) return;
   const double left = most < m * speed ? 1.0 - most / (m * speed) : 0.0;
-  for (int c = 0; c < b->mpm->grid.dim; c++)
+  for (int c = 0; c < b->grid->dim; c++)
     if (slip[c] != 0.0) set(b, hold, held, k, c, hold->v[c] + left * slip[c]);
 }
 
 /* Prescribes all components at a fixed side, the chosen ones in a box. */
 static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
-  for (int c = 0; c < b->mpm->grid.dim; c++)
+  for (int c = 0; c < b->grid->dim; c++)
     if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);
   b->held[k] |= (uint8_t)hold->dofs;
 }
@@ -228,7 +229,7 @@ static void prescribe(block *b, const mpsi_boundary *hold, mpsi_held *held, int 
 
 static void for_range(block *b, const mpsi_boundary *hold, mpsi_held *held, hold_fn work) {
   mpsi_range r;
-  if (!mpsi_find_range(b->mpm->grid.dim, held->at, hold, &r)) return;
+  if (!mpsi_find_range(b->grid->dim, held->at, hold, &r)) return;
   const int64_t counted = b->again ? held->count : 0;
   held->count = 0;
   for (int z = r.low[2]; z <= r.high[2]; z++)
@@ -241,14 +242,15 @@ static void for_range(block *b, const mpsi_boundary *hold, mpsi_held *held, hold
   if (b->again) held->count = counted;
 }
 
-static void begin_block(mps_mpm *mpm, int64_t g, uint8_t *fixed, block *b) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  b->mpm = mpm; /* normal_impulse is written before it is read */
-  b->node = mpm->grid.node + mpsi_first_node(&mpm->grid, g);
-  b->side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(&mpm->grid, nodes->side) : NULL;
+static void begin_block(const mpsi_grid *grid, const mpsi_boundaries *boundaries, double dt,
+                        int64_t g, uint8_t *fixed, block *b) {
+  const mpsi_node_block *nodes = &grid->nodes[g];
+  b->grid = grid, b->boundaries = boundaries, b->dt = dt;
+  b->node = grid->node + mpsi_first_node(grid, g);
+  b->side = nodes->side >= 0 ? grid->side + mpsi_first_node(grid, nodes->side) : NULL;
   b->held = fixed;
-  b->again = g >= mpm->grid.node_count;
-  memset(fixed, 0, (size_t)mpm->grid.block_nodes);
+  b->again = g >= grid->node_count; /* normal_impulse is written before it is read */
+  memset(fixed, 0, (size_t)grid->block_nodes);
 }
 
 void mpsi_mpm_begin_held(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int64_t g) {
@@ -261,42 +263,44 @@ void mpsi_mpm_begin_held(const mpsi_grid *grid, const mpsi_boundaries *boundarie
   }
 }
 
-void mpsi_mpm_prescribe_mirrors(mps_mpm *mpm, int64_t g) {
+void mpsi_mpm_prescribe_mirrors(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
+                                const mpsi_mirrors *mirrors, double dt, int64_t g) {
   uint8_t fixed[BLOCK];
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  mpsi_held *first = mpm->boundaries.held + nodes->first_held;
+  const mpsi_node_block *nodes = &grid->nodes[g];
+  mpsi_held *first = boundaries->held + nodes->first_held;
   if (nodes->holds == 0) return;
   block b;
-  begin_block(mpm, g, fixed, &b);
+  begin_block(grid, boundaries, dt, g, fixed, &b);
   for (int pass = 0; pass < 2; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
-      const mpsi_boundary *hold = &mpm->boundaries.hold[first[t].hold];
+      const mpsi_boundary *hold = &boundaries->hold[first[t].hold];
       const bool holds_all = hold->kind == MPS_BOUNDARY_HELD;
-      if (mpsi_is_mirror(mpm, first[t].hold) && holds_all == (pass == 1))
+      if (mpsi_is_mirror(mirrors, first[t].hold) && holds_all == (pass == 1))
         for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
     }
-  for (int k = 0; k < mpm->grid.block_nodes && nodes->split; k++)
-    for (int c = 0; c < mpm->grid.dim; c++)
+  for (int k = 0; k < grid->block_nodes && nodes->split; k++)
+    for (int c = 0; c < grid->dim; c++)
       if (fixed[k] >> c & 1) b.side[k][MPSI_VECTOR + c] = b.node[k][MPSI_VECTOR + c];
 }
 
 /* Boundaries that act normal to walls come before friction: where two walls join, friction along
  * one must not move a node into the other. */
-void mpsi_mpm_prescribe_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
+void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, double dt,
+                              int64_t g, uint8_t *fixed) {
   static const struct {
     int32_t kind;
     hold_fn work;
   } order[] = {{MPS_BOUNDARY_ROLLER, hold_across},     {MPS_BOUNDARY_ABSORBING, absorb},
                {MPS_BOUNDARY_FRICTIONAL, stop_inward}, {MPS_BOUNDARY_FRICTIONAL, apply_friction},
                {MPS_BOUNDARY_HELD, prescribe},         {MPS_BOUNDARY_DRIVEN, prescribe}};
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const mpsi_node_block *nodes = &grid->nodes[g];
   if (nodes->holds == 0) return;
-  mpsi_held *first = mpm->boundaries.held + nodes->first_held;
+  mpsi_held *first = boundaries->held + nodes->first_held;
   block b;
-  begin_block(mpm, g, fixed, &b);
+  begin_block(grid, boundaries, dt, g, fixed, &b);
   for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
-      const mpsi_boundary *hold = &mpm->boundaries.hold[first[t].hold];
+      const mpsi_boundary *hold = &boundaries->hold[first[t].hold];
       if (hold->kind == order[pass].kind) for_range(&b, hold, &first[t], order[pass].work);
     }
 }

@@ -133,19 +133,19 @@ bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi
 }
 
 static void add_block(void *data, int64_t unit, int32_t worker) {
-  mps_mpm *mpm = data;
-  const mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_cell_block *cells = &mpm->grid.cells[mpm->grid.coloured[all->area_first + unit]];
+  const mpsi_contact_stage *stage = data;
+  const mpsi_grid *grid = stage->transfer.grid;
+  const mpsi_impulses *all = &stage->contact->impulses;
+  const mpsi_cell_block *cells = &grid->cells[grid->coloured[all->area_first + unit]];
   double tile[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
   (void)worker;
   for (int32_t q = 0; q < cells->pairs; q++) {
-    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (!mpsi_mpm_sum_areas(&mpm->grid, &mpm->p, &mpm->contact, pair, tile)) continue;
-    for (int k = 0; k < mpm->grid.tile_nodes; k++) {
+    const mpsi_cell_pair *pair = &stage->contact->cell_pair[cells->first_pair + q];
+    if (!mpsi_mpm_sum_areas(grid, stage->transfer.p, stage->contact, pair, tile)) continue;
+    for (int k = 0; k < grid->tile_nodes; k++) {
       int at[3];
       mpsi_unravel(k, MPSI_TILE_SIDE, at);
-      if (tile[k] > 0.0)
-        area_under(&mpm->grid, &mpm->contact, cells, at, pair->body)->area += tile[k];
+      if (tile[k] > 0.0) area_under(grid, stage->contact, cells, at, pair->body)->area += tile[k];
     }
   }
 }
@@ -154,37 +154,38 @@ static void add_block(void *data, int64_t unit, int32_t worker) {
 
 /* The nodes around the feet of a block's constraints. */
 static void surround_block(void *data, int64_t unit, int32_t worker) {
-  mps_mpm *mpm = data;
-  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_contact_stage *stage = data;
+  const mpsi_grid *grid = stage->transfer.grid;
+  mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_constraint *constraint = &all->constraint[n];
     constraint->areas = 0;
-    if (!mpsi_has_strength(mpm->contact.handle[constraint->body])) continue;
-    const around nodes = find_around(&mpm->grid, block->at, constraint->impulse.at, 4);
-    for (int k = 0; k < nodes_around(&mpm->grid, 4); k++) {
+    if (!mpsi_has_strength(stage->contact->handle[constraint->body])) continue;
+    const around nodes = find_around(grid, block->at, constraint->impulse.at, 4);
+    for (int k = 0; k < nodes_around(grid, 4); k++) {
       int at[3];
       const double weight = node_around(&nodes, k, at);
       mpsi_area *area =
-          mpm->partition
-              ? mpsi_mpm_shared_area(&mpm->contact.exchange, block->at, at, constraint->body)
-              : area_under(&mpm->grid, &mpm->contact, &mpm->grid.cells[block->cells], at,
-                           constraint->body);
+          stage->partition
+              ? mpsi_mpm_shared_area(&stage->contact->exchange, block->at, at, constraint->body)
+              : area_under(grid, stage->contact, &grid->cells[block->cells], at, constraint->body);
       if (area && area->area > 0.0 && weight > 0.0)
-        all->around[n * nodes_around(&mpm->grid, 4) + constraint->areas++] =
+        all->around[n * nodes_around(grid, 4) + constraint->areas++] =
             (mpsi_area_share){area, weight};
     }
   }
 }
 
 static void count_block(void *data, int64_t unit, int32_t worker) {
-  mps_mpm *mpm = data;
-  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_contact_stage *stage = data;
+  const mpsi_grid *grid = stage->transfer.grid;
+  const mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[all->area_first + unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    const mpsi_area_share *at = all->around + n * nodes_around(&mpm->grid, 4);
+    const mpsi_area_share *at = all->around + n * nodes_around(grid, 4);
     const double normal = all->constraint[n].impulse.normal_impulse;
     for (int q = 0; q < all->constraint[n].areas && normal > 0.0; q++)
       at[q].node->normal += at[q].weight * normal;
@@ -192,22 +193,23 @@ static void count_block(void *data, int64_t unit, int32_t worker) {
 }
 
 static void share_block(void *data, int64_t unit, int32_t worker) {
-  mps_mpm *mpm = data;
-  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_contact_stage *stage = data;
+  const mpsi_grid *grid = stage->transfer.grid;
+  const mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_constraint *constraint = &all->constraint[n];
-    const mpsi_area_share *at = all->around + n * nodes_around(&mpm->grid, 4);
-    const mps_contact_def *def = &mpm->contact.handle[constraint->body]->def;
+    const mpsi_area_share *at = all->around + n * nodes_around(grid, 4);
+    const mps_contact_def *def = &stage->contact->handle[constraint->body]->def;
     double area = 0.0;
-    if (!mpsi_has_strength(mpm->contact.handle[constraint->body])) continue;
+    if (!mpsi_has_strength(stage->contact->handle[constraint->body])) continue;
     for (int q = 0; q < constraint->areas; q++)
       if (at[q].node->normal > 0.0)
         area += at[q].weight * constraint->impulse.normal_impulse * at[q].node->area /
                 at[q].node->normal;
-    constraint->impulse.adhesion = mpm->run.dt * area * def->adhesion;
-    if (!isnan(def->strength)) constraint->impulse.strength = mpm->run.dt * area * def->strength;
+    constraint->impulse.adhesion = stage->dt * area * def->adhesion;
+    if (!isnan(def->strength)) constraint->impulse.strength = stage->dt * area * def->strength;
   }
 }
 
@@ -234,26 +236,30 @@ bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contac
 }
 
 /* Blocks of one colour share no node, so that their sums are added without conflicts. */
-void mpsi_mpm_find_areas(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+void mpsi_mpm_find_areas(const mpsi_contact_stage *stage) {
+  const mpsi_grid *grid = stage->transfer.grid;
+  mpsi_impulses *all = &stage->contact->impulses;
   if (!all->areas || all->constraint_count == 0) return;
-  if (!mpm->partition) memset(all->area, 0, (size_t)all->area_count * sizeof *all->area);
-  for (int k = 0; k < MPSI_CORNERS && !mpm->partition; k++) {
-    all->area_first = mpm->grid.colour[k];
-    mpsi_parallel_for(mpm->context, mpm->grid.colour[k + 1] - all->area_first, add_block, mpm);
+  if (!stage->partition) memset(all->area, 0, (size_t)all->area_count * sizeof *all->area);
+  for (int k = 0; k < MPSI_CORNERS && !stage->partition; k++) {
+    all->area_first = grid->colour[k];
+    mpsi_parallel_for(stage->context, grid->colour[k + 1] - all->area_first, add_block,
+                      (void *)stage);
   }
-  mpsi_parallel_for(mpm->context, all->block_count, surround_block, mpm);
+  mpsi_parallel_for(stage->context, all->block_count, surround_block, (void *)stage);
 }
 
-void mpsi_mpm_distribute_areas(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage) {
+  const mpsi_grid *grid = stage->transfer.grid;
+  mpsi_impulses *all = &stage->contact->impulses;
   if (!all->areas) return;
   for (int64_t n = 0; n < all->constraint_count; n++)
     for (int32_t q = 0; q < all->constraint[n].areas; q++)
-      all->around[n * nodes_around(&mpm->grid, 4) + q].node->normal = 0.0;
+      all->around[n * nodes_around(grid, 4) + q].node->normal = 0.0;
   for (int k = 0; k < MPSI_CORNERS; k++) {
     all->area_first = all->colour[k];
-    mpsi_parallel_for(mpm->context, all->colour[k + 1] - all->area_first, count_block, mpm);
+    mpsi_parallel_for(stage->context, all->colour[k + 1] - all->area_first, count_block,
+                      (void *)stage);
   }
-  mpsi_parallel_for(mpm->context, all->block_count, share_block, mpm);
+  mpsi_parallel_for(stage->context, all->block_count, share_block, (void *)stage);
 }

@@ -161,13 +161,15 @@ static void find_candidates(const mpsi_grid *grid, const mpsi_columns *p,
   }
 }
 
-static void find_in_block(mps_mpm *mpm, int64_t b, int32_t worker) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+static void find_in_block(void *data, int64_t b, int32_t worker) {
+  const mpsi_contact_stage *stage = data;
+  const mpsi_cell_block *cells = &stage->transfer.grid->cells[b];
   (void)worker;
   for (int32_t q = 0; q < cells->pairs; q++) {
-    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (mpsi_by_impulses(mpm->contact.handle[pair->body]))
-      find_candidates(&mpm->grid, &mpm->p, &mpm->contact, mpm->kernels, mpm->run.dt, cells, pair);
+    mpsi_cell_pair *pair = &stage->contact->cell_pair[cells->first_pair + q];
+    if (mpsi_by_impulses(stage->contact->handle[pair->body]))
+      find_candidates(stage->transfer.grid, stage->transfer.p, stage->contact, stage->kernels,
+                      stage->dt, cells, pair);
   }
 }
 
@@ -211,32 +213,32 @@ static void list_blocks(const mpsi_grid *grid, mpsi_contacts *contacts) {
   all->colour[MPSI_CORNERS] = all->block_count;
 }
 
-mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
-  mpsi_impulses *all = &mpm->contact.impulses;
-  mps_context *context = mpm->context;
+mps_status mpsi_mpm_find_constraints(const mpsi_contact_stage *stage, const char *function) {
+  const mpsi_grid *grid = stage->transfer.grid;
+  mpsi_impulses *all = &stage->contact->impulses;
+  mps_context *context = stage->context;
   all->constraint_count = all->block_count = 0;
-  if (mpm->contact.bodies == 0) return MPS_OK;
-  const int64_t candidates = share_candidates(&mpm->grid, &mpm->contact);
-  const int32_t side = mpm->grid.spline + 1;
-  all->stride = mpm->grid.dim == 3 ? side * side * side : side * side;
-  bool good =
-      mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
-      mpsi_room_ensure(context, &all->block_room, mpm->grid.cell_count, sizeof *all->block) &&
-      mpsi_room_ensure(context, &all->body_room, mpm->contact.bodies, sizeof *all->body);
+  if (stage->contact->bodies == 0) return MPS_OK;
+  const int64_t candidates = share_candidates(grid, stage->contact);
+  const int32_t side = grid->spline + 1;
+  all->stride = grid->dim == 3 ? side * side * side : side * side;
+  bool good = mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
+              mpsi_room_ensure(context, &all->block_room, grid->cell_count, sizeof *all->block) &&
+              mpsi_room_ensure(context, &all->body_room, stage->contact->bodies, sizeof *all->body);
   all->body = all->body_room.item;
   all->candidate = all->candidate_room.item;
   all->block = all->block_room.item;
   if (good && candidates > 0) {
-    mpsi_mpm_for_cells(mpm, find_in_block);
-    list_blocks(&mpm->grid, &mpm->contact);
+    mpsi_mpm_for_cells(context, grid, stage->transfer.p, find_in_block, (void *)stage);
+    list_blocks(grid, stage->contact);
   }
   const int64_t n = all->constraint_count;
   good = good && mpsi_room_ensure(context, &all->constraint_room, n, sizeof *all->constraint) &&
          mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
          mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
          mpsi_room_ensure(context, &all->next_room, n, sizeof *all->warm) &&
-         mpsi_mpm_index_impulses(mpm->context, &mpm->contact) &&
-         mpsi_mpm_area_room(mpm->context, &mpm->grid, &mpm->contact, mpm->partition, n);
+         mpsi_mpm_index_impulses(stage->context, stage->contact) &&
+         mpsi_mpm_area_room(stage->context, grid, stage->contact, stage->partition, n);
   if (!good) {
     all->constraint_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
@@ -247,9 +249,9 @@ mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function) {
   all->weight = all->weight_room.item;
   all->node = all->node_room.item;
   all->free_bodies = false;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    mpsi_impulse_begin_body(&all->body[b], mpm->contact.body[b], mpm->run.dt);
-    if (mpm->settling.on) all->body[b].free = false;
+  for (int32_t b = 0; b < stage->contact->bodies; b++) {
+    mpsi_impulse_begin_body(&all->body[b], stage->contact->body[b], stage->dt);
+    if (stage->settling) all->body[b].free = false;
     all->free_bodies = all->free_bodies || all->body[b].free;
   }
   return MPS_OK;
@@ -265,21 +267,23 @@ static int by_place(const void *a, const void *b) {
   return (s->body > t->body) - (s->body < t->body);
 }
 
-static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id,
-                             mpsi_constraint *out) {
-  mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
-  const mps_contact *contact = mpm->contact.handle[pair->body];
+static void begin_constraint(const mpsi_contact_stage *stage, int64_t t, int64_t k,
+                             const int64_t *id, mpsi_constraint *out) {
+  mpsi_cell_pair *pair = &stage->contact->cell_pair[t];
+  const mps_contact *contact = stage->contact->handle[pair->body];
   *out = (mpsi_constraint){.particle = k, .id = id[k], .pair = t, .body = pair->body};
-  place_of(&mpm->grid, &mpm->p, k, out->x);
-  const mpsi_bearing bearing = mpsi_mpm_bearing(&mpm->grid, &mpm->p, contact, k, out->x);
+  place_of(stage->transfer.grid, stage->transfer.p, k, out->x);
+  const mpsi_bearing bearing =
+      mpsi_mpm_bearing(stage->transfer.grid, stage->transfer.p, contact, k, out->x);
   const mpsi_foot foot = bearing.foot;
   mpsi_impulse *c = &out->impulse;
-  for (int a = 0; a < mpm->grid.dim; a++) c->normal[a] = foot.normal[a];
+  for (int a = 0; a < stage->transfer.grid->dim; a++) c->normal[a] = foot.normal[a];
   out->part = mpsi_contact_part(contact, foot.face);
   const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
-  for (int a = 0; a < mpm->grid.dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
-  c->aim = mpsi_impulse_aim(foot.distance - bearing.half, mpm->run.dt,
-                            fmax(mpm->run.dt, mps_mpm_dt(mpm)), mpm->run.speed);
+  for (int a = 0; a < stage->transfer.grid->dim; a++)
+    c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
+  c->aim = mpsi_impulse_aim(foot.distance - bearing.half, stage->dt,
+                            fmax(stage->dt, stage->next_dt), stage->transfer.run->speed);
   c->friction = contact->def.friction;
   c->strength = INFINITY;
   if (-bearing.outside > pair->deepest) {
@@ -289,11 +293,11 @@ static void begin_constraint(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *
 }
 
 /* Extrapolated shape functions psi at the nodes of the constraint's stencil. */
-static void find_psi(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+static void find_psi(const mpsi_kernels *kernels, const mpsi_transfer *work,
                      const mpsi_constraint *constraint, mpsi_foot_weights *out) {
   double d[3];
   for (int a = 0; a < 3; a++) d[a] = constraint->impulse.at[a] - constraint->x[a];
-  mpm->kernels->foot(mpm, cells, worker, constraint->particle, d, out);
+  kernels->foot(work, constraint->particle, d, out);
 }
 
 /* Tile node of stencil node s. */
@@ -376,44 +380,46 @@ static void fit_evenly(const mpsi_grid *grid, mpsi_contacts *contacts, const mps
 }
 
 /* Weights and mobility (inverse of the effective mass) of a constraint. */
-static void fit_constraint(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
-  mpsi_constraint *constraint = &mpm->contact.impulses.constraint[n];
+static void fit_constraint(const mpsi_contact_stage *stage, const mpsi_transfer *work, int64_t n) {
+  const mpsi_cell_block *cells = work->cells;
+  mpsi_constraint *constraint = &stage->contact->impulses.constraint[n];
   mpsi_foot_weights f;
-  find_psi(mpm, cells, &mpm->grid.workers[worker], constraint, &f);
+  find_psi(stage->kernels, work, constraint, &f);
   constraint->nodes = 0;
-  constraint->even = !mpm->partition && !cells->mirrors;
+  constraint->even = !stage->partition && !cells->mirrors;
   if (constraint->even)
-    fit_evenly(&mpm->grid, &mpm->contact, cells, &f, n);
+    fit_evenly(stage->transfer.grid, stage->contact, cells, &f, n);
   else
-    fit_unevenly(&mpm->grid, &mpm->boundaries, &mpm->mirrors, &mpm->contact, cells, &f, n);
+    fit_unevenly(stage->transfer.grid, stage->transfer.boundaries, stage->transfer.mirrors,
+                 stage->contact, cells, &f, n);
 }
 
 /* States of nodes (support.h) where some fit has not been stored by the scatter. */
-static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                        const mpsi_constraint_block *block, mpsi_worker *worker) {
-  const mpsi_constraint *constraint = mpm->contact.impulses.constraint + block->first;
+static void find_states(const mpsi_transfer *work, const mpsi_constraint_block *block) {
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_constraint *constraint = work->contact->impulses.constraint + block->first;
   bool all = cells->first_fit >= 0;
   for (int64_t n = 0; n < block->count && all; n++)
-    all = mpm->grid.fitted[cells->first_fit + (constraint[n].particle - cells->begin)] != 0;
-  if (!all) mpsi_mpm_find_states(mpm, cells, worker);
+    all = work->grid->fitted[cells->first_fit + (constraint[n].particle - cells->begin)] != 0;
+  if (!all) mpsi_mpm_find_states(work);
 }
 
 /* Adds the mirrors' part of the impulses of a block's constraints to the walls. */
 static void mirror_block(void *data, int64_t unit, int32_t number) {
-  mps_mpm *mpm = data;
-  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_contact_stage *stage = data;
+  mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[unit];
   if (block->cells < 0) return;
-  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
-  mpsi_worker *worker = &mpm->grid.workers[number];
+  const mpsi_transfer work = mpsi_contact_transfer(stage, block->cells, number);
+  const mpsi_cell_block *cells = work.cells;
   if (!cells->mirrors) return;
-  find_states(mpm, cells, block, worker);
+  find_states(&work, block);
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     const mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_impulse *c = &constraint->impulse;
     mpsi_foot_weights f;
     if (!(c->normal_impulse > 0.0)) continue;
-    find_psi(mpm, cells, worker, constraint, &f);
+    find_psi(stage->kernels, &work, constraint, &f);
     for (uint64_t left = f.active; left != 0; left &= left - 1) {
       const int s = __builtin_ctzll(left);
       int place[3];
@@ -422,42 +428,45 @@ static void mirror_block(void *data, int64_t unit, int32_t number) {
       for (int a = 0; a < 3; a++)
         by[a] = f.psi[s] * (c->normal_impulse * c->normal[a] + c->tangent_impulse[a]);
       if (f.psi[s] != 0.0)
-        mpsi_mpm_reflect_impulse(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, place, by);
+        mpsi_mpm_reflect_impulse(stage->transfer.grid, stage->transfer.boundaries,
+                                 stage->transfer.mirrors, cells, place, by);
     }
   }
 }
 
-void mpsi_mpm_mirror_constraints(mps_mpm *mpm) {
-  if (mpm->mirrors.sides)
-    mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, mirror_block, mpm);
+void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage) {
+  if (stage->transfer.mirrors->sides)
+    mpsi_parallel_for(stage->context, stage->contact->impulses.block_count, mirror_block,
+                      (void *)stage);
 }
 
 static void fit_block(void *data, int64_t unit, int32_t worker) {
-  mps_mpm *mpm = data;
-  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_contact_stage *stage = data;
+  mpsi_impulses *all = &stage->contact->impulses;
   const mpsi_constraint_block *block = &all->block[unit];
-  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
-  const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
+  const mpsi_transfer work = mpsi_contact_transfer(stage, block->cells, worker);
+  const mpsi_cell_block *cells = work.cells;
+  const int64_t *id = mpsi_particles_integers(stage->transfer.p->set, "id");
   int64_t n = block->first;
   for (int32_t q = 0; q < cells->pairs; q++) {
     const int64_t t = cells->first_pair + q;
-    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+    const mpsi_cell_pair *pair = &stage->contact->cell_pair[t];
     const int32_t *candidate = all->candidate + pair->first_candidate;
     for (int64_t i = 0; i < pair->candidates; i++)
-      begin_constraint(mpm, t, cells->begin + candidate[i], id, &all->constraint[n++]);
+      begin_constraint(stage, t, cells->begin + candidate[i], id, &all->constraint[n++]);
   }
   qsort(all->constraint + block->first, (size_t)block->count, sizeof *all->constraint, by_place);
-  find_states(mpm, cells, block, &mpm->grid.workers[worker]);
+  find_states(&work, block);
   for (n = block->first; n < block->first + block->count; n++) {
-    fit_constraint(mpm, cells, worker, n);
+    fit_constraint(stage, &work, n);
     mpsi_constraint *constraint = &all->constraint[n];
     const mpsi_warm_impulse *warm =
-        mpsi_mpm_warm_impulse(&mpm->contact, constraint->id, constraint->body);
+        mpsi_mpm_warm_impulse(stage->contact, constraint->id, constraint->body);
     for (int a = 0; a < 3; a++) constraint->impulse.tangent_impulse[a] = warm ? warm->by[a] : 0.0;
   }
 }
 
-void mpsi_mpm_fit_constraints(mps_mpm *mpm) {
-  mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, fit_block, mpm);
-  if (!mpm->partition) mpsi_mpm_find_areas(mpm);
+void mpsi_mpm_fit_constraints(const mpsi_contact_stage *stage) {
+  mpsi_parallel_for(stage->context, stage->contact->impulses.block_count, fit_block, (void *)stage);
+  if (!stage->partition) mpsi_mpm_find_areas(stage);
 }

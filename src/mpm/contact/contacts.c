@@ -176,27 +176,31 @@ static void end(void *owner, mps_contact *contact) {
   mpsi_contact_leave(contact);
 }
 
+/* A particle in contact with a body. */
+typedef struct contact_now {
+  mpsi_contact_particle c; /* force and depth */
+  mpsi_foot foot;          /* nearest point of the surface */
+  double half;             /* half size, m, from which the gap counts */
+} contact_now;
+
 /* Whether particle k at x is in contact with the body now, by the method of the contact; by
- * impulses: whether the body exerted an impulse on it in the last step. `c` receives force and
- * depth, `foot` the nearest point of the surface, `half` the half size (m) from which the gap
- * counts. */
+ * impulses: whether the body exerted an impulse on it in the last step. */
 static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
-                          int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
-                          double *half) {
-  *half = contact->def.offset;
+                          int64_t id, const double *x, contact_now *now) {
+  now->half = contact->def.offset;
   if (!mpsi_by_impulses(contact)) {
     if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
-        !mpsi_find_contact(&mpm->grid, &mpm->p, &mpm->def, contact, mpm->grid.dim, k, c))
+        !mpsi_find_contact(&mpm->grid, &mpm->p, &mpm->def, contact, mpm->grid.dim, k, &now->c))
       return false;
-    *foot = mpsi_body_foot(contact->body, x);
+    now->foot = mpsi_body_foot(contact->body, x);
     return true;
   }
   const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(&mpm->contact, id, body);
   if (!warm) return false;
-  for (int a = 0; a < 3; a++) c->force[a] = warm->by[a] / mpm->contact.impulses.warm_dt;
+  for (int a = 0; a < 3; a++) now->c.force[a] = warm->by[a] / mpm->contact.impulses.warm_dt;
   const mpsi_bearing bearing = mpsi_mpm_bearing(&mpm->grid, &mpm->p, contact, k, x);
-  *foot = bearing.foot;
-  *half = bearing.half;
+  now->foot = bearing.foot;
+  now->half = bearing.half;
   return true;
 }
 
@@ -212,18 +216,17 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
                             (size_t)mpm->contact.impulses.warm_count * 4 * sizeof(int32_t));
   while (mpm->contact.handle[body] != contact) body++;
   for (int64_t k = 0; k < mpm->p.count; k++) {
-    mpsi_contact_particle c;
-    double x[3] = {0.0}, half;
+    contact_now now;
+    double x[3] = {0.0};
     for (int a = 0; a < mpm->grid.dim; a++) x[a] = mpm->p.x[a][k];
-    mpsi_foot at;
-    if (!is_in_contact(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
+    if (!is_in_contact(mpm, contact, body, k, id[k], x, &now)) continue;
     if (n < capacity) {
       if (ids) ids[n] = id[k];
-      if (gap) gap[n] = at.distance - half;
+      if (gap) gap[n] = now.foot.distance - now.half;
       for (int a = 0; a < 3; a++) {
-        if (normal) normal[3 * n + a] = a < mpm->grid.dim ? at.normal[a] : 0.0;
-        if (force) force[3 * n + a] = a < mpm->grid.dim ? c.force[a] : 0.0;
-        if (foot) foot[3 * n + a] = a < mpm->grid.dim ? at.at[a] : 0.0;
+        if (normal) normal[3 * n + a] = a < mpm->grid.dim ? now.foot.normal[a] : 0.0;
+        if (force) force[3 * n + a] = a < mpm->grid.dim ? now.c.force[a] : 0.0;
+        if (foot) foot[3 * n + a] = a < mpm->grid.dim ? now.foot.at[a] : 0.0;
       }
     }
     n++;

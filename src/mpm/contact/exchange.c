@@ -5,7 +5,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "exchange.h"
 
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -163,7 +163,7 @@ typedef struct entry {
 } entry;
 
 typedef struct exchange {
-  mps_mpm *mpm;
+  const mpsi_contact_stage *stage;
   const char *function;
   mpsi_mailbox box;
   const char *own;
@@ -205,9 +205,9 @@ static int by_colour(const void *left, const void *right) {
 }
 
 static bool make_room(exchange *m, int64_t slots) {
-  mps_context *context = m->mpm->context;
-  mpsi_impulses *all = &m->mpm->contact.impulses;
-  mpsi_contact_exchange *r = &m->mpm->contact.exchange;
+  mps_context *context = m->stage->context;
+  mpsi_impulses *all = &m->stage->contact->impulses;
+  mpsi_contact_exchange *r = &m->stage->contact->exchange;
   return mpsi_room_ensure(context, &r->constraint, m->constraints, sizeof *all->constraint) &&
          mpsi_room_ensure(context, &r->block, m->entries, sizeof *all->block) &&
          mpsi_room_ensure(context, &r->weight, m->constraints * all->stride, sizeof *all->weight) &&
@@ -215,8 +215,8 @@ static bool make_room(exchange *m, int64_t slots) {
          mpsi_room_ensure(context, &r->shared, m->nodes, sizeof(mpsi_shared_node)) &&
          mpsi_room_ensure(context, &r->lookup, slots, sizeof(int32_t)) &&
          mpsi_room_ensure(context, &all->next_room, m->constraints, sizeof *all->warm) &&
-         mpsi_mpm_area_room(m->mpm->context, &m->mpm->grid, &m->mpm->contact, m->mpm->partition,
-                            m->constraints);
+         mpsi_mpm_area_room(m->stage->context, m->stage->transfer.grid, m->stage->contact,
+                            m->stage->partition, m->constraints);
 }
 
 static void place_of(const int32_t *block, int place, int32_t *at) {
@@ -233,7 +233,7 @@ static void add_areas(exchange *m, const head *h, const char *from) {
     int32_t at[3];
     memcpy(&named, from, sizeof named);
     place_of(h->at, named.place, at);
-    mpsi_mpm_shared_node(&m->mpm->contact.exchange, &m->mpm->grid, at,
+    mpsi_mpm_shared_node(&m->stage->contact->exchange, m->stage->transfer.grid, at,
                          MPSI_SHARED_AREA + named.body, none)
         ->area.area += named.area;
   }
@@ -241,7 +241,7 @@ static void add_areas(exchange *m, const head *h, const char *from) {
 
 /* Appends the constraints of an entry. */
 static void append_entry(exchange *m, const entry *e, int64_t first) {
-  mpsi_impulses *all = &m->mpm->contact.impulses;
+  mpsi_impulses *all = &m->stage->contact->impulses;
   const named_node *named = (const named_node *)e->data;
   const char *from = e->data + e->h.nodes * (int64_t)sizeof *named;
   const size_t components = (size_t)e->h.components;
@@ -259,7 +259,7 @@ static void append_entry(exchange *m, const entry *e, int64_t first) {
       place_of(e->h.at, place, at);
       double *weight = all->weight[n * all->stride + i] + MPSI_VECTOR;
       all->node[n * all->stride + i] =
-          mpsi_mpm_shared_node(&m->mpm->contact.exchange, &m->mpm->grid, at,
+          mpsi_mpm_shared_node(&m->stage->contact->exchange, m->stage->transfer.grid, at,
                                across ? MPSI_SHARED_ACROSS : MPSI_SHARED_NODE,
                                named[index[i]].value)
               ->value;
@@ -272,9 +272,9 @@ static void append_entry(exchange *m, const entry *e, int64_t first) {
 }
 
 static void append_constraints(exchange *m, int64_t slots) {
-  mps_mpm *mpm = m->mpm;
-  mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_contact_exchange *r = &mpm->contact.exchange;
+  const mpsi_contact_stage *stage = m->stage;
+  mpsi_impulses *all = &stage->contact->impulses;
+  mpsi_contact_exchange *r = &stage->contact->exchange;
   memset(r->lookup.item, -1, (size_t)slots * sizeof(int32_t));
   r->slots = slots;
   r->nodes = 0;
@@ -296,12 +296,12 @@ static void append_constraints(exchange *m, int64_t slots) {
     all->constraint_count += e->h.constraints;
   }
   while (colour <= MPSI_CORNERS) all->colour[colour++] = all->block_count;
-  mpsi_mpm_find_areas(mpm);
+  mpsi_mpm_find_areas(m->stage);
 }
 
 static mps_status join(exchange *m) {
-  mps_context *context = m->mpm->context;
-  mpsi_contact_exchange *r = &m->mpm->contact.exchange;
+  mps_context *context = m->stage->context;
+  mpsi_contact_exchange *r = &m->stage->contact->exchange;
   int64_t slots = 16;
   m->entry = NULL;
   read_entries(m);
@@ -358,52 +358,57 @@ static char *write_blocks(const mpsi_grid *grid, const mpsi_columns *p,
 
 /* Memory for this rank's entries, those to be sent first, and for a list of the receivers. */
 static mps_status make_room_for_message(exchange *m, mps_domain_message **list) {
-  mps_mpm *mpm = m->mpm;
-  mps_domain *domain = mpm->partition->domain;
-  mpsi_room *mail = &mpm->contact.exchange.mail;
-  const int64_t bytes = message_bytes(&mpm->grid, &mpm->contact);
+  const mpsi_contact_stage *stage = m->stage;
+  mps_domain *domain = stage->partition->domain;
+  mpsi_room *mail = &stage->contact->exchange.mail;
+  const int64_t bytes = message_bytes(stage->transfer.grid, stage->contact);
   if (bytes == 0) return MPS_OK;
-  *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
-  if (!*list || !mpsi_room_ensure(mpm->context, mail, bytes, 1))
-    return mpsi_fail_memory(mpm->context, m->function, (size_t)bytes);
+  *list = mpsi_alloc(stage->context, mps_domain_size(domain), sizeof **list);
+  if (!*list || !mpsi_room_ensure(stage->context, mail, bytes, 1))
+    return mpsi_fail_memory(stage->context, m->function, (size_t)bytes);
   return MPS_OK;
 }
 
 /* Writes this rank's entries and addresses the same message to each partner; returns their
  * number. */
 static int32_t address_partners(exchange *m, mps_domain_message *list) {
-  const mps_mpm *mpm = m->mpm;
-  const mps_domain *domain = mpm->partition->domain;
+  const mpsi_contact_stage *stage = m->stage;
+  const mps_domain *domain = stage->partition->domain;
   int32_t count = 0;
   if (!list) return 0;
-  char *own = mpm->contact.exchange.mail.item;
-  const int64_t bytes = write_blocks(&mpm->grid, &mpm->p, &mpm->contact, true, own) - own;
+  char *own = stage->contact->exchange.mail.item;
+  const int64_t bytes =
+      write_blocks(stage->transfer.grid, stage->transfer.p, stage->contact, true, own) - own;
   m->own = own;
-  m->own_bytes = write_blocks(&mpm->grid, &mpm->p, &mpm->contact, false, own + bytes) - own;
+  m->own_bytes =
+      write_blocks(stage->transfer.grid, stage->transfer.p, stage->contact, false, own + bytes) -
+      own;
   for (int32_t r = 0; r < mps_domain_size(domain) && bytes > 0; r++)
-    if (r != mps_domain_rank(domain) && mpsi_mpm_is_partner(&mpm->contact.partners, r))
+    if (r != mps_domain_rank(domain) && mpsi_mpm_is_partner(&stage->contact->partners, r))
       list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = own};
   return count;
 }
 
-mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_status status) {
-  mps_domain *domain = mpm->partition->domain;
-  exchange m = {.mpm = mpm, .function = function, .box.context = mpm->context};
+mps_status mpsi_mpm_exchange_contacts(const mpsi_contact_stage *stage, const char *function,
+                                      mps_status status) {
+  mps_domain *domain = stage->partition->domain;
+  exchange m = {.stage = stage, .function = function, .box.context = stage->context};
   mps_domain_message *list = NULL;
   int64_t constraints = 0;
   if (status == MPS_OK) status = make_room_for_message(&m, &list);
-  status = mpsi_mpm_find_partners(&mpm->contact, &mpm->grid, mpm->partition, function, status,
-                                  &constraints);
-  mpm->contact.exchange.nodes = 0;
-  mpm->contact.exchange.constraints = constraints;
+  status = mpsi_mpm_find_partners(stage->contact, stage->transfer.grid, stage->partition, function,
+                                  status, &constraints);
+  stage->contact->exchange.nodes = 0;
+  stage->contact->exchange.constraints = constraints;
   if (status == MPS_OK && constraints > 0) {
     const int32_t count = address_partners(&m, list);
-    if (mpm->contact.partners.any) status = mpsi_domain_post(domain, function, count, list, &m.box);
+    if (stage->contact->partners.any)
+      status = mpsi_domain_post(domain, function, count, list, &m.box);
     if (status == MPS_OK) status = join(&m);
     status = mpsi_domain_agree(domain, function, status);
   }
   mpsi_domain_free_mail(&m.box);
-  mpsi_free(mpm->context, list);
+  mpsi_free(stage->context, list);
   return status;
 }
 

@@ -49,7 +49,8 @@ void mpsi_mpm_order_warm_start(mpsi_impulses *impulses);
 /* Replaces this rank's constraints in contact.impulses by those of all partners, in the order that
  * one rank would have, until the next step finds its own. All ranks first agree on `status`.
  * Collective. */
-mps_status mpsi_mpm_exchange_contacts(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_exchange_contacts(const mpsi_contact_stage *stage, const char *function,
+                                      mps_status status);
 /* After the sweeps: copies the velocities of the replicas to this rank's nodes. Not collective. */
 void mpsi_mpm_end_contact_exchange(mpsi_contacts *contacts);
 /* shared_nodes.c: the replica of the node at `at`, made with these values if there is none yet; its

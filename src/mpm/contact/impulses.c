@@ -19,26 +19,28 @@
 /* ---- sweeps over all blocks ------------------------------------------------------------------ */
 
 typedef struct sweep {
-  mps_mpm *mpm;
+  const mpsi_contact_stage *stage;
   int64_t first; /* first block of the colour */
   bool warm, back;
 } sweep;
 
 static void one_block(void *data, int64_t unit, int32_t worker) {
   const sweep *s = data;
-  mpsi_constraint_block *block = &s->mpm->contact.impulses.block[s->first + unit];
+  const mpsi_contact_stage *stage = s->stage;
+  mpsi_impulses *all = &stage->contact->impulses;
+  mpsi_constraint_block *block = &all->block[s->first + unit];
   (void)worker;
   if (s->warm)
-    s->mpm->kernels->warm(&s->mpm->contact.impulses, s->mpm->run.dt, block);
+    stage->kernels->warm(all, stage->dt, block);
   else
-    s->mpm->kernels->sweep(&s->mpm->contact.impulses, s->mpm->grid.dim, block, s->back);
+    stage->kernels->sweep(all, stage->transfer.grid->dim, block, s->back);
 }
 
-static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
-  const bool shared =
-      !all->free_bodies && mpm->grid.worker_count > 1 && all->constraint_count > SHARED;
-  sweep s = {mpm, 0, warm, back};
+static void sweep_all(const mpsi_contact_stage *stage, bool warm, bool back) {
+  const mpsi_impulses *all = &stage->contact->impulses;
+  const int32_t workers = stage->transfer.grid->worker_count;
+  const bool shared = !all->free_bodies && workers > 1 && all->constraint_count > SHARED;
+  sweep s = {stage, 0, warm, back};
   if (!shared) {
     for (int64_t k = 0; k < all->block_count; k++)
       one_block(&s, back ? all->block_count - 1 - k : k, 0);
@@ -47,7 +49,7 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
   for (int k = 0; k < MPSI_CORNERS; k++) {
     const int colour = back ? MPSI_CORNERS - 1 - k : k;
     s.first = all->colour[colour];
-    mpsi_parallel_for(mpm->context, all->colour[colour + 1] - s.first, one_block, &s);
+    mpsi_parallel_for(stage->context, all->colour[colour + 1] - s.first, one_block, &s);
   }
 }
 
@@ -138,24 +140,24 @@ static void store_impulses(mpsi_contacts *contacts, double dt) {
   all->warm_dt = dt;
 }
 
-void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
+void mpsi_mpm_apply_impulses(const mpsi_contact_stage *stage) {
+  mpsi_impulses *all = &stage->contact->impulses;
   const bool any =
-      mpm->partition ? mpm->contact.exchange.constraints > 0 : all->constraint_count > 0;
+      stage->partition ? stage->contact->exchange.constraints > 0 : all->constraint_count > 0;
   double tolerance;
-  const int32_t most = most_sweeps(&mpm->contact, &tolerance);
-  if (any) sweep_all(mpm, true, false);
+  const int32_t most = most_sweeps(stage->contact, &tolerance);
+  if (any) sweep_all(stage, true, false);
   all->sweeps = 0, all->left = 0.0;
   for (int32_t s = 1; any && s <= most; s++) {
-    if (s % 2 != 0) mpsi_mpm_distribute_areas(mpm);
-    sweep_all(mpm, false, s % 2 == 0);
+    if (s % 2 != 0) mpsi_mpm_distribute_areas(stage);
+    sweep_all(stage, false, s % 2 == 0);
     all->sweeps = s;
     if (s < most && (tolerance == 0.0 || !may_end_after(s))) continue;
-    find_change(&mpm->contact, mpm->partition, tolerance > 0.0);
+    find_change(stage->contact, stage->partition, tolerance > 0.0);
     if (!(all->left > tolerance)) break;
   }
-  mpsi_mpm_mirror_constraints(mpm);
-  store_impulses(&mpm->contact, mpm->run.dt);
+  mpsi_mpm_mirror_constraints(stage);
+  store_impulses(stage->contact, stage->dt);
 }
 
 void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,

@@ -87,17 +87,17 @@ typedef struct mpsi_impulses {
 /* constraints.c: before anything moves, candidates for contact in the step, and memory for their
  * constraints; then, with the masses of the nodes, the constraints with weights and warm start, and
  * the depth of particles. */
-mps_status mpsi_mpm_find_constraints(mps_mpm *mpm, const char *function);
-void mpsi_mpm_fit_constraints(mps_mpm *mpm);
+mps_status mpsi_mpm_find_constraints(const mpsi_contact_stage *stage, const char *function);
+void mpsi_mpm_fit_constraints(const mpsi_contact_stage *stage);
 /* area.c: memory for the areas of the step and of so many constraints; areas at the nodes; shear
  * strength of each constraint by its part of these, with the present normal impulses. */
 bool mpsi_mpm_area_room(mps_context *context, const mpsi_grid *grid, mpsi_contacts *contacts,
                         mpsi_partition *partition, int64_t constraints);
-void mpsi_mpm_find_areas(mps_mpm *mpm);
-void mpsi_mpm_distribute_areas(mps_mpm *mpm);
+void mpsi_mpm_find_areas(const mpsi_contact_stage *stage);
+void mpsi_mpm_distribute_areas(const mpsi_contact_stage *stage);
 /* constraints.c: adds the mirrors' part of a step's contact impulses to the impulses of the
  * walls. */
-void mpsi_mpm_mirror_constraints(mps_mpm *mpm);
+void mpsi_mpm_mirror_constraints(const mpsi_contact_stage *stage);
 /* constraints.c: builds the hash table `lookup` (false: memory refused); the impulse of the last
  * step on a particle, or NULL; foot and half size with which a particle bears on the contact's
  * body; removes the impulses of a contact that has ended, and moves the bodies above it down by
@@ -110,7 +110,7 @@ mpsi_bearing mpsi_mpm_bearing(const mpsi_grid *grid, const mpsi_columns *p,
 void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body);
 /* impulses.c: sweeps over the constraints and adds their impulses to nodes and pairs; then, with
  * the final velocities of the nodes, the energy lost in the contacts. */
-void mpsi_mpm_apply_impulses(mps_mpm *mpm);
+void mpsi_mpm_apply_impulses(const mpsi_contact_stage *stage);
 void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                 mpsi_energy *energy, const mpsi_kernels *kernels);
 void mpsi_mpm_free_impulses(mps_context *context, mpsi_contacts *contacts);

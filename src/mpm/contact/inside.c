@@ -67,26 +67,27 @@ static void find_inside_body(const mpsi_grid *grid, const mpsi_contacts *contact
   }
 }
 
-void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_find_inside(void *search, int64_t g, int32_t worker) {
+  const mpsi_inside_search *of = search;
   (void)worker;
-  const size_t count = (size_t)mpm->grid.block_nodes;
-  mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const size_t count = (size_t)of->grid->block_nodes;
+  mpsi_node_block *nodes = &of->grid->nodes[g];
   nodes->inside = nodes->thin = false;
   for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
   if (nodes->near < 0) return;
-  mpsi_mpm_find_sight(&mpm->grid, &mpm->contact, g);
-  uint8_t *inside = mpm->contact.inside + mpsi_first_node(&mpm->grid, nodes->near);
+  mpsi_mpm_find_sight(of->grid, of->contact, g);
+  uint8_t *inside = of->contact->inside + mpsi_first_node(of->grid, nodes->near);
   memset(inside, 0, count);
-  memset((void *)(mpm->contact.reached + mpsi_first_node(&mpm->grid, nodes->near)), 0, count);
+  memset((void *)(of->contact->reached + mpsi_first_node(of->grid, nodes->near)), 0, count);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
-    const int32_t b = mpm->contact.node_pair[t].body;
-    memset(mpm->contact.held + (int64_t)t * mpm->grid.block_nodes, 0, count);
-    if (mpm->contact.penalty_bodies > 0)
-      memset(mpm->contact.node + (int64_t)t * mpm->grid.block_nodes, 0,
-             count * sizeof *mpm->contact.node);
-    if (mpm->contact.state[b].parts) continue; /* such a body cuts no support: thin_bodies.h */
-    if (mpsi_mpm_body_reaches(&mpm->grid, &mpm->contact, b, nodes->at, MPSI_SIDE))
-      find_inside_body(&mpm->grid, &mpm->contact, nodes, t, inside);
+    const int32_t b = of->contact->node_pair[t].body;
+    memset(of->contact->held + (int64_t)t * of->grid->block_nodes, 0, count);
+    if (of->contact->penalty_bodies > 0)
+      memset(of->contact->node + (int64_t)t * of->grid->block_nodes, 0,
+             count * sizeof *of->contact->node);
+    if (of->contact->state[b].parts) continue; /* such a body cuts no support: thin_bodies.h */
+    if (mpsi_mpm_body_reaches(of->grid, of->contact, b, nodes->at, MPSI_SIDE))
+      find_inside_body(of->grid, of->contact, nodes, t, inside);
   }
 }
 
@@ -107,26 +108,26 @@ static bool cells_near(const mpsi_grid *grid, const mpsi_cell_block *cells, int 
   return any;
 }
 
-typedef void (*corner_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+typedef void (*corner_fn)(const mpsi_inside_search *of, const mpsi_cell_block *cells, const int *at,
                           void *data);
 
 /* Calls `work` for the corners of all cells that hold particles and may have corners inside bodies,
  * for some corners more than once. */
-static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner_fn work,
+static void for_corners(const mpsi_inside_search *of, const mpsi_cell_block *cells, corner_fn work,
                         void *data) {
   int low[3], high[3];
-  if (cells->pairs == 0 || !cells_near(&mpm->grid, cells, low, high)) return;
+  if (cells->pairs == 0 || !cells_near(of->grid, cells, low, high)) return;
   bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
-  memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
+  memset(seen, 0, (size_t)of->grid->tile_nodes * sizeof *seen);
   for (int64_t k = cells->begin;
-       (k = mpm->kernels->next_in(&mpm->grid, &mpm->p, cells, low, high, k)) < cells->end; k++) {
+       (k = of->kernels->next_in(of->grid, of->p, cells, low, high, k)) < cells->end; k++) {
     int at[3] = {0};
     bool near = true;
-    for (int c = 0; c < mpm->grid.dim; c++) {
+    for (int c = 0; c < of->grid->dim; c++) {
       /* counted from the block: not negative, so that truncation is floor */
       const double first = (double)cells->at[c] * MPSI_SIDE;
-      const double last = (double)(mpm->grid.high[c] - 1) - first;
-      const double X = mpsi_grid_at(&mpm->grid, c, mpm->p.x[c][k]) - first;
+      const double last = (double)(of->grid->high[c] - 1) - first;
+      const double X = mpsi_grid_at(of->grid, c, of->p->x[c][k]) - first;
       at[c] = (int)(X < last ? X : last);
       near = near && at[c] >= low[c] && at[c] < high[c];
     }
@@ -134,9 +135,9 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
     bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
     if (*here) continue;
     *here = true;
-    for (int q = 0; q < 1 << mpm->grid.dim; q++) {
+    for (int q = 0; q < 1 << of->grid->dim; q++) {
       const int corner[3] = {at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)};
-      work(mpm, cells, corner, data);
+      work(of, cells, corner, data);
     }
   }
 }
@@ -157,62 +158,64 @@ static void find_normals(const mpsi_grid *grid, const mpsi_contacts *contacts,
 
 /* Marks a node as reached. Threads on several blocks may mark the same node at once: the first
  * finds the normals there. */
-static void mark_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
+static void mark_node(const mpsi_inside_search *of, const mpsi_cell_block *cells, const int *at,
+                      void *data) {
   _Atomic uint8_t *reached = data;
-  const int64_t node = mpsi_node_under(&mpm->grid, cells, at[0], at[1], at[2]);
-  const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
-  const int local = (int)(node % mpm->grid.block_nodes);
-  reached += mpsi_first_node(&mpm->grid, nodes->near) + local;
+  const int64_t node = mpsi_node_under(of->grid, cells, at[0], at[1], at[2]);
+  const mpsi_node_block *nodes = &of->grid->nodes[node / of->grid->block_nodes];
+  const int local = (int)(node % of->grid->block_nodes);
+  reached += mpsi_first_node(of->grid, nodes->near) + local;
   if (atomic_load_explicit(reached, memory_order_relaxed) ||
       atomic_exchange_explicit(reached, 1, memory_order_relaxed))
     return;
-  if (nodes->inside) find_normals(&mpm->grid, &mpm->contact, nodes, local);
+  if (nodes->inside) find_normals(of->grid, of->contact, nodes, local);
 }
 
-void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
+void mpsi_mpm_mark_reached(void *search, int64_t b, int32_t worker) {
+  const mpsi_inside_search *of = search;
   (void)worker;
-  for_corners(mpm, &mpm->grid.cells[b], mark_node, mpm->contact.reached);
+  for_corners(of, &of->grid->cells[b], mark_node, of->contact->reached);
 }
 
-static void set_corner_bit(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
-                           void *data) {
+static void set_corner_bit(const mpsi_inside_search *of, const mpsi_cell_block *cells,
+                           const int *at, void *data) {
   const int t = mpsi_tile_index(at[0], at[1], at[2]);
-  (void)mpm, (void)cells;
+  (void)of, (void)cells;
   ((uint64_t *)data)[t / 64] |= UINT64_C(1) << t % 64;
 }
 
-static void list_corners(const mps_mpm *mpm, int64_t b, uint64_t *bits) {
-  for_corners(mpm, &mpm->grid.cells[b], set_corner_bit, bits);
+static void list_corners(const mpsi_inside_search *of, int64_t b, uint64_t *bits) {
+  for_corners(of, &of->grid->cells[b], set_corner_bit, bits);
 }
 
-static void mark_ghost_corners(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
-  for (int t = 0; t < mpm->grid.tile_nodes; t++) {
+static void mark_ghost_corners(const mpsi_inside_search *of, int64_t b, const uint64_t *bits) {
+  for (int t = 0; t < of->grid->tile_nodes; t++) {
     int at[3];
     if (!(bits[t / 64] >> t % 64 & 1)) continue;
     mpsi_unravel(t, MPSI_TILE_SIDE, at);
-    mark_node(mpm, &mpm->grid.cells[b], at, mpm->contact.reached);
+    mark_node(of, &of->grid->cells[b], at, of->contact->reached);
   }
 }
 
 /* On several ranks: exchanges, as one bit for each node of a tile, the corners of cells that hold
  * particles, and whether thin bodies make nodes of the block two-sided. */
-mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known) {
-  mpsi_partition *partition = mpm->partition;
-  const int64_t nodes = (mpm->grid.tile_nodes + 63) / 64;
+mps_status mpsi_mpm_exchange_corners(const mpsi_inside_search *of, mpsi_partition *partition,
+                                     const char *function, bool known) {
+  const int64_t nodes = (of->grid->tile_nodes + 63) / 64;
   const int64_t words = nodes + 1; /* the last one: two-sided; fewer than a parcel has */
   uint64_t *out = (uint64_t *)partition->out, *in = (uint64_t *)partition->in;
   if (partition->borders > 0) memset(out, 0, (size_t)(partition->borders * words) * sizeof *out);
   for (int64_t k = 0; known && k < partition->borders; k++) {
-    list_corners(mpm, partition->border[k], out + k * words);
-    out[k * words + nodes] = mpm->grid.cells[partition->border[k]].thin;
+    list_corners(of, partition->border[k], out + k * words);
+    out[k * words + nodes] = of->grid->cells[partition->border[k]].thin;
   }
   const int32_t item = (int32_t)(words * (int64_t)sizeof *out);
   mps_status status = mpsi_halo_begin_bytes(partition->halo, function, item, out, in);
   if (status == MPS_OK) status = mpsi_halo_end_bytes(partition->halo, function);
-  for (int64_t b = 0; known && status == MPS_OK && b < mpm->grid.cell_count; b++) {
-    mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int64_t b = 0; known && status == MPS_OK && b < of->grid->cell_count; b++) {
+    mpsi_cell_block *cells = &of->grid->cells[b];
     if (!cells->ghost) continue;
-    mark_ghost_corners(mpm, b, in + cells->parcel * words);
+    mark_ghost_corners(of, b, in + cells->parcel * words);
     cells->thin = in[cells->parcel * words + nodes] != 0;
   }
   return status;
@@ -264,11 +267,12 @@ static void mark_near(const mpsi_grid *grid, const mpsi_contacts *contacts,
       }
 }
 
-void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
-  mark_outside(&mpm->grid, cells, worker->state);
-  for (int q = 0; q < 1 << mpm->grid.dim; q++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
-    if (nodes->inside || nodes->thin) mark_near(&mpm->grid, &mpm->contact, nodes, q, worker);
+void mpsi_mpm_find_states(const mpsi_transfer *work) {
+  const mpsi_grid *grid = work->grid;
+  mark_outside(grid, work->cells, work->worker->state);
+  for (int q = 0; q < 1 << grid->dim; q++) {
+    const mpsi_node_block *nodes = &grid->nodes[work->cells->to[q]];
+    if (nodes->inside || nodes->thin) mark_near(grid, work->contact, nodes, q, work->worker);
   }
-  if (cells->mirrors) mpsi_mpm_mirror_states(mpm, cells, worker);
+  if (work->cells->mirrors) mpsi_mpm_mirror_states(work);
 }

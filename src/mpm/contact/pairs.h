@@ -85,10 +85,6 @@ typedef struct mpsi_contacts {
   mpsi_room sum_room; /* exact sums by parts of all bodies: penalty_friction.c */
 } mpsi_contacts;
 
-/* cut.c: before a step, pairs of blocks and bodies, nodes inside bodies, and which blocks are cut
- * and split, by the functions below. `status`: of the step so far on this rank; collective where
- * there are bodies. */
-mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status);
 /* pairs.c: lists the pairs of blocks and bodies; whether a body may contain a node of the tile or
  * block at `at`, with `side` nodes an axis; sums the mass in contact with each body that moves
  * freely over its node pairs, on all ranks: friction needs it. */
@@ -110,14 +106,14 @@ void mpsi_mpm_clear_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts
                             const mpsi_cell_block *cells, const mpsi_worker *worker);
 void mpsi_mpm_add_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
                           const mpsi_cell_block *cells, const mpsi_worker *worker);
-void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t worker);
-/* inside.c: finds the nodes of a block that lie inside bodies; marks the corners of a block's cells
- * that hold particles. */
-void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
-void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
+/* inside.c: tasks of a pass, whose data is an mpsi_inside_search (base/kernels.h): nodes of a block
+ * that lie inside bodies; corners of a block's cells that hold particles. */
+void mpsi_mpm_find_inside(void *search, int64_t g, int32_t worker);
+void mpsi_mpm_mark_reached(void *search, int64_t b, int32_t worker);
 /* inside.c: marks the corners of the cells of ghost blocks that hold particles, as their ranks have
  * found them. `known`: this rank has found its own. Collective. */
-mps_status mpsi_mpm_exchange_corners(mps_mpm *mpm, const char *function, bool known);
+mps_status mpsi_mpm_exchange_corners(const mpsi_inside_search *of, mpsi_partition *partition,
+                                     const char *function, bool known);
 /* area.c: distributes the surface area that the pair's particles represent to the nodes of the
  * tile; false: there is none. */
 bool mpsi_mpm_sum_areas(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_contacts *contacts,
@@ -129,7 +125,9 @@ void mpsi_mpm_apply_contact(const mpsi_grid *grid, const mpsi_contacts *contacts
                             int64_t g);
 void mpsi_mpm_apply_friction(const mpsi_grid *grid, const mpsi_contacts *contacts, double dt,
                              int64_t g);
-void mpsi_mpm_update_bodies(mps_mpm *mpm);
+void mpsi_mpm_update_bodies(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                            mpsi_energy *energy, mpsi_partition *partition,
+                            const mpsi_settling *settling, double dt);
 /* contacts.c: MPS_ERROR_ARGUMENT where particles from index `from` on lie inside the body, unless
  * the contact pushes them out. */
 mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,

@@ -75,7 +75,7 @@ void mpsi_mpm_mark_contact_blocks(const mpsi_contacts *contacts, mpsi_grid *grid
 
 /* Extends the marks `sent` to blocks with constraints that share a block of nodes with a marked
  * one; returns whether any was new. */
-static bool spread(mpsi_grid *grid) {
+static bool spread(const mpsi_grid *grid) {
   bool changed = false;
   for (int64_t g = 0; g < grid->node_count; g++) {
     const mpsi_node_block *nodes = &grid->nodes[g];
@@ -93,7 +93,7 @@ static bool spread(mpsi_grid *grid) {
 
 /* Marks own blocks with constraints beside ghosts as sent; sets the ranks of ghosts with
  * constraints in `linked` where an own block has constraints too, else in `readers`. */
-static void find_links(mpsi_grid *grid, const int32_t *ghost_rank, uint64_t *linked,
+static void find_links(const mpsi_grid *grid, const int32_t *ghost_rank, uint64_t *linked,
                        uint64_t *readers) {
   for (int64_t g = 0; g < grid->node_count; g++) {
     const mpsi_node_block *nodes = &grid->nodes[g];
@@ -118,7 +118,7 @@ static void find_links(mpsi_grid *grid, const int32_t *ghost_rank, uint64_t *lin
 }
 
 /* One row: marks all blocks with constraints as sent to all ranks that have any. */
-static void send_rows(mpsi_grid *grid, int32_t rank, uint64_t *row) {
+static void send_rows(const mpsi_grid *grid, int32_t rank, uint64_t *row) {
   for (int64_t b = 0; b < grid->cell_count; b++) {
     mpsi_cell_block *cells = &grid->cells[b];
     if (!cells->in_contact) continue;
@@ -166,7 +166,7 @@ static void read_rows(mpsi_contact_partners *m, const mps_domain *domain, const 
     for (int32_t w = 0; w < words; w++) m->own[w] |= rows[w];
 }
 
-mps_status mpsi_mpm_find_partners(mpsi_contacts *contacts, mpsi_grid *grid,
+mps_status mpsi_mpm_find_partners(mpsi_contacts *contacts, const mpsi_grid *grid,
                                   const mpsi_partition *partition, const char *function,
                                   mps_status status, int64_t *constraints) {
   mpsi_contact_partners *m = &contacts->partners;

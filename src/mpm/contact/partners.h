@@ -35,7 +35,7 @@ void mpsi_mpm_mark_contact_blocks(const struct mpsi_contacts *contacts, struct m
 /* Finds the partner ranks, and the blocks whose constraints are sent to them
  * (mpsi_cell_block.sent). `constraints`: number on all ranks. All ranks first agree on `status`.
  * Collective. */
-mps_status mpsi_mpm_find_partners(struct mpsi_contacts *contacts, struct mpsi_grid *grid,
+mps_status mpsi_mpm_find_partners(struct mpsi_contacts *contacts, const struct mpsi_grid *grid,
                                   const struct mpsi_partition *partition, const char *function,
                                   mps_status status, int64_t *constraints);
 /* Whether a rank is a partner, or this rank. */

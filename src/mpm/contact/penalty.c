@@ -70,11 +70,3 @@ void mpsi_mpm_add_penalty(const mpsi_grid *grid, const mpsi_contacts *contacts,
         add_row(grid, contacts, cells, body, j, k, tile + mpsi_tile_index(cells->low[0], j, k));
   }
 }
-
-void mpsi_mpm_scatter_penalty(mps_mpm *mpm, int64_t b, int32_t number) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_worker *worker = &mpm->grid.workers[number];
-  mpsi_mpm_clear_penalty(&mpm->grid, &mpm->contact, cells, worker);
-  mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2](mpm, b, number);
-  mpsi_mpm_add_penalty(&mpm->grid, &mpm->contact, cells, worker);
-}

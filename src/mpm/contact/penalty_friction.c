@@ -106,16 +106,18 @@ static void react(const mpsi_contacts *contacts, mpsi_energy *energy, const mpsi
 
 /* Reactions of the bodies, by exact sums over the blocks of all ranks, independent of the
  * partition. Then the bodies move. */
-void mpsi_mpm_update_bodies(mps_mpm *mpm) {
-  load_sums *sum = mpm->contact.sum_room.item, *of = sum;
-  const int32_t parts = all_parts(&mpm->contact);
+void mpsi_mpm_update_bodies(const mpsi_grid *grid, const mpsi_contacts *contacts,
+                            mpsi_energy *energy, mpsi_partition *partition,
+                            const mpsi_settling *settling, double dt) {
+  load_sums *sum = contacts->sum_room.item, *of = sum;
+  const int32_t parts = all_parts(contacts);
   memset(sum, 0, (size_t)parts * sizeof *sum);
-  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.handle[b++]->parts)
-    add_loads(&mpm->grid, &mpm->contact, b, of);
-  if (mpm->partition && mpm->partition->lost == MPS_OK)
-    mpm->partition->lost =
-        mpsi_domain_sum_exact(mpm->partition->domain, "mps_mpm_step", parts * SUMS, sum[0]);
+  for (int32_t b = 0; b < contacts->bodies; of += contacts->handle[b++]->parts)
+    add_loads(grid, contacts, b, of);
+  if (partition && partition->lost == MPS_OK)
+    partition->lost =
+        mpsi_domain_sum_exact(partition->domain, "mps_mpm_step", parts * SUMS, sum[0]);
   of = sum;
-  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.handle[b++]->parts)
-    react(&mpm->contact, &mpm->energy, &mpm->settling, mpm->run.dt, b, of);
+  for (int32_t b = 0; b < contacts->bodies; of += contacts->handle[b++]->parts)
+    react(contacts, energy, settling, dt, b, of);
 }

@@ -234,13 +234,13 @@ static inline int64_t mpsi_grid_first_node(const mpsi_grid *grid, int64_t g) {
  * bits; NULL when out of memory. */
 mpsi_radix *mpsi_mpm_find_order(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
                                 int32_t *own_bits);
-/* ready.c: sorts the particles by blocks and rebuilds the lists of blocks; layout.c: the same on
- * one rank. */
-mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
-mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function);
+/* layout.c: sorts the particles by blocks and rebuilds the lists of blocks, on one rank. */
+mps_status mpsi_mpm_sort_alone(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                               mpsi_run *run, const char *function);
 /* layout.c, parts of that: sorts the particles and lists the blocks of cells; memory for blocks of
  * cells; colours and blocks of nodes for the blocks of cells in grid.cells. */
-mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_sort_cells(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                               mpsi_run *run, const char *function);
 bool mpsi_mpm_ensure_cells(mps_context *context, mpsi_grid *grid, int64_t cells);
 bool mpsi_mpm_build_nodes(mps_context *context, mpsi_grid *grid, int64_t cells);
 /* layout.c: builds the lists of blocks from those of an earlier sort, in whose order the particles
@@ -250,8 +250,8 @@ mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mp
                                  const mpsi_block *block);
 /* node_update.c, of one block of nodes: sets its sums to zero; velocities and normal penalty
  * forces; friction, boundaries, damping. */
-void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
-void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
-void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_clear_nodes(void *solver, int64_t g, int32_t worker);
+void mpsi_mpm_update_nodes(void *solver, int64_t g, int32_t worker);
+void mpsi_mpm_finish_nodes(void *solver, int64_t g, int32_t worker);
 
 #endif

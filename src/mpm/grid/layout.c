@@ -24,7 +24,9 @@ static void widen_use(const mpsi_grid *grid, uint64_t within, mpsi_cell_block *c
 #define LEAST_CHUNK 4096 /* particles */
 
 typedef struct key_chunks {
-  mps_mpm *mpm;
+  mps_context *context;
+  const mpsi_grid *grid;
+  const mpsi_columns *p;
   int64_t length;        /* particles in a chunk */
   int64_t first[CHUNKS]; /* number of blocks that begin in the chunk; then the index of the first of
                             them */
@@ -34,22 +36,22 @@ typedef struct key_chunks {
 } key_chunks;
 
 static int32_t for_chunks(key_chunks *c, void (*work)(void *data, int64_t chunk, int32_t worker)) {
-  c->length = (c->mpm->p.count + CHUNKS - 1) / CHUNKS;
+  c->length = (c->p->count + CHUNKS - 1) / CHUNKS;
   if (c->length < LEAST_CHUNK) c->length = LEAST_CHUNK;
-  const int64_t chunks = (c->mpm->p.count + c->length - 1) / c->length;
-  mpsi_parallel_for(c->mpm->context, chunks, work, c);
+  const int64_t chunks = (c->p->count + c->length - 1) / c->length;
+  mpsi_parallel_for(c->context, chunks, work, c);
   return (int32_t)chunks;
 }
 
 static int64_t end_of_chunk(const key_chunks *c, int64_t chunk) {
   const int64_t end = (chunk + 1) * c->length;
-  return end < c->mpm->p.count ? end : c->mpm->p.count;
+  return end < c->p->count ? end : c->p->count;
 }
 
 /* Counts the blocks that begin in a chunk, or lists them. */
 static void find_begins(void *data, int64_t chunk, int32_t worker) {
   key_chunks *c = data;
-  const mpsi_grid *grid = &c->mpm->grid;
+  const mpsi_grid *grid = c->grid;
   const mpsi_radix *key = grid->sorted;
   const int64_t end = end_of_chunk(c, chunk);
   int64_t number = c->cells ? c->first[chunk] : 0;
@@ -78,7 +80,7 @@ static void make_cells(key_chunks *c, int64_t count, mpsi_cell_block *cells) {
   c->cells = cells;
   for_chunks(c, find_begins);
   for (int64_t b = 0; b < count; b++)
-    cells[b].end = b + 1 < count ? cells[b + 1].begin : c->mpm->p.count;
+    cells[b].end = b + 1 < count ? cells[b + 1].begin : c->p->count;
 }
 
 /* Lists a chunk of the order for mpsi_particles_permute_in. */
@@ -88,14 +90,15 @@ static void list_chunk(void *data, int64_t chunk, int32_t worker) {
   (void)worker;
   c->in_order[chunk] = true;
   for (int64_t k = chunk * c->length; k < end; k++) {
-    c->order[k] = c->mpm->grid.sorted[k].index;
+    c->order[k] = c->grid->sorted[k].index;
     if (c->order[k] != k) c->in_order[chunk] = false;
   }
 }
 
 /* Lists the order; returns whether the particles are in it already. */
-static bool list_order(mps_mpm *mpm, int64_t *order) {
-  key_chunks c = {.mpm = mpm, .order = order};
+static bool list_order(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                       int64_t *order) {
+  key_chunks c = {.context = context, .grid = grid, .p = p, .order = order};
   bool in_order = true;
   const int32_t chunks = for_chunks(&c, list_chunk);
   for (int32_t k = 0; k < chunks; k++) in_order = in_order && c.in_order[k];
@@ -118,22 +121,24 @@ static void order_by_id(mpsi_radix *key, const int64_t *id, int64_t begin, int64
 
 /* Position of a block, the part of its tile in use, and the order of the particles of each stencil.
  * `begin` and `end` of the block are known. */
-static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void place_block(void *data, int64_t b, int32_t worker) {
+  const key_chunks *of = data;
+  const mpsi_grid *grid = of->grid;
+  const mpsi_columns *p = of->p;
   (void)worker;
-  mpsi_cell_block *cells = &mpm->grid.cells[b];
-  mpsi_radix *key = mpm->grid.sorted;
-  const uint64_t own = (UINT64_C(1) << mpm->grid.own_bits) - 1;
+  mpsi_cell_block *cells = &grid->cells[b];
+  mpsi_radix *key = grid->sorted;
+  const uint64_t own = (UINT64_C(1) << grid->own_bits) - 1;
   for (int c = 0; c < 3; c++) {
-    const double x = c < mpm->grid.dim ? mpm->p.x[c][key[cells->begin].index] : 0.0;
-    const double X = mpsi_grid_at(&mpm->grid, c, x);
-    cells->at[c] =
-        c < mpm->grid.dim ? (int32_t)mpsi_block_of((int64_t)mpsi_base(mpm->grid.spline, X)) : 0;
-    cells->low[c] = c < mpm->grid.dim ? MPSI_TILE_SIDE : 0, cells->high[c] = 1;
+    const double x = c < grid->dim ? p->x[c][key[cells->begin].index] : 0.0;
+    const double X = mpsi_grid_at(grid, c, x);
+    cells->at[c] = c < grid->dim ? (int32_t)mpsi_block_of((int64_t)mpsi_base(grid->spline, X)) : 0;
+    cells->low[c] = c < grid->dim ? MPSI_TILE_SIDE : 0, cells->high[c] = 1;
   }
   for (int64_t k = cells->begin, end; k < cells->end; k = end) {
     for (end = k + 1; end < cells->end && key[end].key == key[k].key;) end++;
-    widen_use(&mpm->grid, key[k].key & own, cells);
-    order_by_id(key, mpm->p.laws.ids, k, end);
+    widen_use(grid, key[k].key & own, cells);
+    order_by_id(key, p->laws.ids, k, end);
   }
 }
 
@@ -217,17 +222,16 @@ static mps_status no_room(mps_context *context, const mpsi_grid *grid, const cha
                           (size_t)(cells * grid->block_nodes) * sizeof *grid->node);
 }
 
-static mps_status find_cells(mps_mpm *mpm, const char *function) {
-  key_chunks chunks = {.mpm = mpm};
-  mpm->grid.sorted = mpsi_mpm_find_order(mpm->context, &mpm->grid, &mpm->p, &mpm->grid.own_bits);
-  if (!mpm->grid.sorted)
-    return no_room(mpm->context, &mpm->grid, function, mpm->p.count / mpm->grid.block_nodes + 1);
+static mps_status find_cells(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                             const char *function) {
+  key_chunks chunks = {.context = context, .grid = grid, .p = p};
+  grid->sorted = mpsi_mpm_find_order(context, grid, p, &grid->own_bits);
+  if (!grid->sorted) return no_room(context, grid, function, p->count / grid->block_nodes + 1);
   const int64_t cells = count_cells(&chunks);
-  if (!mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, cells))
-    return no_room(mpm->context, &mpm->grid, function, cells);
-  make_cells(&chunks, cells, mpm->grid.cells);
-  mpm->grid.cell_count = cells;
-  mpsi_mpm_for_cells(mpm, place_block);
+  if (!mpsi_mpm_ensure_cells(context, grid, cells)) return no_room(context, grid, function, cells);
+  make_cells(&chunks, cells, grid->cells);
+  grid->cell_count = cells;
+  mpsi_mpm_for_cells(context, grid, p, place_block, &chunks);
   return MPS_OK;
 }
 
@@ -254,40 +258,40 @@ mps_status mpsi_mpm_place_blocks(mps_context *context, mpsi_grid *grid, const mp
 }
 
 /* Puts the particles in the order of the sorted keys. */
-static mps_status put_in_order(mps_mpm *mpm, const char *function) {
-  const int64_t count = mpm->p.count;
-  mpsi_radix *lower = mpm->grid.radix, *upper = lower + count;
+static mps_status put_in_order(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                               const char *function) {
+  const int64_t count = p->count;
+  mpsi_radix *lower = grid->radix, *upper = lower + count;
   /* The unsorted half of `radix` is free for the order, the sorted half after the order is
    * listed. */
-  int64_t *other = (int64_t *)(mpm->grid.sorted == lower ? upper : lower), *order = other;
-  int64_t *own = (int64_t *)(mpm->grid.sorted == lower ? lower : upper);
-  mpm->run.stale = false;
-  if (list_order(mpm, order)) return MPS_OK;
+  int64_t *other = (int64_t *)(grid->sorted == lower ? upper : lower), *order = other;
+  int64_t *own = (int64_t *)(grid->sorted == lower ? lower : upper);
+  if (list_order(context, grid, p, order)) return MPS_OK;
   void *const scratch[MPSI_PERMUTE_COLUMNS] = {other + count, own, own + count};
-  return mpsi_particles_permute_in(mpm->p.set, function, order, scratch, MPSI_PERMUTE_COLUMNS);
+  return mpsi_particles_permute_in(p->set, function, order, scratch, MPSI_PERMUTE_COLUMNS);
 }
 
-mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function) {
-  mpm->run.stale = false;
-  if (mpm->p.count == 0)
-    return mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, 0)
-               ? MPS_OK
-               : no_room(mpm->context, &mpm->grid, function, 0);
-  const mps_status status = find_cells(mpm, function);
-  return status == MPS_OK ? put_in_order(mpm, function) : status;
+mps_status mpsi_mpm_sort_cells(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                               mpsi_run *run, const char *function) {
+  run->stale = false;
+  if (p->count == 0)
+    return mpsi_mpm_ensure_cells(context, grid, 0) ? MPS_OK : no_room(context, grid, function, 0);
+  const mps_status status = find_cells(context, grid, p, function);
+  return status == MPS_OK ? put_in_order(context, grid, p, function) : status;
 }
 
-mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function) {
-  if (mpm->p.count == 0) {
-    mpm->run.stale = false;
-    const bool good = mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, 0) &&
-                      mpsi_mpm_build_nodes(mpm->context, &mpm->grid, 0);
-    return good ? MPS_OK : no_room(mpm->context, &mpm->grid, function, 0);
+mps_status mpsi_mpm_sort_alone(mps_context *context, mpsi_grid *grid, const mpsi_columns *p,
+                               mpsi_run *run, const char *function) {
+  if (p->count == 0) {
+    run->stale = false;
+    const bool good =
+        mpsi_mpm_ensure_cells(context, grid, 0) && mpsi_mpm_build_nodes(context, grid, 0);
+    return good ? MPS_OK : no_room(context, grid, function, 0);
   }
-  mps_status status = find_cells(mpm, function);
+  mps_status status = find_cells(context, grid, p, function);
   if (status != MPS_OK) return status;
-  const int64_t cells = mpm->grid.cell_count;
-  if (!mpsi_mpm_build_nodes(mpm->context, &mpm->grid, cells))
-    return no_room(mpm->context, &mpm->grid, function, cells);
-  return put_in_order(mpm, function);
+  const int64_t cells = grid->cell_count;
+  if (!mpsi_mpm_build_nodes(context, grid, cells)) return no_room(context, grid, function, cells);
+  run->stale = false;
+  return put_in_order(context, grid, p, function);
 }

@@ -14,7 +14,8 @@
  * On several ranks the caller's thread, the only one that may call the transport, receives the
  * ghosts' tiles when it finds nothing else to do, while the others continue.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "blocks.h"
+#include "core/internal.h"
 
 #include <stdatomic.h>
 
@@ -63,16 +64,17 @@ static _Atomic int32_t *counters_of(const mpsi_grid *grid) {
 
 static bool is_first(const mpsi_cell_block *cells, int q) { return cells->first >> q & 1; }
 
-static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, int32_t worker) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  for (int q = 0; q < 1 << mpm->grid.dim; q++)
-    if (is_first(cells, q)) pass->clear(mpm, cells->to[q], worker);
-  pass->scatter(mpm, b, worker);
+static void clear_and_scatter(const mpsi_grid *grid, const mpsi_pass *pass, int64_t b,
+                              int32_t worker) {
+  const mpsi_cell_block *cells = &grid->cells[b];
+  for (int q = 0; q < 1 << grid->dim; q++)
+    if (is_first(cells, q)) pass->clear(pass->data, cells->to[q], worker);
+  pass->scatter(pass->data, b, worker);
 }
 
 /* A pass by one thread, with the stages completed so far. */
 typedef struct wave {
-  mps_mpm *mpm;
+  const mpsi_grid *grid;
   const mpsi_pass *pass;
   _Atomic int32_t *scattered,
       *done; /* by block of cells: 1 after its scatter; by block of nodes: UPDATED or FINISHED */
@@ -98,26 +100,26 @@ static int32_t added_before(const mpsi_grid *grid, int32_t g, int q) {
 /* Scatters block b, after the blocks that must precede it. The depth of the recursion is at most
  * the number of colours. */
 static void scatter_in_turn(wave *w, int32_t b) {
-  const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
+  const mpsi_cell_block *cells = &w->grid->cells[b];
   if (!advance(&w->scattered[b], 1)) return;
-  for (int q = 0; q < 1 << w->mpm->grid.dim; q++) {
-    const int32_t before = added_before(&w->mpm->grid, cells->to[q], q);
+  for (int q = 0; q < 1 << w->grid->dim; q++) {
+    const int32_t before = added_before(w->grid, cells->to[q], q);
     if (before >= 0) scatter_in_turn(w, before);
   }
-  clear_and_scatter(w->mpm, w->pass, b, 0);
+  clear_and_scatter(w->grid, w->pass, b, 0);
 }
 
 static void update_in_turn(wave *w, int32_t g) {
-  const mpsi_node_block *nodes = &w->mpm->grid.nodes[g];
+  const mpsi_node_block *nodes = &w->grid->nodes[g];
   if (!advance(&w->done[g], UPDATED)) return;
-  for (int q = 0; q < 1 << w->mpm->grid.dim && w->pass->scatter; q++)
+  for (int q = 0; q < 1 << w->grid->dim && w->pass->scatter; q++)
     if (nodes->from[q] >= 0) scatter_in_turn(w, nodes->from[q]);
-  if (w->pass->update) w->pass->update(w->mpm, g, 0);
+  if (w->pass->update) w->pass->update(w->pass->data, g, 0);
 }
 
 static void finish_in_turn(wave *w, int32_t g) {
   update_in_turn(w, g);
-  if (advance(&w->done[g], FINISHED) && w->pass->finish) w->pass->finish(w->mpm, g, 0);
+  if (advance(&w->done[g], FINISHED) && w->pass->finish) w->pass->finish(w->pass->data, g, 0);
 }
 
 /* Whether some node under the block waits for ghosts (partition.h). */
@@ -127,41 +129,47 @@ static bool is_late(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   return late;
 }
 
-/* Gathers the blocks that wait for ghosts (`late`), or the others, after finishing their nodes. */
-static void gather_in_turn(wave *w, bool late) {
-  const mpsi_grid *grid = &w->mpm->grid;
+/* Gathers the blocks that wait for ghosts (`late`), or the others, after finishing their nodes;
+ * returns whether it has left out some. */
+static bool gather_in_turn(wave *w, bool late) {
+  const mpsi_grid *grid = w->grid;
+  bool left_out = false;
   for (int64_t b = 0; b < grid->cell_count; b++) {
     const mpsi_cell_block *cells = &grid->cells[b];
-    if (!has_cells(&w->mpm->grid, w->pass, b) || is_late(&w->mpm->grid, cells) != late) continue;
-    for (int q = 0; q < 1 << w->mpm->grid.dim; q++) finish_in_turn(w, cells->to[q]);
-    if (w->pass->gather) w->pass->gather(w->mpm, b, 0);
+    if (!has_cells(grid, w->pass, b)) continue;
+    if (is_late(grid, cells) != late) {
+      left_out = true;
+      continue;
+    }
+    for (int q = 0; q < 1 << grid->dim; q++) finish_in_turn(w, cells->to[q]);
+    if (w->pass->gather) w->pass->gather(w->pass->data, b, 0);
   }
+  return left_out;
 }
 
 /* A pass by one thread. Each block gathers as soon as its nodes are finished, while its particles
  * are in the cache from the scatter: a large set would be read from memory twice otherwise. Blocks
  * that wait for ghosts are last, but scatter while the ghosts' message is on its way. */
-static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
-  const mpsi_grid *grid = &mpm->grid;
+static void run_wave(const mpsi_grid *grid, const mpsi_pass *pass) {
   _Atomic int32_t *room = counters_of(grid);
-  wave w = {mpm, pass, room, room + grid->cell_count};
+  wave w = {grid, pass, room, room + grid->cell_count};
   for (int64_t k = 0; k < grid->cell_count + grid->node_count; k++)
     atomic_store_explicit(&room[k], 0, memory_order_relaxed);
   for (int32_t g = 0; pass->between && g < grid->node_count; g++)
     if (grid->nodes[g].waits) update_in_turn(&w, g);
-  if (pass->between && !pass->between(mpm, pass->data)) return;
-  gather_in_turn(&w, false);
-  if (!mpm->partition) return;
+  if (pass->between && !pass->between(pass->step)) return;
+  if (!gather_in_turn(&w, false) && !pass->arrive) return;
   for (int32_t b = 0; pass->scatter && b < grid->cell_count; b++)
     if (!grid->cells[b].late) scatter_in_turn(&w, b);
-  if (pass->arrive) pass->arrive(mpm);
+  if (pass->arrive) pass->arrive(pass->data);
   gather_in_turn(&w, true);
 }
 
 /* ---- several threads ------------------------------------------------------------------------- */
 
 typedef struct flow {
-  mps_mpm *mpm;
+  mps_context *context;
+  const mpsi_grid *grid;
   const mpsi_pass *pass;
   int32_t cells, nodes, lanes;
   lane *lane;
@@ -178,7 +186,7 @@ static lane *lane_of_cells(const flow *f, int32_t b) {
 
 /* Lane of the first block of cells that covers the nodes. */
 static lane *lane_of_nodes(const flow *f, int32_t g) {
-  const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
+  const mpsi_node_block *nodes = &f->grid->nodes[g];
   int q = 0;
   while (nodes->from[q] < 0) q++;
   return lane_of_cells(f, nodes->from[q]);
@@ -197,32 +205,32 @@ static bool count_down(_Atomic int32_t *count) {
 }
 
 static void finish_nodes(flow *f, int32_t g, int32_t worker) {
-  const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
-  if (f->pass->finish && has_nodes(&f->mpm->grid, f->pass, g)) f->pass->finish(f->mpm, g, worker);
-  for (int q = 0; q < 1 << f->mpm->grid.dim; q++) {
+  const mpsi_node_block *nodes = &f->grid->nodes[g];
+  if (f->pass->finish && has_nodes(f->grid, f->pass, g)) f->pass->finish(f->pass->data, g, worker);
+  for (int q = 0; q < 1 << f->grid->dim; q++) {
     const int32_t b = nodes->from[q];
     if (b >= 0 && count_down(&f->gather_waits[b]) && f->pass->gather &&
-        has_cells(&f->mpm->grid, f->pass, b))
+        has_cells(f->grid, f->pass, b))
       put(lane_of_cells(f, b), f->cells + b);
   }
 }
 
 static void update_nodes(flow *f, int32_t g, int32_t worker) {
-  if (f->pass->update && has_nodes(&f->mpm->grid, f->pass, g)) f->pass->update(f->mpm, g, worker);
-  if (!f->pass->between || !f->mpm->grid.nodes[g].waits) {
+  if (f->pass->update && has_nodes(f->grid, f->pass, g)) f->pass->update(f->pass->data, g, worker);
+  if (!f->pass->between || !f->grid->nodes[g].waits) {
     finish_nodes(f, g, worker);
     return;
   }
   if (!count_down(&f->held)) return;
-  f->pass->between(f->mpm, f->pass->data);
+  f->pass->between(f->pass->step);
   for (int32_t k = 0; k < f->nodes; k++)
-    if (f->mpm->grid.nodes[k].waits) put(lane_of_nodes(f, k), 2 * f->cells + k);
+    if (f->grid->nodes[k].waits) put(lane_of_nodes(f, k), 2 * f->cells + k);
 }
 
 static void scatter_cells(flow *f, int32_t b, int32_t worker) {
-  const mpsi_cell_block *cells = &f->mpm->grid.cells[b];
-  clear_and_scatter(f->mpm, f->pass, b, worker);
-  for (int q = 0; q < 1 << f->mpm->grid.dim; q++) {
+  const mpsi_cell_block *cells = &f->grid->cells[b];
+  clear_and_scatter(f->grid, f->pass, b, worker);
+  for (int q = 0; q < 1 << f->grid->dim; q++) {
     const int32_t next = cells->next[q];
     if (next < 0)
       update_nodes(f, cells->to[q], worker);
@@ -235,7 +243,7 @@ static void work_on(flow *f, int32_t entry, int32_t worker) {
   if (entry < f->cells)
     scatter_cells(f, entry, worker);
   else if (entry < 2 * f->cells)
-    f->pass->gather(f->mpm, entry - f->cells, worker);
+    f->pass->gather(f->pass->data, entry - f->cells, worker);
   else if (f->pass->scatter)
     finish_nodes(f, entry - 2 * f->cells, worker);
   else
@@ -307,10 +315,9 @@ static int32_t claim(const flow *f, int32_t worker, int32_t look, int32_t *entry
 
 /* Receives the sums of ghosts, on the caller's thread; their blocks are then ready to scatter. */
 static void receive(flow *f) {
-  f->pass->arrive(f->mpm);
+  f->pass->arrive(f->pass->data);
   for (int32_t b = 0; b < f->cells; b++)
-    if (f->mpm->grid.cells[b].ghost && count_down(&f->scatter_waits[b]))
-      put(lane_of_cells(f, b), b);
+    if (f->grid->cells[b].ghost && count_down(&f->scatter_waits[b])) put(lane_of_cells(f, b), b);
   atomic_store_explicit(&f->arrived, true, memory_order_release);
 }
 
@@ -318,7 +325,7 @@ static void receive(flow *f) {
  * caller's thread. */
 static void run_worker(void *data, int64_t unit, int32_t worker) {
   flow *f = data;
-  const bool own = mpsi_executor_is_own(f->mpm->context), receives = own && worker == 0;
+  const bool own = mpsi_executor_is_own(f->context), receives = own && worker == 0;
   (void)unit;
   for (int32_t look = 0; !is_all_claimed(f); look++) {
     int32_t entry[MOST_CLAIMED];
@@ -336,7 +343,7 @@ static void run_worker(void *data, int64_t unit, int32_t worker) {
 
 /* Divides the memory of the queue among the lanes, by the number of entries of each. */
 static void make_lanes(flow *f, _Atomic int32_t *queue) {
-  const mpsi_grid *grid = &f->mpm->grid;
+  const mpsi_grid *grid = f->grid;
   for (int32_t k = 0; k < f->lanes; k++) f->lane[k] = (lane){.entries = 0};
   for (int32_t b = 0; b < f->cells; b++)
     lane_of_cells(f, b)->entries +=
@@ -353,7 +360,7 @@ static void make_lanes(flow *f, _Atomic int32_t *queue) {
 
 /* Sets the counters of dependencies and enqueues what is ready from the start. */
 static void fill(flow *f) {
-  const mpsi_grid *grid = &f->mpm->grid;
+  const mpsi_grid *grid = f->grid;
   int32_t held = 0;
   for (int32_t b = 0; b < f->cells; b++) {
     const int32_t message = f->pass->arrive && grid->cells[b].ghost;
@@ -381,14 +388,15 @@ bool mpsi_mpm_passes_alone(const mpsi_grid *grid, const mpsi_columns *p) {
   return grid->worker_count == 1 || p->count < SMALL_SET;
 }
 
-void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
-  mpsi_grid *grid = &mpm->grid;
-  if (mpsi_mpm_passes_alone(&mpm->grid, &mpm->p)) {
-    run_wave(mpm, pass);
+void mpsi_mpm_run_pass(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                       const mpsi_pass *pass) {
+  if (mpsi_mpm_passes_alone(grid, p)) {
+    run_wave(grid, pass);
     return;
   }
   _Atomic int32_t *room = counters_of(grid);
-  flow f = {.mpm = mpm,
+  flow f = {.context = context,
+            .grid = grid,
             .pass = pass,
             .cells = (int32_t)grid->cell_count,
             .nodes = (int32_t)grid->node_count,
@@ -396,13 +404,13 @@ void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
             .lane = grid->pass_room.item,
             .scatter_waits = room,
             .gather_waits = room + grid->cell_count};
-  const int64_t rounds = mpsi_executor_is_own(mpm->context) ? 1 : ROUNDS;
+  const int64_t rounds = mpsi_executor_is_own(context) ? 1 : ROUNDS;
   make_lanes(&f, room + 2 * grid->cell_count);
   fill(&f);
-  mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
+  mpsi_parallel_for(context, rounds * grid->worker_count, run_worker, &f);
   if (atomic_load_explicit(&f.arrived, memory_order_relaxed)) return;
   receive(&f); /* the caller's executor has done all that needs no ghosts */
-  mpsi_parallel_for(mpm->context, rounds * grid->worker_count, run_worker, &f);
+  mpsi_parallel_for(context, rounds * grid->worker_count, run_worker, &f);
 }
 
 bool mpsi_mpm_ensure_pass(mps_context *context, mpsi_grid *grid) {
@@ -439,22 +447,24 @@ void mpsi_mpm_link_blocks(const mpsi_grid *grid) {
 /* ---- loops over blocks of cells -------------------------------------------------------------- */
 
 typedef struct cell_loop {
-  mps_mpm *mpm;
+  const mpsi_grid *grid;
   mpsi_mpm_task task;
+  void *data;
   int64_t grain;
 } cell_loop;
 
 static void some_cells(void *data, int64_t unit, int32_t worker) {
   const cell_loop *w = data;
   const int64_t end = (unit + 1) * w->grain;
-  for (int64_t b = unit * w->grain; b < end && b < w->mpm->grid.cell_count; b++)
-    w->task(w->mpm, b, worker);
+  for (int64_t b = unit * w->grain; b < end && b < w->grid->cell_count; b++)
+    w->task(w->data, b, worker);
 }
 
-void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task) {
-  const int64_t most = mpm->p.count < SMALL_SET ? 1 : 8 * (int64_t)mpm->grid.worker_count;
-  const int64_t count = mpm->grid.cell_count, units = count < most ? count : most;
+void mpsi_mpm_for_cells(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                        mpsi_mpm_task task, void *data) {
+  const int64_t most = p->count < SMALL_SET ? 1 : 8 * (int64_t)grid->worker_count;
+  const int64_t count = grid->cell_count, units = count < most ? count : most;
   if (units == 0) return;
-  cell_loop w = {mpm, task, (count + units - 1) / units};
-  mpsi_parallel_for(mpm->context, units, some_cells, &w);
+  cell_loop w = {grid, task, data, (count + units - 1) / units};
+  mpsi_parallel_for(context, units, some_cells, &w);
 }

@@ -17,29 +17,30 @@
 
 #include <mps/mpm.h>
 
-/* Work on the block of cells or nodes `index`. */
-typedef void (*mpsi_mpm_task)(mps_mpm *mpm, int64_t index, int32_t worker);
+/* Work on the block of cells or nodes `index`; `data` is what the task reads and writes. */
+typedef void (*mpsi_mpm_task)(void *data, int64_t index, int32_t worker);
 
 typedef struct mpsi_pass {
-  mpsi_mpm_task clear;   /* of nodes, before the first block of cells adds to them */
-  mpsi_mpm_task scatter; /* of cells; NULL: none, and nothing is cleared */
-  mpsi_mpm_task update;  /* of nodes, after all have added to them; NULL: none */
-  bool (*between)(mps_mpm *mpm, void *data); /* NULL: nothing; else runs once, when all blocks of
-                                    nodes that `wait` are updated and before any of these is
-                                    finished; with one thread before anything is finished, and false
-                                    ends the pass */
-  void *data;
-  mpsi_mpm_task finish;         /* of nodes; NULL: none */
-  mpsi_mpm_task gather;         /* of cells; NULL: none */
-  void (*arrive)(mps_mpm *mpm); /* NULL: nothing; else receives the sums of ghosts (partition.h), on
-                                   the caller's thread, when little or nothing else is left to do */
+  void *data;                  /* of the tasks and of `arrive` */
+  mpsi_mpm_task clear;         /* of nodes, before the first block of cells adds to them */
+  mpsi_mpm_task scatter;       /* of cells; NULL: none, and nothing is cleared */
+  mpsi_mpm_task update;        /* of nodes, after all have added to them; NULL: none */
+  bool (*between)(void *step); /* NULL: nothing; else runs once, when all blocks of nodes that
+                                  `wait` are updated and before any of these is finished; with one
+                                  thread before anything is finished, and false ends the pass */
+  void *step;                  /* data of `between` */
+  mpsi_mpm_task finish;        /* of nodes; NULL: none */
+  mpsi_mpm_task gather;        /* of cells; NULL: none */
+  void (*arrive)(void *data);  /* NULL: nothing; else receives the sums of ghosts (partition.h), on
+                                    the caller's thread, when little or nothing else is left to do */
   bool ghosts; /* ghosts gather too, and nodes that only they cover are updated and finished */
 } mpsi_pass;
 
 /* Whether one thread runs the passes. */
 bool mpsi_mpm_passes_alone(const mpsi_grid *grid, const mpsi_columns *p);
 /* Runs a pass; returns when all its tasks are complete. */
-void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass);
+void mpsi_mpm_run_pass(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                       const mpsi_pass *pass);
 
 /* Memory for the passes over the present blocks; false when out of memory. */
 bool mpsi_mpm_ensure_pass(mps_context *context, mpsi_grid *grid);
@@ -47,7 +48,8 @@ bool mpsi_mpm_ensure_pass(mps_context *context, mpsi_grid *grid);
  * mpsi_cell_block), from mpsi_node_block.from. */
 void mpsi_mpm_link_blocks(const mpsi_grid *grid);
 
-/* Calls task(mpm, index, worker) for all blocks of cells, in any order. */
-void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task);
+/* Calls task(data, index, worker) for all blocks of cells, in any order. */
+void mpsi_mpm_for_cells(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                        mpsi_mpm_task task, void *data);
 
 #endif

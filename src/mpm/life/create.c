@@ -328,7 +328,9 @@ static mps_status begin(mps_mpm *mpm) {
   if (status == MPS_OK) status = check_step(mpm);
   if (status == MPS_OK) status = make_memory(mpm);
   if (status != MPS_OK) return status;
-  return is_shared(&mpm->def) ? mpsi_mpm_sort_cells(mpm, create) : mpsi_mpm_sort(mpm, create);
+  return is_shared(&mpm->def)
+             ? mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, create)
+             : mpsi_mpm_sort(mpm, create);
 }
 
 /* Builds a solver over the whole set. All that can fail comes before the sort, which orders the set
@@ -392,7 +394,8 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
   status = join_extremes(&mpm->contact, &mpm->run, &mpm->def, status);
   if (status == MPS_OK) status = check_step(mpm);
   if (status == MPS_OK) status = make_memory(mpm);
-  if (status == MPS_OK) status = mpsi_mpm_sort_cells(mpm, create);
+  if (status == MPS_OK)
+    status = mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, create);
   status = mpsi_mpm_share_take_part(mpm, create, status);
   if (status != MPS_OK && !backup->memory) mpsi_particles_drop_fields(mpm->p.set, fields);
   mpm->boundaries.outdated = true;

@@ -109,7 +109,7 @@ static mps_status find_bulk(mps_context *context, const mpsi_columns *p, double 
 /* New limit of the time step, and check of a given dt against it. */
 static mps_status renew_limit(mps_mpm *mpm) {
   mpm->p.laws.one_modulus = false;
-  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  mpsi_mpm_find_speeds(mpm);
   mps_status status = mpsi_mpm_collect_block_results(mpm, add);
   if (status != MPS_OK || isnan(mpm->def.dt) || mpm->def.dt <= mps_mpm_limit(mpm)) return status;
   return mpsi_fail(

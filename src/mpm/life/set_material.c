@@ -115,6 +115,6 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
   mpm->boundaries.outdated = true; /* the dashpots of absorbing walls depend on the laws */
   /* the limit is updated with the other edits */
   if (mpm->run.edited || mpm->run.lost) return MPS_OK;
-  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  mpsi_mpm_find_speeds(mpm);
   return mpsi_mpm_collect_block_results(mpm, __func__);
 }

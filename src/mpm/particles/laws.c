@@ -85,32 +85,33 @@ static void take_strains(const mpsi_grid *grid, double *const *D, int64_t first,
 }
 
 /* The particles from `begin` on; `first` is its place in the columns D and the means. */
-static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                      double *const *D, double (*mean)[MPSI_CHUNK], int64_t first,
-                      mps_material_block *block) {
-  mpsi_columns *p = &mpm->p;
-  const mpsi_law_use *law = mpsi_law_of(&mpm->p, begin);
+static void apply_run(const mpsi_law_block *laws, int64_t begin, int64_t end, double *const *D,
+                      double (*mean)[MPSI_CHUNK], int64_t first) {
+  mpsi_columns *p = laws->p;
+  mps_material_block *seen = laws->seen;
+  const mpsi_law_use *law = mpsi_law_of(p, begin);
+  const bool counts = laws->energy->counts;
   int64_t flags[MPSI_CHUNK];
-  find_columns(&mpm->grid, &mpm->p, &mpm->run, law, begin, end, flags, block);
-  take_strains(&mpm->grid, D, first, block);
-  for (int c = 0; mean && c < 3; c++) block->gradient[4 * c] = mean[c] + first;
+  find_columns(laws->grid, p, laws->run, law, begin, end, flags, seen);
+  take_strains(laws->grid, D, first, seen);
+  for (int c = 0; mean && c < 3; c++) seen->gradient[4 * c] = mean[c] + first;
   for (int64_t k = begin; law->filtered && k < end; k++)
     p->rough[k] = law->history[law->strain][k]; /* filter.c subtracts it from the new one */
   mpsi_before_law before;
-  if (mpm->energy.counts) mpsi_mpm_energy_before_law(&mpm->grid, &mpm->p, begin, end, &before);
+  if (counts) mpsi_mpm_energy_before_law(laws->grid, p, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
-  apply_law(&mpm->p, cells, law, block, begin);
+  apply_law(p, laws->cells, law, seen, begin);
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
-  if (mpm->energy.counts)
-    mpsi_mpm_energy_law(&mpm->grid, &mpm->p, &mpm->energy, cells, law, block, &before, begin);
+  if (counts)
+    mpsi_mpm_energy_law(laws->grid, p, laws->energy, laws->cells, law, seen, &before, begin);
 }
 
-void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                        double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block) {
+void mpsi_mpm_apply_law(const mpsi_law_block *laws, int64_t begin, int64_t end, double *const *D,
+                        double (*mean)[MPSI_CHUNK]) {
   for (int64_t k = begin, next; k < end; k = next) {
-    next = end_of_run(mpm->p.law, k, end);
-    apply_run(mpm, cells, k, next, D, mean, k - begin, block);
+    next = end_of_run(laws->p->law, k, end);
+    apply_run(laws, k, next, D, mean, k - begin);
   }
 }
 

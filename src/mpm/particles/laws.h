@@ -46,13 +46,23 @@ typedef struct mpsi_laws {
   mpsi_refusal refusal;
 } mpsi_laws;
 
-/* laws.c: their laws on particles [begin, end) of a block, with the velocity gradients of the
- * columns `D` of these particles, as mpsi_columns.D; `mean`: their diagonals by volumetric.c, or
- * NULL. `block` was begun, once for all particles of the block of cells: emptying it takes as long
- * as telling the law of a chunk. */
-void mpsi_mpm_begin_block(mps_material_block *block);
-void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                        double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block);
+/* The laws on one block of cells. */
+typedef struct mpsi_law_block {
+  const mpsi_grid *grid;
+  mpsi_columns *p;
+  const mpsi_run *run;
+  const mpsi_energy *energy;
+  const mpsi_cell_block *cells;
+  mps_material_block *seen; /* particles as a law sees them; begun once for all of the block of
+                               cells, as emptying it takes as long as filling it for a chunk */
+} mpsi_law_block;
+
+/* laws.c: the laws of particles [begin, end) of a block, at most a chunk, with the velocity
+ * gradients of the columns `D` of these particles, as mpsi_columns.D; `mean`: their diagonals by
+ * volumetric.c, or NULL. */
+void mpsi_mpm_begin_block(mps_material_block *seen);
+void mpsi_mpm_apply_law(const mpsi_law_block *laws, int64_t begin, int64_t end, double *const *D,
+                        double (*mean)[MPSI_CHUNK]);
 /* laws.c: the returns to the yield surface of those among particles [begin, end), at most a chunk,
  * whose stress is filtered, without strain. */
 void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_run *run,
@@ -61,8 +71,6 @@ void mpsi_mpm_return_stress(const mpsi_grid *grid, mpsi_columns *p, const mpsi_r
 void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_run *run, const mps_mpm_def *def, int64_t begin, int64_t end,
                           double *moduli);
-/* volumetric.c: after the step's G2P the laws that wait for means, and what is smoothed. */
-void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,

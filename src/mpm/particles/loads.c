@@ -17,13 +17,22 @@ static mps_status make_forces(mps_context *context, const mpsi_grid *grid, mpsi_
   return mpsi_fail_memory(context, function, (size_t)p->count * sizeof(double));
 }
 
-static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
+/* Forces by the fields, for the blocks of cells. */
+typedef struct field_forces {
+  const mpsi_grid *grid;
+  const mpsi_columns *p;
+  const mpsi_loads *loads;
+} field_forces;
+
+static void begin_forces(void *data, int64_t b, int32_t worker) {
+  const field_forces *of = data;
+  const mpsi_columns *p = of->p;
+  const mpsi_cell_block *cells = &of->grid->cells[b];
   (void)worker;
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    const double *a = mpm->loads.body_acceleration[c], *f = mpm->loads.external_force[c];
+  for (int c = 0; c < of->grid->dim; c++) {
+    const double *a = of->loads->body_acceleration[c], *f = of->loads->external_force[c];
     for (int64_t k = cells->begin; k < cells->end; k++)
-      mpm->p.f[c][k] = (a ? mpm->p.m[k] * a[k] : 0.0) + (f ? f[k] : 0.0);
+      p->f[c][k] = (a ? p->m[k] * a[k] : 0.0) + (f ? f[k] : 0.0);
   }
 }
 
@@ -47,20 +56,21 @@ static void add_traction(const mpsi_grid *grid, const mpsi_columns *p, const mps
   }
 }
 
-mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
-  mpsi_loads *loads = &mpm->loads;
+mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                                mpsi_rooms *rooms, mpsi_loads *loads, const char *function) {
   /* the fields may be added, or their memory moved, between steps */
-  for (int c = 0; c < mpm->grid.dim; c++) {
-    loads->body_acceleration[c] = mpsi_particles_column(mpm->p.set, "body_acceleration", c);
-    loads->external_force[c] = mpsi_particles_column(mpm->p.set, "external_force", c);
+  for (int c = 0; c < grid->dim; c++) {
+    loads->body_acceleration[c] = mpsi_particles_column(p->set, "body_acceleration", c);
+    loads->external_force[c] = mpsi_particles_column(p->set, "external_force", c);
   }
   if (loads->body_acceleration[0] || loads->external_force[0]) {
-    const mps_status status = make_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, function);
+    const mps_status status = make_forces(context, grid, p, rooms, function);
     if (status != MPS_OK) return status;
   }
-  if (!mpm->rooms.force.item) return MPS_OK;
-  mpsi_mpm_for_cells(mpm, begin_forces);
-  for (int32_t k = 0; k < loads->count; k++) add_traction(&mpm->grid, &mpm->p, &loads->traction[k]);
+  if (!rooms->force.item) return MPS_OK;
+  field_forces of = {grid, p, loads};
+  mpsi_mpm_for_cells(context, grid, p, begin_forces, &of);
+  for (int32_t k = 0; k < loads->count; k++) add_traction(grid, p, &loads->traction[k]);
   return MPS_OK;
 }
 

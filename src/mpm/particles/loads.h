@@ -25,7 +25,8 @@ typedef struct mpsi_loads {
 } mpsi_loads;
 
 /* loads.c: sums force fields and loads of the step in the columns f. */
-mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
+                                mpsi_rooms *rooms, mpsi_loads *loads, const char *function);
 void mpsi_mpm_drop_loads(mps_context *context, const mpsi_loads *loads);
 
 #endif

@@ -109,7 +109,7 @@ static mps_status find_blocks(mps_mpm *mpm, const char *function) {
   if (!mpsi_mpm_make_room(mpm, mpm->p.count))
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)mpm->p.count * 2 * sizeof *mpm->grid.radix);
-  return mpsi_mpm_sort_cells(mpm, function);
+  return mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
 }
 
 /* Reduces the memory of fields and solver to what is needed. */

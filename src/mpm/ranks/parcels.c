@@ -93,8 +93,7 @@ bool mpsi_mpm_receive_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_tas
   return true;
 }
 
-void mpsi_mpm_receive_parcels(mps_mpm *mpm) {
-  mpsi_partition *partition = mpm->partition;
+void mpsi_mpm_receive_parcels(mpsi_partition *partition) {
   if (partition->lost == MPS_OK)
     partition->lost = mpsi_halo_end_bytes(partition->halo, "mps_mpm_step");
 }

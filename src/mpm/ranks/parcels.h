@@ -27,6 +27,6 @@ double *mpsi_mpm_copy_nodes(const mpsi_cell_block *cells, void *tile, size_t siz
 void mpsi_mpm_send_sums(mps_mpm *mpm, mpsi_mpm_task sum);
 bool mpsi_mpm_receive_sums(mps_mpm *mpm, int64_t b, int32_t worker, mpsi_mpm_task sum);
 /* Completes the exchange of parcels. Collective. */
-void mpsi_mpm_receive_parcels(mps_mpm *mpm);
+void mpsi_mpm_receive_parcels(mpsi_partition *partition);
 
 #endif

@@ -282,13 +282,13 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
 mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function) {
   bool moved = false;
   mpm->partition->outdated = true;
-  mps_status status = mpsi_mpm_sort_cells(mpm, function);
+  mps_status status = mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
   status = mpsi_mpm_partition_migrate(mpm, function, status, &moved);
   if (status != MPS_OK) {
     mpm->run.stale = true;
     return status;
   }
-  if (moved) status = mpsi_mpm_sort_cells(mpm, function);
+  if (moved) status = mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
   status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) mpm->run.stale = true;
   return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;

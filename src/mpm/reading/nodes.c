@@ -21,14 +21,14 @@ mps_status mps_grid_get_info_sized(const mps_grid *grid, mps_grid_info *out, siz
 
 /* P2G with forces apart, after all preparations. */
 static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
-  mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_penalty};
+  mpsi_pass pass = {.data = mpm, .clear = mpsi_mpm_clear_nodes, .scatter = mpsi_step_scatter};
   if (mpm->partition) {
     pass.scatter = mpsi_mpm_scatter_tile;
-    pass.arrive = mpsi_mpm_receive_parcels;
+    pass.arrive = mpsi_step_receive_parcels;
     const mps_status status = mpsi_mpm_send_tiles(mpm, function);
     if (status != MPS_OK) return status;
   }
-  mpsi_mpm_run_pass(mpm, &pass);
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   return mpm->partition ? mpm->partition->lost : MPS_OK;
 }
 
@@ -46,7 +46,9 @@ static mps_status find_sums(mps_mpm *mpm, const char *function, mps_status statu
   status = mpsi_mpm_evaluate_signals(mpm, function, mps_mpm_dt(mpm), false);
   status = mpsi_mpm_update_boundaries(mpm, function, status);
   status = mpsi_mpm_find_near(mpm, function, status);
-  if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
+  if (status == MPS_OK)
+    status =
+        mpsi_mpm_find_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->loads, function);
   if (mpm->partition) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status == MPS_OK) status = sum_nodes(mpm, function);
   mpm->grid.apart = false;

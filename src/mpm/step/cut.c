@@ -1,7 +1,7 @@
 /* cut.c - before each step: blocks with particles whose supports are cut, and blocks in which
  * forces are summed apart from momenta (see mpsi_cell_block).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/kernels.h"
 
 /* Range of nodes, low to high - 1, of a tile. */
 typedef struct box {
@@ -149,8 +149,11 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
   mpm->contact.penalty_bodies = 0;
-  static const mpsi_pass pass = {
-      .update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached, .ghosts = true};
+  mpsi_inside_search search = {&mpm->grid, &mpm->p, &mpm->contact, mpm->kernels};
+  const mpsi_pass pass = {.data = &search,
+                          .update = mpsi_mpm_find_inside,
+                          .gather = mpsi_mpm_mark_reached,
+                          .ghosts = true};
   if (mpm->contact.bodies > 0) {
     if (status == MPS_OK)
       status = mpsi_mpm_list_pairs(mpm->context, &mpm->grid, &mpm->contact, function);
@@ -159,11 +162,13 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
       status = mpsi_fail_memory(mpm->context, function,
                                 (size_t)(mpm->contact.node_pair_count * mpm->grid.block_nodes) *
                                     sizeof *mpm->contact.sight);
-    if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
+    if (status == MPS_OK && mpm->contact.cell_pair_count > 0)
+      mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
     if (mpm->partition) { /* collective: also where the status of this rank is an error */
       for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
         mpm->grid.cells[b].thin = near_thin(&mpm->grid, &mpm->contact, &mpm->grid.cells[b]);
-      const mps_status lost = mpsi_mpm_exchange_corners(mpm, function, status == MPS_OK);
+      const mps_status lost =
+          mpsi_mpm_exchange_corners(&search, mpm->partition, function, status == MPS_OK);
       if (lost != MPS_OK) status = lost;
     }
   }

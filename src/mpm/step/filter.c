@@ -238,25 +238,30 @@ MPSI_INLINE void choose_loop(mps_mpm *mpm, int64_t b, int32_t number, loop which
     run_loop(mpm, cells, worker, dim, spline, true, which);
 }
 
-static void sum_stress(mps_mpm *mpm, int64_t b, int32_t number) {
+static void sum_stress(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   mpsi_clear_sums(&mpm->grid, b, number);
   choose_loop(mpm, b, number, SUM_STRESS);
 }
 
-static void sum_rough(mps_mpm *mpm, int64_t b, int32_t number) {
+static void sum_rough(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   mpsi_clear_sums(&mpm->grid, b, number);
   choose_loop(mpm, b, number, SUM_ROUGH);
 }
 
-static void add_stress(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void add_stress(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_add_sums(mpm, b, worker, sum_stress);
 }
 
-static void add_rough(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void add_rough(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_add_sums(mpm, b, worker, sum_rough);
 }
 
-static void find_rough(mps_mpm *mpm, int64_t b, int32_t number) {
+static void find_rough(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   gather_means(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number]);
   choose_loop(mpm, b, number, FIND_ROUGH);
 }
@@ -282,7 +287,8 @@ static void change_stress(const mpsi_columns *p, int64_t k) {
   if (law->reads_volume) p->J[k] = grown(p->J[k], (now - was) / bulk); /* of the same V0 */
 }
 
-static void filter_stress(mps_mpm *mpm, int64_t b, int32_t number) {
+static void filter_stress(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   gather_means(&mpm->grid, cells, &mpm->grid.workers[number]);
   choose_loop(mpm, b, number, FIND_SMOOTH);
@@ -296,7 +302,8 @@ static void filter_stress(mps_mpm *mpm, int64_t b, int32_t number) {
     if (mpm->energy.counts)
       mpsi_mpm_energy_smoothed(&mpm->grid, &mpm->p, &mpm->energy, cells, &before, begin, end);
   }
-  mpm->kernels->speed(mpm, b, number);
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
+  mpm->kernels->speed(&work);
 }
 
 void mpsi_mpm_filter(mps_mpm *mpm) {

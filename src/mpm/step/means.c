@@ -4,6 +4,7 @@
 #include "means.h"
 
 #include "mpm/ranks/parcels.h"
+#include "tiles.h"
 
 #include <string.h>
 
@@ -40,12 +41,13 @@ void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
 }
 
 void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather) {
-  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
+  const mpsi_pass pass = {.data = mpm,
+                          .clear = mpsi_mpm_clear_nodes,
                           .scatter = add,
                           .gather = gather,
-                          .arrive = mpm->partition ? mpsi_mpm_receive_parcels : NULL};
+                          .arrive = mpm->partition ? mpsi_step_receive_parcels : NULL};
   if (mpm->partition) mpsi_mpm_send_sums(mpm, sum);
-  mpsi_mpm_run_pass(mpm, &pass);
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
 }
 
 static bool on_any_rank(mpsi_partition *partition, bool failed) {

@@ -35,6 +35,8 @@ void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_
 bool mpsi_any_failed(const mpsi_grid *grid, mpsi_partition *partition);
 bool mpsi_any_refused(const mpsi_columns *p, mpsi_partition *partition);
 
+/* volumetric.c: after the step's G2P the laws that wait for means, and what is smoothed. */
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* filter.c: whether this step, by its number and the interval, filters the mean stresses of
  * frictional laws; the filter. */
 bool mpsi_mpm_filters(const mpsi_columns *p, const mpsi_run *run);

@@ -6,7 +6,8 @@
 
 enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE }; /* nodes of a block */
 
-void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_clear_nodes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *mpm->grid.node;
   memset(mpm->grid.node + mpsi_first_node(&mpm->grid, g), 0, bytes);
@@ -49,7 +50,8 @@ static bool update_cut(const mpsi_grid *grid, double dt, bool split, mpsi_node *
   return light && !grid->by_weight && !grid->standard;
 }
 
-void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_update_nodes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
   mpsi_node *node = mpm->grid.node + mpsi_first_node(&mpm->grid, g);
   nodes->light = false;
@@ -72,7 +74,7 @@ static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
   mpsi_node before[MOST], old[MOST];
   mpsi_node *side = mpm->grid.side + mpsi_first_node(&mpm->grid, mpm->grid.nodes[g].side);
   memcpy(old, side, bytes);
-  mpsi_mpm_prescribe_mirrors(mpm, g);
+  mpsi_mpm_prescribe_mirrors(&mpm->grid, &mpm->boundaries, &mpm->mirrors, mpm->run.dt, g);
   memcpy(before, node, bytes);
   mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   memcpy(side, old, bytes);
@@ -88,7 +90,7 @@ static void finish_and_damp(mps_mpm *mpm, int64_t g) {
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(&mpm->grid, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
   apply_body_friction(mpm, g, held);
-  mpsi_mpm_prescribe_nodes(mpm, g, fixed);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, fixed);
   memcpy(damped, node, bytes);
   if (mpm->settling.on)
     mpsi_mpm_measure_balance(&mpm->grid, &mpm->contact, &mpm->settling, mpm->run.dt, g, fixed,
@@ -107,13 +109,14 @@ static void finish(mps_mpm *mpm, int64_t g) {
     return;
   }
   if (mpm->grid.nodes[g].pairs > 0) {
-    mpsi_mpm_prescribe_mirrors(mpm, g);
+    mpsi_mpm_prescribe_mirrors(&mpm->grid, &mpm->boundaries, &mpm->mirrors, mpm->run.dt, g);
     mpsi_mpm_apply_friction(&mpm->grid, &mpm->contact, mpm->run.dt, g);
   }
-  mpsi_mpm_prescribe_nodes(mpm, g, fixed);
+  mpsi_mpm_prescribe_nodes(&mpm->grid, &mpm->boundaries, mpm->run.dt, g, fixed);
 }
 
-void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
+void mpsi_mpm_finish_nodes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   const int32_t across = mpm->grid.nodes[g].across;
   mpsi_mpm_begin_held(&mpm->grid, &mpm->boundaries, g);

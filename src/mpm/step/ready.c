@@ -6,7 +6,8 @@
 #include "mpm/water/water.h"
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  if (!mpm->partition) return mpsi_mpm_sort_alone(mpm, function);
+  if (!mpm->partition)
+    return mpsi_mpm_sort_alone(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
   mps_status status = MPS_OK;
   if (mpm->contact.bodies > 0)
     status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, mpm->partition->domain,
@@ -14,6 +15,16 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK) return mpsi_mpm_partition_sort(mpm, function);
   mpm->run.stale = true;
   return status;
+}
+
+static void find_speed(void *solver, int64_t b, int32_t worker) {
+  mps_mpm *mpm = solver;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  mpm->kernels->speed(&work);
+}
+
+void mpsi_mpm_find_speeds(mps_mpm *mpm) {
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, find_speed, mpm);
 }
 
 mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
@@ -36,7 +47,7 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   status = mpsi_mpm_list_boundaries(mpm, function, status);
   if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
-  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  mpsi_mpm_find_speeds(mpm);
   mpm->run.edited = false;
   return mpsi_mpm_collect_block_results(mpm, function);
 }

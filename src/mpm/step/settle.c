@@ -59,7 +59,8 @@ static void release_bodies(const mpsi_contacts *contacts) {
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static void stop_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void stop_block(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
@@ -77,7 +78,7 @@ static void stop_particles(mps_mpm *mpm) {
       mpsi_mpm_energy_add_at_once(&mpm->energy, MPSI_ENERGY_KINETIC, -kinetic);
       mpsi_mpm_energy_add_at_once(&mpm->energy, MPSI_ENERGY_DAMPING_LOSS, kinetic);
     }
-  mpsi_mpm_for_cells(mpm, stop_block);
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, stop_block, mpm);
 }
 
 /* ---- settling -------------------------------------------------------------------------------- */

@@ -4,11 +4,14 @@
 
 #include "core/particles/particles_internal.h"
 #include "mpm/particles/mpm_particles.h"
+#include "means.h"
+#include "tiles.h"
 
 #define CHATTER 6.0 /* k dt^2/m above which a penalty contact oscillates */
 
 mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_mpm_find_forces(mpm, function);
+  mps_status status =
+      mpsi_mpm_find_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->loads, function);
   if (status == MPS_OK) status = mpsi_mpm_energy_begin(mpm, function);
   if (status == MPS_OK)
     status = mpsi_mpm_begin_balance(mpm->context, &mpm->grid, &mpm->p, &mpm->settling, &mpm->def,
@@ -52,27 +55,23 @@ void mpsi_step_begin(mps_mpm *mpm, double dt) {
   warn_about_chatter(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->def, dt);
 }
 
-static mpsi_mpm_task g2p(const mpsi_grid *grid, const mpsi_kernels *kernels) {
-  return kernels->g2p[grid->geometry][grid->spline - 2];
+static void gather(void *solver, int64_t b, int32_t worker) {
+  mps_mpm *mpm = solver;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  if (mpm->undo.on) mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
+  mpm->kernels->g2p[mpm->grid.geometry][mpm->grid.spline - 2](&work);
 }
 
-static void save_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
-  g2p(&mpm->grid, mpm->kernels)(mpm, b, worker);
-}
-
-mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *contacts,
-                                 const mpsi_kernels *kernels) {
-  const mpsi_mpm_task p2g = kernels->p2g[grid->geometry][grid->spline - 2];
-  return (mpsi_pass){.clear = mpsi_mpm_clear_nodes,
-                     .scatter = contacts->penalty_bodies > 0 ? mpsi_mpm_scatter_penalty : p2g,
+mpsi_pass mpsi_step_scatter_pass(mps_mpm *mpm) {
+  return (mpsi_pass){.data = mpm,
+                     .clear = mpsi_mpm_clear_nodes,
+                     .scatter = mpsi_step_scatter,
                      .update = mpsi_mpm_update_nodes};
 }
 
-void mpsi_step_gather_pass(const mpsi_grid *grid, const mpsi_undo *undo,
-                           const mpsi_kernels *kernels, mpsi_pass *pass) {
+void mpsi_step_gather_pass(mpsi_pass *pass) {
   pass->finish = mpsi_mpm_finish_nodes;
-  pass->gather = undo->on ? save_and_gather : g2p(grid, kernels);
+  pass->gather = gather;
 }
 
 void mpsi_step_without_contact(const mpsi_boundaries *boundaries, mpsi_contacts *contacts,
@@ -101,7 +100,9 @@ mps_status mpsi_step_refuse(mps_mpm *mpm, const char *function) {
 }
 
 void mpsi_step_complete(mps_mpm *mpm) {
-  if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm);
+  if (mpm->contact.bodies > 0)
+    mpsi_mpm_update_bodies(&mpm->grid, &mpm->contact, &mpm->energy, mpm->partition, &mpm->settling,
+                           mpm->run.dt);
   mpsi_mpm_energy_end(mpm);
   mpm->run.moments = true;
   mpm->run.time += mpm->run.dt;

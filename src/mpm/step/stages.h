@@ -6,8 +6,9 @@
 #include "mpm/base/kernels.h"
 #include "mpm/grid/pass.h"
 
-/* A step, as data of its passes over the grid. */
+/* A step, as data of its contact stage. */
 typedef struct mpsi_step {
+  mps_mpm *mpm;
   const char *function;
   double dt; /* s */
   mps_status status;
@@ -20,11 +21,9 @@ mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function);
  * penalty contact. */
 void mpsi_step_begin(mps_mpm *mpm, double dt);
 /* Particles to nodes in one process: clear, scatter, update. */
-mpsi_pass mpsi_step_scatter_pass(const mpsi_grid *grid, const mpsi_contacts *contacts,
-                                 const mpsi_kernels *kernels);
+mpsi_pass mpsi_step_scatter_pass(mps_mpm *mpm);
 /* Nodes to particles: adds finish and gather to the pass. */
-void mpsi_step_gather_pass(const mpsi_grid *grid, const mpsi_undo *undo,
-                           const mpsi_kernels *kernels, mpsi_pass *pass);
+void mpsi_step_gather_pass(mpsi_pass *pass);
 /* A step without contact: clears the warm-start impulses, and begins the boundaries. */
 void mpsi_step_without_contact(const mpsi_boundaries *boundaries, mpsi_contacts *contacts,
                                double dt);

@@ -39,20 +39,22 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
   return status == MPS_OK ? mpsi_step_begin_sums(mpm, function) : status;
 }
 
-static bool find_masses(mps_mpm *mpm, void *data) {
-  (void)data;
+static bool find_masses(void *data) {
+  const mps_mpm *mpm = ((const mpsi_step *)data)->mpm;
   mpsi_mpm_find_contact_mass(&mpm->grid, &mpm->contact, mpm->partition);
   return true;
 }
 
 /* Constraints and their impulses. No particle moves before all depths are known. */
-static bool solve_contacts(mps_mpm *mpm, void *data) {
+static bool solve_contacts(void *data) {
   mpsi_step *step = data;
-  mpsi_mpm_fit_constraints(mpm);
+  mps_mpm *mpm = step->mpm;
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  mpsi_mpm_fit_constraints(&stage);
   step->status =
       mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, step->function);
   if (step->status != MPS_OK) return false;
-  mpsi_mpm_apply_impulses(mpm);
+  mpsi_mpm_apply_impulses(&stage);
   mpsi_mpm_begin_boundaries(&mpm->boundaries, step->dt);
   return true;
 }
@@ -77,22 +79,22 @@ static void wait_for_constraints(const mpsi_grid *grid, const mpsi_contacts *con
 
 /* Particles --> nodes --> particles (grid/pass.h). */
 static mps_status transfer(mps_mpm *mpm, const char *function, double dt) {
-  mpsi_step step = {function, dt, MPS_OK};
-  mpsi_pass pass = mpsi_step_scatter_pass(&mpm->grid, &mpm->contact, mpm->kernels);
+  mpsi_step step = {mpm, function, dt, MPS_OK};
+  mpsi_pass pass = mpsi_step_scatter_pass(mpm);
   pass.between = mpm->contact.bodies > 0 ? find_masses : NULL;
-  pass.data = &step;
+  pass.step = &step;
   if (mpm->contact.cell_pair_count == 0) {
     mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
   } else if (can_solve_in_one_wave(&mpm->grid, &mpm->p, &mpm->contact)) {
     wait_for_constraints(&mpm->grid, &mpm->contact);
     pass.between = solve_contacts;
   } else {
-    mpsi_mpm_run_pass(mpm, &pass);
-    if (!solve_contacts(mpm, &step)) return step.status;
-    pass = (mpsi_pass){.clear = NULL};
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
+    if (!solve_contacts(&step)) return step.status;
+    pass = (mpsi_pass){.data = mpm};
   }
-  mpsi_step_gather_pass(&mpm->grid, &mpm->undo, mpm->kernels, &pass);
-  mpsi_mpm_run_pass(mpm, &pass);
+  mpsi_step_gather_pass(&pass);
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   return step.status;
 }
 
@@ -103,7 +105,8 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   if (status == MPS_OK) status = mpsi_pore_begin(mpm, function, status);
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
-  status = mpsi_mpm_find_constraints(mpm, function);
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  status = mpsi_mpm_find_constraints(&stage, function);
   if (status == MPS_OK) status = transfer(mpm, function, dt);
   if (status != MPS_OK) return status;
   mpsi_step_after_gather(mpm);

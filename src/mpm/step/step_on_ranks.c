@@ -47,12 +47,13 @@ static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status)
  * depths are known. */
 static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, mps_status status) {
   mpsi_mpm_find_contact_mass(&mpm->grid, &mpm->contact, mpm->partition); /* mass over all ranks */
-  mpsi_mpm_fit_constraints(mpm);
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  mpsi_mpm_fit_constraints(&stage);
   if (status == MPS_OK)
     status = mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, function);
-  status = mpsi_mpm_exchange_contacts(mpm, function, status);
+  status = mpsi_mpm_exchange_contacts(&stage, function, status);
   if (status != MPS_OK) return status;
-  mpsi_mpm_apply_impulses(mpm);
+  mpsi_mpm_apply_impulses(&stage);
   mpsi_mpm_end_contact_exchange(&mpm->contact);
   mpsi_mpm_begin_boundaries(&mpm->boundaries, dt);
   return MPS_OK;
@@ -61,21 +62,21 @@ static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, 
 /* P2G, contact and G2P. `status`: of the search for constraints on this rank, on which ranks agree
  * when they exchange these. */
 static mps_status transfer(mps_mpm *mpm, const char *function, double dt, mps_status status) {
-  mpsi_pass pass = mpsi_step_scatter_pass(&mpm->grid, &mpm->contact, mpm->kernels);
+  mpsi_pass pass = mpsi_step_scatter_pass(mpm);
   const mps_status sent = mpsi_mpm_send_tiles(mpm, function);
   if (sent != MPS_OK) return sent;
   pass.scatter = mpsi_mpm_scatter_tile;
-  pass.arrive = mpsi_mpm_receive_parcels;
+  pass.arrive = mpsi_step_receive_parcels;
   if (mpm->contact.cell_pair_count > 0 || mpm->contact.bodies > 0) {
-    mpsi_mpm_run_pass(mpm, &pass);
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
     status = solve_contacts(mpm, function, dt, status);
     if (status != MPS_OK) return status;
-    pass = (mpsi_pass){.clear = NULL};
+    pass = (mpsi_pass){.data = mpm};
   } else {
     mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
   }
-  mpsi_step_gather_pass(&mpm->grid, &mpm->undo, mpm->kernels, &pass);
-  mpsi_mpm_run_pass(mpm, &pass);
+  mpsi_step_gather_pass(&pass);
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   return status;
 }
 
@@ -92,7 +93,8 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (!unchanged) status = mpsi_mpm_agree_before_step(mpm, function, status);
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
-  status = mpsi_mpm_find_constraints(mpm, function);
+  const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  status = mpsi_mpm_find_constraints(&stage, function);
   if (mpm->contact.bodies > 0) mpsi_mpm_mark_contact_blocks(&mpm->contact, &mpm->grid);
   status = transfer(mpm, function, dt, status);
   if (status != MPS_OK) return status;

@@ -73,11 +73,12 @@ static void copy_penalty_tiles(const mpsi_grid *grid, const mpsi_contacts *conta
 static void pack(void *data, int64_t k, int32_t number) {
   mps_mpm *mpm = data;
   mpsi_partition *partition = mpm->partition;
-  mpsi_worker *worker = &mpm->grid.workers[number];
-  const mpsi_cell_block *cells = &mpm->grid.cells[partition->border[k]];
+  const mpsi_transfer work = mpsi_transfer_of(mpm, partition->border[k], number);
+  const mpsi_worker *worker = work.worker;
+  const mpsi_cell_block *cells = work.cells;
   double *parcel = mpsi_mpm_parcel(partition, false, k);
   mpsi_mpm_clear_penalty(&mpm->grid, &mpm->contact, cells, worker);
-  mpm->kernels->tile[mpm->grid.geometry][mpm->grid.spline - 2](mpm, partition->border[k], number);
+  mpm->kernels->tile[mpm->grid.geometry][mpm->grid.spline - 2](&work);
   parcel[0] = cells->apart;
   parcel[1] = cells->split;
   parcel[2] = cells->thin;
@@ -96,14 +97,29 @@ mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function) {
   return partition->lost;
 }
 
+void mpsi_step_receive_parcels(void *solver) {
+  mpsi_mpm_receive_parcels(((mps_mpm *)solver)->partition);
+}
+
 /* ---- sums at the nodes ----------------------------------------------------------------------- */
 
-void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t number) {
+void mpsi_step_scatter(void *solver, int64_t b, int32_t worker) {
+  mps_mpm *mpm = solver;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  const bool penalty = mpm->contact.penalty_bodies > 0;
+  if (penalty) mpsi_mpm_clear_penalty(work.grid, work.contact, work.cells, work.worker);
+  mpm->kernels->p2g[mpm->grid.geometry][mpm->grid.spline - 2](&work);
+  if (penalty) mpsi_mpm_add_penalty(work.grid, work.contact, work.cells, work.worker);
+}
+
+void mpsi_mpm_scatter_tile(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   mpsi_partition *partition = mpm->partition;
-  mpsi_cell_block *cells = &mpm->grid.cells[b];
-  mpsi_worker *worker = &mpm->grid.workers[number];
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
+  const mpsi_worker *worker = work.worker;
+  mpsi_cell_block *cells = work.cells;
   if (cells->parcel < 0) {
-    mpsi_mpm_scatter_penalty(mpm, b, number);
+    mpsi_step_scatter(mpm, b, number);
     return;
   }
   if (cells->ghost && partition->lost != MPS_OK) return; /* the step has failed */
@@ -114,6 +130,6 @@ void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t number) {
   cells->in_contact = parcel[3] != 0.0;
   parcel = copy_tiles(cells, worker, parcel + MPSI_PARCEL_HEAD, false);
   copy_penalty_tiles(&mpm->grid, &mpm->contact, cells, worker, parcel, false);
-  mpm->kernels->flush(mpm, b, number);
+  mpm->kernels->flush(&work);
   mpsi_mpm_add_penalty(&mpm->grid, &mpm->contact, cells, worker);
 }

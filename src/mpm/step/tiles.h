@@ -1,4 +1,4 @@
-/* tiles.h - the tiles of a step between ranks (tiles.c).
+/* tiles.h - scatter of a step, and its tiles between ranks (tiles.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_TILES_H
 #define MPSI_MPM_TILES_H
@@ -18,8 +18,12 @@ mps_status mpsi_mpm_agree_before_step(mps_mpm *mpm, const char *function, mps_st
 /* Sums the border blocks into tiles and sends these; mpsi_mpm_receive_parcels receives those of
  * ghosts. Collective. */
 mps_status mpsi_mpm_send_tiles(mps_mpm *mpm, const char *function);
-/* Scatter task of a pass: adds the tile of a block of cells to its nodes, whichever rank has summed
- * it. Not collective. */
-void mpsi_mpm_scatter_tile(mps_mpm *mpm, int64_t b, int32_t worker);
+/* Completes the exchange of parcels in a pass, whose data is the solver. Collective. */
+void mpsi_step_receive_parcels(void *solver);
+/* Scatter task of a pass on one rank: P2G of a block of cells, with penalty contact. */
+void mpsi_step_scatter(void *solver, int64_t b, int32_t worker);
+/* Scatter task of a pass on several ranks: adds the tile of a block of cells to its nodes,
+ * whichever rank has summed it. Not collective. */
+void mpsi_mpm_scatter_tile(void *solver, int64_t b, int32_t worker);
 
 #endif

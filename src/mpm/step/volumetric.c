@@ -161,7 +161,8 @@ static void slope_at_rest(const mpsi_grid *grid, const mpsi_columns *p, const mp
   for (int c = 0; c < 3; c++) slope[c] = c < grid->dim ? -weight * def->gravity[c] : 0.0;
 }
 
-static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
+static void sum_pressures(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
   mpsi_clear_sums(&mpm->grid, b, number);
@@ -174,7 +175,8 @@ static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
   }
 }
 
-static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void smooth_pressures(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = cells->begin; k < cells->end; k++) {
@@ -190,12 +192,14 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
         fraction * (mean_of_nodes(&mpm->grid, cells, &s, slope) - mean_stress(&mpm->p, k));
     for (int c = 0; c < 3; c++) p->s[c][k] += change;
   }
-  mpm->kernels->speed(mpm, b, worker);
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  mpm->kernels->speed(&work);
 }
 
 /* ---- by cell and by node --------------------------------------------------------------------- */
 
-static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
+static void sum_rates(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_worker *worker = &mpm->grid.workers[number];
   const double *L[3], *V = mpm->p.V;
@@ -215,10 +219,12 @@ static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
   }
 }
 
-static void mean_diagonals(const mpsi_grid *grid, const mpsi_columns *p,
-                           const mpsi_contacts *contacts, const mps_mpm_def *def, double dt,
-                           const mpsi_cell_block *cells, int64_t begin, int64_t end,
+static void mean_diagonals(const mpsi_transfer *work, int64_t begin, int64_t end,
                            double (*diagonal)[MPSI_CHUNK]) {
+  const mpsi_grid *grid = work->grid;
+  const mpsi_columns *p = work->p;
+  const mpsi_cell_block *cells = work->cells;
+  const double dt = work->run->dt;
   const double *L[3];
   find_diagonal(grid, p, L);
   for (int64_t k = begin; k < end; k++) {
@@ -226,11 +232,11 @@ static void mean_diagonals(const mpsi_grid *grid, const mpsi_columns *p,
     double mean;
     if (keeps_own(p, k)) {
       mean = own;
-    } else if (by_nodes(def)) {
-      const support s = support_of(grid, p, contacts, dt, cells, k);
+    } else if (by_nodes(work->def)) {
+      const support s = support_of(grid, p, work->contact, dt, cells, k);
       mean = mean_of_nodes(grid, cells, &s, level);
     } else {
-      const double *sums = sums_of(grid, p, contacts, dt, cells, NULL, k);
+      const double *sums = sums_of(grid, p, work->contact, dt, cells, NULL, k);
       mean = sums[MPSI_SUM_VALUE] / sums[MPSI_SUM_VOLUME];
     }
     const double change = (mean - own) / 3.0;
@@ -238,25 +244,30 @@ static void mean_diagonals(const mpsi_grid *grid, const mpsi_columns *p,
   }
 }
 
-static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_cell_block *cells = &mpm->grid.cells[b];
-  mps_material_block law;
-  mpsi_mpm_begin_block(&law);
+static void apply_laws(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  const mpsi_cell_block *cells = work.cells;
+  mps_material_block seen;
+  const mpsi_law_block laws = {work.grid, work.p, work.run, work.energy, cells, &seen};
+  mpsi_mpm_begin_block(&seen);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
     double *D[9], mean[3][MPSI_CHUNK];
     for (int c = 0; c < mpm->grid.dim * mpm->grid.dim; c++) D[c] = mpm->p.D[c] + k;
-    mean_diagonals(&mpm->grid, &mpm->p, &mpm->contact, &mpm->def, mpm->run.dt, cells, k, end, mean);
-    mpsi_mpm_apply_law(mpm, cells, k, end, D, mean, &law);
+    mean_diagonals(&work, k, end, mean);
+    mpsi_mpm_apply_law(&laws, k, end, D, mean);
   }
-  if (!by_nodes(&mpm->def)) mpm->kernels->speed(mpm, b, worker);
+  if (!by_nodes(&mpm->def)) mpm->kernels->speed(&work);
 }
 
-static void add_rates(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void add_rates(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_add_sums(mpm, b, worker, sum_rates);
 }
 
-static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void add_pressures(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_add_sums(mpm, b, worker, sum_pressures);
 }
 

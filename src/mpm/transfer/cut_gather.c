@@ -63,8 +63,10 @@ MPSI_INLINE const mpsi_node *row_of(const mpsi_cut *b, mpsi_node *tile, int j, i
 
 /* Velocities, derivatives (1/s, for the laws) and slopes (for the next scatter) of a batch, to
  * `out` from index `at` on. */
-MPSI_INLINE void gather(const mpsi_grid *grid, const mpsi_worker *worker, int dim, int spline,
-                        bool thin, const mpsi_cut *b, mpsi_gathered *out, int at) {
+MPSI_INLINE void gather(const mpsi_transfer *work, int dim, int spline, bool thin,
+                        const mpsi_cut *b, mpsi_gathered *out, int at) {
+  const mpsi_grid *grid = work->grid;
+  const mpsi_worker *worker = work->worker;
   node_sums sum = {.v = {{0.0}}};
   mpsi_quad L[3][3];
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
@@ -104,12 +106,13 @@ MPSI_INLINE void find_ratios(const mpsi_grid *grid, int spline, const mpsi_cut *
  * mirrors), if only sides of the domain cut the support. There the fit is a product of fits along
  * the axes (wall_support.h): phi/w is constant along such an axis, so that d phi = phi dw/w. Along
  * the other axes, and beside bodies, the slopes of the fit are used. */
-MPSI_INLINE void find_strain(const mpsi_grid *grid, const mpsi_cell_block *cells,
-                             const mpsi_worker *worker, int dim, int spline, bool thin,
+MPSI_INLINE void find_strain(const mpsi_transfer *work, int dim, int spline, bool thin,
                              const mpsi_cut *b, mpsi_gathered *out, int at) {
+  const mpsi_grid *grid = work->grid;
+  const mpsi_worker *worker = work->worker;
   const mpsi_mask beside = b->parted != 0;
   for (int d = 0; d < dim; d++) {
-    const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + b->at[d];
+    const int64_t low = (int64_t)work->cells->at[d] * MPSI_SIDE + b->at[d];
     if (low < grid->use_low[d] || low + spline > grid->use_high[d]) continue;
     mpsi_quad ratio[4], sum[3] = {{0.0}};
     find_ratios(grid, spline, b, d, ratio);
@@ -146,40 +149,40 @@ static void find_retained(const mpsi_grid *grid, const mpsi_node_block *nodes, i
 
 /* Adds the retained momentum of the nodes to the velocity v of the particle in a lane, by the
  * weights: all particles together get all of it. */
-static void return_momentum(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                            const mpsi_cut *b, int lane, double *v) {
+static void return_momentum(const mpsi_transfer *work, int dim, int spline, const mpsi_cut *b,
+                            int lane, double *v) {
   mpsi_support at;
-  mpsi_make_support(&mpm->grid, cells, dim, b->at, &at);
+  mpsi_make_support(work->grid, work->cells, dim, b->at, &at);
   MPSI_FOR_NODES(dim, spline) {
     const double w = b->w[n][lane];
-    int32_t g = mpsi_support_block(cells, &at, i, j, k);
+    int32_t g = mpsi_support_block(work->cells, &at, i, j, k);
     if (w == 0.0) continue;
-    if (b->across[lane] >> n & 1) g = mpm->grid.nodes[g].across;
-    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    if (b->across[lane] >> n & 1) g = work->grid->nodes[g].across;
+    const mpsi_node_block *nodes = &work->grid->nodes[g];
     double weight, retained[3];
     if (!nodes->light) continue;
-    find_retained(&mpm->grid, nodes, g, mpsi_support_local(&at, i, j, k), &weight, retained);
+    find_retained(work->grid, nodes, g, mpsi_support_local(&at, i, j, k), &weight, retained);
     for (int c = 0; c < 3 && weight > 0.0; c++) retained[c] *= w / weight;
     if (mpsi_is_folded(&at, i, j, k))
-      mpsi_reflect_at(mpm, cells, b, i, j, k, retained, mpm->p.m[b->first + lane]);
+      mpsi_reflect_at(work, b, i, j, k, retained, work->p->m[b->first + lane]);
     for (int c = 0; c < dim && weight > 0.0; c++) v[c] += retained[c];
   }
 }
 
 /* Returns retained momentum to the particles of a batch, and enters it in the energy budget. */
-MPSI_APART void return_momenta(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                               const mpsi_cut *b, mpsi_gathered *out, int at) {
+MPSI_APART void return_momenta(const mpsi_transfer *work, int dim, int spline, const mpsi_cut *b,
+                               mpsi_gathered *out, int at) {
   for (int lane = 0; lane < b->lanes; lane++) {
     double v[3] = {0.0}, before[3] = {0.0};
     for (int c = 0; c < dim; c++) before[c] = v[c] = out->v[c][at + lane];
-    return_momentum(mpm, cells, dim, spline, b, lane, v);
+    return_momentum(work, dim, spline, b, lane, v);
     for (int c = 0; c < dim; c++) {
       out->v[c][at + lane] = v[c];
       before[c] = v[c] - before[c];
     }
-    if (mpm->energy.counts)
-      mpsi_mpm_energy_returned(&mpm->grid, &mpm->p, &mpm->energy, &mpm->def, mpm->run.dt, cells,
-                               b->first + lane, before);
+    if (work->energy->counts)
+      mpsi_mpm_energy_returned(work->grid, work->p, work->energy, work->def, work->run->dt,
+                               work->cells, b->first + lane, before);
   }
 }
 
@@ -187,31 +190,31 @@ MPSI_APART void return_momenta(mps_mpm *mpm, const mpsi_cell_block *cells, int d
 
 /* FLIP part of a particle's velocity: `flip` times the difference between its velocity and that of
  * the nodes before the forces, interpolated to the particle. */
-MPSI_INLINE void find_flip_part(const mpsi_grid *grid, const mpsi_columns *points,
-                                const mpsi_cell_block *cells, int dim, int spline, int64_t p,
-                                const mpsi_support *at, const mpsi_shape_values *f, double *own) {
+MPSI_INLINE void find_flip_part(const mpsi_transfer *work, int dim, int spline,
+                                const mpsi_single *one, double *own) {
+  const mpsi_grid *grid = work->grid;
   mpsi_quad before = {0.0};
   MPSI_FOR_NODES(dim, spline) {
-    const int32_t side = grid->nodes[mpsi_support_block(cells, at, i, j, k)].side;
+    const int32_t side = grid->nodes[mpsi_support_block(work->cells, one->at, i, j, k)].side;
     const mpsi_node *node = (const mpsi_node *)(grid->side + mpsi_first_node(grid, side));
-    before += f->phi[n] * mpsi_get(node[mpsi_support_local(at, i, j, k)]);
+    before += one->f.phi[n] * mpsi_get(node[mpsi_support_local(one->at, i, j, k)]);
   }
-  for (int c = 0; c < dim; c++) own[c] = grid->flip * (points->v[c][p] - before[MPSI_VECTOR + c]);
+  for (int c = 0; c < dim; c++)
+    own[c] = grid->flip * (work->p->v[c][one->particle] - before[MPSI_VECTOR + c]);
 }
 
-/* Velocity and gradient of one particle by the shape functions of standard MPM. */
-MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                            const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b,
-                            const mpsi_support *at, const mpsi_shape_values *f, int64_t p,
+/* Velocity and gradient of one particle by the shape functions of standard MPM, to `out` at index
+ * `to`. */
+MPSI_INLINE void gather_one(const mpsi_transfer *work, int dim, int spline, const mpsi_single *one,
                             mpsi_gathered *out, int to) {
   mpsi_quad v = {0.0}, by[3] = {{0.0}};
   double own[3] = {0.0};
   MPSI_FOR_NODES(dim, spline) {
-    const mpsi_quad node = mpsi_get(row_of(b, worker->tile, j, k)[i]);
-    v += f->phi[n] * node;
-    for (int d = 0; d < dim; d++) by[d] += f->gradient[d][n] * node;
+    const mpsi_quad node = mpsi_get(row_of(one->batch, work->worker->tile, j, k)[i]);
+    v += one->f.phi[n] * node;
+    for (int d = 0; d < dim; d++) by[d] += one->f.gradient[d][n] * node;
   }
-  if (mpm->grid.flip > 0.0) find_flip_part(&mpm->grid, &mpm->p, cells, dim, spline, p, at, f, own);
+  if (work->grid->flip > 0.0) find_flip_part(work, dim, spline, one, own);
   for (int c = 0; c < dim; c++) {
     out->v[c][to] = v[MPSI_VECTOR + c];
     out->own[c][to] = own[c];
@@ -221,119 +224,113 @@ MPSI_INLINE void gather_one(const mps_mpm *mpm, const mpsi_cell_block *cells,
 }
 
 /* Work done particle by particle: standard MPM, and the loads by friction of penalty contact. */
-MPSI_APART void gather_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                            int dim, int spline, const mpsi_cut *b, mpsi_gathered *out, int to) {
+MPSI_APART void gather_each(const mpsi_transfer *work, int dim, int spline, const mpsi_cut *b,
+                            mpsi_gathered *out, int to) {
+  const int32_t pairs = b->held & MPSI_PENALTY ? work->cells->pairs : 0;
   mpsi_support at;
-  mpsi_make_support(&mpm->grid, cells, dim, b->at, &at);
+  mpsi_make_support(work->grid, work->cells, dim, b->at, &at);
   for (int lane = 0; lane < b->lanes; lane++) {
-    const int64_t p = b->first + lane;
-    mpsi_shape_values f;
-    mpsi_values_of(&mpm->grid, dim, spline, b, lane, &f);
-    if (mpm->grid.standard)
-      gather_one(mpm, cells, worker, dim, spline, b, &at, &f, p, out, to + lane);
-    for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
-      if (mpsi_contains_node(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
-        mpsi_add_friction_load(mpm, cells, dim, spline, p, b, &at, &f,
-                               &mpm->contact.cell_pair[cells->first_pair + q]);
+    mpsi_single one;
+    mpsi_take_single(work->grid, dim, spline, b, &at, lane, &one);
+    if (work->grid->standard) gather_one(work, dim, spline, &one, out, to + lane);
+    for (int32_t q = 0; q < pairs; q++)
+      if (mpsi_contains_node(work->grid, work->contact, work->cells, dim, spline, &at, q))
+        mpsi_add_friction_load(work, dim, spline, &one,
+                               &work->contact->cell_pair[work->cells->first_pair + q]);
   }
 }
 
 /* ---- segments -------------------------------------------------------------------------------- */
 
-/* Whether the scatter has found the supports of particles [begin, end) full. */
-MPSI_INLINE bool are_full(const mpsi_grid *grid, const mpsi_cell_block *cells, int64_t chunk,
-                          int begin, int end) {
-  const uint8_t *fitted = grid->fitted + cells->first_fit + (chunk - cells->begin);
+/* Whether the scatter has found the supports of a segment full. */
+MPSI_INLINE bool are_full(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                          const mpsi_segment *segment) {
+  const int64_t first = segment->places->chunk - cells->begin;
+  const uint8_t *fitted = grid->fitted + cells->first_fit + first;
   bool full = true;
-  for (int k = begin; k < end; k++) full = full && fitted[k] == MPSI_FITTED_FULL;
+  for (int k = segment->begin; k < segment->end; k++) full = full && fitted[k] == MPSI_FITTED_FULL;
   return full;
 }
 
-MPSI_INLINE void gather_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                            int dim, int spline, bool thin, mpsi_cut *b, mpsi_gathered *out,
-                            int at) {
-  if (!mpm->grid.standard) {
-    if (mpsi_has_fits(&mpm->grid, cells, b))
-      mpsi_take_fit(&mpm->grid, cells, dim, spline, b);
+MPSI_INLINE void gather_cut(const mpsi_transfer *work, int dim, int spline, bool thin, mpsi_cut *b,
+                            mpsi_gathered *out, int at) {
+  if (!work->grid->standard) {
+    if (mpsi_has_fits(work->grid, work->cells, b))
+      mpsi_take_fit(work->grid, work->cells, dim, spline, b);
     else
-      mpsi_find_fit(mpm, cells, worker, dim, spline, thin, true, b);
-    gather(&mpm->grid, worker, dim, spline, thin, b, out, at);
-    if (b->held == 0) find_strain(&mpm->grid, cells, worker, dim, spline, thin, b, out, at);
-    if (cells->light) return_momenta(mpm, cells, dim, spline, b, out, at);
+      mpsi_find_fit(work, dim, spline, thin, true, b);
+    gather(work, dim, spline, thin, b, out, at);
+    if (b->held == 0) find_strain(work, dim, spline, thin, b, out, at);
+    if (work->cells->light) return_momenta(work, dim, spline, b, out, at);
   }
-  if (mpm->grid.standard || b->held & MPSI_PENALTY)
-    gather_each(mpm, cells, worker, dim, spline, b, out, at);
+  if (work->grid->standard || b->held & MPSI_PENALTY) gather_each(work, dim, spline, b, out, at);
 }
 
-MPSI_INLINE bool gather_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, uint32_t held, const mpsi_places *places,
-                             int64_t chunk, int begin, int end, mpsi_gathered *out) {
-  for (int k = begin; k < end; k += 4) {
+MPSI_INLINE bool gather_thin(const mpsi_transfer *work, int dim, int spline, uint32_t held,
+                             const mpsi_segment *segment, mpsi_gathered *out) {
+  for (int k = segment->begin; k < segment->end; k += 4) {
     mpsi_cut b;
-    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
-    gather_cut(mpm, cells, worker, dim, spline, true, &b, out, k);
+    mpsi_place_cut(dim, spline, segment, k, held, &b);
+    gather_cut(work, dim, spline, true, &b, out, k);
   }
   return true;
 }
 
-MPSI_INLINE bool gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, uint32_t held, const mpsi_places *places,
-                             int64_t chunk, int begin, int end, mpsi_gathered *out) {
-  if (cells->first_fit >= 0 && !cells->light && are_full(&mpm->grid, cells, chunk, begin, end))
+MPSI_INLINE bool gather_body(const mpsi_transfer *work, int dim, int spline, uint32_t held,
+                             const mpsi_segment *segment, mpsi_gathered *out) {
+  if (work->cells->first_fit >= 0 && !work->cells->light &&
+      are_full(work->grid, work->cells, segment))
     return false;
-  for (int k = begin; k < end; k += 4) {
+  for (int k = segment->begin; k < segment->end; k += 4) {
     mpsi_cut b;
-    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
-    gather_cut(mpm, cells, worker, dim, spline, false, &b, out, k);
+    mpsi_place_cut(dim, spline, segment, k, held, &b);
+    gather_cut(work, dim, spline, false, &b, out, k);
   }
   return true;
 }
 
-bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                        const mpsi_worker *worker, const mpsi_places *places,
-                                        int64_t chunk, int begin, int end, mpsi_gathered *out) {
+bool MPSI_LEVELLED(mpsi_mpm_gather_cut)(const mpsi_transfer *work, const mpsi_segment *segment,
+                                        mpsi_gathered *out) {
+  const int32_t first = segment->places->first[segment->begin];
   const uint32_t held =
-      mpsi_support_state(worker, mpm->grid.dim, mpm->grid.spline, places->first[begin]) & MPSI_HELD;
-  return cells->thin ? MPSI_CHOOSE(gather_thin, held, places, chunk, begin, end, out)
-                     : MPSI_CHOOSE(gather_body, held, places, chunk, begin, end, out);
+      mpsi_support_state(work->worker, work->grid->dim, work->grid->spline, first) & MPSI_HELD;
+  return work->cells->thin ? MPSI_CHOOSE(gather_thin, held, segment, out)
+                           : MPSI_CHOOSE(gather_body, held, segment, out);
 }
 
 /* ---- one particle ---------------------------------------------------------------------------- */
 
-MPSI_INLINE bool fit_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                          const mpsi_worker *worker, int dim, int spline, int64_t particle,
+MPSI_INLINE bool fit_body(const mpsi_transfer *work, int dim, int spline, int64_t particle,
                           mpsi_shape_values *out) {
   mpsi_cut b;
   double determinant = 1.0;
-  mpsi_place_one(mpm, cells, dim, spline, particle, &b);
-  if (!mpm->grid.standard && cells->thin)
-    determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, true, false, &b)[0];
-  else if (!mpm->grid.standard)
-    determinant = mpsi_find_fit(mpm, cells, worker, dim, spline, false, false, &b)[0];
-  mpsi_values_of(&mpm->grid, dim, spline, &b, 0, out);
+  mpsi_place_one(work, dim, spline, particle, &b);
+  if (!work->grid->standard && work->cells->thin)
+    determinant = mpsi_find_fit(work, dim, spline, true, false, &b)[0];
+  else if (!work->grid->standard)
+    determinant = mpsi_find_fit(work, dim, spline, false, false, &b)[0];
+  mpsi_values_of(work->grid, dim, spline, &b, 0, out);
   out->determinant = determinant;
   return true;
 }
 
-void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                 const mpsi_worker *worker, int64_t particle, mpsi_stencil *at,
+void MPSI_LEVELLED(mpsi_mpm_fit)(const mpsi_transfer *work, int64_t particle, mpsi_stencil *at,
                                  mpsi_shape_values *out) {
   memset(out, 0, sizeof *out);
-  mpsi_make_stencil(&mpm->grid, &mpm->p, cells, mpm->grid.dim, mpm->grid.spline, particle, at);
+  mpsi_make_stencil(work->grid, work->p, work->cells, work->grid->dim, work->grid->spline, particle,
+                    at);
   MPSI_CHOOSE(fit_body, particle, out);
 }
 
 /* psi = phi + grad phi . d by the fit that the scatter of this step has stored; q: upper half of
  * M^-1. */
-MPSI_INLINE bool foot_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                           const mpsi_worker *worker, int dim, int spline, const double *q,
+MPSI_INLINE bool foot_body(const mpsi_transfer *work, int dim, int spline, const double *q,
                            const mpsi_stencil *at, const double *d, double *psi) {
   double r[4] = {0.0};
-  (void)cells, (void)worker;
   for (int row = 0, n = 0; row <= dim; row++)
     for (int c = row; c <= dim; c++, n++) {
-      const double by_row = row == 0 ? 1.0 : d[row - 1] * mpm->grid.inverse;
-      const double by_column = c == 0 ? 1.0 : d[c - 1] * mpm->grid.inverse;
+      const double by_row = row == 0 ? 1.0 : d[row - 1] * work->grid->inverse;
+      const double by_column = c == 0 ? 1.0 : d[c - 1] * work->grid->inverse;
       r[c] += by_row * q[n];
       if (c != row) r[row] += by_column * q[n];
     }
@@ -348,11 +345,11 @@ MPSI_INLINE bool foot_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
 }
 
 /* psi = phi + grad phi . d by a new fit, where none is stored. */
-static void foot_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                        int64_t particle, const double *d, mpsi_foot_weights *out) {
+static void foot_by_fit(const mpsi_transfer *work, int64_t particle, const double *d,
+                        mpsi_foot_weights *out) {
   mpsi_stencil at;
   mpsi_shape_values f;
-  MPSI_LEVELLED(mpsi_mpm_fit)(mpm, cells, worker, particle, &at, &f);
+  MPSI_LEVELLED(mpsi_mpm_fit)(work, particle, &at, &f);
   memcpy(out->at, at.at, sizeof out->at);
   out->active = 0;
   out->across = f.across;
@@ -360,22 +357,22 @@ static void foot_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, const 
     if (f.w[n] == 0.0) continue;
     out->active |= UINT64_C(1) << n;
     out->psi[n] = f.phi[n];
-    for (int a = 0; a < mpm->grid.dim; a++) out->psi[n] += f.gradient[a][n] * d[a];
+    for (int a = 0; a < work->grid->dim; a++) out->psi[n] += f.gradient[a][n] * d[a];
   }
 }
 
-void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                  const mpsi_worker *worker, int64_t particle, const double *d,
+void MPSI_LEVELLED(mpsi_mpm_foot)(const mpsi_transfer *work, int64_t particle, const double *d,
                                   mpsi_foot_weights *out) {
-  const int64_t slot = cells->first_fit + (particle - cells->begin);
+  const int64_t slot = work->cells->first_fit + (particle - work->cells->begin);
   mpsi_stencil at;
-  if (cells->first_fit < 0 || !mpm->grid.fitted[slot]) {
-    foot_by_fit(mpm, cells, worker, particle, d, out);
+  if (work->cells->first_fit < 0 || !work->grid->fitted[slot]) {
+    foot_by_fit(work, particle, d, out);
     return;
   }
-  mpsi_make_stencil(&mpm->grid, &mpm->p, cells, mpm->grid.dim, mpm->grid.spline, particle, &at);
+  mpsi_make_stencil(work->grid, work->p, work->cells, work->grid->dim, work->grid->spline, particle,
+                    &at);
   memcpy(out->at, at.at, sizeof out->at);
-  out->active = mpm->grid.fit[slot].active;
+  out->active = work->grid->fit[slot].active;
   out->across = 0;
-  MPSI_CHOOSE(foot_body, mpm->grid.fit[slot].q, &at, d, out->psi);
+  MPSI_CHOOSE(foot_body, work->grid->fit[slot].q, &at, d, out->psi);
 }

@@ -10,18 +10,19 @@
 
 /* Forces of a batch as factors of w_i: internal force - V sigma . grad phi, where grad phi along
  * axis d is w q[1 + d], and body forces by phi = w q[0]. */
-MPSI_INLINE void find_force(const mpsi_grid *grid, const mpsi_columns *from, const mps_mpm_def *def,
-                            int dim, const mpsi_cut *b, mpsi_source *out) {
+MPSI_INLINE void find_force(const mpsi_transfer *work, int dim, const mpsi_cut *b,
+                            mpsi_source *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const mpsi_columns *from = work->p;
   const int64_t p = b->first;
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
   const mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
   for (int a = 0; a < dim; a++) {
-    mpsi_quad body = out->m * def->gravity[a];
+    mpsi_quad body = out->m * work->def->gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
-    if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
+    if (work->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && a == 0)
       body -= V * (mpsi_get_some(from->s[2] + p, n) - u) / mpsi_get_some(from->x[0] + p, n);
     for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
     for (int d = 0; d < dim; d++) {
@@ -33,13 +34,14 @@ MPSI_INLINE void find_force(const mpsi_grid *grid, const mpsi_columns *from, con
 }
 
 /* Mass, momentum and force of a batch. Lanes without a particle have no mass and no volume. */
-MPSI_INLINE void find_source(const mpsi_grid *grid, const mpsi_columns *from,
-                             const mps_mpm_def *def, int dim, const mpsi_cut *b, mpsi_source *out) {
+MPSI_INLINE void find_source(const mpsi_transfer *work, int dim, const mpsi_cut *b,
+                             mpsi_source *out) {
+  const mpsi_columns *from = work->p;
   const int64_t p = b->first;
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   out->m = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->m + p, n) & there);
-  const mpsi_quad mh = out->m * grid->cell;
+  const mpsi_quad mh = out->m * work->grid->cell;
   for (int a = 0; a < dim; a++) {
     out->momentum[a][0] = out->m * mpsi_get_some(from->v[a] + p, n);
     for (int d = 0; d < dim; d++) {
@@ -47,7 +49,7 @@ MPSI_INLINE void find_source(const mpsi_grid *grid, const mpsi_columns *from,
       out->turn[a][d] = (mpsi_quad){0.0};
     }
   }
-  find_force(grid, from, def, dim, b, out);
+  find_force(work, dim, b, out);
 }
 
 /* The linear functions of mpsi_source on one row of nodes along x, for each particle: values at s_x
@@ -69,10 +71,9 @@ MPSI_INLINE void find_row(int dim, const mpsi_cut *b, const mpsi_source *s, bool
 /* Adds the particles of a batch to the sums of a row, whose nodes are the lanes: `sum` is mass and
  * momentum, `force` excess mass (by weights less by phi) and force. */
 MPSI_INLINE void add_row(int dim, const mpsi_cut *b, const mpsi_source *s, const row_source *row,
-                         bool turns, int lanes, const mpsi_quad *w, mpsi_quad *sum,
-                         mpsi_quad *force) {
+                         bool turns, const mpsi_quad *w, mpsi_quad *sum, mpsi_quad *force) {
   const mpsi_quad nodes = {0.0, 1.0, 2.0, 3.0};
-  for (int l = 0; l < lanes; l++) {
+  for (int l = 0; l < b->lanes; l++) {
     const mpsi_quad x = nodes + b->s[0][0][l];
     const mpsi_quad phi = w[l] * (row->phi[l] + b->q[0][1][l] * x);
     sum[0] += s->m[l] * phi;
@@ -99,7 +100,7 @@ MPSI_INLINE void add_stencil(int dim, int spline, const mpsi_cut *b, const mpsi_
       find_row(dim, b, s, turns, j, k, &row);
       for (int i = 0; i <= spline; i++) w[i] = weight[16 * k + 4 * j + i];
       mpsi_transpose(w);
-      add_row(dim, b, s, &row, turns, b->lanes, w, sum, force);
+      add_row(dim, b, s, &row, turns, w, sum, force);
       mpsi_transpose(sum);
       mpsi_transpose(force);
       for (int i = 0; i <= spline; i++) {
@@ -124,14 +125,14 @@ MPSI_INLINE void add_two_sided(const mpsi_worker *worker, int dim, int spline, c
     add_stencil(dim, spline, b, s, true, w[1], worker->across_tile, worker->across_force);
 }
 
-MPSI_INLINE void scatter(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_run *run,
-                         const mps_mpm_def *def, const mpsi_worker *worker, int dim, int spline,
-                         bool thin, const mpsi_cut *b) {
+MPSI_INLINE void scatter(const mpsi_transfer *work, int dim, int spline, bool thin,
+                         const mpsi_cut *b) {
+  const mpsi_worker *worker = work->worker;
   mpsi_source s;
-  find_source(grid, p, def, dim, b, &s);
-  const mpsi_mask keeps = mpsi_conserves_spin(grid, b);
-  const bool turns =
-      run->moments && mpsi_any_lane(keeps) && mpsi_add_rotation(grid, dim, spline, b, keeps, &s);
+  find_source(work, dim, b, &s);
+  const mpsi_mask keeps = mpsi_conserves_spin(work->grid, b);
+  const bool turns = work->run->moments && mpsi_any_lane(keeps) &&
+                     mpsi_add_rotation(work->grid, dim, spline, b, keeps, &s);
   if (thin) {
     if (!turns) memset(s.by_weight, 0, sizeof s.by_weight);
     add_two_sided(worker, dim, spline, b, &s);
@@ -173,10 +174,14 @@ static particle_source source_of(const mpsi_grid *grid, const mpsi_columns *c,
 
 /* Adds one particle to the tiles by its shape functions, its momentum by these or by the
  * weights. */
-MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
-                             int64_t p, const mpsi_cut *b, int lane, const mpsi_shape_values *f) {
-  const double m = mpm->p.m[p];
-  const particle_source s = source_of(&mpm->grid, &mpm->p, &mpm->def, dim, p);
+MPSI_INLINE void scatter_one(const mpsi_transfer *work, int dim, int spline,
+                             const mpsi_single *one) {
+  const mpsi_worker *worker = work->worker;
+  const mpsi_shape_values *f = &one->f;
+  const mpsi_cut *b = one->batch;
+  const int lane = one->lane;
+  const double m = work->p->m[one->particle];
+  const particle_source s = source_of(work->grid, work->p, work->def, dim, one->particle);
   MPSI_FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;
@@ -188,7 +193,7 @@ MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int 
       v += s.L[2] * b->s[2][k][lane];
       force += s.stress[2] * f->gradient[2][n];
     }
-    mpsi_quad sum = v * (m * (mpm->grid.by_weight ? w : phi));
+    mpsi_quad sum = v * (m * (work->grid->by_weight ? w : phi));
     sum[MPSI_MASS] = m * phi;
     force[MPSI_EXCESS] = m * (w - phi);
     const bool across = f->across >> n & 1;
@@ -200,18 +205,18 @@ MPSI_INLINE void scatter_one(const mps_mpm *mpm, const mpsi_worker *worker, int 
 }
 
 /* Work done particle by particle: variants for comparison, and penalty contact. */
-MPSI_APART void scatter_each(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, bool variant, const mpsi_cut *b) {
+MPSI_APART void scatter_each(const mpsi_transfer *work, int dim, int spline, bool variant,
+                             const mpsi_cut *b) {
+  const int32_t pairs = b->held & MPSI_PENALTY ? work->cells->pairs : 0;
   mpsi_support at;
-  mpsi_make_support(&mpm->grid, cells, dim, b->at, &at);
+  mpsi_make_support(work->grid, work->cells, dim, b->at, &at);
   for (int lane = 0; lane < b->lanes; lane++) {
-    const int64_t p = b->first + lane;
-    mpsi_shape_values f;
-    mpsi_values_of(&mpm->grid, dim, spline, b, lane, &f);
-    if (variant) scatter_one(mpm, worker, dim, spline, p, b, lane, &f);
-    for (int32_t q = 0; b->held & MPSI_PENALTY && q < cells->pairs; q++)
-      if (mpsi_contains_node(&mpm->grid, &mpm->contact, cells, dim, spline, &at, q))
-        mpsi_scatter_contact(mpm, cells, worker, dim, spline, p, b, &at, &f, q);
+    mpsi_single one;
+    mpsi_take_single(work->grid, dim, spline, b, &at, lane, &one);
+    if (variant) scatter_one(work, dim, spline, &one);
+    for (int32_t q = 0; q < pairs; q++)
+      if (mpsi_contains_node(work->grid, work->contact, work->cells, dim, spline, &at, q))
+        mpsi_scatter_contact(work, dim, spline, &one, q);
   }
 }
 
@@ -234,66 +239,64 @@ MPSI_INLINE void store_full_fits(const mpsi_grid *grid, const mpsi_cell_block *c
   }
 }
 
-/* Whether the supports of particles [begin, end) are full although some of their nodes lie in
- * bodies; stores the fits if so. */
-MPSI_INLINE bool find_full(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                           int dim, int spline, const mpsi_places *places, int64_t chunk, int begin,
-                           int end) {
-  if (!mpsi_may_be_full(worker, dim, spline, places->first[begin])) return false;
+/* Whether the supports of a segment are full although some of their nodes lie in bodies; stores the
+ * fits if so. */
+MPSI_INLINE bool find_full(const mpsi_transfer *work, int dim, int spline,
+                           const mpsi_segment *segment) {
+  const mpsi_places *places = segment->places;
+  const int begin = segment->begin, end = segment->end;
+  if (!mpsi_may_be_full(work->worker, dim, spline, places->first[begin])) return false;
   for (int k = begin; k < end; k += 4) {
     mpsi_cut b;
-    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, 0, &b);
-    if (!mpsi_is_full(mpm, cells, worker, dim, spline, &b)) return false;
+    mpsi_place_cut(dim, spline, segment, k, 0, &b);
+    if (!mpsi_is_full(work, dim, spline, &b)) return false;
   }
-  store_full_fits(&mpm->grid, cells, dim, spline, chunk + begin, end - begin);
+  store_full_fits(work->grid, work->cells, dim, spline, places->chunk + begin, end - begin);
   return true;
 }
 
 /* ---- segments -------------------------------------------------------------------------------- */
 
-MPSI_INLINE void scatter_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, bool thin, mpsi_cut *b) {
-  const bool variant = mpm->grid.standard || mpm->grid.by_weight;
-  if (!mpm->grid.standard) mpsi_make_fit(mpm, cells, worker, dim, spline, thin, b);
+MPSI_INLINE void scatter_cut(const mpsi_transfer *work, int dim, int spline, bool thin,
+                             mpsi_cut *b) {
+  const bool variant = work->grid->standard || work->grid->by_weight;
+  if (!work->grid->standard) mpsi_make_fit(work, dim, spline, thin, b);
   for (int l = 0; l < b->lanes && thin; l++) /* for the gather */
-    mpm->contact.across[b->first + l] =
+    work->contact->across[b->first + l] =
         (mpsi_parted){(uint64_t)b->across[l], (uint64_t)b->parted[l]};
-  if (!variant) scatter(&mpm->grid, &mpm->p, &mpm->run, &mpm->def, worker, dim, spline, thin, b);
-  if (variant || b->held & MPSI_PENALTY) scatter_each(mpm, cells, worker, dim, spline, variant, b);
+  if (!variant) scatter(work, dim, spline, thin, b);
+  if (variant || b->held & MPSI_PENALTY) scatter_each(work, dim, spline, variant, b);
 }
 
 /* Adds a segment beside thin bodies, where no support counts as full. */
-MPSI_INLINE bool scatter_thin(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                              int dim, int spline, uint32_t held, const mpsi_places *places,
-                              int64_t chunk, int begin, int end) {
-  for (int k = begin; k < end; k += 4) {
+MPSI_INLINE bool scatter_thin(const mpsi_transfer *work, int dim, int spline, uint32_t held,
+                              const mpsi_segment *segment) {
+  for (int k = segment->begin; k < segment->end; k += 4) {
     mpsi_cut b;
-    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
-    scatter_cut(mpm, cells, worker, dim, spline, true, &b);
+    mpsi_place_cut(dim, spline, segment, k, held, &b);
+    scatter_cut(work, dim, spline, true, &b);
   }
   return true;
 }
 
 /* Adds a segment beside bodies or sides of the domain; false if its supports are full (loops.h). */
-MPSI_INLINE bool scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                              int dim, int spline, uint32_t held, const mpsi_places *places,
-                              int64_t chunk, int begin, int end) {
-  if (held == MPSI_IMPULSE && cells->first_fit >= 0 && !mpm->grid.by_weight &&
-      !mpm->grid.standard && find_full(mpm, cells, worker, dim, spline, places, chunk, begin, end))
+MPSI_INLINE bool scatter_body(const mpsi_transfer *work, int dim, int spline, uint32_t held,
+                              const mpsi_segment *segment) {
+  if (held == MPSI_IMPULSE && work->cells->first_fit >= 0 && !work->grid->by_weight &&
+      !work->grid->standard && find_full(work, dim, spline, segment))
     return false;
-  for (int k = begin; k < end; k += 4) {
+  for (int k = segment->begin; k < segment->end; k += 4) {
     mpsi_cut b;
-    mpsi_place_cut(dim, spline, places, k, chunk + k, end - k < 4 ? end - k : 4, held, &b);
-    scatter_cut(mpm, cells, worker, dim, spline, false, &b);
+    mpsi_place_cut(dim, spline, segment, k, held, &b);
+    scatter_cut(work, dim, spline, false, &b);
   }
   return true;
 }
 
-bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                         const mpsi_worker *worker, const mpsi_places *places,
-                                         int64_t chunk, int begin, int end) {
+bool MPSI_LEVELLED(mpsi_mpm_scatter_cut)(const mpsi_transfer *work, const mpsi_segment *segment) {
+  const int32_t first = segment->places->first[segment->begin];
   const uint32_t held =
-      mpsi_support_state(worker, mpm->grid.dim, mpm->grid.spline, places->first[begin]) & MPSI_HELD;
-  return cells->thin ? MPSI_CHOOSE(scatter_thin, held, places, chunk, begin, end)
-                     : MPSI_CHOOSE(scatter_body, held, places, chunk, begin, end);
+      mpsi_support_state(work->worker, work->grid->dim, work->grid->spline, first) & MPSI_HELD;
+  return work->cells->thin ? MPSI_CHOOSE(scatter_thin, held, segment)
+                           : MPSI_CHOOSE(scatter_body, held, segment);
 }

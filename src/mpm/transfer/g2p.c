@@ -32,15 +32,14 @@ MPSI_INLINE void gather_tile(const mpsi_grid *grid, const mpsi_cell_block *cells
  * difference of mpsi_difference over spline! (the factor of mpsi_excess). */
 typedef struct polynomials {
   mpsi_node term[4][4][4] MPSI_LINE; /* [plane][place along x][power] */
-  int32_t first;                     /* lowest node of the stencil */
+  const mpsi_node *lowest;           /* node of the stencil, in the tile */
 } polynomials;
 
-MPSI_INLINE void find_polynomials(int dim, int spline, int32_t first, const mpsi_node *tile,
-                                  polynomials *out) {
-  out->first = first;
+MPSI_INLINE void find_polynomials(int dim, int spline, const mpsi_node *lowest, polynomials *out) {
+  out->lowest = lowest;
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++)
     MPSI_UNROLL for (int i = 0; i <= spline; i++) {
-      const mpsi_node *node = tile + first + mpsi_tile_index(i, 0, plane);
+      const mpsi_node *node = lowest + mpsi_tile_index(i, 0, plane);
       mpsi_node *to = out->term[plane][i];
       const mpsi_quad a = mpsi_get(node[0]), b = mpsi_get(node[mpsi_tile_index(0, 1, 0)]);
       const mpsi_quad c = mpsi_get(node[mpsi_tile_index(0, 2, 0)]);
@@ -95,16 +94,26 @@ typedef struct plane_sums {
   mpsi_lanes value, slope[2], rise[2];
 } plane_sums;
 
-MPSI_INLINE plane_sums sum_plane(int dim, int spline, bool at_wall, const mpsi_places *places,
-                                 int k, const mpsi_node *node, int lane, const polynomials *rows,
-                                 int i) {
+/* MPSI_LANES particles of one stencil: of `places`, from number k on, with the polynomials of the
+ * stencil. */
+typedef struct lanes {
+  const mpsi_places *places;
+  int k;
+  const polynomials *rows;
+} lanes;
+
+/* At place i along x, for the component in `lane` of a node; `lowest`: node of the stencil. */
+MPSI_INLINE plane_sums sum_plane(int dim, int spline, bool at_wall, const lanes *of,
+                                 const mpsi_node *lowest, int lane, int i) {
+  const mpsi_places *places = of->places;
+  const int k = of->k;
   const mpsi_lanes f = mpsi_get_lanes(places->t[1] + k) - 1.0;
   plane_sums out = {{0.0}, {{0.0}}, {{0.0}}};
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
-    const mpsi_node *term = rows->term[plane][i];
+    const mpsi_node *term = of->rows->term[plane][i];
+    const mpsi_node *node = lowest + mpsi_tile_index(i, 0, plane);
     const row_sums row =
-        at_wall ? sum_weights(spline, places, k, node + mpsi_tile_index(i, 0, plane), lane)
-                : sum_splines(spline, term, lane, f);
+        at_wall ? sum_weights(spline, places, k, node, lane) : sum_splines(spline, term, lane, f);
     const double rise = term[spline][lane];
     if (dim == 2) {
       out = (plane_sums){row.value, {row.growth}, {rise + out.rise[0]}};
@@ -122,25 +131,27 @@ MPSI_INLINE plane_sums sum_plane(int dim, int spline, bool at_wall, const mpsi_p
 
 #define EVERY_AXIS 3
 
-/* Velocities, slopes and derivatives of MPSI_LANES particles from `k` of `places` on, which share a
- * stencil, to `out` from `to` on: sums over planes, then along x. Lanes beyond the last particle
- * get zeros. The derivative along the axis `plain` (-1: none) is the slope of the fit. */
-MPSI_INLINE void gather_body(const mps_mpm *mpm, int dim, int spline, bool at_wall,
-                             const mpsi_places *places, int k, const mpsi_node *tile,
-                             const polynomials *rows, int plain, mpsi_gathered *out, int to) {
-  const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
+/* Velocities, slopes and derivatives of MPSI_LANES particles, to `out` from `to` on: sums over
+ * planes, then along x. Lanes beyond the last particle get zeros. The derivative along the axis
+ * `plain` (-1: none) is the slope of the fit. */
+MPSI_INLINE void gather_body(const mpsi_transfer *work, int dim, int spline, bool at_wall,
+                             const lanes *of, int plain, mpsi_gathered *out, int to) {
+  /* copies: stores of vectors may alias what is behind a pointer */
+  const lanes own = *of;
+  const double inverse = work->grid->inverse, scale = mpsi_inverse_moment(spline) * inverse;
   const double factorial = spline == 3 ? 6.0 : 2.0;
-  const mpsi_node *node = tile + rows->first;
+  const mpsi_places *places = own.places;
+  const mpsi_node *lowest = own.rows->lowest;
+  const int k = own.k;
   mpsi_lanes excess[3] = {{0.0}}; /* see mpsi_excess */
   MPSI_UNROLL for (int d = 0; d < dim; d++) excess[d] =
-      mpm->grid.inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
+      inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
   excess[1] *= factorial;
 #pragma GCC unroll 1 /* all components would fill the instruction cache */
   for (int c = 0; c < dim; c++) {
     mpsi_lanes v = {0.0}, slope[3] = {{0.0}}, rise[3] = {{0.0}};
     MPSI_UNROLL for (int i = 0; i <= spline; i++) {
-      const plane_sums sum =
-          sum_plane(dim, spline, at_wall, places, k, node, MPSI_VECTOR + c, rows, i);
+      const plane_sums sum = sum_plane(dim, spline, at_wall, &own, lowest, MPSI_VECTOR + c, i);
       const mpsi_lanes w = mpsi_get_lanes(places->w[0][i] + k);
       v += w * sum.value;
       slope[0] += mpsi_get_lanes(places->ws[0][i] + k) * sum.value;
@@ -153,7 +164,7 @@ MPSI_INLINE void gather_body(const mps_mpm *mpm, int dim, int spline, bool at_wa
     mpsi_put_lanes(out->v[c] + to, v);
     MPSI_UNROLL for (int d = 0; d < dim; d++) {
       const mpsi_lanes more = excess[d] * rise[d];
-      slope[d] = d == 1 && !at_wall ? mpm->grid.inverse * slope[d] - more : scale * slope[d];
+      slope[d] = d == 1 && !at_wall ? inverse * slope[d] - more : scale * slope[d];
       mpsi_put_lanes(out->slope[dim * c + d] + to, slope[d]);
       mpsi_put_lanes(out->derivative[dim * c + d] + to,
                      d == plain || plain == EVERY_AXIS ? slope[d] : slope[d] + more);
@@ -161,23 +172,23 @@ MPSI_INLINE void gather_body(const mps_mpm *mpm, int dim, int spline, bool at_wa
   }
 }
 
-/* Velocities, slopes and derivatives of the `n` particles from `k` on at the wall across `axis`,
- * where the derivative across the wall is the slope of the fit. */
-MPSI_INLINE void gather_wall_body(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                  int spline, const mpsi_places *places, int axis, int k, int n,
-                                  const mpsi_node *tile, const polynomials *rows,
+/* Velocities, slopes and derivatives of a segment of at most MPSI_LANES particles at the wall
+ * across `axis`, where the derivative across the wall is the slope of the fit. */
+MPSI_INLINE void gather_wall_body(const mpsi_transfer *work, int dim, int spline,
+                                  const mpsi_segment *segment, int axis, const polynomials *rows,
                                   mpsi_gathered *out) {
+  const int k = segment->begin;
+  const size_t bytes = (size_t)(segment->end - k) * sizeof(double);
   mpsi_wall wall;
   mpsi_gathered along;
+  const lanes of = {&wall.places, 0, rows};
   for (int part = 0; part < 2; part++) {
-    mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis,
+    mpsi_wall_places(work, dim, spline, segment, axis,
                      part == 0 ? MPSI_WALL_ALONG : MPSI_WALL_SLOPE, &wall);
-    gather_body(mpm, dim, spline, true, &wall.places, 0, tile, rows, axis, part == 0 ? &along : out,
-                part == 0 ? 0 : k);
+    gather_body(work, dim, spline, true, &of, axis, part == 0 ? &along : out, part == 0 ? 0 : k);
   }
   for (int c = 0; c < dim; c++)
     for (int d = 0; d < dim; d++) {
-      const size_t bytes = (size_t)n * sizeof(double);
       if (d == axis) continue;
       memcpy(out->slope[dim * c + d] + k, along.slope[dim * c + d], bytes);
       memcpy(out->derivative[dim * c + d] + k, along.derivative[dim * c + d], bytes);
@@ -186,15 +197,14 @@ MPSI_INLINE void gather_wall_body(const mps_mpm *mpm, const mpsi_cell_block *cel
 
 /* Not inlined: each variant exists once in the code of a block. */
 #define DEFINE_GATHER(dim, spline)                                                                 \
-  MPSI_APART void gather_lanes_##dim##_##spline(                                                   \
-      const mps_mpm *mpm, const mpsi_places *places, int k, const mpsi_node *tile,                 \
-      const polynomials *rows, int plain, mpsi_gathered *out) {                                    \
-    gather_body(mpm, dim, spline, false, places, k, tile, rows, plain, out, k);                    \
+  MPSI_APART void gather_lanes_##dim##_##spline(const mpsi_transfer *work, const lanes *of,        \
+                                                int plain, mpsi_gathered *out) {                   \
+    gather_body(work, dim, spline, false, of, plain, out, of->k);                                  \
   }                                                                                                \
-  MPSI_APART void gather_at_wall_##dim##_##spline(                                                 \
-      const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places, int axis,       \
-      int k, int n, const mpsi_node *tile, const polynomials *rows, mpsi_gathered *out) {          \
-    gather_wall_body(mpm, cells, dim, spline, places, axis, k, n, tile, rows, out);                \
+  MPSI_APART void gather_at_wall_##dim##_##spline(const mpsi_transfer *work,                       \
+                                                  const mpsi_segment *segment, int axis,           \
+                                                  const polynomials *rows, mpsi_gathered *out) {   \
+    gather_wall_body(work, dim, spline, segment, axis, rows, out);                                 \
   }
 DEFINE_GATHER(2, 2)
 DEFINE_GATHER(2, 3)
@@ -219,26 +229,56 @@ typedef struct moved {
   bool outside, left;
 } moved;
 
-/* Writes velocities and gradients of the `n` (at most 4) particles from index `at` on, gathered in
- * `from` from number k on, and advances their positions, x += dt v. Sets the lanes that are outside
- * the domain or have left the block. */
-MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
-                           int64_t at, int n, const mpsi_gathered *from, int k, mpsi_mask *outside,
-                           mpsi_mask *left) {
-  const int dim = mpsi_dim_of(geometry);
+/* The same of four particles, in the lanes. */
+typedef struct moved_lanes {
+  mpsi_mask outside, left;
+} moved_lanes;
+
+/* Limits, by axis, of the positions from the block's first node (cells): of the domain and of
+ * particles whose stencil stays in the tile. */
+typedef struct limits {
+  double low[3], high[3], least[3], below[3];
+} limits;
+
+MPSI_INLINE void find_limits(const mpsi_grid *grid, const mpsi_cell_block *cells, int dim,
+                             int spline, limits *out) {
   const double first = spline == 3 ? 1.0 : 0.5; /* least distance from the lowest node, cells */
-  const mpsi_columns *p = &mpm->p;
-  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
-    const mpsi_quad v = mpsi_get(from->v[c] + k), x = mpsi_get_some(p->x[c] + at, n);
-    const mpsi_quad to = x + mpm->run.dt * v, X = mpsi_from_block(&mpm->grid, cells, c, to);
     const double corner = (double)cells->at[c] * MPSI_SIDE;
-    const mpsi_mask good =
-        (X >= (double)mpm->grid.low[c] - corner) & (X <= (double)mpm->grid.high[c] - corner);
-    const mpsi_mask here = (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
-    *outside |= there & ~good;
-    *left |= there & ~here;
+    out->low[c] = (double)grid->low[c] - corner;
+    out->high[c] = (double)grid->high[c] - corner;
+    out->least[c] = first + cells->low[c];
+    out->below[c] = first + (cells->high[c] - reach);
+  }
+}
+
+/* What moves the particles of a chunk, and how far. */
+typedef struct motion {
+  const mpsi_columns *p;
+  const mpsi_gathered *from;
+  int64_t chunk; /* its first particle */
+  double dt;     /* s */
+  mpsi_frame frame;
+  limits within;
+} motion;
+
+/* Writes velocities and gradients of the `n` (at most 4) particles from number k on of a chunk, and
+ * advances their positions, x += dt v. Sets the lanes that are outside the domain or have left the
+ * block. */
+MPSI_INLINE void move_four(const motion *m, int geometry, int k, int n, moved_lanes *out) {
+  const int64_t at = m->chunk + k;
+  const int dim = mpsi_dim_of(geometry);
+  const mpsi_columns *p = m->p;
+  const mpsi_gathered *from = m->from;
+  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    const mpsi_quad v = mpsi_get(from->v[c] + k), x = mpsi_get_some(p->x[c] + at, n);
+    const mpsi_quad to = x + m->dt * v, X = mpsi_in_frame(&m->frame, c, to);
+    const mpsi_mask good = (X >= m->within.low[c]) & (X <= m->within.high[c]);
+    const mpsi_mask here = (X >= m->within.least[c]) & (X < m->within.below[c]);
+    out->outside |= there & ~good;
+    out->left |= there & ~here;
     store_some(p->v[c] + at, v, n);
     if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, v / x, n);
     store_some(p->x[c] + at, to, n);
@@ -247,17 +287,25 @@ MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geome
       store_some(p->L[a] + at, mpsi_get(from->slope[a] + k), n);
 }
 
-MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
-                       int64_t begin, int n, const mpsi_gathered *from) {
-  mpsi_mask outside = {0}, left = {0};
+MPSI_INLINE moved move(const mpsi_transfer *work, int geometry, int spline, int64_t chunk, int n,
+                       const mpsi_gathered *from) {
+  const int dim = mpsi_dim_of(geometry);
+  moved_lanes m = {{0}, {0}};
+  motion by = {work->p,
+               from,
+               chunk,
+               work->run->dt,
+               mpsi_frame_of(work->grid, work->cells, dim),
+               {{0.0}, {0.0}, {0.0}, {0.0}}};
+  find_limits(work->grid, work->cells, dim, spline, &by.within);
   for (int k = 0; k < n; k += 4) {
     if (n - k >= 4) /* four lanes: no test in the loop */
-      move_four(mpm, cells, geometry, spline, begin + k, 4, from, k, &outside, &left);
+      move_four(&by, geometry, k, 4, &m);
     else
-      move_four(mpm, cells, geometry, spline, begin + k, n - k, from, k, &outside, &left);
+      move_four(&by, geometry, k, n - k, &m);
   }
-  return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
-                 (left[0] | left[1] | left[2] | left[3]) != 0};
+  return (moved){(m.outside[0] | m.outside[1] | m.outside[2] | m.outside[3]) != 0,
+                 (m.left[0] | m.left[1] | m.left[2] | m.left[3]) != 0};
 }
 
 /* Adds the FLIP part of the velocities. */
@@ -341,76 +389,87 @@ MPSI_INLINE void find_speed(const mpsi_columns *p, const mps_mpm_def *def, mpsi_
     if (!isfinite(square[k])) cells->bad = begin + k, cells->lost = false;
 }
 
-MPSI_INLINE void speed_chunk(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
-                             const mpsi_run *run, const mps_mpm_def *def, mpsi_cell_block *cells,
-                             int dim, int64_t begin, int n) {
-  if (p->laws.one_modulus) {
-    find_speed(p, def, cells, dim, begin, n, NULL);
+MPSI_INLINE void speed_chunk(const mpsi_transfer *work, int dim, int64_t begin, int n) {
+  if (work->p->laws.one_modulus) {
+    find_speed(work->p, work->def, work->cells, dim, begin, n, NULL);
     return;
   }
   double moduli[MPSI_CHUNK];
-  mpsi_mpm_find_moduli(grid, p, water, run, def, begin, begin + n, moduli);
-  find_speed(p, def, cells, dim, begin, n, moduli);
+  mpsi_mpm_find_moduli(work->grid, work->p, work->water, work->run, work->def, begin, begin + n,
+                       moduli);
+  find_speed(work->p, work->def, work->cells, dim, begin, n, moduli);
 }
 
-/* Velocities and gradients of particles [begin, begin + n), one segment (particles of one stencil)
- * after the other. */
-MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                              int dim, int spline, int64_t begin, int n, mpsi_gathered *out) {
-  const mpsi_node *tile = (const mpsi_node *)worker->tile;
-  mpsi_places places;
+/* Velocities and gradients of a segment. The last arguments are literal: each has its own code. */
+MPSI_INLINE void gather_segment(const mpsi_transfer *work, int dim, int spline,
+                                const mpsi_segment *segment, mpsi_gathered *out) {
+  const mpsi_cell_block *cells = work->cells;
+  const int32_t first = segment->places->first[segment->begin];
   polynomials rows;
-  /* weights of x and z; the sums along y are polynomials */
-  mpsi_find_places(mpm, cells, dim, spline, 5, 5, begin, n, &places);
-  mpsi_pad_places(dim, spline, 5, n, &places);
-  if (mpm->p.stencil)
-    memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
-  for (int k = 0, end; k < n; k = end) {
-    const int32_t first = places.first[k];
-    for (end = k + 1; end < n && places.first[end] == first;) end++;
-    find_polynomials(dim, spline, first, tile, &rows);
-    const uint32_t state = cells->cut ? mpsi_support_state(worker, dim, spline, first) : 0;
-    const int axis = state ? mpsi_wall_axis(&mpm->grid, cells, dim, spline, state, first) : -1;
-    if (!cells->light && axis >= 0)
-      for (int q = k; q < end; q += MPSI_LANES) OF_KIND(gather_at_wall, dim, spline)
-    (mpm, cells, &places, axis, q, end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &rows, out);
-    else if (!cells->light && !state) for (int q = k; q < end; q += MPSI_LANES)
-        OF_KIND(gather_lanes, dim, spline)(mpm, &places, q, tile, &rows, -1, out);
-    else if (!MPSI_LEVELLED(mpsi_mpm_gather_cut)(mpm, cells, worker, &places, begin, k, end,
-                                                 out)) for (int q = k; q < end; q += MPSI_LANES)
-        OF_KIND(gather_lanes, dim, spline)(mpm, &places, q, tile, &rows, EVERY_AXIS, out);
+  find_polynomials(dim, spline, (const mpsi_node *)work->worker->tile + first, &rows);
+  const uint32_t state = cells->cut ? mpsi_support_state(work->worker, dim, spline, first) : 0;
+  const int axis = state ? mpsi_wall_axis(work->grid, cells, dim, spline, state, first) : -1;
+  lanes of = {segment->places, segment->begin, &rows};
+  if (!cells->light && axis >= 0) {
+    for (mpsi_segment part = *segment; part.begin < segment->end; part.begin = part.end) {
+      const int left = segment->end - part.begin;
+      part.end = part.begin + (left < MPSI_LANES ? left : MPSI_LANES);
+      OF_KIND(gather_at_wall, dim, spline)(work, &part, axis, &rows, out);
+    }
+  } else if (!cells->light && !state) {
+    for (; of.k < segment->end; of.k += MPSI_LANES)
+      OF_KIND(gather_lanes, dim, spline)(work, &of, -1, out);
+  } else if (!MPSI_LEVELLED(mpsi_mpm_gather_cut)(work, segment, out)) {
+    for (; of.k < segment->end; of.k += MPSI_LANES)
+      OF_KIND(gather_lanes, dim, spline)(work, &of, EVERY_AXIS, out);
   }
-  if (mpm->grid.strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }
 
-MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
-                           int geometry, int spline, int64_t begin, int n,
-                           mps_material_block *law) {
+/* Velocities and gradients of particles [begin, begin + n), one segment after the other. */
+MPSI_INLINE void gather_chunk(const mpsi_transfer *work, int dim, int spline, int64_t begin, int n,
+                              mpsi_gathered *out) {
+  int32_t *stencil = work->p->stencil;
+  mpsi_places places;
+  /* weights of x and z; the sums along y are polynomials */
+  mpsi_find_places(work, dim, spline, 5, 5, begin, n, &places);
+  mpsi_pad_places(dim, spline, 5, n, &places);
+  if (stencil) memcpy(stencil + begin, places.first, (size_t)n * sizeof *stencil);
+  for (int k = 0, end; k < n; k = end) {
+    for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
+    const mpsi_segment segment = {&places, k, end};
+    gather_segment(work, dim, spline, &segment, out);
+  }
+  if (work->grid->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
+}
+
+MPSI_INLINE void g2p_chunk(const mpsi_transfer *work, int geometry, int spline, int64_t begin,
+                           int n, const mpsi_law_block *laws) {
   const int dim = mpsi_dim_of(geometry);
   mpsi_gathered from;
   double *D[9];
-  gather_chunk(mpm, cells, worker, dim, spline, begin, n, &from);
+  gather_chunk(work, dim, spline, begin, n, &from);
   for (int a = 0; a < dim * dim; a++) {
     D[a] = from.derivative[a];
-    if (mpm->p.D[a]) memcpy(mpm->p.D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
+    if (work->p->D[a]) memcpy(work->p->D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
   }
-  if (mpm->energy.counts)
-    mpsi_mpm_energy_before(&mpm->grid, &mpm->p, &mpm->energy, cells, begin, begin + n);
-  const moved m = move(mpm, cells, geometry, spline, begin, n, &from);
-  if (mpm->energy.counts)
-    mpsi_mpm_energy_moved(&mpm->grid, &mpm->p, &mpm->energy, &mpm->def, mpm->run.dt, cells, begin,
-                          begin + n);
-  if (mpm->grid.flip > 0.0) add_flip_part(&mpm->grid, &mpm->p, begin, n, &from);
-  if (m.left) cells->left = true;
+  if (work->energy->counts)
+    mpsi_mpm_energy_before(work->grid, work->p, work->energy, work->cells, begin, begin + n);
+  const moved m = move(work, geometry, spline, begin, n, &from);
+  if (work->energy->counts)
+    mpsi_mpm_energy_moved(work->grid, work->p, work->energy, work->def, work->run->dt, work->cells,
+                          begin, begin + n);
+  if (work->grid->flip > 0.0) add_flip_part(work->grid, work->p, begin, n, &from);
+  if (m.left) work->cells->left = true;
   if (m.outside) {
-    const int64_t bad = keep_inside(&mpm->grid, &mpm->p, &mpm->boundaries, cells, begin, begin + n);
-    if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
+    const int64_t bad =
+        keep_inside(work->grid, work->p, work->boundaries, work->cells, begin, begin + n);
+    if (work->cells->bad < 0 && bad >= 0) work->cells->bad = bad, work->cells->lost = true;
   }
-  if (mpm->energy.counts)
-    mpsi_mpm_energy_after(&mpm->grid, &mpm->p, &mpm->energy, cells, begin, begin + n);
-  if (!mpm->p.laws.at_once) return; /* the laws need means of volumetric.c or filter.c first */
-  mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL, law);
-  speed_chunk(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, cells, dim, begin, n);
+  if (work->energy->counts)
+    mpsi_mpm_energy_after(work->grid, work->p, work->energy, work->cells, begin, begin + n);
+  if (!work->p->laws.at_once) return; /* the laws need means of volumetric.c or filter.c first */
+  mpsi_mpm_apply_law(laws, begin, begin + n, D, NULL);
+  speed_chunk(work, dim, begin, n);
 }
 
 /* Whether some node under the block retains momentum that is returned to its particles:
@@ -424,43 +483,41 @@ static bool is_light(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   return any;
 }
 
-MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
-  mpsi_cell_block *cells = &mpm->grid.cells[b];
-  mpsi_worker *worker = &mpm->grid.workers[number];
-  mps_material_block law;
-  mpsi_mpm_begin_block(&law);
+MPSI_INLINE void g2p_body(const mpsi_transfer *work, int geometry, int spline) {
+  mpsi_cell_block *cells = work->cells;
+  const mpsi_worker *worker = work->worker;
+  mps_material_block seen;
+  const mpsi_law_block laws = {work->grid, work->p, work->run, work->energy, cells, &seen};
+  mpsi_mpm_begin_block(&seen);
   cells->left = cells->gone = cells->lost = false;
-  cells->light = is_light(&mpm->grid, cells);
+  cells->light = is_light(work->grid, cells);
   cells->bad = -1;
   cells->speed = 0.0;
-  gather_tile(&mpm->grid, cells, false, worker->tile);
-  if (cells->thin) gather_tile(&mpm->grid, cells, true, worker->across_tile);
-  if (cells->mirrors) mpsi_mpm_unfold(mpm, cells, worker);
-  if (cells->cut || cells->light) mpsi_mpm_find_states(mpm, cells, worker);
+  gather_tile(work->grid, cells, false, worker->tile);
+  if (cells->thin) gather_tile(work->grid, cells, true, worker->across_tile);
+  if (cells->mirrors) mpsi_mpm_unfold(work);
+  if (cells->cut || cells->light) mpsi_mpm_find_states(work);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    g2p_chunk(mpm, cells, worker, geometry, spline, k, n, &law);
+    g2p_chunk(work, geometry, spline, k, n, &laws);
   }
 }
 
 /* ---- variants -------------------------------------------------------------------------------- */
 
 #define DEFINE(g, s, geometry, spline)                                                             \
-  static void g2p_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                             \
-    g2p_body(mpm, b, worker, geometry, spline);                                                    \
-  }
+  static void g2p_##g##_##s(const mpsi_transfer *work) { g2p_body(work, geometry, spline); }
 MPSI_VARIANTS(DEFINE)
 
 #define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = g2p_##g##_##s,
-const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
+const mpsi_transfer_fn MPSI_LEVELLED(mpsi_mpm_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
 
-void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
-  (void)worker;
-  mpsi_cell_block *cells = &mpm->grid.cells[b];
+void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work) {
+  mpsi_cell_block *cells = work->cells;
   if (!cells->lost) cells->bad = -1;
   cells->speed = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    speed_chunk(&mpm->grid, &mpm->p, mpm->water, &mpm->run, &mpm->def, cells, mpm->grid.dim, k, n);
+    speed_chunk(work, work->grid->dim, k, n);
   }
 }

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/loops.h"
 
-extern const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_p2g)[3][2], MPSI_LEVELLED(mpsi_mpm_tile)[3][2],
+extern const mpsi_transfer_fn MPSI_LEVELLED(mpsi_mpm_p2g)[3][2], MPSI_LEVELLED(mpsi_mpm_tile)[3][2],
     MPSI_LEVELLED(mpsi_mpm_g2p)[3][2];
 
 extern const mpsi_kernels MPSI_LEVELLED(mpsi_mpm_kernels);

@@ -145,22 +145,21 @@ MPSI_INLINE mpsi_quad mpsi_invert_fit(const mpsi_grid *grid, int dim, int spline
 }
 
 /* Active nodes and fit of a batch, without storing them; returns det M / M00^(dim + 1). */
-MPSI_INLINE mpsi_quad mpsi_find_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                    const mpsi_worker *worker, int dim, int spline, bool thin,
+MPSI_INLINE mpsi_quad mpsi_find_fit(const mpsi_transfer *work, int dim, int spline, bool thin,
                                     bool known, mpsi_cut *b) {
   mpsi_quad upper[4][4];
-  mpsi_find_active(mpm, cells, worker, dim, spline, thin, known, b);
-  return mpsi_invert_fit(&mpm->grid, dim, spline, upper, b);
+  mpsi_find_active(work, dim, spline, thin, known, b);
+  return mpsi_invert_fit(work->grid, dim, spline, upper, b);
 }
 
 /* Active nodes and fit of a batch in the scatter, stored if the block stores fits. */
-MPSI_INLINE void mpsi_make_fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                               const mpsi_worker *worker, int dim, int spline, bool thin,
+MPSI_INLINE void mpsi_make_fit(const mpsi_transfer *work, int dim, int spline, bool thin,
                                mpsi_cut *b) {
   mpsi_quad upper[4][4];
-  mpsi_find_active(mpm, cells, worker, dim, spline, thin, false, b);
-  mpsi_invert_fit(&mpm->grid, dim, spline, upper, b);
-  if (!thin && cells->first_fit >= 0) mpsi_keep_fit(&mpm->grid, cells, dim, spline, b, upper);
+  mpsi_find_active(work, dim, spline, thin, false, b);
+  mpsi_invert_fit(work->grid, dim, spline, upper, b);
+  if (!thin && work->cells->first_fit >= 0)
+    mpsi_keep_fit(work->grid, work->cells, dim, spline, b, upper);
 }
 
 /* Shape function phi of node n = 16 k + 4 j + i. */
@@ -208,19 +207,39 @@ MPSI_INLINE void mpsi_values_of(const mpsi_grid *grid, int dim, int spline, cons
 }
 
 /* Batch of the single particle `p`. */
-MPSI_INLINE void mpsi_place_one(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                int spline, int64_t p, mpsi_cut *out) {
+MPSI_INLINE void mpsi_place_one(const mpsi_transfer *work, int dim, int spline, int64_t p,
+                                mpsi_cut *out) {
   mpsi_places one;
-  mpsi_find_places(mpm, cells, dim, spline, 0, 0, p, 1, &one);
-  mpsi_place_cut(dim, spline, &one, 0, p, 1, 0, out);
+  const mpsi_segment segment = {&one, 0, 1};
+  mpsi_find_places(work, dim, spline, 0, 0, p, 1, &one);
+  mpsi_place_cut(dim, spline, &segment, 0, 0, out);
+}
+
+/* A particle of a batch, for work that is done particle by particle. */
+typedef struct mpsi_single {
+  int64_t particle;       /* its index */
+  int lane;               /* its lane in the batch */
+  const mpsi_cut *batch;  /* whose stencil it has */
+  const mpsi_support *at; /* nodes of the stencil */
+  mpsi_shape_values f;    /* its shape functions */
+} mpsi_single;
+
+/* The particle in a lane of a batch. */
+MPSI_INLINE void mpsi_take_single(const mpsi_grid *grid, int dim, int spline, const mpsi_cut *b,
+                                  const mpsi_support *at, int lane, mpsi_single *out) {
+  out->particle = b->first + lane;
+  out->lane = lane;
+  out->batch = b;
+  out->at = at;
+  mpsi_values_of(grid, dim, spline, b, lane, &out->f);
 }
 
 /* Calls `body` with the solver's dimension and degree of the spline as literal arguments, for which
  * the compiler specialises it. */
 #define MPSI_CHOOSE(body, ...)                                                                     \
-  (mpm->grid.dim == 2      ? mpm->grid.spline == 2 ? body(mpm, cells, worker, 2, 2, __VA_ARGS__)   \
-                                                   : body(mpm, cells, worker, 2, 3, __VA_ARGS__)   \
-        : mpm->grid.spline == 2 ? body(mpm, cells, worker, 3, 2, __VA_ARGS__)                      \
-                           : body(mpm, cells, worker, 3, 3, __VA_ARGS__))
+  (work->grid->dim == 2                                                                            \
+       ? work->grid->spline == 2 ? body(work, 2, 2, __VA_ARGS__) : body(work, 2, 3, __VA_ARGS__)   \
+   : work->grid->spline == 2 ? body(work, 3, 2, __VA_ARGS__)                                       \
+                             : body(work, 3, 3, __VA_ARGS__))
 
 #endif

@@ -20,22 +20,38 @@ typedef struct quad_parts {
   mpsi_quad sum[4][4], force[4][4];
 } quad_parts;
 
+/* Where the contributions come from: the particles' columns, and factors of these. Local, as stores
+ * of vectors may alias what is behind a pointer. */
+typedef struct sources {
+  const mpsi_columns *p;
+  double h, stiff, dt, fall[3]; /* m; 1/m, of stresses; s, or 1 if momentum and force are apart; dt
+                                   times gravity */
+} sources;
+
+MPSI_INLINE sources find_sources(const mpsi_transfer *work, int dim, int spline, bool split) {
+  sources out = {.p = work->p,
+                 .h = work->grid->cell,
+                 .stiff = -mpsi_inverse_moment(spline) * work->grid->inverse,
+                 .dt = split ? 1.0 : work->run->dt};
+  MPSI_UNROLL for (int c = 0; c < dim; c++) out.fall[c] = out.dt * work->def->gravity[c];
+  return out;
+}
+
 /* Contributions of the four particles from index `at` on. `split`: momentum in `sum`, force in
  * `force`; else `sum` has momentum + dt force. */
-MPSI_INLINE void find_quad_parts(const mpsi_grid *grid, const mpsi_columns *p,
-                                 const mps_mpm_def *def, double step, int geometry, int spline,
-                                 bool split, int64_t at, quad_parts *out) {
+MPSI_INLINE void find_quad_parts(const sources *s, int geometry, bool split, int64_t at,
+                                 quad_parts *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int dim = mpsi_dim_of(geometry);
-  const double h = grid->cell, stiff = -mpsi_inverse_moment(spline) * grid->inverse;
-  const double dt = split ? 1.0 : step;
+  const mpsi_columns *p = s->p;
+  const double dt = s->dt;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
-  const mpsi_quad mh = m * h, Vs = V * stiff, u = p->u ? mpsi_get(p->u + at) : zero;
+  const mpsi_quad mh = m * s->h, Vs = V * s->stiff, u = p->u ? mpsi_get(p->u + at) : zero;
   out->sum[0][MPSI_MASS] = m + zero; /* gcc compiles a plain copy to a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int to = MPSI_VECTOR + c;
-    mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * def->gravity[c]);
+    mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * s->fall[c];
     if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
     if (geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && c == 0)
       force -= V * (mpsi_get(p->s[2] + at) - u) / mpsi_get(p->x[0] + at);
@@ -57,12 +73,12 @@ MPSI_INLINE void put_columns(int dim, mpsi_quad from[4][4], int k, columns to) {
       mpsi_put(to[d][c] + k, from[d][c]);
 }
 
-MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
-                            int n, parts *out) {
+MPSI_INLINE void find_parts(const mpsi_transfer *work, int geometry, int spline, bool split,
+                            int64_t begin, int n, parts *out) {
+  const sources s = find_sources(work, mpsi_dim_of(geometry), spline, split);
   for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(&mpm->grid, &mpm->p, &mpm->def, mpm->run.dt, geometry, spline, split, begin + k,
-                    &part);
+    find_quad_parts(&s, geometry, split, begin + k, &part);
     put_columns(mpsi_dim_of(geometry), part.sum, k, out->sum);
     if (split) put_columns(mpsi_dim_of(geometry), part.force, k, out->force);
   }
@@ -215,13 +231,14 @@ MPSI_INLINE void shift_parts(const mpsi_places *places, int k, mpsi_quad part[4]
   }
 }
 
-MPSI_INLINE void find_full_parts(const mps_mpm *mpm, int spline, bool split,
-                                 const mpsi_places *places, int64_t begin, int n, node_parts *sum,
-                                 node_parts *force) {
+MPSI_INLINE void find_full_parts(const mpsi_transfer *work, int spline, bool split,
+                                 const mpsi_places *places, node_parts *sum, node_parts *force) {
+  const sources s = find_sources(work, 3, spline, split);
+  const int64_t chunk = places->chunk;
+  const int n = places->count;
   for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(&mpm->grid, &mpm->p, &mpm->def, mpm->run.dt, MPS_MPM_GEOMETRY_SPACE, spline,
-                    split, begin + k, &part);
+    find_quad_parts(&s, MPS_MPM_GEOMETRY_SPACE, split, chunk + k, &part);
     shift_parts(places, k, part.sum);
     put_nodes(part.sum, k, sum);
     if (!split) continue;
@@ -312,13 +329,14 @@ MPSI_INLINE void put_pairs(const mpsi_places *places, mpsi_quad from[4][4], int 
   }
 }
 
-MPSI_INLINE void find_pair_parts(const mps_mpm *mpm, int geometry, int spline, bool split,
-                                 const mpsi_places *places, int64_t begin, int n, pair_parts *sum,
-                                 pair_parts *force) {
+MPSI_INLINE void find_pair_parts(const mpsi_transfer *work, int geometry, int spline, bool split,
+                                 const mpsi_places *places, pair_parts *sum, pair_parts *force) {
+  const sources s = find_sources(work, mpsi_dim_of(geometry), spline, split);
+  const int64_t chunk = places->chunk;
+  const int n = places->count;
   for (int k = 0; k < n; k += 4) {
     quad_parts part;
-    find_quad_parts(&mpm->grid, &mpm->p, &mpm->def, mpm->run.dt, geometry, spline, split, begin + k,
-                    &part);
+    find_quad_parts(&s, geometry, split, chunk + k, &part);
     put_pairs(places, part.sum, k, sum);
     if (split) put_pairs(places, part.force, k, force);
   }
@@ -396,23 +414,21 @@ MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, con
     add_in_space(spline, places, rows, begin, end, &part->node, tile);
 }
 
-/* Adds particles [begin, end) at the wall across `axis`: mass and momentum to the tile, force and
+/* Adds a segment at the wall across `axis`: mass and momentum to the tile, force and
  * excess mass (see mpsi_node) to the tile of forces. Derivatives across the wall and along it have
  * different weights: hence three passes. */
-MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                             const mpsi_worker *worker, int geometry, int spline,
-                             const mpsi_places *places, int axis, int64_t chunk, int begin,
-                             int end) {
-  const int dim = mpsi_dim_of(geometry), n = end - begin;
+MPSI_INLINE void add_at_wall(const mpsi_transfer *work, int geometry, int spline,
+                             const mpsi_segment *segment, int axis) {
+  const int dim = mpsi_dim_of(geometry), n = segment->end - segment->begin;
   const size_t bytes = sizeof(double[4][MPSI_CHUNK]);
   mpsi_wall wall;
   parts part;
   columns other = {{{0.0}}};
   arranged_parts added;
-  find_parts(mpm, geometry, spline, true, chunk + begin, n, &part);
-  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_VALUE, &wall);
+  find_parts(work, geometry, spline, true, segment->places->chunk + segment->begin, n, &part);
+  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_VALUE, &wall);
   arrange_parts(dim, spline, &wall.places, n, part.sum, &added);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->tile);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, work->worker->tile);
   for (int k = 0; k < n; k++) {
     other[0][MPSI_EXCESS][k] = part.sum[0][MPSI_MASS][k] * wall.mass[k];
     part.force[0][MPSI_EXCESS][k] = -part.sum[0][MPSI_MASS][k];
@@ -422,12 +438,12 @@ MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
     memcpy(other[1 + d], part.force[1 + d], bytes);
     memset(part.force[1 + d], 0, bytes);
   }
-  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_SLOPE, &wall);
+  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_SLOPE, &wall);
   arrange_parts(dim, spline, &wall.places, n, part.force, &added);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
-  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_ALONG, &wall);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, work->worker->force);
+  mpsi_wall_places(work, dim, spline, segment, axis, MPSI_WALL_ALONG, &wall);
   arrange_parts(dim, spline, &wall.places, n, other, &added);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, work->worker->force);
 }
 
 MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
@@ -478,20 +494,20 @@ typedef struct chunk {
   arranged_parts sum, force;
 } chunk;
 
-MPSI_INLINE void find_chunk(const mps_mpm *mpm, int geometry, int spline, bool split,
-                            mpsi_places *places, int64_t begin, int n, chunk *out) {
-  const int dim = mpsi_dim_of(geometry);
+MPSI_INLINE void find_chunk(const mpsi_transfer *work, int geometry, int spline, bool split,
+                            mpsi_places *places, chunk *out) {
+  const int dim = mpsi_dim_of(geometry), n = places->count;
   find_rows(spline, dim == 2 && MPSI_WIDE == 1, places, n, &out->rows);
   if (dim == 3) {
     find_row_weights(spline, places, n, &out->weights);
-    find_full_parts(mpm, spline, split, places, begin, n, &out->sum.node, &out->force.node);
+    find_full_parts(work, spline, split, places, &out->sum.node, &out->force.node);
     return;
   }
 #if MPSI_WIDE == 2
-  find_pair_parts(mpm, geometry, spline, split, places, begin, n, &out->sum.pair, &out->force.pair);
+  find_pair_parts(work, geometry, spline, split, places, &out->sum.pair, &out->force.pair);
 #else
   parts part;
-  find_parts(mpm, geometry, spline, split, begin, n, &part);
+  find_parts(work, geometry, spline, split, places->chunk, n, &part);
   arrange_parts(dim, spline, places, n, part.sum, &out->sum);
   if (split) arrange_parts(dim, spline, places, n, part.force, &out->force);
 #endif
@@ -509,29 +525,29 @@ MPSI_INLINE void add_chunk(int dim, int spline, const mpsi_places *places, const
     add_full(spline, places, &from->rows, &from->weights, begin, end, &part->node, tile);
 }
 
-MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                           int geometry, int spline, int64_t begin, int n) {
+MPSI_INLINE void p2g_chunk(const mpsi_transfer *work, int geometry, int spline, int64_t begin,
+                           int n) {
   const int dim = mpsi_dim_of(geometry);
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_worker *worker = work->worker;
   mpsi_places places;
   chunk all;
-  mpsi_find_places(mpm, cells, dim, spline, dim == 2 ? 3 : 7, dim == 2 && MPSI_WIDE == 1 ? 3 : 0,
-                   begin, n, &places);
+  mpsi_find_places(work, dim, spline, dim == 2 ? 3 : 7, dim == 2 && MPSI_WIDE == 1 ? 3 : 0, begin,
+                   n, &places);
   if (cells->split)
-    find_chunk(mpm, geometry, spline, true, &places, begin, n, &all);
+    find_chunk(work, geometry, spline, true, &places, &all);
   else
-    find_chunk(mpm, geometry, spline, false, &places, begin, n, &all);
+    find_chunk(work, geometry, spline, false, &places, &all);
   for (int k = 0, end; k < n; k = end) {
     for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
       end++;
     const uint32_t state =
         cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
     if (state != 0) {
-      const int axis = mpsi_wall_axis(&mpm->grid, cells, dim, spline, state, places.first[k]);
-      if (axis >= 0)
-        add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
-      if (axis >= 0 ||
-          MPSI_LEVELLED(mpsi_mpm_scatter_cut)(mpm, cells, worker, &places, begin, k, end))
-        continue;
+      const mpsi_segment segment = {&places, k, end};
+      const int axis = mpsi_wall_axis(work->grid, cells, dim, spline, state, places.first[k]);
+      if (axis >= 0) add_at_wall(work, geometry, spline, &segment, axis);
+      if (axis >= 0 || MPSI_LEVELLED(mpsi_mpm_scatter_cut)(work, &segment)) continue;
     }
     add_chunk(dim, spline, &places, &all, &all.sum, k, end, worker->tile);
     if (cells->split) add_chunk(dim, spline, &places, &all, &all.force, k, end, worker->force);
@@ -562,61 +578,58 @@ static void begin_across(const mpsi_contacts *contacts, const mpsi_cell_block *c
 
 /* First half of P2G: sums the contributions of the particles of block b in the worker's tiles. Sets
  * the loads of penalty contact, stored fits and impulses of mirrors of the block to zero before. */
-MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  mpsi_worker *worker = &mpm->grid.workers[number];
+MPSI_INLINE void tile_body(const mpsi_transfer *work, int geometry, int spline) {
+  const mpsi_cell_block *cells = work->cells;
+  mpsi_worker *worker = work->worker;
   const int dim = mpsi_dim_of(geometry);
   for (int32_t q = 0; q < cells->pairs; q++) {
-    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    mpsi_cell_pair *pair = &work->contact->cell_pair[cells->first_pair + q];
     pair->in_contact = false;
     pair->deepest = 0.0;
-    memset(mpm->contact.load + pair->first_load, 0,
-           (size_t)mpm->contact.handle[pair->body]->parts * sizeof *mpm->contact.load);
+    memset(work->contact->load + pair->first_load, 0,
+           (size_t)work->contact->handle[pair->body]->parts * sizeof *work->contact->load);
   }
-  if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
+  if (cells->cut) mpsi_mpm_find_states(work);
   if (cells->first_fit >= 0)
-    memset(mpm->grid.fitted + cells->first_fit, 0, (size_t)(cells->end - cells->begin));
-  if (cells->mirrors) mpsi_mpm_begin_mirrors(&mpm->mirrors, cells);
+    memset(work->grid->fitted + cells->first_fit, 0, (size_t)(cells->end - cells->begin));
+  if (cells->mirrors) mpsi_mpm_begin_mirrors(work->mirrors, cells);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);
-  if (cells->thin) begin_across(&mpm->contact, cells, worker);
-  const mpsi_cell_block *next = dim == 2 && b + 2 < mpm->grid.cell_count ? cells + 2 : NULL;
+  if (cells->thin) begin_across(work->contact, cells, worker);
+  const mpsi_cell_block *next =
+      dim == 2 && cells + 2 < work->grid->cells + work->grid->cell_count ? cells + 2 : NULL;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
-    if (next) prefetch_chunk(&mpm->p, next->begin + (k - cells->begin), next->end);
-    p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
+    if (next) prefetch_chunk(work->p, next->begin + (k - cells->begin), next->end);
+    p2g_chunk(work, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
   }
-  if (cells->mirrors) mpsi_mpm_fold(mpm, cells, worker);
+  if (cells->mirrors) mpsi_mpm_fold(work);
 }
 
 /* Second half of P2G: adds the worker's tiles to the blocks of nodes. */
-MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_worker *from = &mpm->grid.workers[number];
+MPSI_INLINE void flush_body(const mpsi_transfer *work, int dim) {
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_worker *from = work->worker;
   for (int q = 0; q < 1 << dim; q++)
-    flush(&mpm->grid, mpm->run.dt, cells, q, cells->to[q], (const mpsi_node *)from->tile,
+    flush(work->grid, work->run->dt, cells, q, cells->to[q], (const mpsi_node *)from->tile,
           (const mpsi_node *)from->force);
   for (int q = 0; q < 1 << dim && cells->thin; q++)
-    flush(&mpm->grid, mpm->run.dt, cells, q, mpm->grid.nodes[cells->to[q]].across,
+    flush(work->grid, work->run->dt, cells, q, work->grid->nodes[cells->to[q]].across,
           (const mpsi_node *)from->across_tile, (const mpsi_node *)from->across_force);
 }
 
-void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {
-  flush_body(mpm, b, worker, mpm->grid.dim);
-}
+void MPSI_LEVELLED(mpsi_mpm_flush)(const mpsi_transfer *work) { flush_body(work, work->grid->dim); }
 
 #define DEFINE(g, s, geometry, spline)                                                             \
-  static void tile_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                            \
-    tile_body(mpm, b, worker, geometry, spline);                                                   \
-  }                                                                                                \
-  static void p2g_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                             \
-    tile_##g##_##s(mpm, b, worker);                                                                \
-    flush_body(mpm, b, worker, mpsi_dim_of(geometry));                                             \
+  static void tile_##g##_##s(const mpsi_transfer *work) { tile_body(work, geometry, spline); }     \
+  static void p2g_##g##_##s(const mpsi_transfer *work) {                                           \
+    tile_##g##_##s(work);                                                                          \
+    flush_body(work, mpsi_dim_of(geometry));                                                       \
   }
 MPSI_VARIANTS(DEFINE)
 
 #define TILE_ENTRY(g, s, geometry, spline) [geometry][spline - 2] = tile_##g##_##s,
-const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_tile)[3][2] = {MPSI_VARIANTS(TILE_ENTRY)};
+const mpsi_transfer_fn MPSI_LEVELLED(mpsi_mpm_tile)[3][2] = {MPSI_VARIANTS(TILE_ENTRY)};
 
 #define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = p2g_##g##_##s,
-const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_p2g)[3][2] = {MPSI_VARIANTS(ENTRY)};
+const mpsi_transfer_fn MPSI_LEVELLED(mpsi_mpm_p2g)[3][2] = {MPSI_VARIANTS(ENTRY)};

@@ -88,11 +88,10 @@ MPSI_INLINE bool mpsi_is_folded(const mpsi_support *s, int i, int j, int k) {
 
 /* Reflects the contact force on a folded node, or its slip, to the node's image; `impulse` times
  * the change of `vector` is added to the impulse of the walls. */
-static inline void mpsi_reflect_at(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                   const mpsi_cut *b, int i, int j, int k, double *vector,
-                                   double impulse) {
+static inline void mpsi_reflect_at(const mpsi_transfer *work, const mpsi_cut *b, int i, int j,
+                                   int k, double *vector, double impulse) {
   int at[3] = {b->at[0] + i, b->at[1] + j, b->at[2] + k};
-  mpsi_mpm_reflect(&mpm->grid, &mpm->boundaries, &mpm->mirrors, cells, at, vector, impulse);
+  mpsi_mpm_reflect(work->grid, work->boundaries, work->mirrors, work->cells, at, vector, impulse);
 }
 
 /* Surface normal, at node `local` of a block, of the next body that contains the node, which is
@@ -110,11 +109,13 @@ MPSI_INLINE const double *mpsi_next_normal(const mpsi_grid *grid, const mpsi_con
 
 /* ---- active nodes ---------------------------------------------------------------------------- */
 
-/* Batch of particles [k, k + n) of a chunk, n at most 4; p is the index of the first. Sets
- * distances and weights by axis, not yet the active nodes. */
-MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_places *places, int k, int64_t p,
-                                int n, uint32_t held, mpsi_cut *out) {
-  out->first = p, out->lanes = n, out->held = held;
+/* Batch of up to four particles of a segment, from number k of the chunk on. Sets distances and
+ * weights by axis, not yet the active nodes. */
+MPSI_INLINE void mpsi_place_cut(int dim, int spline, const mpsi_segment *segment, int k,
+                                uint32_t held, mpsi_cut *out) {
+  const mpsi_places *places = segment->places;
+  const int n = segment->end - k < 4 ? segment->end - k : 4;
+  out->first = places->chunk + k, out->lanes = n, out->held = held;
   out->across = out->parted = (mpsi_mask){0};
   mpsi_unravel(places->first[k], MPSI_TILE_SIDE, out->at);
   for (int c = 0; c < dim; c++) {
@@ -166,29 +167,27 @@ MPSI_INLINE mpsi_mask mpsi_same_side(const mpsi_grid *grid, const mpsi_contacts 
 }
 
 /* Lanes for which node (i, j, k) is active although it lies in a body. */
-MPSI_INLINE mpsi_mask mpsi_is_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                     uint8_t state, int dim, const mpsi_cut *b,
-                                     mpsi_mask (*corner)[4], int i, int j, int k) {
+MPSI_INLINE mpsi_mask mpsi_is_active(const mpsi_transfer *work, uint8_t state, int dim,
+                                     const mpsi_cut *b, mpsi_mask (*corner)[4], int i, int j,
+                                     int k) {
   mpsi_mask active = corner[0][i] & corner[1][j];
   if (dim == 3) active &= corner[2][k];
   if ((active[0] & active[1] & active[2] & active[3]) != 0 || !(state & MPSI_REACHED))
     return active;
-  return active | mpsi_same_side(&mpm->grid, &mpm->contact, cells, dim, b, i, j, k);
+  return active | mpsi_same_side(work->grid, work->contact, work->cells, dim, b, i, j, k);
 }
 
 /* Nodes that thin bodies separate from each particle: as stored by the scatter of this step
  * (`known`), or found here. Corners of the particle's own cell stay active. */
-MPSI_INLINE void mpsi_find_parted(const mpsi_grid *grid, const mpsi_columns *points,
-                                  const mpsi_contacts *contacts, const mpsi_cell_block *cells,
-                                  int dim, int spline, bool known, mpsi_mask (*corner)[4],
-                                  mpsi_cut *b) {
+MPSI_INLINE void mpsi_find_parted(const mpsi_transfer *work, int dim, int spline, bool known,
+                                  mpsi_mask (*corner)[4], mpsi_cut *b) {
   for (int l = 0; l < b->lanes; l++) {
     const int64_t p = b->first + l;
-    mpsi_parted found = contacts->across[p];
+    mpsi_parted found = work->contact->across[p];
     if (!known) {
       double x[3] = {0.0};
-      for (int c = 0; c < dim; c++) x[c] = points->x[c][p];
-      found = mpsi_mpm_find_parted(grid, contacts, cells, b->at, x);
+      for (int c = 0; c < dim; c++) x[c] = work->p->x[c][p];
+      found = mpsi_mpm_find_parted(work->grid, work->contact, work->cells, b->at, x);
       MPSI_FOR_NODES(dim, spline) {
         if (corner[0][i][l] & corner[1][j][l] & (dim == 3 ? corner[2][k][l] : -1))
           found.cut &= ~(UINT64_C(1) << n);
@@ -207,16 +206,15 @@ MPSI_INLINE mpsi_mask mpsi_has_node(mpsi_mask bits, int n) {
 
 /* Weights of the active nodes, 0 at the others. `thin`: nodes may be inactive because of thin
  * bodies. */
-MPSI_INLINE void mpsi_find_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                                  const mpsi_worker *worker, int dim, int spline, bool thin,
+MPSI_INLINE void mpsi_find_active(const mpsi_transfer *work, int dim, int spline, bool thin,
                                   bool known, mpsi_cut *b) {
   mpsi_mask corner[3][4];
-  mpsi_find_corners(&mpm->grid, cells, dim, spline, b, corner);
-  if (thin)
-    mpsi_find_parted(&mpm->grid, &mpm->p, &mpm->contact, cells, dim, spline, known, corner, b);
+  mpsi_find_corners(work->grid, work->cells, dim, spline, b, corner);
+  if (thin) mpsi_find_parted(work, dim, spline, known, corner, b);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
-      const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      const uint8_t *state =
+          work->worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
       mpsi_quad *w = b->w + 16 * k + 4 * j, across = b->along[1][j];
       if (dim == 3) across *= b->along[2][k];
       for (int i = 0; i <= spline; i++) w[i] = b->along[0][i] * across;
@@ -227,7 +225,7 @@ MPSI_INLINE void mpsi_find_active(const mps_mpm *mpm, const mpsi_cell_block *cel
           w[i] = (mpsi_quad){0.0};
         else if (state[i] & MPSI_INSIDE)
           w[i] = (mpsi_quad)((mpsi_mask)w[i] &
-                             mpsi_is_active(mpm, cells, state[i], dim, b, corner, i, j, k));
+                             mpsi_is_active(work, state[i], dim, b, corner, i, j, k));
       }
     }
   if (!thin) return;
@@ -256,16 +254,16 @@ MPSI_INLINE bool mpsi_may_be_full(const mpsi_worker *worker, int dim, int spline
 
 /* Whether all nodes of the stencil are active for all particles of the batch; mpsi_may_be_full is
  * known to be true. */
-MPSI_INLINE bool mpsi_is_full(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                              const mpsi_worker *worker, int dim, int spline, const mpsi_cut *b) {
+MPSI_INLINE bool mpsi_is_full(const mpsi_transfer *work, int dim, int spline, const mpsi_cut *b) {
   mpsi_mask corner[3][4];
-  mpsi_find_corners(&mpm->grid, cells, dim, spline, b, corner);
+  mpsi_find_corners(work->grid, work->cells, dim, spline, b, corner);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
-      const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      const uint8_t *state =
+          work->worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
       for (int i = 0; i <= spline; i++) {
         if (state[i] == 0) continue;
-        const mpsi_mask active = mpsi_is_active(mpm, cells, state[i], dim, b, corner, i, j, k);
+        const mpsi_mask active = mpsi_is_active(work, state[i], dim, b, corner, i, j, k);
         if ((active[0] & active[1] & active[2] & active[3]) == 0) return false;
       }
     }

@@ -57,16 +57,15 @@ MPSI_INLINE bool mpsi_wall_active(const mpsi_grid *grid, const mpsi_cell_block *
 
 /* Weights across the wall of a particle t cells from the lowest node of its stencil, of the kind
  * `part`; returns M0. */
-MPSI_INLINE double mpsi_wall_weights(const mpsi_grid *grid, const mpsi_cell_block *cells,
-                                     int spline, int axis, int32_t first, double t,
-                                     mpsi_wall_part part, double *value, double *slope) {
+MPSI_INLINE double mpsi_wall_weights(const mpsi_transfer *work, int spline, int axis, int32_t first,
+                                     double t, mpsi_wall_part part, double *value, double *slope) {
   int place[3];
   double M0 = 0.0, M1 = 0.0, M2 = 0.0, w[4];
   mpsi_unravel(first, MPSI_TILE_SIDE, place);
   mpsi_weights(spline, t, w);
   for (int i = 0; i <= spline; i++) {
     const double s = (double)i - t;
-    if (!mpsi_wall_active(grid, cells, axis, place[axis], i)) w[i] = 0.0;
+    if (!mpsi_wall_active(work->grid, work->cells, axis, place[axis], i)) w[i] = 0.0;
     M0 += w[i], M1 += w[i] * s, M2 += w[i] * s * s;
   }
   const double inverse = 1.0 / (M0 * M2 - M1 * M1);
@@ -81,18 +80,20 @@ MPSI_INLINE double mpsi_wall_weights(const mpsi_grid *grid, const mpsi_cell_bloc
   return M0;
 }
 
-/* Weights of particles [begin, end) of a chunk, which share a stencil cut by the wall across
- * `axis`. */
-MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                  int spline, const mpsi_places *from, int begin, int end, int axis,
-                                  mpsi_wall_part part, mpsi_wall *out) {
+/* Weights of a segment cut by the wall across `axis`. */
+MPSI_INLINE void mpsi_wall_places(const mpsi_transfer *work, int dim, int spline,
+                                  const mpsi_segment *segment, int axis, mpsi_wall_part part,
+                                  mpsi_wall *out) {
+  const mpsi_places *from = segment->places;
+  const int begin = segment->begin, end = segment->end;
   out->axis = axis;
+  out->places.chunk = from->chunk + begin, out->places.count = end - begin;
   for (int k = begin; k < end; k++) {
     double value[3][4], slope[3][4];
     for (int c = 0; c < dim; c++) {
       if (c == axis) {
-        out->mass[k - begin] = mpsi_wall_weights(&mpm->grid, cells, spline, c, from->first[k],
-                                                 from->t[c][k], part, value[c], slope[c]);
+        out->mass[k - begin] = mpsi_wall_weights(work, spline, c, from->first[k], from->t[c][k],
+                                                 part, value[c], slope[c]);
         continue;
       }
       mpsi_weights(spline, from->t[c][k], value[c]);

@@ -110,13 +110,11 @@ MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wat
   }
 }
 
-void MPSI_LEVELLED(mpsi_pore_sum)(mps_mpm *mpm, int64_t b, int32_t number) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_worker *worker = &mpm->grid.workers[number];
-  if (mpm->grid.dim == 2)
-    sum_body(&mpm->grid, &mpm->p, mpm->water, cells, worker, 2);
+void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work) {
+  if (work->grid->dim == 2)
+    sum_body(work->grid, work->p, work->water, work->cells, work->worker, 2);
   else
-    sum_body(&mpm->grid, &mpm->p, mpm->water, cells, worker, 3);
+    sum_body(work->grid, work->p, work->water, work->cells, work->worker, 3);
 }
 
 /* ---- to the particles ------------------------------------------------------------------------ */
@@ -161,34 +159,32 @@ MPSI_INLINE void give_porosities(const mpsi_columns *p, const double *former, in
   MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] = 1.0 - (1.0 - porosity[k]) * (past[k] / V[k]);
 }
 
-MPSI_INLINE void give_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                           int dim) {
-  const mpsi_columns *p = &mpm->p;
-  const region in = region_of(&mpm->grid, cells);
-  const bool flows = mpm->water->flows;
+MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
+  const mpsi_columns *p = work->p;
+  const mpsi_cell_block *cells = work->cells;
+  const mpsi_grid *grid = work->grid;
+  const region in = region_of(grid, cells);
+  const bool flows = work->water->flows;
   places at;
   taken from;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    find_cells(&mpm->grid, p, &in, dim, k, n, &at);
-    take_cells(&at, n, worker, flows, &from);
+    find_cells(grid, p, &in, dim, k, n, &at);
+    take_cells(&at, n, work->worker, flows, &from);
     give_pressures(p, &at, &from, dim, k, n);
     if (flows) {
       double *m = p->m + k;
       const double *V = p->V + k;
       MPSI_SIMD for (int i = 0; i < n; i++) m[i] += from.gain[i] * V[i];
-      mpsi_pore_give_flow(mpm, k, k + n);
+      mpsi_pore_give_flow(work, k, k + n);
     }
-    give_porosities(p, mpm->water->former, k, n);
+    give_porosities(p, work->water->former, k, n);
   }
 }
 
-void MPSI_LEVELLED(mpsi_pore_give)(mps_mpm *mpm, int64_t b, int32_t number) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_worker *worker = &mpm->grid.workers[number];
-  mpsi_pore_load_tile(mpm, cells, worker);
-  if (mpm->grid.dim == 2)
-    give_body(mpm, cells, worker, 2);
+void MPSI_LEVELLED(mpsi_pore_give)(const mpsi_transfer *work) {
+  if (work->grid->dim == 2)
+    give_body(work, 2);
   else
-    give_body(mpm, cells, worker, 3);
+    give_body(work, 3);
 }

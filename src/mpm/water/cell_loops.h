@@ -10,11 +10,7 @@
 enum { MPSI_PORE_VOLUME, MPSI_PORE_CHANGE, MPSI_PORE_PRESSURE, MPSI_PORE_POROSITY };
 enum { MPSI_PORE_PERMEABILITY, MPSI_PORE_SLOPE };
 
-/* flow.c: for the particles of a block, to the worker's tiles: of each cell the pressure at the
- * centre of its box and its slopes; kg/m3 that its particles gain. */
-void mpsi_pore_load_tile(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                         const mpsi_worker *worker);
 /* flow.c: permeability and seepage of particles [begin, end), before their porosities change. */
-void mpsi_pore_give_flow(const mps_mpm *mpm, int64_t begin, int64_t end);
+void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end);
 
 #endif

@@ -25,14 +25,17 @@ static void clear_region(const mpsi_cell_block *cells, const mpsi_worker *worker
 }
 
 /* To the tiles of the worker. */
-static void sum_block(mps_mpm *mpm, int64_t b, int32_t number) {
-  clear_region(&mpm->grid.cells[b], &mpm->grid.workers[number]);
-  mpm->kernels->pore_sum(mpm, b, number);
+static void sum_block(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
+  clear_region(work.cells, work.worker);
+  mpm->kernels->pore_sum(&work);
 }
 
 /* ---- to the cells ---------------------------------------------------------------------------- */
 
-static void clear(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void clear(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   uint64_t *filled = mpm->water->block[g].filled;
   (void)worker;
   memset(filled, 0, sizeof mpm->water->block[g].filled);
@@ -83,7 +86,8 @@ static void add_tile(const mpsi_grid *grid, mpsi_water *water, int64_t b,
       }
 }
 
-static void add_block(mps_mpm *mpm, int64_t b, int32_t number) {
+static void add_block(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
   if (mpm->grid.cells[b].parcel < 0 || !mpm->partition)
     sum_block(mpm, b, number);
   else if (!mpsi_pore_take_parcel(mpm, b, number))
@@ -91,7 +95,8 @@ static void add_block(mps_mpm *mpm, int64_t b, int32_t number) {
   add_tile(&mpm->grid, mpm->water, b, &mpm->grid.workers[number]);
 }
 
-static void find_means(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_means(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   (void)worker;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
@@ -105,11 +110,12 @@ static void find_means(mps_mpm *mpm, int64_t g, int32_t worker) {
 }
 
 void mpsi_pore_find_cells(mps_mpm *mpm) {
-  const mpsi_pass sums = {.clear = clear,
+  const mpsi_pass sums = {.data = mpm,
+                          .clear = clear,
                           .scatter = add_block,
                           .update = find_means,
                           .arrive = mpm->partition ? mpsi_pore_receive_parcels : NULL};
   if (mpm->partition) mpsi_pore_send_parcels(mpm, sum_block);
-  mpsi_mpm_run_pass(mpm, &sums);
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &sums);
   mpsi_pore_exchange(mpm, MPSI_PORE_FILLED);
 }

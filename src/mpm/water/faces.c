@@ -151,7 +151,8 @@ static void find_edge(const mpsi_grid *grid, const mpsi_contacts *contacts, mpsi
   find_filled(grid, water, ring ? x[0] : 1.0, cell, edge);
 }
 
-static void find_faces(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_faces(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   mpsi_pore_block *block = &water->block[g];
@@ -178,7 +179,7 @@ static void find_faces(mps_mpm *mpm, int64_t g, int32_t worker) {
 }
 
 void mpsi_pore_find_faces(mps_mpm *mpm) {
-  const mpsi_pass faces = {.finish = find_faces};
-  mpsi_mpm_run_pass(mpm, &faces);
+  const mpsi_pass faces = {.data = mpm, .finish = find_faces};
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &faces);
   mpsi_pore_exchange(mpm, MPSI_PORE_EDGES);
 }

@@ -237,7 +237,8 @@ static void advance(mps_mpm *mpm, int64_t g, int k, bool whole, mpsi_pore_cell *
               mpsi_pore_squeeze(mpm->water, cell);
 }
 
-static void find_pressures(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_pressures(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
   (void)worker;
@@ -301,7 +302,8 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
   cell->now = lines > 0 ? sum / lines : 0.0;
 }
 
-static void find_slopes(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_slopes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
@@ -331,27 +333,28 @@ static double permeability_after(const mps_pore_water_def *def, double k, double
   return k;
 }
 
-void mpsi_pore_give_flow(const mps_mpm *mpm, int64_t begin, int64_t end) {
-  const mpsi_columns *p = &mpm->p;
-  mpsi_water *water = mpm->water;
+void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end) {
+  const mpsi_columns *p = work->p;
+  mpsi_water *water = work->water;
   const mps_pore_water_def *def = &water->def;
   const double weight = weight_of_water(water);
   if (def->exponent != 0.0 || def->ratio_slope < INFINITY)
     for (int64_t k = begin; k < end; k++)
       p->k[k] = permeability_after(def, p->k[k], p->n[k], p->V[k] / water->former[k]);
-  for (int c = 0; c < mpm->grid.dim && water->seepage[0]; c++)
+  for (int c = 0; c < work->grid->dim && water->seepage[0]; c++)
     for (int64_t k = begin; k < end; k++)
-      water->seepage[c][k] = -p->k[k] / weight * (p->g[c][k] - def->density * mpm->def.gravity[c]);
+      water->seepage[c][k] =
+          -p->k[k] / weight * (p->g[c][k] - def->density * work->def->gravity[c]);
 }
 
-static void load_row(const mps_mpm *mpm, const mpsi_pore_cell *cell, const uint64_t *filled,
+static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, const uint64_t *filled,
                      int local, int cells, mpsi_node *tile, mpsi_node *gain) {
-  mpsi_water *water = mpm->water;
-  const double amount = water->def.density * mpm->run.dt * mpm->grid.measure;
+  mpsi_water *water = work->water;
+  const double amount = water->def.density * work->run->dt * work->grid->measure;
   for (int i = 0; i < cells; i++) {
     if (!mpsi_pore_marked(filled, local + i)) continue;
     double centre = cell[i].now; /* of the filled part; then of the box */
-    for (int c = 0; c < mpm->grid.dim && !cell[i].inside; c++)
+    for (int c = 0; c < work->grid->dim && !cell[i].inside; c++)
       centre -= cell[i].g[c] * mpsi_pore_edge_of(water, cell + i)->shift[c];
     tile[i][0] = centre;
     for (int c = 0; c < 3; c++) tile[i][1 + c] = cell[i].g[c];
@@ -359,9 +362,11 @@ static void load_row(const mps_mpm *mpm, const mpsi_pore_cell *cell, const uint6
   }
 }
 
-void mpsi_pore_load_tile(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                         const mpsi_worker *worker) {
-  const mpsi_grid *grid = &mpm->grid;
+/* For the particles of a block, to the worker's tiles: of each cell the pressure at the centre of
+ * its box and its slopes; kg/m3 that its particles gain. */
+static void load_tile(const mpsi_transfer *work) {
+  const mpsi_grid *grid = work->grid;
+  const mpsi_cell_block *cells = work->cells;
   int low[3], high[3];
   mpsi_pore_region(cells, low, high);
   for (int k = low[2]; k < high[2]; k++)
@@ -370,10 +375,17 @@ void mpsi_pore_load_tile(const mps_mpm *mpm, const mpsi_cell_block *cells,
         const int32_t g = mpsi_block_under(cells, i, j, k);
         const int local = mpsi_local_under(i, j, k), at = mpsi_tile_index(i, j, k);
         end = i < MPSI_SIDE && high[0] > MPSI_SIDE ? MPSI_SIDE : high[0];
-        load_row(mpm, mpm->water->cell + mpsi_first_node(grid, g) + local,
-                 mpm->water->block[g].filled, local, end - i, worker->tile + at,
-                 worker->force + at);
+        load_row(work, work->water->cell + mpsi_first_node(grid, g) + local,
+                 work->water->block[g].filled, local, end - i, work->worker->tile + at,
+                 work->worker->force + at);
       }
+}
+
+static void give_to_particles(void *data, int64_t b, int32_t number) {
+  mps_mpm *mpm = data;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
+  load_tile(&work);
+  mpm->kernels->pore_give(&work);
 }
 
 /* ---- implicit pressures ---------------------------------------------------------------------- */
@@ -406,7 +418,8 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
   s->residual[at] = dt * flux + storage * mpsi_pore_squeeze(water, cell);
 }
 
-static void find_equations(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_equations(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   const mpsi_pore_cell *cell = water->cell + first;
@@ -421,7 +434,8 @@ static void find_equations(mps_mpm *mpm, int64_t g, int32_t worker) {
 }
 
 /* What flows under the pressures at the end of the step, so that no water is lost. */
-static void find_gains(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void find_gains(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   (void)worker;
@@ -435,26 +449,27 @@ static void find_gains(mps_mpm *mpm, int64_t g, int32_t worker) {
 }
 
 static mps_status find_implicit(mps_mpm *mpm, const char *function) {
-  const mpsi_pass equations = {.finish = find_equations};
-  const mpsi_pass gains = {.finish = find_gains};
-  mpsi_mpm_run_pass(mpm, &equations);
+  const mpsi_pass equations = {.data = mpm, .finish = find_equations};
+  const mpsi_pass gains = {.data = mpm, .finish = find_gains};
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &equations);
   const mps_status status = mpsi_pore_solve(mpm, function);
-  if (status == MPS_OK && mpm->water->flows) mpsi_mpm_run_pass(mpm, &gains);
+  if (status == MPS_OK && mpm->water->flows)
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &gains);
   return status;
 }
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
 mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function) {
-  const mpsi_pass pressures = {.finish = find_pressures};
-  const mpsi_pass particles = {.finish = find_slopes, .gather = mpm->kernels->pore_give};
+  const mpsi_pass pressures = {.data = mpm, .finish = find_pressures};
+  const mpsi_pass particles = {.data = mpm, .finish = find_slopes, .gather = give_to_particles};
   mps_status status = MPS_OK;
   if (mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT) {
     status = find_implicit(mpm, function);
   } else if (mpm->water->flows) {
-    mpsi_mpm_run_pass(mpm, &pressures);
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pressures);
     mpsi_pore_exchange(mpm, MPSI_PORE_NOW);
   }
-  if (status == MPS_OK) mpsi_mpm_run_pass(mpm, &particles);
+  if (status == MPS_OK) mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &particles);
   return status;
 }

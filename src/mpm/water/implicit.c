@@ -183,7 +183,8 @@ static void find_tile(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 
 /* ---- forces on nodes ------------------------------------------------------------------------- */
 
-static void clear_masses(mps_mpm *mpm, int64_t g, int32_t worker) {
+static void clear_masses(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
   system_of *s = mpm->water->system;
   const int64_t first = mpsi_first_node(&mpm->grid, g);
   (void)worker;
@@ -253,7 +254,8 @@ static void add_particle(mps_mpm *mpm, int64_t b, int64_t k) {
   }
 }
 
-static void add_particles(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void add_particles(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   (void)worker;
   for (int64_t k = mpm->grid.cells[b].begin; k < mpm->grid.cells[b].end; k++)
     add_particle(mpm, b, k);
@@ -295,8 +297,8 @@ static mps_status assemble_forces(mps_mpm *mpm, const char *function) {
   s->force = s->force_room.item;
   memset(s->force, 0, (size_t)numbers * sizeof *s->force);
   for_blocks(mpm, find_tile, 0.0);
-  const mpsi_pass pass = {.clear = clear_masses, .scatter = add_particles};
-  mpsi_mpm_run_pass(mpm, &pass);
+  const mpsi_pass pass = {.data = mpm, .clear = clear_masses, .scatter = add_particles};
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
   for_blocks(mpm, find_held, 0.0);
   return MPS_OK;
 }

@@ -277,8 +277,8 @@ void mpsi_pore_send_parcels(mps_mpm *mpm, mpsi_mpm_task sum) {
                                             layers->out_room.item, layers->in_room.item);
 }
 
-void mpsi_pore_receive_parcels(mps_mpm *mpm) {
-  mpsi_partition *partition = mpm->partition;
+void mpsi_pore_receive_parcels(void *solver) {
+  mpsi_partition *partition = ((mps_mpm *)solver)->partition;
   if (partition->lost == MPS_OK) partition->lost = mpsi_halo_end_bytes(partition->halo, step);
 }
 

@@ -40,7 +40,7 @@ int32_t mpsi_pore_guest_block(const mpsi_grid *grid, const mpsi_water *water, co
  * into a worker's tiles for each border block; a parcel to the tiles, false where it has not come
  * (not collective). */
 void mpsi_pore_send_parcels(mps_mpm *mpm, mpsi_mpm_task sum);
-void mpsi_pore_receive_parcels(mps_mpm *mpm);
+void mpsi_pore_receive_parcels(void *solver);
 bool mpsi_pore_take_parcel(mps_mpm *mpm, int64_t b, int32_t worker);
 /* Layers of a stage; nothing without ranks. */
 void mpsi_pore_exchange(mps_mpm *mpm, mpsi_pore_stage stage);

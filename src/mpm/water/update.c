@@ -77,7 +77,8 @@ static mps_status renew_layers(mps_mpm *mpm, const char *function, mps_status st
   return status;
 }
 
-static void keep_volumes(mps_mpm *mpm, int64_t b, int32_t worker) {
+static void keep_volumes(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   (void)worker;
   memcpy(mpm->water->former + cells->begin, mpm->p.V + cells->begin,
@@ -99,13 +100,19 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
     mpsi_pore_mass(&mpm->p, mpm->water, &mpm->water->start);
   }
   link_blocks(&mpm->grid, mpm->water);
-  mpsi_mpm_for_cells(mpm, keep_volumes);
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, keep_volumes, mpm);
   return MPS_OK;
+}
+
+static void find_speed(void *data, int64_t b, int32_t worker) {
+  mps_mpm *mpm = data;
+  const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
+  mpm->kernels->speed(&work);
 }
 
 void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme) {
   mpm->water->def.scheme = scheme;
-  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, find_speed, mpm);
 }
 
 /* ---- after ----------------------------------------------------------------------------------- */
