@@ -120,16 +120,25 @@ static tank before_a_slope(const slope *s, double l0, mps_signal *piston_motion)
   return t;
 }
 
-/* Height above rest, in depths, of the end of the tongue on the slope: half a spacing beyond the
- * highest particle that is not apart, and half a spacing below it. */
+enum { BINS = 2000 };
+
+/* Height above rest, in depths, of the end of the water on the slope: half a spacing beyond the
+ * farthest particle of the layer next to it, up to the first gap of two spacings. Drops ahead of
+ * the water, and those above it, are none of its tongue. */
 static double highest(const tank *t, const slope *s, double l0) {
-  mps_view x, surface;
-  double most = 0.0;
+  double farthest[BINS] = {0.0}, end = 0.0; /* m, along the slope from its foot; a bin has l0 */
+  mps_view x;
   mps_assert_ok(context, mps_particles_view(t->water, "position", &x));
-  mps_assert_ok(context, mps_particles_view(t->water, "free_surface", &surface));
-  for (int64_t i = 0; i < x.shape[0]; i++)
-    if (*mps_view_i64(&surface, i, 0) != 2) most = fmax(most, *mps_view_f64(&x, i, 1));
-  return (most + 0.5 * l0 * (sin(s->angle) - cos(s->angle))) / DEPTH - 1.0;
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const double at[2] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1)};
+    const double along = (at[0] - s->foot) * cos(s->angle) + at[1] * sin(s->angle);
+    if (!(along > 0.0 && off_slope(s, at) < l0)) continue;
+    const int bin = (int)(along / l0);
+    assert_true(bin < BINS);
+    farthest[bin] = fmax(farthest[bin], along);
+  }
+  for (int k = 0; k < BINS && k * l0 < end + 2.0 * l0; k++) end = fmax(end, farthest[k]);
+  return (end + 0.5 * l0) * sin(s->angle) / DEPTH - 1.0;
 }
 
 static void climb_slope(double e, double l0, double angle) {
