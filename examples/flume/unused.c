@@ -1,5 +1,5 @@
 /* unused.c - options of mps-flume that the rest of the model makes no use of: an error, since a
- * result without rock, say, would else look as one with the --porosity that was given.
+ * result without rock would otherwise look like one with the --porosity that was given.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
@@ -7,10 +7,10 @@
 
 #include <stdio.h>
 
-/* What an option needs. */
+/* What an option needs, and whether the model has it. */
 typedef struct need {
   const char *option, *needs;
-  bool met;
+  bool used;
 } need;
 
 static int refuse(const options_program *program, const flume *m, const need *n) {
@@ -51,7 +51,7 @@ int flume_check_unused(const options_program *program, const flume *m) {
       {"beta", "--rock, or rock in --model", rock},
   };
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-    if (!list[k].met && options_given(m->table, list[k].option))
+    if (!list[k].used && options_given(m->table, list[k].option))
       return refuse(program, m, &list[k]);
   return -1;
 }

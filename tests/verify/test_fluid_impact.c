@@ -1,7 +1,8 @@
 /* test_fluid_impact.c - a column of water breaks and strikes a wall: pressures of four sensors
  * against a record of Lobovsky, Botia-Vera, Castellana, Mas-Soler and Souto-Iglesias (2014),
- * Journal of Fluids and Structures 48, figure 18: depth H .3 m, column .6 m, tank 1.61 m; sensors
- * 3, 15, 30 and 80 mm above the bed. SPDX-License-Identifier: BSD-3-Clause */
+ * Journal of Fluids and Structures 48, figure 18, as stored with the examples of TNL-SPH (one
+ * impact, not the median of many): depth H .3 m, column .6 m, tank 1.61 m; sensors 3, 15, 30 and 80
+ * mm above the bed. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include <mps/fluid.h>
