@@ -72,3 +72,16 @@ set xlabel 't (s)'; set ylabel '(L - L_0)/L_0'; set key bottom right
 columns = 'out/verify/mps-column-collapse_--axisymmetric_--aspect_'
 plot [0:*] [0:3.2] columns.'1_--frames_0_--h_0.005/front_column.csv' every ::1 using 1:2 with lines lw 2 lc rgb blue title 'a = 1', columns.'3_--frames_0_--h_0.005/front_column.csv' every ::1 using 1:2 with lines lw 2 lc rgb green title 'a = 3', 1.24 dt '--' lc rgb blue title 'Lube et al., a = 1', 2.771 dt '--' lc rgb green title 'a = 3'
 unset multiplot
+
+# ---- spheres on grains -----------------------------------------------------------------------
+set terminal pngcairo size 900,480 enhanced font 'DejaVu Sans,11'
+set output 'docs/images/textbook-crater.png'
+set title 'Spheres of 25 mm dropped on glass beads, D/20'
+set xlabel 't after impact (s)'; set ylabel 'depth of the lowest point (mm)'; set key outside right top
+balls = 'out/verify/test-verify-textbook_crater_20/'
+ball = 'crater_steel crater_glass_high crater_glass crater_wood'
+said = '"steel, 0.1 m" "glass, 0.4 m" "glass, 0.1 m" "wood, 0.1 m"'
+depth = '30.57 24.04 15.59 8.61'
+shade = grey.' '.green.' '.blue.' '.'#d95f02'
+plot [0:0.2] [0:36] for [k=1:4] balls.word(ball, k).'.csv' every ::1 using 1:($2*1e3) with lines lw 2 lc rgb word(shade, k) title word(said, k), \
+  for [k=1:4] word(depth, k) + 0 dt '--' lc rgb word(shade, k) title (k == 4 ? 'Uehara et al. (2003)' : '')

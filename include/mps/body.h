@@ -12,9 +12,10 @@
  *
  * A prescribed body follows signals, or the motion of mps_body_set_motion; a free body moves by the
  * forces on it. Solvers exert forces on it by contacts (mps/contact.h) and as a fluid around it
- * (mps_fluid_add_contact). At most one solver advances the body; otherwise the caller does, by
- * mps_body_advance. Thread rule: one thread at a time per body (and context).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * (mps_fluid_add_contact). In axisymmetry (mps/mpm.h) a free body moves along y, its axis, alone:
+ * radial forces cancel around the ring, as do moments. At most one solver advances the body;
+ * otherwise the caller does, by mps_body_advance. Thread rule: one thread at a time per body (and
+ * context). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_BODY_H
 #define LIBMPS_BODY_H
 
@@ -182,8 +183,9 @@ static inline mps_body_motion mps_body_motion_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *motion);
 
 /** A load on a free body from now on: force[3] (N) at the reference point, moment[3] (N m), both in
- *  space; NULL is zero. In 2D force[2], moment[0] and moment[1] must be 0. MPS_ERROR_ARGUMENT: a
- *  value that is not finite, or not 0 in 2D; MPS_ERROR_STATE: a prescribed body. */
+ *  space; NULL is zero. In 2D force[2], moment[0] and moment[1] must be 0, in axisymmetry force[0]
+ *  and moment[2] too. MPS_ERROR_ARGUMENT: a value that is not finite, or not 0 there;
+ *  MPS_ERROR_STATE: a prescribed body. */
 MPS_API MPS_NODISCARD mps_status mps_body_set_load(mps_body *body, const double *force,
                                                    const double *moment);
 /** Advances the body by dt (s, > 0): a prescribed one along its signals, a free one under gravity,

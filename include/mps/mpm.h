@@ -161,10 +161,12 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material
  *  or the destruction of the solver. `contact`, which may be NULL, receives the caller's handle.
  *  The body keeps its own time. Each contact is with another body, and bodies may not
  *  overlap by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two cells
- *  or particles lie inside it, unless `def` allows it. A moving body limits the step: its surface
- *  moves at most `courant` cells in one. Edges of a body that end in the ground, such as the tip of
- *  a wall, act as if the body were up to 0.7 cells wider there. With MPS_CONTACT_METHOD_PENALTY a
- *  warning is logged for a contact stiffness k dt^2/m > 6, with which contacts chatter. */
+ *  or particles lie inside it, unless `def` allows it, and for a free body in axisymmetry that has
+ *  a radial velocity, gravity or load, or a spin: it moves along y alone. A moving body limits the
+ *  step: its surface moves at most `courant` cells in one. Edges of a body that end in the ground,
+ *  such as the tip of a wall, act as if the body were up to 0.7 cells wider there. With
+ *  MPS_CONTACT_METHOD_PENALTY a warning is logged for a contact stiffness k dt^2/m > 6, with which
+ *  contacts chatter. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body,
                                                      const mps_contact_def *def,
                                                      mps_contact **contact);

@@ -143,6 +143,7 @@ static void advance_velocity(mps_body *body, const mpsi_load *contact, double dt
   const mps_body_def *def = &body->def;
   mpsi_pose *pose = &body->pose;
   for (int c = 0; c < 3; c++) {
+    if (!mpsi_body_gives(body, c)) continue;
     const double load = body->load.force[c], before = pose->v[c];
     const double v = before + dt * ((load + contact->force[c]) / def->mass + def->gravity[c]);
     const double middle = body->middle_v[c] = 0.5 * (before + v);
@@ -204,6 +205,7 @@ void mpsi_body_advance(mps_body *body, double dt) {
   for (int c = 0; c < 3; c++) contact.force[c] /= dt, contact.moment[c] /= dt;
   memset(&body->pending, 0, sizeof body->pending);
   advance_velocity(body, &contact, dt);
+  if (body->axial) return;
   if (body->dim == 2)
     spin_in_plane(body, &contact, dt);
   else
@@ -312,6 +314,15 @@ static mps_status check_motion(mps_body *body, const char *function, const mps_b
   return MPS_OK;
 }
 
+mps_status mpsi_body_check_axial(mps_context *context, const char *function, const double *velocity,
+                                 const double *spin, const double *gravity) {
+  if (velocity[0] == 0.0 && spin[2] == 0.0 && gravity[0] == 0.0) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "velocity[0] is %g m/s, spin[2] %g rad/s and gravity[0] %g m/s2: a free body in "
+                   "axisymmetry moves along its axis alone, they must be 0",
+                   velocity[0], spin[2], gravity[0]);
+}
+
 mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motion) {
   if (!body) return MPS_ERROR_ARGUMENT;
   const bool free_body = body->def.motion == MPS_BODY_MOTION_FREE;
@@ -327,6 +338,9 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
   }
   mps_status status = MPSI_DEF_READ(body->context, __func__, mps_body_motion, user_motion, &motion);
   if (status == MPS_OK) status = check_motion(body, __func__, &motion);
+  if (status == MPS_OK && free_body && body->axial)
+    status = mpsi_body_check_axial(body->context, __func__, motion.velocity, motion.spin,
+                                   body->def.gravity);
   if (status != MPS_OK) return status;
   mpsi_pose *pose = &body->pose;
   body->outside = !free_body;
@@ -363,6 +377,12 @@ mps_status mps_body_set_load(mps_body *body, const double *force, const double *
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "force[2] is %g, moment[0] %g and moment[1] %g, must be 0 in 2D",
                      load.force[2], load.moment[0], load.moment[1]);
+  if (body->axial && (load.force[0] != 0.0 || load.moment[2] != 0.0))
+    return mpsi_fail(
+        body->context, __func__, MPS_ERROR_ARGUMENT,
+        "force[0] is %g N and moment[2] %g N m: a free body in axisymmetry moves along "
+        "its axis alone, they must be 0",
+        load.force[0], load.moment[2]);
   body->load = load;
   return MPS_OK;
 }

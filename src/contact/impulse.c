@@ -32,6 +32,7 @@ double mpsi_impulse_aim(double gap, double dt, double usual, double speed) {
 static void spin_by(const mps_body *body, const double *m, double *spin) {
   const double *R = body->pose.R;
   for (int c = 0; c < 3; c++) spin[c] = 0.0;
+  if (body->axial) return;
   for (int a = body->dim == 2 ? 2 : 0; a < 3; a++) {
     const double own = (R[a] * m[0] + R[3 + a] * m[1] + R[6 + a] * m[2]) / body->def.inertia[a];
     for (int c = 0; c < 3; c++) spin[c] += R[3 * c + a] * own;
@@ -50,14 +51,16 @@ void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double 
   spin_by(body, moment, spin);
   for (int c = 0; c < 3; c++) {
     const double force = dt * body->load.force[c] + body->pending.force[c];
-    b->v[c] = b->left[0] * (b->v[c] + force / def->mass + dt * def->gravity[c]);
     b->spin[c] = b->left[1] * (b->spin[c] + spin[c]);
+    if (!mpsi_body_gives(body, c)) continue;
+    b->v[c] = b->left[0] * (b->v[c] + force / def->mass + dt * def->gravity[c]);
   }
 }
 
 double mpsi_impulse_mobility(const mps_body *body, const double *x, const double *along) {
   if (body->def.motion == MPS_BODY_MOTION_DRIVEN) return 0.0;
   double r[3], arm[3], spin[3];
+  if (body->axial) return along[1] * along[1] / body->def.mass;
   for (int c = 0; c < 3; c++) r[c] = x[c] - body->pose.x[c];
   mpsi_cross3(r, along, arm);
   spin_by(body, arm, spin);
@@ -71,8 +74,8 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) 
   mpsi_cross3(by, r, moment); /* r x -by */
   spin_by(b->body, moment, spin);
   for (int c = 0; c < 3; c++) {
-    b->v[c] -= b->left[0] * by[c] / b->body->def.mass;
     b->spin[c] += b->left[1] * spin[c];
+    if (mpsi_body_gives(b->body, c)) b->v[c] -= b->left[0] * by[c] / b->body->def.mass;
   }
 }
 

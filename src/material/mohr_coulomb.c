@@ -181,11 +181,11 @@ static void order(const double *value, int *rank) {
 /* ---- gaps ------------------------------------------------------------------------------------ */
 
 /* Largest fraction of the deviator of s that the pyramid and the cut-off allow at the mean stress
- * p. */
+ * p: 0 to 1. At the apex the room is 0 to rounding, of either sign, and the deviator may be 0. */
 static double share_at(const mpsi_law *law, const double *s, double mean, double p) {
   const double d1 = s[0] - mean, d3 = s[2] - mean;
   const double need = (d1 - d3) + (d1 + d3) * law->sin_phi;
-  const double room = 2.0 * (law->c_cos_phi - p * law->sin_phi);
+  const double room = fmax(0.0, 2.0 * (law->c_cos_phi - p * law->sin_phi));
   double share = need > room ? room / need : 1.0;
   if (share * d1 > law->cut - p) share = (law->cut - p) / d1;
   return share;

@@ -310,6 +310,64 @@ static void driven_too_deep_is_told(void **state) {
   }
 }
 
+/* A disc of 1 kg over a block in axisymmetry: forces along r and moments cancel around the ring.
+ */
+static void free_bodies_stay_on_the_axis(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  def.cell = 0.02;
+  def.lower[1] = 0.0;
+  mpm_scene_solve(&s, &def);
+  const struct {
+    double sideways, spin, gravity, load;
+    const char *refusal; /* NULL: none */
+  } list[] = {{0.1, 0.0, 0.0, 0.0, "velocity[0] is 0.1 m/s"},
+              {0.0, 2.0, 0.0, 0.0, "spin[2] 2 rad/s"},
+              {0.0, 0.0, -9.81, 0.0, "gravity[0] -9.81 m/s2"},
+              {0.0, 0.0, 0.0, 5.0, "force[0] 5 N"},
+              {0.0, 0.0, 0.0, 0.0, NULL}};
+  mps_body *body = NULL;
+  for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
+    mps_body_def free_def = mps_body_defaults();
+    const double force[3] = {list[k].load, 0.0, 0.0};
+    free_def.motion = MPS_BODY_MOTION_FREE;
+    free_def.position[1] = 0.16;
+    free_def.mass = 1.0, free_def.inertia[2] = 0.01;
+    free_def.velocity[0] = list[k].sideways, free_def.velocity[1] = -1.0;
+    free_def.spin[2] = list[k].spin;
+    free_def.gravity[0] = list[k].gravity, free_def.gravity[1] = -9.81;
+    mps_body_destroy(&body);
+    mps_assert_ok(context, mps_body_create_disc(context, &free_def, 0.05, &body));
+    mps_assert_ok(context, mps_body_set_load(body, force, NULL));
+    const mps_contact_def contact = mps_contact_defaults();
+    if (list[k].refusal)
+      REFUSES(list[k].refusal, mps_mpm_add_contact(s.mpm, body, &contact, NULL));
+    else
+      mps_assert_ok(context, mps_mpm_add_contact(s.mpm, body, &contact, NULL));
+  }
+  const double sideways[3] = {1.0, 0.0, 0.0};
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.spin[2] = 1.0;
+  REFUSES("force[0] is 1 N", mps_body_set_load(body, sideways, NULL));
+  REFUSES("spin[2] 1 rad/s", mps_body_set_motion(body, &motion));
+  mpm_scene plane = block_at(0.0);
+  const mps_contact_def contact = mps_contact_defaults();
+  REFUSES("another solver, which is axisymmetric",
+          mps_mpm_add_contact(plane.mpm, body, &contact, NULL));
+  mps_body_state now;
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.05, 100000, NULL, NULL));
+  mps_assert_ok(context, mps_body_get_state(body, &now));
+  mps_assert_near(now.position[0], 0.0, 0.0);
+  mps_assert_near(now.rotation[2], 0.0, 0.0);
+  assert_true(now.velocity[1] > -0.5); /* falling freely it would have -1.5 m/s */
+  mpm_scene_end(&plane);
+  mpm_scene_end(&s);
+  mps_body_destroy(&body);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(bad_definitions),
                                      cmocka_unit_test(tells_who_touches),
@@ -318,6 +376,7 @@ int main(void) {
                                      cmocka_unit_test(thin_plates_are_refused),
                                      cmocka_unit_test(wedges_are_no_walls),
                                      cmocka_unit_test(covered_particles_are_refused),
-                                     cmocka_unit_test(driven_too_deep_is_told)};
+                                     cmocka_unit_test(driven_too_deep_is_told),
+                                     cmocka_unit_test(free_bodies_stay_on_the_axis)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -213,12 +213,34 @@ static void a_thrown_column_lands_as_high_as_it_was(void **state) {
   }
 }
 
+/* At the apex the deviator is 0 and so is the room for it, to rounding: no quotient of the two. */
+static void opens_further_at_the_apex(void **state) {
+  (void)state;
+  for (int degrees = 1; degrees <= 60; degrees++) {
+    mps_material_mohr_coulomb_def def = mps_material_mohr_coulomb_defaults();
+    mps_material *material = NULL;
+    def.young = E;
+    def.friction = degrees * PI / 180.0;
+    def.cohesion = 1.0;
+    mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &def, &material));
+    mps_material_point point = point_under(material, 0.0);
+    const double apex = 1.0 / tan(def.friction);
+    for (int k = 1; k <= 3; k++) {
+      swell(material, &point, 1e-3);
+      for (int c = 0; c < 3; c++) mps_assert_near(point.stress[c], apex, 1e-9 * apex);
+      mps_assert_near(point.history[1], 1e-3 * k - apex / bulk, 1e-12);
+    }
+    mps_material_destroy(&material);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sand_closes_its_gap_before_it_resists),
       cmocka_unit_test(trembling_does_not_wear_the_volume_away),
       cmocka_unit_test(cohesion_pulls_only_on_opening),
       cmocka_unit_test(shear_beside_a_gap_has_the_strength_of_its_mean_stress),
+      cmocka_unit_test(opens_further_at_the_apex),
       cmocka_unit_test(no_path_gives_energy),
       cmocka_unit_test(a_thrown_column_lands_as_high_as_it_was),
   };

@@ -30,6 +30,24 @@ static mps_status check_body(mps_context *context, const mpsi_grid *grid,
   return MPS_OK;
 }
 
+/* A body on the axis of one solver has nothing to do with a plane one. */
+static mps_status check_geometry(mps_context *context, const mpsi_grid *grid, const char *function,
+                                 const mps_body *body) {
+  const bool axial = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  if (body->sources && axial != body->axial)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the body is in contact with another solver, which is %saxisymmetric: make "
+                     "a body for each",
+                     axial ? "not " : "");
+  if (!axial || body->def.motion != MPS_BODY_MOTION_FREE) return MPS_OK;
+  if (body->load.force[0] != 0.0 || body->load.moment[2] != 0.0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the load on the body has force[0] %g N and moment[2] %g N m: a free body in "
+                     "axisymmetry moves along its axis alone, they must be 0",
+                     body->load.force[0], body->load.moment[2]);
+  return mpsi_body_check_axial(context, function, body->pose.v, body->pose.spin, body->def.gravity);
+}
+
 /* Refuses overlapping bodies. Half spaces may overlap, as a floor and a wall do. */
 static mps_status check_overlap(mps_context *context, const mpsi_grid *grid,
                                 const mpsi_contacts *contacts, const char *function,
@@ -268,6 +286,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK) status = mpsi_particles_ready(mpm->p.set, __func__);
   if (status == MPS_OK)
     status = check_body(mpm->context, &mpm->grid, &mpm->contact, __func__, body);
+  if (status == MPS_OK) status = check_geometry(mpm->context, &mpm->grid, __func__, body);
   if (status == MPS_OK)
     status = check_overlap(mpm->context, &mpm->grid, &mpm->contact, __func__, body);
   if (status == MPS_OK)
@@ -300,6 +319,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   }
   warn_of_areas(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, contact);
   mpsi_contact_join(contact);
+  body->axial = mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   mpm->contact.state[mpm->contact.bodies] = (mpsi_contact_state){.mass = 0.0};
   mpm->contact.handle[mpm->contact.bodies] = contact;
   mpm->contact.body[mpm->contact.bodies++] = body;
