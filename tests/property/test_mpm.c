@@ -4,7 +4,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 
 static uint64_t seed = 1;
 
