@@ -5,6 +5,7 @@
 #define MPS_TEST_MPM_CUT_REFERENCE_H
 
 #include "mpm/base/loops.h"
+#include "mpm/base/mpm_solver.h"
 
 /* Inverse of a symmetric positive definite matrix by Gauss and Jordan; returns its determinant. */
 static inline double reference_invert(int n, double m[4][4]) {

@@ -214,8 +214,8 @@ mps_status mps_contact_get_particles(const mps_contact *handle, int64_t capacity
                      count ? "given" : "NULL");
   if (!contact->owner)
     return mpsi_fail(contact->context, __func__, MPS_ERROR_STATE, "the contact has ended");
-  return contact->kind->particles(contact->owner, contact, capacity, count, ids, gap, normal, force,
-                                  foot);
+  const mpsi_contact_list list = {capacity, ids, gap, normal, force, foot};
+  return contact->kind->particles(contact->owner, contact, &list, count);
 }
 
 /* ---- for solvers ----------------------------------------------------------------------------- */

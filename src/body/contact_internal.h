@@ -5,14 +5,22 @@
 
 #include "body_internal.h"
 
+/* Arrays of mps_contact_get_particles, with room for `capacity` particles; NULL: not wanted. */
+typedef struct mpsi_contact_list {
+  int64_t capacity;
+  int64_t *ids;
+  double *gap, *normal, *force, *foot;
+} mpsi_contact_list;
+
 /* Functions of a kind of solver for the handles of its contacts. */
 typedef struct mpsi_contact_owner {
   /* MPS_ERROR_STATE where the contact cannot end now. */
   mps_status (*check)(void *owner, const char *function);
   /* The solver removes the contact, and releases its reference by mpsi_contact_leave. */
   void (*end)(void *owner, mps_contact *contact);
-  mps_status (*particles)(void *owner, mps_contact *contact, int64_t capacity, int64_t *count,
-                          int64_t *ids, double *gap, double *normal, double *force, double *foot);
+  /* Lists the particles in contact with the body; `count`: all of them, whatever the capacity. */
+  mps_status (*particles)(void *owner, mps_contact *contact, const mpsi_contact_list *out,
+                          int64_t *count);
   /* Writes the reaction by one part of the body; NULL: that of `source` is this. */
   void (*reaction)(const void *owner, const mps_contact *contact, int32_t part, mps_reaction *out);
 } mpsi_contact_owner;

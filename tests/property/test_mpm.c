@@ -4,7 +4,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 
 static uint64_t seed = 1;
 
@@ -61,7 +61,8 @@ static mpm_scene crowded(int32_t geometry, int32_t spline, bool keep_out) {
   def.walls = MPS_MPM_WALLS_FIT; /* mirrors: test_mpm_mirror.c */
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0, def.upper[c] = side;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mpsi_mpm_update_boundaries(s.mpm, "test", MPS_OK));
+  const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(s.mpm);
+  mps_assert_ok(context, mpsi_mpm_update_boundaries(&boundaries, "test", MPS_OK));
   for (int b = 0; b < count; b++) {
     mps_contact_def contact = mps_contact_defaults();
     contact.inside = MPS_CONTACT_INSIDE_PUSH;

@@ -103,7 +103,8 @@ static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
   def.walls = walls;
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0, def.upper[c] = CELLS * CELL;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mpsi_mpm_update_boundaries(s.mpm, "test", MPS_OK));
+  const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(s.mpm);
+  mps_assert_ok(context, mpsi_mpm_update_boundaries(&boundaries, "test", MPS_OK));
   add_bodies(s.mpm, dim);
   const int64_t n = s.mpm->p.count;
   for (int64_t k = 0; k < n; k++) {

@@ -4,6 +4,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
+#include "mpm/base/mpm_solver.h"
 #include "mpm/contact/particle.h"
 
 #define PI 3.14159265358979323846

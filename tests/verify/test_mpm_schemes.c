@@ -7,7 +7,7 @@
 
 #include <mps/experimental.h>
 
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 
 #define PI 3.14159265358979323846
 

@@ -37,9 +37,8 @@ mps_status mpsi_mpm_compare_edits(const mpsi_contacts *contacts, mpsi_partition 
   return MPS_OK;
 }
 
-/* State that is equal on all ranks: time, step, positions of bodies. */
-static void give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
-                       mpsi_given *list) {
+void mpsi_mpm_give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
+                         mpsi_given *list) {
   mpsi_given_begin(list);
   mpsi_give(list, "the solver's time", run->time);
   mpsi_give(list, "the solver's number of steps", (double)run->steps);
@@ -47,36 +46,12 @@ static void give_state(const mpsi_contacts *contacts, const mpsi_run *run, const
   for (int32_t b = 0; b < contacts->bodies; b++) mpsi_body_give_state(list, contacts->body[b]);
 }
 
-/* Values of the signals in the step to be made. */
-static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
-                         const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
-                         const mpsi_settling *settling, mpsi_given *list) {
-  for (int32_t k = 0; k < boundaries->holds; k++)
-    if (boundaries->hold[k].kind != MPSI_BOUNDARY_NONE)
-      mpsi_give_vector(list, "the velocity of a boundary", grid->dim, boundaries->hold[k].v);
-  for (int32_t k = 0; k < loads->count; k++)
-    if (loads->traction[k].count > 0)
-      mpsi_give_vector(list, "the present factor on a load", grid->dim, loads->traction[k].now);
-  for (int32_t b = 0; b < contacts->bodies && !settling->on; b++)
-    if (contacts->handle[b]->source.moves) mpsi_body_give_ahead(list, contacts->body[b]);
-}
-
 mps_status mpsi_mpm_agree_alike(const mpsi_contacts *contacts, mpsi_partition *partition,
                                 const mpsi_run *run, const mps_mpm_def *def, const char *function,
                                 mps_status status, int32_t count, double *values) {
   mpsi_given list;
-  give_state(contacts, run, def, &list);
+  mpsi_mpm_give_state(contacts, run, def, &list);
   return mpsi_domain_agree_given_max(partition->domain, function, status, &list, count, values);
-}
-
-mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
-                                  int32_t count, double *values) {
-  mpsi_given list;
-  give_state(&mpm->contact, &mpm->run, &mpm->def, &list);
-  if (status == MPS_OK)
-    give_signals(&mpm->grid, &mpm->loads, &mpm->boundaries, &mpm->contact, &mpm->settling, &list);
-  return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
-                                     values);
 }
 
 mps_status mpsi_mpm_agree(mpsi_partition *partition, const char *function, mps_status status) {
@@ -104,24 +79,22 @@ mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
 
 /* ---- particles that the caller adds and removes ---------------------------------------------- */
 
-mps_status mpsi_mpm_agree_on_insertion(void *self, const char *function, mps_status status,
-                                       int64_t first) {
-  mps_mpm *mpm = self;
-  const int64_t count = mps_particles_count(mpm->p.set) - first;
+mps_status mpsi_mpm_compare_added(const mpsi_grid *grid, const mpsi_columns *p,
+                                  mpsi_partition *partition, const char *function,
+                                  mps_status status, int64_t first) {
+  const int64_t count = mps_particles_count(p->set) - first;
   uint64_t hash = mpsi_hash(MPSI_HASH, &count, sizeof count);
-  for (int c = 0; c < mpm->grid.dim; c++) /* columns may have moved */
-    hash = mpsi_hash(hash, mpsi_particles_column(mpm->p.set, "position", c) + first,
+  for (int c = 0; c < grid->dim; c++) /* columns may have moved */
+    hash = mpsi_hash(hash, mpsi_particles_column(p->set, "position", c) + first,
                      (size_t)count * sizeof(double));
-  return mpsi_domain_agree_same(mpm->partition->domain, function, status,
+  return mpsi_domain_agree_same(partition->domain, function, status,
                                 "a hash of the particles to add", mpsi_hash_short(hash));
 }
 
-/* Ids of removed particles over all ranks: each rank lists particles that it has, or all ranks the
- * same list. */
-mps_status mpsi_mpm_find_removed(void *self, const char *function, mps_status status, int64_t count,
+mps_status mpsi_mpm_count_listed(mps_context *context, mpsi_partition *partition,
+                                 const char *function, mps_status status, int64_t count,
                                  const int64_t *ids, int64_t known, int64_t *all) {
-  mps_mpm *mpm = self;
-  mps_domain *domain = mpm->partition->domain;
+  mps_domain *domain = partition->domain;
   double found[4] = {0.0};
   if (status == MPS_OK) {
     found[0] = mpsi_hash_short(mpsi_hash(MPSI_HASH, ids, (size_t)count * sizeof *ids));
@@ -135,13 +108,13 @@ mps_status mpsi_mpm_find_removed(void *self, const char *function, mps_status st
   status = mpsi_domain_sum(domain, function, 1, &known);
   if (status != MPS_OK) return status;
   if (found[0] != -found[1])
-    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "of %lld ids some are of particles that this rank does not have, and other "
                        "ranks give other ids: give all ranks the same list, or each one ids of its "
                        "own particles",
                        (long long)count);
   else if (known != count)
-    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "of %lld ids %lld are of particles of the set on any rank", (long long)count,
                        (long long)known);
   return mpsi_domain_agree(domain, function, status);

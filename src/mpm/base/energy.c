@@ -232,20 +232,21 @@ static void add_springs(const mpsi_grid *grid, const mpsi_columns *p, const mpsi
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function) {
-  mpsi_energy *e = &mpm->energy;
+mps_status mpsi_mpm_energy_begin(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 const mpsi_contacts *contacts, mpsi_energy *e,
+                                 const mps_mpm_def *def, const char *function) {
   if (!e->counts) return MPS_OK;
-  const int64_t cells = mpm->grid.cell_count, nodes = mpsi_all_nodes(&mpm->grid);
-  if (!mpsi_room_ensure(mpm->context, &e->cells_room, cells, sizeof *e->cells) ||
-      !mpsi_room_ensure(mpm->context, &e->nodes_room, nodes, sizeof *e->nodes))
-    return mpsi_fail_memory(mpm->context, function,
+  const int64_t cells = grid->cell_count, nodes = mpsi_all_nodes(grid);
+  if (!mpsi_room_ensure(context, &e->cells_room, cells, sizeof *e->cells) ||
+      !mpsi_room_ensure(context, &e->nodes_room, nodes, sizeof *e->nodes))
+    return mpsi_fail_memory(context, function,
                             (size_t)cells * sizeof *e->cells + (size_t)nodes * sizeof *e->nodes);
   e->cells = e->cells_room.item;
   e->nodes = e->nodes_room.item;
   if (cells > 0) memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
   if (nodes > 0) memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
   memset(e->step, 0, sizeof e->step);
-  add_springs(&mpm->grid, &mpm->p, &mpm->contact, &mpm->energy, &mpm->def, -1.0);
+  add_springs(grid, p, contacts, e, def, -1.0);
   return MPS_OK;
 }
 
@@ -277,16 +278,17 @@ static void add_nodes(const mpsi_grid *grid, mpsi_partition *partition, mpsi_ene
   }
 }
 
-void mpsi_mpm_energy_end(mps_mpm *mpm) {
-  mpsi_energy *e = &mpm->energy;
+void mpsi_mpm_energy_end(const mpsi_grid *grid, const mpsi_columns *p,
+                         const mpsi_contacts *contacts, mpsi_partition *partition, mpsi_energy *e,
+                         const mps_mpm_def *def) {
   const double bodies = e->bodies; /* equal on all ranks: one counts it */
   e->work_bodies += bodies;
   e->bodies = 0.0;
   if (!e->counts) return;
-  add_cells(&mpm->grid, &mpm->energy);
-  add_nodes(&mpm->grid, mpm->partition, &mpm->energy);
-  add_springs(&mpm->grid, &mpm->p, &mpm->contact, &mpm->energy, &mpm->def, 1.0);
-  if (!mpm->partition || mps_domain_rank(mpm->partition->domain) == 0)
-    mpsi_mpm_energy_add(&mpm->energy, MPSI_ENERGY_STEPPING, bodies);
+  add_cells(grid, e);
+  add_nodes(grid, partition, e);
+  add_springs(grid, p, contacts, e, def, 1.0);
+  if (!partition || mps_domain_rank(partition->domain) == 0)
+    mpsi_mpm_energy_add(e, MPSI_ENERGY_STEPPING, bodies);
   for (int k = 0; k < MPSI_ENERGY_SUMS; k++) mpsi_exact_merge(&e->sum[k], &e->step[k]);
 }

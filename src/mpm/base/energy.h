@@ -82,7 +82,9 @@ typedef struct mpsi_before_law {
 void mpsi_mpm_energy_add(mpsi_energy *budget, mpsi_energy_sum which, double energy);
 void mpsi_mpm_energy_add_at_once(mpsi_energy *budget, mpsi_energy_sum which, double energy);
 /* Before the step: memory, and the energy of penalty contact. */
-mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_energy_begin(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 const mpsi_contacts *contacts, mpsi_energy *energy,
+                                 const mps_mpm_def *def, const char *function);
 /* Kinetic energy of particles [begin, end) of a block before and after G2P; the latter before
  * listed particles get their prescribed velocities (walls.c). */
 void mpsi_mpm_energy_before(const mpsi_grid *grid, const mpsi_columns *p, const mpsi_energy *energy,
@@ -116,6 +118,8 @@ void mpsi_mpm_energy_nodes(const mpsi_grid *grid, const mpsi_contacts *contacts,
                            const mpsi_energy *energy, double dt, int64_t g, const mpsi_node *held,
                            const mpsi_node *damped);
 /* After the step: adds its energies to the sums. */
-void mpsi_mpm_energy_end(mps_mpm *mpm);
+void mpsi_mpm_energy_end(const mpsi_grid *grid, const mpsi_columns *p,
+                         const mpsi_contacts *contacts, mpsi_partition *partition,
+                         mpsi_energy *energy, const mps_mpm_def *def);
 
 #endif

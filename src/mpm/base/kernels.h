@@ -99,36 +99,4 @@ typedef struct mpsi_inside_search {
   const mpsi_kernels *kernels;
 } mpsi_inside_search;
 
-/* The transfer of a solver, of no block of cells yet. */
-static inline mpsi_transfer mpsi_transfer_begin(mps_mpm *mpm) {
-  return (mpsi_transfer){.grid = &mpm->grid,
-                         .p = &mpm->p,
-                         .contact = &mpm->contact,
-                         .boundaries = &mpm->boundaries,
-                         .mirrors = &mpm->mirrors,
-                         .water = mpm->water,
-                         .energy = &mpm->energy,
-                         .run = &mpm->run,
-                         .def = &mpm->def};
-}
-
-/* The transfer of block of cells b by a worker. */
-static inline mpsi_transfer mpsi_transfer_of(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_transfer work = mpsi_transfer_begin(mpm);
-  work.cells = &mpm->grid.cells[b];
-  work.worker = &mpm->grid.workers[worker];
-  return work;
-}
-
-static inline mpsi_contact_stage mpsi_contact_stage_of(mps_mpm *mpm) {
-  return (mpsi_contact_stage){.context = mpm->context,
-                              .transfer = mpsi_transfer_begin(mpm),
-                              .contact = &mpm->contact,
-                              .partition = mpm->partition,
-                              .kernels = mpm->kernels,
-                              .dt = mpm->run.dt,
-                              .next_dt = mps_mpm_dt(mpm),
-                              .settling = mpm->settling.on};
-}
-
 #endif

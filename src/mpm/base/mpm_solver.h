@@ -1,33 +1,10 @@
-/* mpm_solver.h - the WLS-MPM solver structure, composed of parts that have a header each.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* mpm_solver.h - the WLS-MPM solver as a whole, for public functions and the stages of a step: its
+ * parts, and what the rooms below a step work on, made from it. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #ifndef MPSI_MPM_SOLVER_H
 #define MPSI_MPM_SOLVER_H
 
-#include "core/particles/particles_internal.h"
-#include "mpm/grid/blocks.h"
-#include "mpm/contact/thin_bodies.h"
-#include "mpm/boundary/boundaries.h"
-#include "columns.h"
-#include "mpm/step/damping.h"
-#include "energy.h"
-#include "mpm/particles/loads.h"
-#include "mpm/boundary/mirror.h"
-#include "mpm/contact/pairs.h"
-#include "run.h"
-#include "mpm/ranks/partition.h"
-#include "mpm/step/undo.h"
-
-struct mpsi_kernels;
-struct mpsi_water;
-
-/* Memory with an entry for each particle. */
-typedef struct mpsi_rooms {
-  mpsi_room radix, stencil;
-  mpsi_room strain; /* memory of the columns D */
-  mpsi_room rough;
-  mpsi_room gone;  /* marks of particles to remove; none where none can be removed */
-  mpsi_room force; /* memory of the columns f; none without loads */
-} mpsi_rooms;
+#include "kernels.h"
 
 /* The handle of mps/grid.h, which the solver owns. */
 struct mps_grid {
@@ -39,7 +16,7 @@ struct mps_mpm {
   mps_context *context;
   mpsi_holder holder; /* as a holder of the set of particles */
   mps_mpm_def def;
-  const struct mpsi_kernels *kernels;
+  const mpsi_kernels *kernels;
   mps_kernel *weights; /* weight function, for queries of the caller */
   mpsi_columns p;
   mpsi_rooms rooms;
@@ -52,99 +29,128 @@ struct mps_mpm {
   mpsi_undo undo;
   mpsi_energy energy;
   mpsi_settling settling;
-  struct mpsi_water *water;  /* pore water (water/water.h); NULL: none */
+  mpsi_water *water;         /* pore water (water/water.h); NULL: none */
   mpsi_identity *identity;   /* identity of its snapshots */
   mpsi_partition *partition; /* parts on several ranks; NULL: one rank */
 };
 
-/* Whether each node needs its velocity before the forces, so that all blocks are split. */
-static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settling *settling,
-                                     const mps_mpm_def *def) {
-  return energy->counts || settling->on || def->local_damping > 0.0;
+/* The transfer of a solver, of no block of cells yet. */
+static inline mpsi_transfer mpsi_transfer_begin(mps_mpm *mpm) {
+  return (mpsi_transfer){.grid = &mpm->grid,
+                         .p = &mpm->p,
+                         .contact = &mpm->contact,
+                         .boundaries = &mpm->boundaries,
+                         .mirrors = &mpm->mirrors,
+                         .water = mpm->water,
+                         .energy = &mpm->energy,
+                         .run = &mpm->run,
+                         .def = &mpm->def};
 }
 
-static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t particle) {
-  return &p->laws.law[p->law ? p->law[particle] : 0];
+/* The transfer of block of cells b by a worker. */
+static inline mpsi_transfer mpsi_transfer_of(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_transfer work = mpsi_transfer_begin(mpm);
+  work.cells = &mpm->grid.cells[b];
+  work.worker = &mpm->grid.workers[worker];
+  return work;
 }
 
-/* Factor of the elastic moduli of a particle's law. */
-static inline double mpsi_mpm_stiffness(const mpsi_columns *p, int64_t particle) {
-  const double *factor = mpsi_law_of(p, particle)->stiffness;
-  return factor && factor[particle] > 0.0 ? factor[particle] : 1.0;
+static inline mpsi_contact_stage mpsi_contact_stage_of(mps_mpm *mpm) {
+  return (mpsi_contact_stage){.context = mpm->context,
+                              .transfer = mpsi_transfer_begin(mpm),
+                              .contact = &mpm->contact,
+                              .partition = mpm->partition,
+                              .kernels = mpm->kernels,
+                              .dt = mpm->run.dt,
+                              .next_dt = mps_mpm_dt(mpm),
+                              .settling = mpm->settling.on};
 }
 
-/* K + 4G/3 and G (Pa) of a particle's material at zero strain. */
-static inline void mpsi_mpm_elastic(const mpsi_columns *p, int64_t particle, double *wave,
-                                    double *shear) {
-  const mps_material *material = mpsi_law_of(p, particle)->material;
-  const double factor = mpsi_mpm_stiffness(p, particle);
-  *wave = factor * mpsi_material_rest_modulus(material);
-  *shear = factor * mpsi_material_shear(material);
+static inline mpsi_rank_part mpsi_rank_part_of(mps_mpm *mpm) {
+  return (mpsi_rank_part){.context = mpm->context,
+                          .grid = &mpm->grid,
+                          .p = &mpm->p,
+                          .rooms = &mpm->rooms,
+                          .water = mpm->water,
+                          .contact = &mpm->contact,
+                          .run = &mpm->run,
+                          .def = &mpm->def,
+                          .partition = mpm->partition};
 }
 
-/* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
-static inline int64_t mpsi_own_cell(const mpsi_grid *grid, int c, double X) {
-  const int64_t cell = (int64_t)floor(X);
-  return cell < grid->high[c] ? cell : grid->high[c] - 1;
+static inline mpsi_boundary_setup mpsi_boundary_setup_of(mps_mpm *mpm) {
+  return (mpsi_boundary_setup){.context = mpm->context,
+                               .grid = &mpm->grid,
+                               .p = &mpm->p,
+                               .boundaries = &mpm->boundaries,
+                               .mirrors = &mpm->mirrors,
+                               .partition = mpm->partition,
+                               .run = &mpm->run,
+                               .def = &mpm->def};
 }
 
-/* Whether X, outside the domain along axis c, lies beyond a side that is open. */
-static inline bool mpsi_mpm_passes(const mpsi_grid *grid, const mpsi_boundaries *boundaries, int c,
-                                   double X) {
-  const bool upper = X > (double)grid->high[c];
-  return (upper || X < (double)grid->low[c]) &&
-         (boundaries->open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
+static inline mpsi_load_setup mpsi_load_setup_of(mps_mpm *mpm) {
+  return (mpsi_load_setup){.context = mpm->context,
+                           .grid = &mpm->grid,
+                           .p = &mpm->p,
+                           .rooms = &mpm->rooms,
+                           .loads = &mpm->loads,
+                           .partition = mpm->partition,
+                           .run = &mpm->run};
 }
 
-/* Number of nodes of a stencil beyond its lowest along axis c, as the loops read and write them:
- * four nodes along x whatever the spline. */
-static inline int32_t mpsi_reach(const mpsi_grid *grid, int c) { return c == 0 ? 3 : grid->spline; }
-
-/* Bytes of scratch memory of one worker. */
-static inline size_t mpsi_worker_bytes(const mpsi_grid *grid) {
-  return (size_t)grid->tile_nodes * (2 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
+static inline mpsi_contact_setup mpsi_contact_setup_of(mps_mpm *mpm) {
+  return (mpsi_contact_setup){.context = mpm->context,
+                              .grid = &mpm->grid,
+                              .p = &mpm->p,
+                              .rooms = &mpm->rooms,
+                              .contact = &mpm->contact,
+                              .partition = mpm->partition,
+                              .run = &mpm->run,
+                              .def = &mpm->def};
 }
 
-static inline int64_t mpsi_first_node(const mpsi_grid *grid, int64_t g) {
-  return mpsi_grid_first_node(grid, g);
-}
+/* ---- a step and what comes before it --------------------------------------------------------- */
 
-/* Position x[3] (m) of the node with the coordinates `local` in the block at `at`. */
-static inline void mpsi_node_position(const mpsi_grid *grid, const int32_t *at, const double *local,
-                                      double *x) {
-  for (int c = 0; c < 3; c++)
-    x[c] =
-        c < grid->dim ? grid->origin[c] + grid->cell * ((double)at[c] * MPSI_SIDE + local[c]) : 0.0;
-}
-
-/* Position x[3] (m) of node k of the block of nodes at `at`. */
-static inline void mpsi_node_place(const mpsi_grid *grid, const int32_t *at, int k, double *x) {
-  int place[3];
-  mpsi_unravel(k, MPSI_SIDE, place);
-  const double local[3] = {place[0], place[1], place[2]};
-  mpsi_node_position(grid, at, local, x);
-}
-
-/* Block of nodes under the node (i, j, k) of a tile; number of the node in it. */
-static inline int32_t mpsi_block_under(const mpsi_cell_block *cells, int i, int j, int k) {
-  return cells->to[(i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE)];
-}
-
-static inline int mpsi_local_under(int i, int j, int k) {
-  return ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE + i % MPSI_SIDE;
-}
-
-/* Node of the grid under the node (i, j, k) of a tile. */
-static inline int64_t mpsi_node_under(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
-                                      int j, int k) {
-  return mpsi_first_node(grid, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
-}
-
-/* Node of the grid with the values across thin bodies under the node (i, j, k) of a tile. */
-static inline int64_t mpsi_node_across(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
-                                       int j, int k) {
-  const int32_t across = grid->nodes[mpsi_block_under(cells, i, j, k)].across;
-  return mpsi_first_node(grid, across) + mpsi_local_under(i, j, k);
-}
+/* step_on_ranks.c: one step of dt, in one process (step.c) or on several ranks. On an error nothing
+ * has changed, unless a particle has left the domain (run.lost: the step is complete) or has values
+ * that are not finite (run.broken). */
+mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
+/* settle.c: mpsi_mpm_take_step, before which the particles stop where mps_mpm_settle was cancelled.
+ * A step that fails has changed nothing (on several ranks they stay at rest). */
+mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, double dt);
+/* signals.c: evaluates the signals of loads and boundaries, and of bodies (`moves`) at the end of
+ * the step of dt. Not collective: `function` continues with the status until all ranks agree on
+ * one. */
+mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double dt, bool moves);
+/* ready.c: applies the caller's edits, additions and removals: masses, blocks of the present
+ * positions, the Courant limit of the present velocities. */
+mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function);
+/* ready.c: MPS_ERROR_STATE in a callback of the solver, after a step that has failed, or while a
+ * field is edited. */
+mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function);
+/* ready.c: mpsi_mpm_apply_edits, refused in a callback of the solver. */
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
+/* ready.c: MPS_ERROR_STATE unless the next step changes the time in double precision. */
+mps_status mpsi_mpm_check_advance(mps_mpm *mpm, const char *function);
+/* ready.c: likewise for a step outside a run; without particles dt must be given. */
+mps_status mpsi_mpm_check_bounded(mps_mpm *mpm, const char *function);
+/* ready.c: sorts the particles by blocks and rebuilds the lists of blocks. */
+mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+/* cut.c: before a step, pairs of blocks and bodies, nodes inside bodies, and which blocks are cut
+ * and split (contact/pairs.h). `status`: of the step so far on this rank; collective where there
+ * are bodies. */
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status);
+/* ready.c: before the blocks are used: finds the ghosts of the present blocks, sorted or not.
+ * Collective. */
+mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status);
+/* ready.c: the largest c + |v| of each block of cells, and its first bad particle. */
+void mpsi_mpm_find_speeds(mps_mpm *mpm);
+/* block_results.c: results of all blocks: the largest speed, or the error of a bad particle. */
+mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);
+/* signals.c: the worst status of all ranks, whether they have the same time, bodies and signals in
+ * the step, and the largest of `count` values. Collective. */
+mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
+                                  int32_t count, double *values);
 
 #endif

@@ -1,6 +1,6 @@
 /* boundaries.c - the boundaries of a solver: sides of the domain, boxes of nodes, lists of
- * particles; their definitions and reactions. Their action in a step: walls.c, absorb.c.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * particles; their definitions and reactions (public functions: life/conditions.c). Their action in
+ * a step: walls.c, absorb.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/particles/mpm_particles.h"
 
 #include "core/base/boundary_kind.h"
@@ -143,10 +143,11 @@ static mps_status check_ids(mps_context *context, const mpsi_columns *p, mpsi_pa
   return MPS_OK;
 }
 
-static mps_status check_prescribed(mps_context *context, const mpsi_grid *grid,
-                                   const mpsi_columns *p, mpsi_partition *partition, mpsi_run *run,
-                                   const char *function, int32_t number,
-                                   const mps_mpm_boundary_def *def, mpsi_boundary *out) {
+static mps_status check_prescribed(const mpsi_boundary_setup *setup, const char *function,
+                                   int32_t number, const mps_mpm_boundary_def *def,
+                                   mpsi_boundary *out) {
+  const mpsi_grid *grid = setup->grid;
+  mps_context *context = setup->context;
   const uint32_t all = grid->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
   if (def->kind != MPS_BOUNDARY_HELD && def->kind != MPS_BOUNDARY_DRIVEN)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -156,10 +157,11 @@ static mps_status check_prescribed(mps_context *context, const mpsi_grid *grid,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
                      grid->dim == 3 ? ", MPS_DOF_Z" : "");
-  mps_status status = check_numbers(context, grid, run, function, number, def);
-  if (status == MPS_OK) status = check_ids(context, p, partition, function, def);
+  mps_status status = check_numbers(context, grid, setup->run, function, number, def);
+  if (status == MPS_OK) status = check_ids(context, setup->p, setup->partition, function, def);
   if (status == MPS_OK && !def->ids) status = find_box(context, grid, function, def, out);
-  return mpsi_mpm_check_ids(context, p, partition, function, status, def->id_count, def->ids);
+  return mpsi_mpm_check_ids(context, setup->p, setup->partition, function, status, def->id_count,
+                            def->ids);
 }
 
 /* ---- changing boundaries --------------------------------------------------------------------- */
@@ -260,23 +262,22 @@ static mps_status find_number(mps_context *context, mpsi_boundaries *b, const ch
 }
 
 /* Makes the boundary `number` one of a box or a list of particles. */
-static mps_status make_prescribed(mps_mpm *mpm, const char *function, int32_t number,
-                                  const mps_mpm_boundary_def *def) {
-  mpsi_boundary *hold = &mpm->boundaries.hold[number];
+static mps_status make_prescribed(const mpsi_boundary_setup *setup, const char *function,
+                                  int32_t number, const mps_mpm_boundary_def *def) {
+  mpsi_boundary *hold = &setup->boundaries->hold[number];
   mpsi_boundary made = {.kind = MPS_BOUNDARY_DRIVEN,
                         .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
-  mps_status status = check_prescribed(mpm->context, &mpm->grid, &mpm->p, mpm->partition, &mpm->run,
-                                       function, number, def, &made);
-  if (status == MPS_OK && !make_sums(mpm->context, hold))
-    status = mpsi_fail_memory(mpm->context, function, sizeof *hold->sums);
+  mps_status status = check_prescribed(setup, function, number, def, &made);
+  if (status == MPS_OK && !make_sums(setup->context, hold))
+    status = mpsi_fail_memory(setup->context, function, sizeof *hold->sums);
   if (status == MPS_OK && def->ids) {
-    made.ids = mpsi_alloc(mpm->context, def->id_count, sizeof *made.ids);
+    made.ids = mpsi_alloc(setup->context, def->id_count, sizeof *made.ids);
     if (!made.ids)
-      status = mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
+      status = mpsi_fail_memory(setup->context, function, (size_t)def->id_count * sizeof *made.ids);
   }
-  status = mpsi_mpm_agree(mpm->partition, function, status);
+  status = mpsi_mpm_agree(setup->partition, function, status);
   if (status != MPS_OK) {
-    mpsi_free(mpm->context, made.ids);
+    mpsi_free(setup->context, made.ids);
     return status;
   }
   if (def->ids) {
@@ -286,8 +287,8 @@ static mps_status make_prescribed(mps_mpm *mpm, const char *function, int32_t nu
   if (hold->kind == MPSI_BOUNDARY_NONE || made.ids || hold->ids ||
       memcmp(made.first, hold->first, sizeof made.first) != 0 ||
       memcmp(made.last, hold->last, sizeof made.last) != 0)
-    mpm->boundaries.outdated = true;
-  mpsi_free(mpm->context, hold->ids);
+    setup->boundaries->outdated = true;
+  mpsi_free(setup->context, hold->ids);
   hold->kind = made.kind;
   hold->dofs = made.dofs;
   hold->ids = made.ids;
@@ -328,24 +329,24 @@ static mps_status compare_ranks(const mpsi_grid *grid, mpsi_partition *partition
   return mpsi_domain_agree_given(partition->domain, function, status, &given);
 }
 
-/* ---- public functions ------------------------------------------------------------------------ */
+/* ---- what the caller asks for ---------------------------------------------------------------- */
 
-mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, int32_t *number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_mpm_add_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                 const mps_mpm_boundary_def *user, int32_t *number) {
   mps_mpm_boundary_def def = boundary_defaults;
-  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
-  if (status == MPS_OK) status = read_def(mpm->context, __func__, user, &def);
+  mps_status status = mpsi_mpm_between_steps(setup->context, setup->run, function);
+  if (status == MPS_OK) status = read_def(setup->context, function, user, &def);
   int32_t at = MPSI_SIDES;
-  if (status == MPS_OK) status = find_number(mpm->context, &mpm->boundaries, __func__, &at);
-  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, -1, &def);
+  if (status == MPS_OK) status = find_number(setup->context, setup->boundaries, function, &at);
+  status = compare_ranks(setup->grid, setup->partition, function, status, -1, &def);
   if (status != MPS_OK) return status;
-  status = make_prescribed(mpm, __func__, at, &def);
+  status = make_prescribed(setup, function, at, &def);
   if (status != MPS_OK) return status;
-  mpsi_boundary *hold = &mpm->boundaries.hold[at];
+  mpsi_boundary *hold = &setup->boundaries->hold[at];
   mpsi_exact_merge(
-      &mpm->boundaries.work,
+      &setup->boundaries->work,
       &hold->sums->all[MPSI_BOUNDARY_WORK]); /* work of a former boundary with this number */
-  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->step[MPSI_BOUNDARY_WORK]);
+  mpsi_exact_merge(&setup->boundaries->work, &hold->sums->step[MPSI_BOUNDARY_WORK]);
   memset(hold->sums, 0, sizeof *hold->sums);
   hold->count = hold->removed = 0;
   if (number) *number = at;
@@ -370,42 +371,44 @@ static mps_status find(mps_context *context, const mpsi_grid *grid,
       number);
 }
 
-mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_mpm_set_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                 int32_t number, const mps_mpm_boundary_def *user) {
   mps_mpm_boundary_def def = boundary_defaults;
-  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
-  if (status == MPS_OK) status = find(mpm->context, &mpm->grid, &mpm->boundaries, __func__, number);
-  if (status == MPS_OK) status = read_def(mpm->context, __func__, user, &def);
-  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, number, &def);
+  mps_status status = mpsi_mpm_between_steps(setup->context, setup->run, function);
+  if (status == MPS_OK)
+    status = find(setup->context, setup->grid, setup->boundaries, function, number);
+  if (status == MPS_OK) status = read_def(setup->context, function, user, &def);
+  status = compare_ranks(setup->grid, setup->partition, function, status, number, &def);
   if (status != MPS_OK) return status;
-  mpsi_boundary *hold = &mpm->boundaries.hold[number];
-  if (number >= MPSI_SIDES) return make_prescribed(mpm, __func__, number, &def);
+  mpsi_boundary *hold = &setup->boundaries->hold[number];
+  if (number >= MPSI_SIDES) return make_prescribed(setup, function, number, &def);
   status = mpsi_mpm_agree(
-      mpm->partition, __func__,
-      check_side(mpm->context, &mpm->grid, &mpm->run, &mpm->def, __func__, number, &def));
+      setup->partition, function,
+      check_side(setup->context, setup->grid, setup->run, setup->def, function, number, &def));
   if (status != MPS_OK) return status;
   /* a side that is driven is held, and moves with its signals; DRIVEN is of boxes and particles */
   const int32_t kind = def.kind == MPS_BOUNDARY_DRIVEN ? MPS_BOUNDARY_HELD : def.kind;
   if (hold->kind != kind || kind == MPS_BOUNDARY_ABSORBING) {
-    place_side(&mpm->grid, &mpm->boundaries, number, kind);
-    mpm->boundaries.outdated = true;
+    place_side(setup->grid, setup->boundaries, number, kind);
+    setup->boundaries->outdated = true;
   }
   take_numbers(hold, &def);
   return MPS_OK;
 }
 
-mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
-  if (status == MPS_OK) status = find(mpm->context, &mpm->grid, &mpm->boundaries, __func__, number);
-  if (status == MPS_OK && on_axis(&mpm->grid, &mpm->def, number))
-    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+mps_status mpsi_mpm_remove_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                    int32_t number) {
+  mps_status status = mpsi_mpm_between_steps(setup->context, setup->run, function);
+  if (status == MPS_OK)
+    status = find(setup->context, setup->grid, setup->boundaries, function, number);
+  if (status == MPS_OK && on_axis(setup->grid, setup->def, number))
+    status = mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
                        "number: boundary is 0, the axis r = 0, which cannot be free");
-  if (mpm->partition)
-    status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "boundary", number);
+  if (setup->partition)
+    status = mpsi_domain_agree_same(setup->partition->domain, function, status, "boundary", number);
   if (status != MPS_OK) return status;
-  drop(mpm->context, &mpm->boundaries.hold[number]);
-  mpm->boundaries.outdated = true;
+  drop(setup->context, &setup->boundaries->hold[number]);
+  setup->boundaries->outdated = true;
   return MPS_OK;
 }
 
@@ -441,29 +444,26 @@ static mps_status sum_ranks(mpsi_partition *partition, const char *function,
   return mpsi_domain_sum_exact(partition->domain, function, 2 * MPSI_BOUNDARY_MASS + 1, out->step);
 }
 
-mps_status mps_mpm_get_reaction_sized(const mps_mpm *handle, int32_t number, mps_reaction *out,
-                                      size_t size) {
-  mps_mpm *mpm = (mps_mpm *)handle; /* scratch and messages only: the state stays */
-  static const char function[] = "mps_mpm_get_reaction";
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_mpm_find_reaction(const mpsi_boundary_setup *setup, const char *function,
+                                  int32_t number, mps_reaction *out) {
   mpsi_boundary_sums sums;
   int64_t counts[2];
-  mps_status status = find(mpm->context, &mpm->grid, &mpm->boundaries, function, number);
-  if (mpm->partition)
-    status = mpsi_domain_agree_same(mpm->partition->domain, function, status, "boundary", number);
+  mps_status status = find(setup->context, setup->grid, setup->boundaries, function, number);
+  if (setup->partition)
+    status = mpsi_domain_agree_same(setup->partition->domain, function, status, "boundary", number);
   if (status != MPS_OK) return status;
-  status = sum_ranks(mpm->partition, function, &mpm->boundaries.hold[number], &sums, counts);
+  status = sum_ranks(setup->partition, function, &setup->boundaries->hold[number], &sums, counts);
   if (status != MPS_OK) return status;
-  const double rate = mpm->boundaries.dt > 0.0 ? 1.0 / mpm->boundaries.dt : 0.0;
-  mps_reaction r = {.count = counts[0],
-                    .removed = counts[1],
-                    .work = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_WORK]),
-                    .removed_mass = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_MASS])};
+  const double rate = setup->boundaries->dt > 0.0 ? 1.0 / setup->boundaries->dt : 0.0;
+  *out = (mps_reaction){.count = counts[0],
+                        .removed = counts[1],
+                        .work = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_WORK]),
+                        .removed_mass = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_MASS])};
   for (int c = 0; c < 3; c++) {
-    r.force[c] = rate * mpsi_exact_value(&sums.step[MPSI_BOUNDARY_IMPULSE + c]);
-    r.moment[c] = rate * mpsi_exact_value(&sums.step[MPSI_BOUNDARY_MOMENT + c]);
-    r.impulse[c] = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_IMPULSE + c]);
-    r.moment_impulse[c] = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_MOMENT + c]);
+    out->force[c] = rate * mpsi_exact_value(&sums.step[MPSI_BOUNDARY_IMPULSE + c]);
+    out->moment[c] = rate * mpsi_exact_value(&sums.step[MPSI_BOUNDARY_MOMENT + c]);
+    out->impulse[c] = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_IMPULSE + c]);
+    out->moment_impulse[c] = mpsi_exact_value(&sums.all[MPSI_BOUNDARY_MOMENT + c]);
   }
-  return mpsi_out_write(mpm->context, function, out, size, &r, sizeof r);
+  return MPS_OK;
 }

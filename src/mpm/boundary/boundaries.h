@@ -88,6 +88,34 @@ typedef struct mpsi_boundaries {
   int64_t warm;
 } mpsi_boundaries;
 
+/* Boundary conditions of an earlier sort, with their dashpots. */
+typedef struct mpsi_held_list {
+  const mpsi_held *held;
+  int64_t count;
+  const mpsi_dashpot *dashpot;
+} mpsi_held_list;
+
+/* What changing boundaries and listing them work on. */
+struct mpsi_boundary_setup {
+  mps_context *context;
+  mpsi_grid *grid;
+  const mpsi_columns *p;
+  mpsi_boundaries *boundaries;
+  mpsi_mirrors *mirrors;
+  mpsi_partition *partition; /* NULL: one rank */
+  mpsi_run *run;
+  const mps_mpm_def *def;
+};
+
+/* boundaries.c: mps_mpm_add_boundary and its like, for the public `function`. */
+mps_status mpsi_mpm_add_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                 const mps_mpm_boundary_def *user, int32_t *number);
+mps_status mpsi_mpm_set_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                 int32_t number, const mps_mpm_boundary_def *user);
+mps_status mpsi_mpm_remove_boundary(const mpsi_boundary_setup *setup, const char *function,
+                                    int32_t number);
+mps_status mpsi_mpm_find_reaction(const mpsi_boundary_setup *setup, const char *function,
+                                  int32_t number, mps_reaction *out);
 /* Sums of dashpot coefficients of border blocks and ghosts: for each side a plane of the tile, with
  * the coefficients across and along it. */
 #define MPSI_DASH_PLANE (MPSI_TILE_SIDE * MPSI_TILE_SIDE)
@@ -98,17 +126,18 @@ typedef struct mpsi_dashpot_parcels {
 
 /* walls.c: lists the boundary conditions of each block of nodes, after a sort. `status`: of the
  * call so far on this rank; collective where sides absorb. */
-mps_status mpsi_mpm_list_boundaries(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_list_boundaries(const mpsi_boundary_setup *setup, const char *function,
+                                    mps_status status);
 /* walls.c: lists the boundary conditions again where they are outdated. */
-mps_status mpsi_mpm_update_boundaries(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_update_boundaries(const mpsi_boundary_setup *setup, const char *function,
+                                      mps_status status);
 /* walls.c: lists them, with the dashpots of an earlier sort. */
-mps_status mpsi_mpm_put_dashpots(mps_mpm *mpm, const char *function, int64_t count,
-                                 const mpsi_dashpot *dashpot);
+mps_status mpsi_mpm_put_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                 int64_t count, const mpsi_dashpot *dashpot);
 /* walls.c: on several ranks, where ghosts must be found first: saves dashpots in warm_room, which
- * has memory for them; then, collective, finds the ghosts and restores the dashpots. */
+ * has memory for them, until mpsi_mpm_put_dashpots. */
 void mpsi_mpm_keep_dashpots(mpsi_boundaries *boundaries, int64_t count,
                             const mpsi_dashpot *dashpot);
-mps_status mpsi_mpm_restore_dashpots(mps_mpm *mpm, const char *function);
 /* walls.c: adds dt to the time at rest of absorbing sides. */
 void mpsi_mpm_begin_boundaries(const mpsi_boundaries *boundaries, double dt);
 void mpsi_mpm_boundary_add_impulse(mpsi_boundary *hold, const double *impulse, const double *moment,
@@ -152,11 +181,8 @@ bool mpsi_mpm_sum_dashpots(const mpsi_grid *grid, const mpsi_columns *p,
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b);
 bool mpsi_mpm_absorbs(const mpsi_boundaries *boundaries);
 /* dashpots.c: mpsi_mpm_place_dashpots on several ranks. Collective. */
-mps_status mpsi_mpm_exchange_dashpots(mps_context *context, const mpsi_grid *grid,
-                                      const mpsi_columns *p, const mpsi_boundaries *boundaries,
-                                      mpsi_partition *partition, const char *function,
-                                      const mpsi_held *old, int64_t old_count,
-                                      const mpsi_dashpot *old_dashpot);
+mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                      const mpsi_held_list *old);
 /* dashpots.c: dashpots of a checkpoint: gathers those of all ranks, in the order of the file, on
  * rank 0; keeps those of a file with these blocks of cells that lie on blocks of nodes of this
  * rank. `status` as above. */
@@ -170,5 +196,12 @@ mps_status mpsi_mpm_take_dashpots(mps_context *context, const mpsi_grid *grid,
 void mpsi_mpm_apply_dashpot(const mpsi_grid *grid, double dt, const mpsi_boundary *hold,
                             mpsi_dashpot *dashpot, const double *node, const double *before,
                             double *velocity);
+/* outflow.c: memory for the marks of removed particles, where sides are open or bodies remove
+ * particles (`bodies`); removes those that have passed open sides in the step. */
+mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p, mpsi_boundaries *b,
+                                    mpsi_rooms *rooms, bool bodies, const char *function);
+void mpsi_mpm_remove_leaving(const mpsi_grid *grid, const mpsi_columns *p,
+                             const mpsi_boundaries *boundaries, mpsi_energy *energy,
+                             const mpsi_rooms *rooms);
 
 #endif

@@ -2,7 +2,7 @@
  * own blocks are exchanged as tiles are, and forces at rest are sent to ranks that newly have a
  * block of nodes. Both only when the lists are rebuilt, after a sort.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -127,21 +127,23 @@ typedef struct rests {
   mpsi_mailbox box;
 } rests;
 
-static mps_status write_rests(mps_context *context, const mpsi_grid *grid,
-                              mpsi_partition *partition, const char *function, const mpsi_held *old,
-                              int64_t old_count, const mpsi_dashpot *old_dashpot, rests *r,
-                              int32_t *messages) {
+static mps_status write_rests(const mpsi_boundary_setup *setup, const char *function,
+                              const mpsi_held_list *old, rests *r, int32_t *messages) {
+  mps_context *context = setup->context;
+  mpsi_partition *partition = setup->partition;
+  const mpsi_grid *grid = setup->grid;
   const int64_t record = record_bytes(grid);
-  r->sending = mpsi_alloc(context, old_count << grid->dim, sizeof *r->sending);
+  r->sending = mpsi_alloc(context, old->count << grid->dim, sizeof *r->sending);
   r->message = mpsi_alloc(context, mps_domain_size(partition->domain), sizeof *r->message);
-  const int64_t count =
-      r->sending && r->message ? list_sendings(grid, partition, old, old_count, r->sending) : 0;
+  const int64_t count = r->sending && r->message
+                            ? list_sendings(grid, partition, old->held, old->count, r->sending)
+                            : 0;
   r->mail = mpsi_alloc(context, count, (size_t)record);
   if (!r->sending || !r->message || !r->mail)
     return mpsi_fail_memory(context, function, (size_t)(count * record));
   for (int64_t k = 0; k < count; k++) {
     char *to = r->mail + k * record;
-    write_record(grid, &old[r->sending[k].held], old_dashpot, to);
+    write_record(grid, &old->held[r->sending[k].held], old->dashpot, to);
     if (k == 0 || r->sending[k].rank != r->sending[k - 1].rank)
       r->message[(*messages)++] = (mps_domain_message){.rank = r->sending[k].rank, .data = to};
     r->message[*messages - 1].bytes += record;
@@ -150,21 +152,19 @@ static mps_status write_rests(mps_context *context, const mpsi_grid *grid,
 }
 
 /* Sends the forces at rest of the old list and stores received ones in the new list. */
-static mps_status send_rests(mps_context *context, const mpsi_grid *grid,
-                             const mpsi_boundaries *boundaries, mpsi_partition *partition,
-                             const char *function, const mpsi_held *old, int64_t old_count,
-                             const mpsi_dashpot *old_dashpot) {
-  mps_domain *domain = partition->domain;
+static mps_status send_rests(const mpsi_boundary_setup *setup, const char *function,
+                             const mpsi_held_list *old) {
+  mps_context *context = setup->context;
+  mps_domain *domain = setup->partition->domain;
   rests r = {.box.context = context};
   int32_t messages = 0;
-  mps_status status =
-      write_rests(context, grid, partition, function, old, old_count, old_dashpot, &r, &messages);
+  mps_status status = write_rests(setup, function, old, &r, &messages);
   status = mpsi_domain_agree(domain, function, status);
   if (status == MPS_OK)
     status = mpsi_domain_exchange(domain, function, messages, r.message, &r.box);
   for (int32_t m = 0; status == MPS_OK && m < r.box.count; m++)
-    for (int64_t at = 0; at < r.box.mail[m].bytes; at += record_bytes(grid))
-      read_record(grid, boundaries, (const char *)r.box.mail[m].data + at);
+    for (int64_t at = 0; at < r.box.mail[m].bytes; at += record_bytes(setup->grid))
+      read_record(setup->grid, setup->boundaries, (const char *)r.box.mail[m].data + at);
   mpsi_domain_free_mail(&r.box);
   mpsi_free(context, r.sending);
   mpsi_free(context, r.mail);
@@ -172,20 +172,17 @@ static mps_status send_rests(mps_context *context, const mpsi_grid *grid,
   return status;
 }
 
-mps_status mpsi_mpm_exchange_dashpots(mps_context *context, const mpsi_grid *grid,
-                                      const mpsi_columns *p, const mpsi_boundaries *boundaries,
-                                      mpsi_partition *partition, const char *function,
-                                      const mpsi_held *old, int64_t old_count,
-                                      const mpsi_dashpot *old_dashpot) {
-  mpsi_dashpot_parcels parcels = {.doubles = plane_doubles(grid)};
-  mps_status status = exchange_sums(context, grid, p, boundaries, partition, function, &parcels);
+mps_status mpsi_mpm_exchange_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                      const mpsi_held_list *old) {
+  mpsi_dashpot_parcels parcels = {.doubles = plane_doubles(setup->grid)};
+  mps_status status = exchange_sums(setup->context, setup->grid, setup->p, setup->boundaries,
+                                    setup->partition, function, &parcels);
   if (status == MPS_OK)
-    mpsi_mpm_place_dashpots(grid, p, boundaries, &parcels, old, old_count, old_dashpot);
-  mpsi_free(context, parcels.out);
-  mpsi_free(context, parcels.in);
-  return status == MPS_OK ? send_rests(context, grid, boundaries, partition, function, old,
-                                       old_count, old_dashpot)
-                          : status;
+    mpsi_mpm_place_dashpots(setup->grid, setup->p, setup->boundaries, &parcels, old->held,
+                            old->count, old->dashpot);
+  mpsi_free(setup->context, parcels.out);
+  mpsi_free(setup->context, parcels.in);
+  return status == MPS_OK ? send_rests(setup, function, old) : status;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */

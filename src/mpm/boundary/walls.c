@@ -5,7 +5,7 @@
  * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse normal to the side
  * removes the velocity into it; the impulse along the side is the smaller of mu times that and the
  * impulse that stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 
@@ -49,79 +49,78 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
 }
 
 /* Makes a new list in other memory than the old one, which stays valid if there is no memory. */
-static mps_status make_list(mps_mpm *mpm, const char *function) {
+static mps_status make_list(const mpsi_boundary_setup *setup, const char *function) {
   int64_t count, dashpots;
-  mpm->boundaries.outdated = true;
-  const mps_status status = mpsi_mpm_list_mirrors(mpm->context, &mpm->grid, &mpm->boundaries,
-                                                  &mpm->mirrors, &mpm->def, function);
+  setup->boundaries->outdated = true;
+  const mps_status status = mpsi_mpm_list_mirrors(setup->context, setup->grid, setup->boundaries,
+                                                  setup->mirrors, setup->def, function);
   if (status != MPS_OK) return status;
-  swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
-  swap_rooms(&mpm->boundaries.dashpot_room, &mpm->boundaries.old_dashpot_room);
-  bool good = list_held(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
+  swap_rooms(&setup->boundaries->held_room, &setup->boundaries->old_held_room);
+  swap_rooms(&setup->boundaries->dashpot_room, &setup->boundaries->old_dashpot_room);
+  bool good = list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots);
   if (!good) {
-    good = mpsi_room_ensure(mpm->context, &mpm->boundaries.held_room, count,
-                            sizeof *mpm->boundaries.held);
-    if (good) list_held(&mpm->grid, &mpm->boundaries, mpm->partition, &count, &dashpots);
+    good = mpsi_room_ensure(setup->context, &setup->boundaries->held_room, count,
+                            sizeof *setup->boundaries->held);
+    if (good) list_held(setup->grid, setup->boundaries, setup->partition, &count, &dashpots);
   }
-  good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dashpot_room, dashpots,
-                                  sizeof *mpm->boundaries.dashpot);
+  good = good && mpsi_room_ensure(setup->context, &setup->boundaries->dashpot_room, dashpots,
+                                  sizeof *setup->boundaries->dashpot);
   if (!good) {
-    swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
-    swap_rooms(&mpm->boundaries.dashpot_room, &mpm->boundaries.old_dashpot_room);
-    return mpsi_fail_memory(mpm->context, function,
-                            (size_t)count * sizeof *mpm->boundaries.held +
+    swap_rooms(&setup->boundaries->held_room, &setup->boundaries->old_held_room);
+    swap_rooms(&setup->boundaries->dashpot_room, &setup->boundaries->old_dashpot_room);
+    return mpsi_fail_memory(setup->context, function,
+                            (size_t)count * sizeof *setup->boundaries->held +
                                 (size_t)dashpots * sizeof(mpsi_dashpot));
   }
-  mpm->boundaries.held = mpm->boundaries.held_room.item;
-  mpm->boundaries.dashpot = mpm->boundaries.dashpot_room.item;
-  mpm->boundaries.outdated = false;
-  mpm->boundaries.held_count = count;
-  mpm->boundaries.dashpot_count = dashpots;
+  setup->boundaries->held = setup->boundaries->held_room.item;
+  setup->boundaries->dashpot = setup->boundaries->dashpot_room.item;
+  setup->boundaries->outdated = false;
+  setup->boundaries->held_count = count;
+  setup->boundaries->dashpot_count = dashpots;
   if (dashpots > 0)
-    memset(mpm->boundaries.dashpot, 0, (size_t)dashpots * sizeof *mpm->boundaries.dashpot);
+    memset(setup->boundaries->dashpot, 0, (size_t)dashpots * sizeof *setup->boundaries->dashpot);
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_list_boundaries(mps_mpm *mpm, const char *function, mps_status status) {
-  const mpsi_held *old = mpm->boundaries.held;
-  const mpsi_dashpot *old_dashpot = mpm->boundaries.dashpot;
-  const int64_t old_count = mpm->boundaries.held_count;
-  if (status == MPS_OK) status = make_list(mpm, function);
-  if (!mpsi_mpm_absorbs(&mpm->boundaries)) return status;
-  if (!mpm->partition) {
+mps_status mpsi_mpm_list_boundaries(const mpsi_boundary_setup *setup, const char *function,
+                                    mps_status status) {
+  const mpsi_held_list old = {setup->boundaries->held, setup->boundaries->held_count,
+                              setup->boundaries->dashpot};
+  if (status == MPS_OK) status = make_list(setup, function);
+  if (!mpsi_mpm_absorbs(setup->boundaries)) return status;
+  if (!setup->partition) {
     if (status == MPS_OK)
-      mpsi_mpm_place_dashpots(&mpm->grid, &mpm->p, &mpm->boundaries, NULL, old, old_count,
-                              old_dashpot);
+      mpsi_mpm_place_dashpots(setup->grid, setup->p, setup->boundaries, NULL, old.held, old.count,
+                              old.dashpot);
     return status;
   }
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status == MPS_OK)
-    status = mpsi_mpm_exchange_dashpots(mpm->context, &mpm->grid, &mpm->p, &mpm->boundaries,
-                                        mpm->partition, function, old, old_count, old_dashpot);
-  mpm->boundaries.outdated = status != MPS_OK;
+  status = mpsi_domain_agree(setup->partition->domain, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_exchange_dashpots(setup, function, &old);
+  setup->boundaries->outdated = status != MPS_OK;
   return status;
 }
 
-mps_status mpsi_mpm_update_boundaries(mps_mpm *mpm, const char *function, mps_status status) {
-  return mpm->boundaries.outdated ? mpsi_mpm_list_boundaries(mpm, function, status) : status;
+mps_status mpsi_mpm_update_boundaries(const mpsi_boundary_setup *setup, const char *function,
+                                      mps_status status) {
+  return setup->boundaries->outdated ? mpsi_mpm_list_boundaries(setup, function, status) : status;
 }
 
-mps_status mpsi_mpm_put_dashpots(mps_mpm *mpm, const char *function, int64_t count,
-                                 const mpsi_dashpot *dashpot) {
-  const mps_status status = make_list(mpm, function);
+mps_status mpsi_mpm_put_dashpots(const mpsi_boundary_setup *setup, const char *function,
+                                 int64_t count, const mpsi_dashpot *dashpot) {
+  const mps_status status = make_list(setup, function);
   if (status != MPS_OK) return status;
-  const int64_t plane = mpm->grid.block_nodes / MPSI_SIDE;
+  const int64_t plane = setup->grid->block_nodes / MPSI_SIDE;
   int64_t expected = 0;
-  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
-    const mpsi_held *held = &mpm->boundaries.held[t];
+  for (int64_t t = 0; t < setup->boundaries->held_count; t++) {
+    const mpsi_held *held = &setup->boundaries->held[t];
     if (held->dashpot < 0 || !held->whole) continue;
     if (expected + plane <= count)
-      memcpy(mpm->boundaries.dashpot + held->dashpot, dashpot + expected,
+      memcpy(setup->boundaries->dashpot + held->dashpot, dashpot + expected,
              (size_t)plane * sizeof *dashpot);
     expected += plane;
   }
   if (count == expected) return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
+  return mpsi_fail(setup->context, function, MPS_ERROR_FORMAT,
                    "there are %lld dashpots of absorbing walls, must be %lld", (long long)count,
                    (long long)expected);
 }
@@ -130,19 +129,6 @@ void mpsi_mpm_keep_dashpots(mpsi_boundaries *boundaries, int64_t count,
                             const mpsi_dashpot *dashpot) {
   if (count > 0) memcpy(boundaries->warm_room.item, dashpot, (size_t)count * sizeof *dashpot);
   boundaries->warm = count;
-}
-
-mps_status mpsi_mpm_restore_dashpots(mps_mpm *mpm, const char *function) {
-  if (!mpm->partition || !mpm->partition->outdated) return MPS_OK;
-  const bool stale = mpm->run.stale;
-  mps_status status = mpsi_mpm_partition_find_ghosts(mpm, function);
-  if (status == MPS_OK)
-    status = mpsi_domain_agree(
-        mpm->partition->domain, function,
-        mpsi_mpm_put_dashpots(mpm, function, mpm->boundaries.warm, mpm->boundaries.warm_room.item));
-  mpm->run.stale = mpm->run.stale || stale;
-  mpm->run.broken = mpm->run.broken || status != MPS_OK;
-  return status;
 }
 
 /* ---- boundary conditions of a node ----------------------------------------------------------- */

@@ -155,11 +155,6 @@ static mps_status compare_ranks(mpsi_partition *partition, const char *function,
 
 /* ---- queries of a contact -------------------------------------------------------------------- */
 
-static mps_status check_owner(void *owner, const char *function) {
-  mps_mpm *mpm = owner;
-  return mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
-}
-
 /* Empties the lists of pairs, which steps without bodies do not rebuild. */
 static void clear_pairs(const mpsi_grid *grid, mpsi_contacts *contacts) {
   contacts->cell_pair_count = contacts->node_pair_count = contacts->mask_count = 0;
@@ -174,9 +169,7 @@ static void clear_pairs(const mpsi_grid *grid, mpsi_contacts *contacts) {
   }
 }
 
-static void end(void *owner, mps_contact *contact) {
-  mps_mpm *mpm = owner;
-  mpsi_contacts *all = &mpm->contact;
+void mpsi_mpm_end_contact(const mpsi_grid *grid, mpsi_contacts *all, mps_contact *contact) {
   int32_t to = 0, ended = 0;
   for (int32_t b = 0; b < all->bodies; b++) {
     if (all->handle[b] == contact) {
@@ -188,9 +181,9 @@ static void end(void *owner, mps_contact *contact) {
     all->state[to++] = all->state[b];
   }
   all->bodies = to;
-  mpsi_mpm_forget_impulses(&mpm->contact, ended);
+  mpsi_mpm_forget_impulses(all, ended);
   for (int32_t b = 0; b < to; b++) all->state[b].warned = false;
-  clear_pairs(&mpm->grid, &mpm->contact);
+  clear_pairs(grid, all);
   mpsi_contact_leave(contact);
 }
 
@@ -203,48 +196,47 @@ typedef struct contact_now {
 
 /* Whether particle k at x is in contact with the body now, by the method of the contact; by
  * impulses: whether the body exerted an impulse on it in the last step. */
-static bool is_in_contact(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
-                          int64_t id, const double *x, contact_now *now) {
+static bool is_in_contact(const mpsi_contact_setup *setup, const mps_contact *contact, int32_t body,
+                          int64_t k, int64_t id, const double *x, contact_now *now) {
   now->half = contact->def.offset;
   if (!mpsi_by_impulses(contact)) {
     if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
-        !mpsi_find_contact(&mpm->grid, &mpm->p, &mpm->def, contact, mpm->grid.dim, k, &now->c))
+        !mpsi_find_contact(setup->grid, setup->p, setup->def, contact, setup->grid->dim, k,
+                           &now->c))
       return false;
     now->foot = mpsi_body_foot(contact->body, x);
     return true;
   }
-  const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(&mpm->contact, id, body);
+  const mpsi_warm_impulse *warm = mpsi_mpm_warm_impulse(setup->contact, id, body);
   if (!warm) return false;
-  for (int a = 0; a < 3; a++) now->c.force[a] = warm->by[a] / mpm->contact.impulses.warm_dt;
-  const mpsi_bearing bearing = mpsi_mpm_bearing(&mpm->grid, &mpm->p, contact, k, x);
+  for (int a = 0; a < 3; a++) now->c.force[a] = warm->by[a] / setup->contact->impulses.warm_dt;
+  const mpsi_bearing bearing = mpsi_mpm_bearing(setup->grid, setup->p, contact, k, x);
   now->foot = bearing.foot;
   now->half = bearing.half;
   return true;
 }
 
-static mps_status list_particles(void *owner, mps_contact *contact, int64_t capacity,
-                                 int64_t *count, int64_t *ids, double *gap, double *normal,
-                                 double *force, double *foot) {
-  mps_mpm *mpm = owner;
-  const int64_t *id = mpsi_particles_integers(mpm->p.set, "id");
+mps_status mpsi_mpm_list_in_contact(const mpsi_contact_setup *setup, const mps_contact *contact,
+                                    const mpsi_contact_list *out, int64_t *count) {
+  const int64_t *id = mpsi_particles_integers(setup->p->set, "id");
   int64_t n = 0;
   int32_t body = 0;
-  if (!mpsi_mpm_index_impulses(mpm->context, &mpm->contact))
-    return mpsi_fail_memory(mpm->context, "mps_contact_get_particles",
-                            (size_t)mpm->contact.impulses.warm_count * 4 * sizeof(int32_t));
-  while (mpm->contact.handle[body] != contact) body++;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
+  if (!mpsi_mpm_index_impulses(setup->context, setup->contact))
+    return mpsi_fail_memory(setup->context, "mps_contact_get_particles",
+                            (size_t)setup->contact->impulses.warm_count * 4 * sizeof(int32_t));
+  while (setup->contact->handle[body] != contact) body++;
+  for (int64_t k = 0; k < setup->p->count; k++) {
     contact_now now;
     double x[3] = {0.0};
-    for (int a = 0; a < mpm->grid.dim; a++) x[a] = mpm->p.x[a][k];
-    if (!is_in_contact(mpm, contact, body, k, id[k], x, &now)) continue;
-    if (n < capacity) {
-      if (ids) ids[n] = id[k];
-      if (gap) gap[n] = now.foot.distance - now.half;
+    for (int a = 0; a < setup->grid->dim; a++) x[a] = setup->p->x[a][k];
+    if (!is_in_contact(setup, contact, body, k, id[k], x, &now)) continue;
+    if (n < out->capacity) {
+      if (out->ids) out->ids[n] = id[k];
+      if (out->gap) out->gap[n] = now.foot.distance - now.half;
       for (int a = 0; a < 3; a++) {
-        if (normal) normal[3 * n + a] = a < mpm->grid.dim ? now.foot.normal[a] : 0.0;
-        if (force) force[3 * n + a] = a < mpm->grid.dim ? now.c.force[a] : 0.0;
-        if (foot) foot[3 * n + a] = a < mpm->grid.dim ? now.foot.at[a] : 0.0;
+        if (out->normal) out->normal[3 * n + a] = a < setup->grid->dim ? now.foot.normal[a] : 0.0;
+        if (out->force) out->force[3 * n + a] = a < setup->grid->dim ? now.c.force[a] : 0.0;
+        if (out->foot) out->foot[3 * n + a] = a < setup->grid->dim ? now.foot.at[a] : 0.0;
       }
     }
     n++;
@@ -252,9 +244,6 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
   *count = n;
   return MPS_OK;
 }
-
-static const mpsi_contact_owner owner_of_contacts = {
-    .check = check_owner, .end = end, .particles = list_particles};
 
 /* ---- adding and ending ----------------------------------------------------------------------- */
 
@@ -277,52 +266,52 @@ static void release_failed(mps_contact *contact) {
   mpsi_contact_release(contact);
 }
 
-mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_def *def,
-                               mps_contact **out) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *function,
+                                const mpsi_contact_owner *owner, void *self, mps_body *body,
+                                const mps_contact_def *def, mps_contact **out) {
   mps_contact *contact = NULL;
   if (out) *out = NULL;
-  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
-  if (status == MPS_OK) status = mpsi_particles_ready(mpm->p.set, __func__);
+  mps_status status = mpsi_mpm_between_steps(setup->context, setup->run, function);
+  if (status == MPS_OK) status = mpsi_particles_ready(setup->p->set, function);
   if (status == MPS_OK)
-    status = check_body(mpm->context, &mpm->grid, &mpm->contact, __func__, body);
-  if (status == MPS_OK) status = check_geometry(mpm->context, &mpm->grid, __func__, body);
+    status = check_body(setup->context, setup->grid, setup->contact, function, body);
+  if (status == MPS_OK) status = check_geometry(setup->context, setup->grid, function, body);
   if (status == MPS_OK)
-    status = check_overlap(mpm->context, &mpm->grid, &mpm->contact, __func__, body);
+    status = check_overlap(setup->context, setup->grid, setup->contact, function, body);
   if (status == MPS_OK)
-    status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
-  if (status == MPS_OK) status = ensure_contact(mpm->context, &mpm->contact, __func__);
-  if (status == MPS_OK && mpm->partition)
-    status = mpsi_mpm_begin_partners(&mpm->contact.partners, mpm->partition->domain, __func__);
-  status = compare_ranks(mpm->partition, __func__, status, contact);
+    status = mpsi_contact_new(setup->context, function, body, def, owner, self, &contact);
+  if (status == MPS_OK) status = ensure_contact(setup->context, setup->contact, function);
+  if (status == MPS_OK && setup->partition)
+    status = mpsi_mpm_begin_partners(&setup->contact->partners, setup->partition->domain, function);
+  status = compare_ranks(setup->partition, function, status, contact);
   if (status != MPS_OK) {
     release_failed(contact);
     return status;
   }
   mps_contact_def *d = &contact->def;
-  if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(mpm->p.set);
+  if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(setup->p->set);
   if (isnan(d->depth))
     d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH     ? INFINITY
-               : d->inside == MPS_CONTACT_INSIDE_REMOVE ? 0.5 * mps_particles_spacing(mpm->p.set)
-                                                        : mpm->grid.cell;
-  status = check_thickness(mpm->context, &mpm->grid, &mpm->contact, __func__, contact);
+               : d->inside == MPS_CONTACT_INSIDE_REMOVE ? 0.5 * mps_particles_spacing(setup->p->set)
+                                                        : setup->grid->cell;
+  status = check_thickness(setup->context, setup->grid, setup->contact, function, contact);
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
-    status = mpsi_mpm_clear_body(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, mpm->partition,
-                                 __func__, contact);
+    status = mpsi_mpm_clear_body(setup->context, setup->grid, setup->p, setup->contact,
+                                 setup->partition, function, contact);
   else if (status == MPS_OK)
     status = mpsi_mpm_agree(
-        mpm->partition, __func__,
-        mpsi_mpm_check_inside(mpm->context, &mpm->grid, &mpm->p, __func__, contact, 0));
+        setup->partition, function,
+        mpsi_mpm_check_inside(setup->context, setup->grid, setup->p, function, contact, 0));
   if (status != MPS_OK) {
     release_failed(contact);
     return status;
   }
-  warn_of_areas(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, contact);
+  warn_of_areas(setup->context, setup->grid, setup->p, setup->contact, contact);
   mpsi_contact_join(contact);
-  body->axial = mpm->grid.geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  mpm->contact.state[mpm->contact.bodies] = (mpsi_contact_state){.mass = 0.0};
-  mpm->contact.handle[mpm->contact.bodies] = contact;
-  mpm->contact.body[mpm->contact.bodies++] = body;
+  body->axial = setup->grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  setup->contact->state[setup->contact->bodies] = (mpsi_contact_state){.mass = 0.0};
+  setup->contact->handle[setup->contact->bodies] = contact;
+  setup->contact->body[setup->contact->bodies++] = body;
   if (out)
     *out = contact;
   else

@@ -1,6 +1,6 @@
 /* pairs.c - before each step: which blocks of cells and of nodes are near which bodies. Only these
  * pairs are searched for contact. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 

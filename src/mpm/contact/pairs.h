@@ -136,8 +136,8 @@ mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, co
  * removal by all (`cleared`: some rank has removed particles; `status`: of the step so far on this
  * rank); removal by one when its contact is made. The latter two are collective. */
 bool mpsi_mpm_any_body_removes(const mpsi_contacts *contacts);
-mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
-                                 bool *cleared);
+mps_status mpsi_mpm_clear_bodies(const mpsi_contact_setup *setup, const char *function,
+                                 mps_status status, bool *cleared);
 mps_status mpsi_mpm_clear_body(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
                                mpsi_contacts *contacts, mpsi_partition *partition,
                                const char *function, mps_contact *contact);
@@ -147,5 +147,26 @@ mps_status mpsi_mpm_check_depth(mps_context *context, const mpsi_columns *p,
                                 const mpsi_contacts *contacts, const mpsi_run *run,
                                 const char *function);
 void mpsi_mpm_end_contacts(mpsi_contacts *contacts);
+
+/* What adding and querying contacts work on. */
+struct mpsi_contact_setup {
+  mps_context *context;
+  const mpsi_grid *grid;
+  const mpsi_columns *p;
+  mpsi_rooms *rooms;
+  mpsi_contacts *contact;
+  mpsi_partition *partition; /* NULL: one rank */
+  const mpsi_run *run;
+  const mps_mpm_def *def;
+};
+
+/* contacts.c: mps_mpm_add_contact, for the public `function`; `self` owns the contact. */
+mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *function,
+                                const mpsi_contact_owner *owner, void *self, mps_body *body,
+                                const mps_contact_def *def, mps_contact **out);
+/* contacts.c: ends a contact; the particles in contact with its body, `count` of them. */
+void mpsi_mpm_end_contact(const mpsi_grid *grid, mpsi_contacts *contacts, mps_contact *contact);
+mps_status mpsi_mpm_list_in_contact(const mpsi_contact_setup *setup, const mps_contact *contact,
+                                    const mpsi_contact_list *out, int64_t *count);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_CONTACT_PARTICLE_H
 #define MPSI_MPM_CONTACT_PARTICLE_H
 
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 /* Depth, force and slip of a particle in contact with a body, by its state at the beginning of the
  * step; false where it is not in contact. */

@@ -3,7 +3,7 @@
  * contact of either method. The equations of one particle or node are in src/contact: friction.c
  * has (31)-(34). SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* removal.c - bodies that remove particles from their inside: when the contact is made, and before
  * each step those deeper than the contact's `depth`. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 
@@ -121,20 +121,21 @@ static mps_status add_removed_by_body(const mpsi_grid *grid, const mpsi_columns 
   return status;
 }
 
-mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
-                                 bool *cleared) {
-  if (!mpsi_mpm_any_body_removes(&mpm->contact)) return status;
-  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
-    status = ensure_amounts(mpm->context, &mpm->contact, function, mpm->contact.handle[b]);
+mps_status mpsi_mpm_clear_bodies(const mpsi_contact_setup *setup, const char *function,
+                                 mps_status status, bool *cleared) {
+  if (!mpsi_mpm_any_body_removes(setup->contact)) return status;
+  for (int32_t b = 0; b < setup->contact->bodies && status == MPS_OK; b++)
+    status = ensure_amounts(setup->context, setup->contact, function, setup->contact->handle[b]);
   const int64_t count =
-      status == MPS_OK ? mark_all(&mpm->grid, &mpm->p, &mpm->contact, &mpm->rooms) : 0;
+      status == MPS_OK ? mark_all(setup->grid, setup->p, setup->contact, setup->rooms) : 0;
   double any = (double)count;
-  if (mpm->partition)
-    status = mpsi_domain_agree_max(mpm->partition->domain, function, status, 1, &any);
+  if (setup->partition)
+    status = mpsi_domain_agree_max(setup->partition->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
-  status = add_removed_by_body(&mpm->grid, &mpm->p, &mpm->contact, mpm->partition, &mpm->rooms,
-                               function);
-  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->p.set, mpm->rooms.gone.item);
+  status = add_removed_by_body(setup->grid, setup->p, setup->contact, setup->partition,
+                               setup->rooms, function);
+  if (status == MPS_OK && count > 0)
+    mpsi_particles_take_out(setup->p->set, setup->rooms->gone.item);
   *cleared = status == MPS_OK;
   return status;
 }

@@ -1,7 +1,7 @@
 /* thin_bodies.c - nodes that thin bodies separate from particles: see thin_bodies.h.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 
@@ -210,11 +210,10 @@ static bool is_before(const mpsi_grid *grid, const mpsi_cell_block *cells, const
                       const mpsi_foot *foot) {
   const double local[3] = {at[0], at[1], at[2]};
   double x[3], across = 0.0;
+  for (int c = 0; c < grid->dim && cells->mirrors; c++)
+    if (mpsi_mpm_mirror_partner(grid, cells, c, at[c]) != at[c]) return false;
   mpsi_node_position(grid, cells->at, local, x);
-  for (int c = 0; c < grid->dim; c++) {
-    if (cells->mirrors && mpsi_mpm_mirror_partner(grid, cells, c, at[c]) != at[c]) return false;
-    across += (x[c] - foot->at[c]) * foot->normal[c];
-  }
+  for (int c = 0; c < grid->dim; c++) across += (x[c] - foot->at[c]) * foot->normal[c];
   return across > 0.0;
 }
 

@@ -1,6 +1,6 @@
 /* layout.c - the blocks of cells that hold particles, and the blocks of nodes that their tiles
  * need. Both lists ascend in z, then y, then x. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include "core/particles/particles_internal.h"
 

@@ -1,7 +1,8 @@
 /* create.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/step/insertion.h"
 #include "mpm/water/water.h"
 
 #include "core/particles/particles_internal.h"
@@ -316,7 +317,7 @@ static mps_status check_step(const mps_mpm *mpm) {
 }
 
 static mps_status make_memory(mps_mpm *mpm) {
-  if (!mpsi_mpm_make_room(mpm, mpm->p.count))
+  if (!mpsi_mpm_hold_room(mpm, mpm->p.count))
     return mpsi_fail_memory(mpm->context, create, (size_t)mpm->p.count * sizeof *mpm->grid.radix);
   return make_workers(mpm->context, &mpm->grid);
 }
@@ -357,7 +358,11 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     if (status != MPS_OK && copy) put_columns_back(&mpm->p, copy);
     mpsi_free(mpm->context, copy);
   }
-  if (shared) status = mpsi_mpm_partition_create(mpm, create, status, former);
+  if (shared)
+    status = mpsi_mpm_share_begin(mpm->context, &mpm->p, mpm->def.domain, create, status,
+                                  &mpm->partition);
+  const mpsi_rank_part part = mpsi_rank_part_of(mpm);
+  if (shared && status == MPS_OK) status = mpsi_mpm_partition_create(&part, create, former);
   if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->p.set, fields);
   mpm->boundaries.outdated = true; /* listed with the first step */
   return status;
@@ -369,7 +374,10 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
 static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status status,
                               mpsi_backup *backup) {
   const int32_t fields = mps_particles_field_count(mpm->p.set);
-  status = mpsi_mpm_share_deal(mpm, create, status);
+  status =
+      mpsi_mpm_share_begin(mpm->context, &mpm->p, mpm->def.domain, create, status, &mpm->partition);
+  const mpsi_rank_part part = mpsi_rank_part_of(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_share_deal(&part, create);
   if (status != MPS_OK) return status;
   status = add_fields(mpm->context, &mpm->p);
   if (status == MPS_OK)
@@ -396,7 +404,7 @@ static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status s
   if (status == MPS_OK) status = make_memory(mpm);
   if (status == MPS_OK)
     status = mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, create);
-  status = mpsi_mpm_share_take_part(mpm, create, status);
+  status = mpsi_mpm_share_take_part(&part, create, status);
   if (status != MPS_OK && !backup->memory) mpsi_particles_drop_fields(mpm->p.set, fields);
   mpm->boundaries.outdated = true;
   return status;
@@ -592,7 +600,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   }
   mpsi_free(context, mpm->p.laws.room.item);
   mps_kernel_destroy(&mpm->weights);
-  mpsi_mpm_partition_free(mpm);
+  mpsi_mpm_partition_free(context, &mpm->partition);
   mps_domain_destroy(&mpm->def.domain);
   mpsi_state_forget(&mpm->identity);
   mpsi_particles_release(mpm->p.set, &mpm->holder);

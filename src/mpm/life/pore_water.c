@@ -1,7 +1,7 @@
 /* pore_water.c - definition of the pore water of a solver (mps/pore_water.h): checks, fields,
  * faces, budget. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 

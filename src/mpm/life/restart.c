@@ -4,7 +4,9 @@
 #include "restart.h"
 
 #include "rank_files.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/step/insertion.h"
 #include "mpm/water/water.h"
 
 #include <stdio.h>
@@ -137,7 +139,7 @@ static void get_dashes(const void *solver, void *values) {
   }
 }
 
-/* On several ranks dashpots are restored after the ghosts are found: mpsi_mpm_restore_dashpots. */
+/* On several ranks dashpots are restored after the ghosts are found: restore_dashpots. */
 static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   (void)values;
@@ -147,10 +149,27 @@ static bool reserve_dashpots(void *solver, int64_t rows, const void *values) {
 
 static void set_dashpots(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
-  if (mpm->partition)
-    mpsi_mpm_keep_dashpots(&mpm->boundaries, rows, values);
-  else if (!mpm->run.broken)
-    mpm->run.broken = mpsi_mpm_put_dashpots(mpm, "restore", rows, values) != MPS_OK;
+  if (mpm->partition) mpsi_mpm_keep_dashpots(&mpm->boundaries, rows, values);
+  if (mpm->partition || mpm->run.broken) return;
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
+  mpm->run.broken = mpsi_mpm_put_dashpots(&setup, "restore", rows, values) != MPS_OK;
+}
+
+/* On several ranks, after the lists are restored: finds the ghosts, then restores the dashpots.
+ * Collective. */
+static mps_status restore_dashpots(mps_mpm *mpm, const char *function) {
+  if (!mpm->partition || !mpm->partition->outdated) return MPS_OK;
+  const bool stale = mpm->run.stale;
+  const mpsi_rank_part part = mpsi_rank_part_of(mpm);
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
+  mps_status status = mpsi_mpm_partition_find_ghosts(&part, function);
+  if (status == MPS_OK)
+    status = mpsi_domain_agree(mpm->partition->domain, function,
+                               mpsi_mpm_put_dashpots(&setup, function, mpm->boundaries.warm,
+                                                     mpm->boundaries.warm_room.item));
+  mpm->run.stale = mpm->run.stale || stale;
+  mpm->run.broken = mpm->run.broken || status != MPS_OK;
+  return status;
 }
 
 /* ---- warm-start impulses of contacts --------------------------------------------------------- */
@@ -438,7 +457,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .identity = &mpm->identity,
                          .list = list_state,
                          .fits = fits,
-                         .make_room = mpsi_mpm_make_room,
+                         .make_room = mpsi_mpm_hold_room,
                          .take_share = mpsi_mpm_restore_on_ranks,
                          .settle = settle,
                          .bind = bind,
@@ -453,7 +472,8 @@ static mps_status make_whole(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
   if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_apply_edits(mpm, function);
   if (status != MPS_OK) return status;
-  if (!mpm->run.broken) return mpsi_mpm_update_boundaries(mpm, function, MPS_OK);
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
+  if (!mpm->run.broken) return mpsi_mpm_update_boundaries(&setup, function, MPS_OK);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "step %lld has failed: there is no state to go on from",
                    (long long)mpm->run.steps);
@@ -475,7 +495,7 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
-  return status == MPS_OK ? mpsi_mpm_restore_dashpots(mpm, __func__) : status;
+  return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
 }
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
@@ -497,5 +517,5 @@ mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info)
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
   if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
-  return status == MPS_OK ? mpsi_mpm_restore_dashpots(mpm, __func__) : status;
+  return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
 }

@@ -1,6 +1,6 @@
 /* set_material.c - another law for some particles, or all of them, between steps.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
 
 /* Number of particles of a list, NULL being all; index of the i-th of them. */
@@ -34,7 +34,8 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
   status = mpsi_domain_agree_given(mpm->partition->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->p.set, ids[k]) >= 0;
-  return mpsi_mpm_find_removed(mpm, function, status, count, ids, known, &all);
+  return mpsi_mpm_count_listed(mpm->context, mpm->partition, function, status, count, ids, known,
+                               &all);
 }
 
 static mps_status check(mps_mpm *mpm, const char *function, const mps_material *material,

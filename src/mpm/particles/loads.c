@@ -204,26 +204,27 @@ static mps_status find_number(mps_context *context, mpsi_loads *loads, const cha
   return MPS_OK;
 }
 
-mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t *number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_mpm_add_load(const mpsi_load_setup *setup, const char *function,
+                             const mps_mpm_load_def *user, int32_t *number) {
   mps_mpm_load_def def = load_defaults;
   mpsi_traction made = {.count = 0};
   int32_t at = 0;
-  mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
-  if (status == MPS_OK) status = read_def(mpm->context, &mpm->grid, __func__, user, &def);
-  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, -1, &def);
-  status = check_list(mpm->context, &mpm->grid, &mpm->p, mpm->partition, __func__, status, &def);
+  mps_status status = mpsi_mpm_between_steps(setup->context, setup->run, function);
+  if (status == MPS_OK) status = read_def(setup->context, setup->grid, function, user, &def);
+  status = compare_ranks(setup->grid, setup->partition, function, status, -1, &def);
+  status =
+      check_list(setup->context, setup->grid, setup->p, setup->partition, function, status, &def);
   if (status == MPS_OK)
-    status = make_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, __func__);
-  if (status == MPS_OK) status = copy_list(mpm->context, __func__, &def, &made);
-  if (status == MPS_OK) status = find_number(mpm->context, &mpm->loads, __func__, &at);
-  status = mpsi_mpm_agree(mpm->partition, __func__, status);
+    status = make_forces(setup->context, setup->grid, setup->p, setup->rooms, function);
+  if (status == MPS_OK) status = copy_list(setup->context, function, &def, &made);
+  if (status == MPS_OK) status = find_number(setup->context, setup->loads, function, &at);
+  status = mpsi_mpm_agree(setup->partition, function, status);
   if (status != MPS_OK) {
-    drop(mpm->context, &made);
+    drop(setup->context, &made);
     return status;
   }
   take_traction(&made, &def);
-  mpm->loads.traction[at] = made;
+  setup->loads->traction[at] = made;
   if (number) *number = at;
   return MPS_OK;
 }
@@ -237,36 +238,37 @@ static mps_status find_load(mps_context *context, const mpsi_loads *loads, const
                    "load is %d, must be a number that mps_mpm_add_load gave", number);
 }
 
-mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def *user) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_mpm_set_load(const mpsi_load_setup *setup, const char *function, int32_t number,
+                             const mps_mpm_load_def *user) {
   mps_mpm_load_def def = load_defaults;
-  mps_status status = find_load(mpm->context, &mpm->loads, &mpm->run, __func__, number);
-  if (status == MPS_OK) status = read_def(mpm->context, &mpm->grid, __func__, user, &def);
-  status = compare_ranks(&mpm->grid, mpm->partition, __func__, status, number, &def);
+  mps_status status = find_load(setup->context, setup->loads, setup->run, function, number);
+  if (status == MPS_OK) status = read_def(setup->context, setup->grid, function, user, &def);
+  status = compare_ranks(setup->grid, setup->partition, function, status, number, &def);
   if (status != MPS_OK) return status;
-  mpsi_traction *load = &mpm->loads.traction[number];
+  mpsi_traction *load = &setup->loads->traction[number];
   if (def.ids || def.id_count != 0 || def.area) {
     mpsi_traction list = {.count = 0};
-    status = check_list(mpm->context, &mpm->grid, &mpm->p, mpm->partition, __func__, status, &def);
-    if (status == MPS_OK) status = copy_list(mpm->context, __func__, &def, &list);
-    status = mpsi_mpm_agree(mpm->partition, __func__, status);
+    status =
+        check_list(setup->context, setup->grid, setup->p, setup->partition, function, status, &def);
+    if (status == MPS_OK) status = copy_list(setup->context, function, &def, &list);
+    status = mpsi_mpm_agree(setup->partition, function, status);
     if (status != MPS_OK) {
-      drop(mpm->context, &list);
+      drop(setup->context, &list);
       return status;
     }
-    mpsi_free(mpm->context, load->id);
-    mpsi_free(mpm->context, load->area);
+    mpsi_free(setup->context, load->id);
+    mpsi_free(setup->context, load->area);
     load->count = list.count, load->id = list.id, load->area = list.area;
   }
   take_traction(load, &def);
   return MPS_OK;
 }
 
-mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number) {
-  if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = find_load(mpm->context, &mpm->loads, &mpm->run, __func__, number);
-  if (mpm->partition)
-    status = mpsi_domain_agree_same(mpm->partition->domain, __func__, status, "load", number);
-  if (status == MPS_OK) drop(mpm->context, &mpm->loads.traction[number]);
+mps_status mpsi_mpm_remove_load(const mpsi_load_setup *setup, const char *function,
+                                int32_t number) {
+  mps_status status = find_load(setup->context, setup->loads, setup->run, function, number);
+  if (setup->partition)
+    status = mpsi_domain_agree_same(setup->partition->domain, function, status, "load", number);
+  if (status == MPS_OK) drop(setup->context, &setup->loads->traction[number]);
   return status;
 }

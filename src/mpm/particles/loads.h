@@ -24,6 +24,23 @@ typedef struct mpsi_loads {
   double *external_force[3];    /* N; likewise */
 } mpsi_loads;
 
+/* What changing loads works on. */
+struct mpsi_load_setup {
+  mps_context *context;
+  const mpsi_grid *grid;
+  mpsi_columns *p;
+  mpsi_rooms *rooms;
+  mpsi_loads *loads;
+  mpsi_partition *partition; /* NULL: one rank */
+  const mpsi_run *run;
+};
+
+/* loads.c: mps_mpm_add_load and its like, for the public `function`. */
+mps_status mpsi_mpm_add_load(const mpsi_load_setup *setup, const char *function,
+                             const mps_mpm_load_def *user, int32_t *number);
+mps_status mpsi_mpm_set_load(const mpsi_load_setup *setup, const char *function, int32_t number,
+                             const mps_mpm_load_def *user);
+mps_status mpsi_mpm_remove_load(const mpsi_load_setup *setup, const char *function, int32_t number);
 /* loads.c: sums force fields and loads of the step in the columns f. */
 mps_status mpsi_mpm_find_forces(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
                                 mpsi_rooms *rooms, mpsi_loads *loads, const char *function);

@@ -1,5 +1,5 @@
-/* mpm_particles.c - the particles as the solver uses them: columns over the fields of the set, initial
- * state, and what changes when the caller writes a field. SPDX-License-Identifier: BSD-3-Clause */
+/* mpm_particles.c - the particles as the solver uses them: columns over the fields of the set,
+ * initial state, masses, checks. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_particles.h"
 
 #include "mpm/contact/particle.h"
@@ -137,11 +137,9 @@ void mpsi_mpm_begin_particles(const mpsi_grid *grid, const mpsi_columns *p,
   }
 }
 
-/* New masses of particles whose density or volume the caller has changed. Added particles have none
- * yet. */
-static mps_status renew_masses(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
-                               mpsi_contacts *contacts, const char *function, const char *field,
-                               const double *former) {
+mps_status mpsi_mpm_renew_masses(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
+                                 mpsi_contacts *contacts, const char *function, const char *field,
+                                 const double *former) {
   const double *density = mpsi_particles_column(p->set, "density", 0);
   const double *now = strcmp(field, "density") == 0 ? density : p->V;
   for (int64_t k = 0; k < p->count; k++) {
@@ -151,42 +149,6 @@ static mps_status renew_masses(mps_context *context, const mpsi_grid *grid, cons
   }
   for (int64_t k = 0; k < p->count; k++)
     if (now[k] != former[k]) set_mass(grid, p, contacts, k, density[k]);
-  return MPS_OK;
-}
-
-bool mpsi_mpm_compares(const void *self, const char *field) {
-  (void)self;
-  return strcmp(field, "density") == 0 || strcmp(field, "volume") == 0;
-}
-
-/* Whether steps read the field directly, so that an edit needs no update. */
-static bool read_by_steps(const char *field) {
-  return strcmp(field, "external_force") == 0 || strcmp(field, "body_acceleration") == 0;
-}
-
-/* Updates after an edit of a field, whose values the set has checked to be finite and in range.
- * Positions must be in the domain, and the particles are sorted again; the other fields change the
- * limit of the time step. */
-mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *field,
-                              const double *former) {
-  mps_mpm *mpm = self;
-  const bool moved = strcmp(field, "position") == 0;
-  mps_status status = MPS_OK;
-  if (read_by_steps(field)) return MPS_OK;
-  if (moved)
-    status = mpsi_mpm_check_places(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function, 0,
-                                   mpm->p.count);
-  if (status == MPS_OK && former)
-    status =
-        renew_masses(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, function, field, former);
-  if (status != MPS_OK) return status;
-  mpm->run.edited = true;
-  mpm->run.stale = mpm->run.stale || moved;
-  if (strcmp(field, "velocity_gradient") == 0) mpm->run.moments = false;
-  /* the gradients belong to the former pressures */
-  if (mpm->water && strcmp(field, "pore_pressure") == 0)
-    for (int c = 0; c < mpm->grid.dim; c++)
-      memset(mpm->p.g[c], 0, (size_t)mpm->p.count * sizeof *mpm->p.g[c]);
   return MPS_OK;
 }
 

@@ -1,6 +1,8 @@
-/* rooms.c - memory with an entry for each particle, besides its fields: for the sort, loads, means
- * of the change of volume and the filter of stresses. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_particles.h"
+/* rooms.c - see rooms.h: memory for the sort, loads, means of the change of volume and the filter
+ * of stresses. SPDX-License-Identifier: BSD-3-Clause */
+#include "rooms.h"
+
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 
@@ -34,27 +36,24 @@ bool mpsi_mpm_volume_room(mps_context *context, const mpsi_grid *grid, mpsi_colu
   return good;
 }
 
-bool mpsi_mpm_make_room(void *solver, int64_t particles) {
-  mps_mpm *mpm = solver;
-  mpsi_rooms *r = &mpm->rooms;
-  const bool good =
-      mpsi_room_ensure(mpm->context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
-      mpsi_mpm_volume_room(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, particles,
-                           !mpm->p.laws.at_once, mpm->p.laws.some_filtered) &&
-      (!r->force.item ||
-       mpsi_mpm_force_room(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, particles));
-  mpm->grid.radix = r->radix.item;
+bool mpsi_mpm_make_room(mps_context *context, mpsi_grid *grid, mpsi_columns *p, mpsi_rooms *r,
+                        int64_t particles) {
+  const bool good = mpsi_room_ensure(context, &r->radix, 2 * particles, sizeof *grid->radix) &&
+                    mpsi_mpm_volume_room(context, grid, p, r, particles, !p->laws.at_once,
+                                         p->laws.some_filtered) &&
+                    (!r->force.item || mpsi_mpm_force_room(context, grid, p, r, particles));
+  grid->radix = r->radix.item;
   return good;
 }
 
-bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
-  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.stencil, &mpm->rooms.strain,
-                              &mpm->rooms.rough};
+bool mpsi_mpm_shrink_room(mps_context *context, mpsi_grid *grid, mpsi_columns *p, mpsi_rooms *r,
+                          int64_t particles) {
+  mpsi_room *const rooms[] = {&r->radix, &r->stencil, &r->strain, &r->rough};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
-    mpsi_free(mpm->context, rooms[k]->item);
+    mpsi_free(context, rooms[k]->item);
     *rooms[k] = (mpsi_room){0};
   }
-  memset(mpm->p.D, 0, sizeof mpm->p.D);
-  mpm->p.rough = NULL;
-  return mpsi_mpm_make_room(mpm, particles);
+  memset(p->D, 0, sizeof p->D);
+  p->rough = NULL;
+  return mpsi_mpm_make_room(context, grid, p, r, particles);
 }

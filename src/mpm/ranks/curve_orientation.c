@@ -5,7 +5,7 @@
 #include "curve_orientation.h"
 
 #include "domain/curve.h"
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <stdlib.h>
 #include <string.h>

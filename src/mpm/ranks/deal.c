@@ -99,42 +99,44 @@ static mps_status place_by_bounds(mps_context *context, const mpsi_grid *grid,
   return mpsi_domain_agree(partition->domain, function, status);
 }
 
-static mps_status find_blocks(mps_mpm *mpm, const char *function) {
-  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
-  mpm->p.laws.ids = mpsi_particles_integers(mpm->p.set, "id"); /* laws are added later */
-  mpm->grid.worker_count = mps_context_threads(mpm->context);
+static mps_status find_blocks(const mpsi_rank_part *part, const char *function) {
+  mpsi_mpm_bind(part->grid, part->p, part->water);
+  part->p->laws.ids = mpsi_particles_integers(part->p->set, "id"); /* laws are added later */
+  part->grid->worker_count = mps_context_threads(part->context);
   const mps_status status =
-      mpsi_mpm_check_start(mpm->context, &mpm->grid, &mpm->p, &mpm->def, function);
+      mpsi_mpm_check_start(part->context, part->grid, part->p, part->def, function);
   if (status != MPS_OK) return status;
-  if (!mpsi_mpm_make_room(mpm, mpm->p.count))
-    return mpsi_fail_memory(mpm->context, function,
-                            (size_t)mpm->p.count * 2 * sizeof *mpm->grid.radix);
-  return mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
+  if (!mpsi_mpm_make_room(part->context, part->grid, part->p, part->rooms, part->p->count))
+    return mpsi_fail_memory(part->context, function,
+                            (size_t)part->p->count * 2 * sizeof *part->grid->radix);
+  return mpsi_mpm_sort_cells(part->context, part->grid, part->p, part->run, function);
 }
 
 /* Reduces the memory of fields and solver to what is needed. */
-static mps_status fit(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_particles_fit(mpm->p.set, function);
-  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
-  if (status != MPS_OK || mpsi_mpm_shrink_room(mpm, mpm->p.count)) return status;
-  return mpsi_fail_memory(mpm->context, function,
-                          (size_t)mpm->p.count * 2 * sizeof *mpm->grid.radix);
+static mps_status fit(const mpsi_rank_part *part, const char *function) {
+  const mps_status status = mpsi_particles_fit(part->p->set, function);
+  mpsi_mpm_bind(part->grid, part->p, part->water);
+  if (status != MPS_OK ||
+      mpsi_mpm_shrink_room(part->context, part->grid, part->p, part->rooms, part->p->count))
+    return status;
+  return mpsi_fail_memory(part->context, function,
+                          (size_t)part->p->count * 2 * sizeof *part->grid->radix);
 }
 
-mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_share_deal(const mpsi_rank_part *part, const char *function) {
   bool moved;
   int64_t blocks;
-  status = mpsi_mpm_share_begin(mpm, function, status);
+  mps_status status =
+      mpsi_domain_agree(part->partition->domain, function, find_blocks(part, function));
   if (status != MPS_OK) return status;
-  status = mpsi_domain_agree(mpm->partition->domain, function, find_blocks(mpm, function));
-  if (status != MPS_OK) return status;
-  blocks = mpm->grid.cell_count;
-  status = mpsi_domain_sum(mpm->partition->domain, function, 1, &blocks);
+  blocks = part->grid->cell_count;
+  status = mpsi_domain_sum(part->partition->domain, function, 1, &blocks);
   if (status == MPS_OK)
     status = blocks <= MOST_BLOCKS
-                 ? place_by_list(mpm->context, &mpm->grid, mpm->partition, function)
-                 : place_by_bounds(mpm->context, &mpm->grid, mpm->partition, function);
-  if (status == MPS_OK) status = mpsi_mpm_partition_migrate(mpm, function, status, &moved);
-  return status == MPS_OK ? mpsi_domain_agree(mpm->partition->domain, function, fit(mpm, function))
-                          : status;
+                 ? place_by_list(part->context, part->grid, part->partition, function)
+                 : place_by_bounds(part->context, part->grid, part->partition, function);
+  if (status == MPS_OK) status = mpsi_mpm_partition_migrate(part, function, status, &moved);
+  return status == MPS_OK
+             ? mpsi_domain_agree(part->partition->domain, function, fit(part, function))
+             : status;
 }

@@ -85,7 +85,7 @@ mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
 
 /* Particles that leave this rank, by present index, and all columns of the set. */
 typedef struct departure {
-  mps_mpm *mpm;
+  const mpsi_rank_part *part;
   uint8_t *gone;
   int64_t *row;
   int32_t *to;
@@ -95,7 +95,7 @@ typedef struct departure {
 } departure;
 
 static mps_status list_columns(departure *d) {
-  mps_particles *set = d->mpm->p.set;
+  mps_particles *set = d->part->p->set;
   mps_particles_field_info info;
   mps_status status = MPS_OK;
   d->columns = 0;
@@ -112,21 +112,21 @@ static mps_status list_columns(departure *d) {
 }
 
 static mps_status list_leaving(departure *d, const char *function) {
-  mps_mpm *mpm = d->mpm;
-  const int32_t rank = mps_domain_rank(mpm->partition->domain);
+  const mpsi_rank_part *part = d->part;
+  const int32_t rank = mps_domain_rank(part->partition->domain);
   mps_status status = list_columns(d);
   if (status != MPS_OK) return status;
-  const int64_t count = mpm->p.count;
-  d->column = mpsi_alloc(mpm->context, d->columns, sizeof *d->column);
-  d->gone = mpsi_alloc(mpm->context, count, 1);
-  d->row = mpsi_alloc(mpm->context, count, sizeof *d->row);
-  d->to = mpsi_alloc(mpm->context, count, sizeof *d->to);
+  const int64_t count = part->p->count;
+  d->column = mpsi_alloc(part->context, d->columns, sizeof *d->column);
+  d->gone = mpsi_alloc(part->context, count, 1);
+  d->row = mpsi_alloc(part->context, count, sizeof *d->row);
+  d->to = mpsi_alloc(part->context, count, sizeof *d->to);
   if (!d->column || !d->gone || !d->row || !d->to)
-    return mpsi_fail_memory(mpm->context, function, (size_t)count * 13);
+    return mpsi_fail_memory(part->context, function, (size_t)count * 13);
   memset(d->gone, 0, (size_t)count);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    const int32_t owner = mpsi_mpm_block_owner(&mpm->grid, mpm->partition, cells->at);
+  for (int64_t b = 0; b < part->grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &part->grid->cells[b];
+    const int32_t owner = mpsi_mpm_block_owner(part->grid, part->partition, cells->at);
     for (int64_t k = cells->begin; owner != rank && k < cells->end; k++) {
       d->gone[k] = 1;
       d->row[d->count] = k;
@@ -139,41 +139,43 @@ static mps_status list_leaving(departure *d, const char *function) {
 /* Stores received particles. All that can fail on any rank comes before anything has changed. */
 static mps_status store_received(departure *d, const char *function, const mpsi_mailbox *box,
                                  int64_t arriving) {
-  mps_mpm *mpm = d->mpm;
-  const int64_t count = mpm->p.count - d->count + arriving;
+  const mpsi_rank_part *part = d->part;
+  const int64_t count = part->p->count - d->count + arriving;
   mps_status status = MPS_OK;
   if (count > MPSI_MPM_MOST_PARTICLES)
-    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+    status = mpsi_fail(part->context, function, MPS_ERROR_ARGUMENT,
                        "%lld particles would lie on one rank, which has at most %d",
                        (long long)count, MPSI_MPM_MOST_PARTICLES);
-  if (status == MPS_OK && !mpsi_mpm_make_room(mpm, count))
-    status = mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
-  if (status == MPS_OK) status = mpsi_particles_hold_room(mpm->p.set, function, count);
-  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water); /* columns may have moved */
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (status == MPS_OK &&
+      !mpsi_mpm_make_room(part->context, part->grid, part->p, part->rooms, count))
+    status =
+        mpsi_fail_memory(part->context, function, (size_t)count * 2 * sizeof *part->grid->radix);
+  if (status == MPS_OK) status = mpsi_particles_hold_room(part->p->set, function, count);
+  mpsi_mpm_bind(part->grid, part->p, part->water); /* columns may have moved */
+  status = mpsi_domain_agree(part->partition->domain, function, status);
   if (status != MPS_OK) return status;
-  mpsi_particles_make_way(mpm->p.set, d->gone);
+  mpsi_particles_make_way(part->p->set, d->gone);
   (void)list_columns(d);
-  mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(mpm->p.set));
-  mpsi_particles_admit(mpm->p.set, arriving);
-  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
+  mpsi_migrate_unpack(box, d->columns, d->column, mps_particles_count(part->p->set));
+  mpsi_particles_admit(part->p->set, arriving);
+  mpsi_mpm_bind(part->grid, part->p, part->water);
   return MPS_OK;
 }
 
-static const int64_t *ids_of(const mps_mpm *mpm) {
-  return mpsi_particles_integers(mpm->p.set, "id");
+static const int64_t *ids_of(const mpsi_rank_part *part) {
+  return mpsi_particles_integers(part->p->set, "id");
 }
 
 static mps_status send(departure *d, const char *function, mps_status status, bool *moved) {
-  mps_mpm *mpm = d->mpm;
-  mps_domain *domain = mpm->partition->domain;
-  mpsi_mailbox box = {.context = mpm->context};
+  const mpsi_rank_part *part = d->part;
+  mps_domain *domain = part->partition->domain;
+  mpsi_mailbox box = {.context = part->context};
   mpsi_census before;
   int64_t arriving = 0;
   if (status == MPS_OK) status = list_leaving(d, function);
   status = mpsi_domain_agree(domain, function, status);
   if (COUNT_IDS && status == MPS_OK)
-    status = mpsi_census_take(domain, function, mpm->p.count, ids_of(mpm), &before);
+    status = mpsi_census_take(domain, function, part->p->count, ids_of(part), &before);
   if (status != MPS_OK) return status;
   const mpsi_leaving leaving = {.count = d->count,
                                 .row = d->row,
@@ -183,7 +185,7 @@ static mps_status send(departure *d, const char *function, mps_status status, bo
   status = mpsi_migrate(domain, function, &leaving, &box, &arriving);
   if (status == MPS_OK) status = store_received(d, function, &box, arriving);
   if (COUNT_IDS && status == MPS_OK)
-    status = mpsi_census_check(domain, function, mpm->p.count, ids_of(mpm), &before);
+    status = mpsi_census_check(domain, function, part->p->count, ids_of(part), &before);
   *moved = status == MPS_OK && (d->count > 0 || arriving > 0);
   mpsi_domain_free_mail(&box);
   return status;
@@ -200,20 +202,20 @@ static mps_status rebalance(mps_context *context, const mpsi_grid *grid, const m
   return mpsi_mpm_partition_cut(context, grid, partition, function, false);
 }
 
-mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_status status,
-                                      bool *moved) {
-  mpsi_partition *partition = mpm->partition;
-  departure d = {.mpm = mpm};
-  status = rebalance(mpm->context, &mpm->grid, &mpm->p, mpm->partition, function, status);
+mps_status mpsi_mpm_partition_migrate(const mpsi_rank_part *part, const char *function,
+                                      mps_status status, bool *moved) {
+  mpsi_partition *partition = part->partition;
+  departure d = {.part = part};
+  status = rebalance(part->context, part->grid, part->p, part->partition, function, status);
   if (status == MPS_OK) status = send(&d, function, status, moved);
   if (status == MPS_OK && partition->heaviest == 0.0) {
-    partition->heaviest = (double)mpm->p.count;
+    partition->heaviest = (double)part->p->count;
     status = mpsi_domain_max(partition->domain, function, 1, &partition->heaviest);
   }
-  mpsi_free(mpm->context, d.column);
-  mpsi_free(mpm->context, d.gone);
-  mpsi_free(mpm->context, d.row);
-  mpsi_free(mpm->context, d.to);
+  mpsi_free(part->context, d.column);
+  mpsi_free(part->context, d.gone);
+  mpsi_free(part->context, d.row);
+  mpsi_free(part->context, d.to);
   return status;
 }
 

@@ -2,7 +2,7 @@
  * for them, and the exchange of other sums in tiles. SPDX-License-Identifier: BSD-3-Clause */
 #include "parcels.h"
 
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 
@@ -48,8 +48,10 @@ double *mpsi_mpm_copy_nodes(const mpsi_cell_block *cells, void *tile, size_t siz
 
 /* Sums other than momenta, which `sum` puts into the tiles of a worker. */
 typedef struct sums {
-  mps_mpm *mpm;
+  const mpsi_grid *grid;
+  const mpsi_partition *partition;
   mpsi_mpm_task sum;
+  void *data;
 } sums;
 
 static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *parcel, bool pack) {
@@ -64,32 +66,32 @@ static void copy_sums(const mpsi_cell_block *cells, const mpsi_worker *worker, d
 
 static void pack_sums(void *data, int64_t k, int32_t number) {
   const sums *s = data;
-  const mpsi_partition *partition = s->mpm->partition;
-  s->sum(s->mpm, partition->border[k], number);
-  copy_sums(&s->mpm->grid.cells[partition->border[k]], &s->mpm->grid.workers[number],
-            mpsi_mpm_parcel(partition, false, k), true);
+  const int32_t b = s->partition->border[k];
+  s->sum(s->data, b, number);
+  copy_sums(&s->grid->cells[b], &s->grid->workers[number], mpsi_mpm_parcel(s->partition, false, k),
+            true);
 }
 
-void mpsi_mpm_send_sums(mps_mpm *mpm, mpsi_mpm_task sum) {
-  mpsi_partition *partition = mpm->partition;
-  sums s = {mpm, sum};
+void mpsi_mpm_send_sums(mps_context *context, const mpsi_grid *grid, mpsi_partition *partition,
+                        mpsi_mpm_task sum, void *data) {
+  sums s = {grid, partition, sum, data};
   partition->item = mpsi_mpm_parcel_bytes(partition, false, partition->thin, 0);
-  mpsi_parallel_for(mpm->context, partition->borders, pack_sums, &s);
+  mpsi_parallel_for(context, partition->borders, pack_sums, &s);
   if (partition->lost == MPS_OK)
     partition->lost = mpsi_halo_begin_bytes(partition->halo, "mps_mpm_step", partition->item,
                                             partition->out, partition->in);
 }
 
-bool mpsi_mpm_receive_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
-  const mpsi_partition *partition = mpm->partition;
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+bool mpsi_mpm_receive_sums(const mpsi_grid *grid, const mpsi_partition *partition, int64_t b,
+                           int32_t number, mpsi_mpm_task sum, void *data) {
+  const mpsi_cell_block *cells = &grid->cells[b];
   if (cells->parcel < 0) {
-    sum(mpm, b, number);
+    sum(data, b, number);
     return true;
   }
   if (cells->ghost && partition->lost != MPS_OK) return false; /* the step has failed */
-  copy_sums(cells, &mpm->grid.workers[number],
-            mpsi_mpm_parcel(partition, cells->ghost, cells->parcel), false);
+  copy_sums(cells, &grid->workers[number], mpsi_mpm_parcel(partition, cells->ghost, cells->parcel),
+            false);
   return true;
 }
 

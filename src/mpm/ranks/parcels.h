@@ -21,11 +21,13 @@ double *mpsi_mpm_parcel(const mpsi_partition *partition, bool ghost, int64_t num
  * returns the end of that part in the parcel. */
 double *mpsi_mpm_copy_nodes(const mpsi_cell_block *cells, void *tile, size_t size, double *parcel,
                             bool pack);
-/* Sends the sums that `sum` puts into a worker's tile to all ranks that have the block as a ghost
- * (collective); in a pass, puts the sums of block b, summed here or received, into the worker's
- * tile: false where messages are lost. */
-void mpsi_mpm_send_sums(mps_mpm *mpm, mpsi_mpm_task sum);
-bool mpsi_mpm_receive_sums(mps_mpm *mpm, int64_t b, int32_t worker, mpsi_mpm_task sum);
+/* Sends the sums that `sum`, a task on `data`, puts into a worker's tile to all ranks that have the
+ * block as a ghost (collective); in a pass, puts the sums of block b, summed here or received, into
+ * the worker's tile: false where messages are lost. */
+void mpsi_mpm_send_sums(mps_context *context, const mpsi_grid *grid, mpsi_partition *partition,
+                        mpsi_mpm_task sum, void *data);
+bool mpsi_mpm_receive_sums(const mpsi_grid *grid, const mpsi_partition *partition, int64_t b,
+                           int32_t worker, mpsi_mpm_task sum, void *data);
 /* Completes the exchange of parcels. Collective. */
 void mpsi_mpm_receive_parcels(mpsi_partition *partition);
 

@@ -20,7 +20,7 @@ typedef struct notice {
 
 /* Search for ghosts. */
 typedef struct search {
-  mps_mpm *mpm;
+  const mpsi_rank_part *part;
   const char *function;
   mpsi_cell_block *own; /* own blocks in order */
   int64_t count;
@@ -47,7 +47,7 @@ static bool is_own(const search *s, const int32_t *at) {
 }
 
 static bool beside_own(const search *s, const int32_t *at) {
-  const int depth = s->mpm->grid.dim == 3;
+  const int depth = s->part->grid->dim == 3;
   for (int k = -depth; k <= depth; k++)
     for (int j = -1; j <= 1; j++)
       for (int i = -1; i <= 1; i++) {
@@ -59,29 +59,29 @@ static bool beside_own(const search *s, const int32_t *at) {
 
 /* Copies the own blocks, without the ghosts in the list. */
 static mps_status copy_own(search *s) {
-  const mpsi_grid *grid = &s->mpm->grid;
-  mps_context *context = s->mpm->context;
-  const int64_t ranks = mps_domain_size(s->mpm->partition->domain);
+  const mpsi_grid *grid = s->part->grid;
+  mps_context *context = s->part->context;
+  const int64_t ranks = mps_domain_size(s->part->partition->domain);
   s->own = mpsi_alloc(context, grid->cell_count, sizeof *s->own);
   s->range = mpsi_alloc(context, MPSI_BLOCK_RANGE * ranks, sizeof *s->range);
   if (!s->own || !s->range)
     return mpsi_fail_memory(context, s->function, (size_t)grid->cell_count * sizeof *s->own);
   for (int64_t b = 0; b < grid->cell_count; b++)
     if (!grid->cells[b].ghost) s->own[s->count++] = grid->cells[b];
-  int64_t *mine = s->range + MPSI_BLOCK_RANGE * mps_domain_rank(s->mpm->partition->domain);
+  int64_t *mine = s->range + MPSI_BLOCK_RANGE * mps_domain_rank(s->part->partition->domain);
   memset(s->range, 0, (size_t)(MPSI_BLOCK_RANGE * ranks) * sizeof *s->range);
   for (int64_t b = 0; b < s->count; b++) mpsi_block_range_add(mine, s->own[b].at);
   return MPS_OK;
 }
 
 static bool is_sent(const search *s, int32_t rank, int64_t b) {
-  return rank != mps_domain_rank(s->mpm->partition->domain) &&
+  return rank != mps_domain_rank(s->part->partition->domain) &&
          mpsi_block_range_near(s->range + MPSI_BLOCK_RANGE * rank, s->own[b].at);
 }
 
 static mps_status exchange_search(search *s) {
-  mps_context *context = s->mpm->context;
-  mps_domain *domain = s->mpm->partition->domain;
+  mps_context *context = s->part->context;
+  mps_domain *domain = s->part->partition->domain;
   const int32_t ranks = mps_domain_size(domain);
   int64_t notices = 0;
   int32_t messages = 0;
@@ -115,7 +115,7 @@ static mps_status exchange_search(search *s) {
 }
 
 static mps_status choose_ghosts(search *s) {
-  mps_context *context = s->mpm->context;
+  mps_context *context = s->part->context;
   int64_t most = 0;
   for (int32_t m = 0; m < s->box.count; m++)
     most += s->box.mail[m].bytes / (int64_t)sizeof *s->ghost;
@@ -158,7 +158,7 @@ static void sort_ghosts(const search *s, int64_t *order, int64_t *other) {
 
 /* Merges own blocks and ghosts in one list; `place`: index of each own block in it. */
 static void merge(const search *s, const int64_t *order, int32_t *place) {
-  mpsi_cell_block *cells = s->mpm->grid.cells;
+  mpsi_cell_block *cells = s->part->grid->cells;
   int64_t own = 0, ghost = 0;
   for (int64_t b = 0; b < s->count + s->ghosts; b++) {
     const notice *next = ghost < s->ghosts ? &s->ghost[order[ghost]] : NULL;
@@ -169,7 +169,7 @@ static void merge(const search *s, const int64_t *order, int32_t *place) {
       place[own++] = (int32_t)b;
       continue;
     }
-    const int64_t begin = own < s->count ? s->own[own].begin : s->mpm->p.count;
+    const int64_t begin = own < s->count ? s->own[own].begin : s->part->p->count;
     cells[b] = (mpsi_cell_block){
         .begin = begin, .end = begin, .bad = -1, .ghost = true, .parcel = order[ghost++]};
     memcpy(cells[b].at, next->at, sizeof next->at);
@@ -179,15 +179,15 @@ static void merge(const search *s, const int64_t *order, int32_t *place) {
 }
 
 static bool put_lists(search *s) {
-  mps_mpm *mpm = s->mpm;
-  mpsi_partition *partition = mpm->partition;
+  const mpsi_rank_part *part = s->part;
+  mpsi_partition *partition = part->partition;
   const int64_t all = s->count + s->ghosts;
-  int64_t *order = mpsi_alloc(mpm->context, 2 * s->ghosts, sizeof *order);
-  int32_t *place = mpsi_alloc(mpm->context, s->count, sizeof *place);
-  bool good = order && place && mpsi_mpm_ensure_cells(mpm->context, &mpm->grid, all) &&
-              mpsi_room_ensure(mpm->context, &partition->border_room, s->count,
+  int64_t *order = mpsi_alloc(part->context, 2 * s->ghosts, sizeof *order);
+  int32_t *place = mpsi_alloc(part->context, s->count, sizeof *place);
+  bool good = order && place && mpsi_mpm_ensure_cells(part->context, part->grid, all) &&
+              mpsi_room_ensure(part->context, &partition->border_room, s->count,
                                sizeof *partition->border) &&
-              mpsi_room_ensure(mpm->context, &partition->rank_room, s->ghosts, sizeof *s->rank);
+              mpsi_room_ensure(part->context, &partition->rank_room, s->ghosts, sizeof *s->rank);
   if (good) {
     partition->border = partition->border_room.item;
     partition->ghost_rank = partition->rank_room.item;
@@ -196,10 +196,10 @@ static bool put_lists(search *s) {
     merge(s, order, place);
     for (int64_t k = 0; k < s->count; k++) partition->border[k] = place[k];
     partition->ghosts = s->ghosts;
-    good = mpsi_mpm_build_nodes(mpm->context, &mpm->grid, all);
+    good = mpsi_mpm_build_nodes(part->context, part->grid, all);
   }
-  mpsi_free(mpm->context, order);
-  mpsi_free(mpm->context, place);
+  mpsi_free(part->context, order);
+  mpsi_free(part->context, place);
   return good;
 }
 
@@ -219,16 +219,16 @@ static void mark_blocks(const mpsi_grid *grid) {
 }
 
 /* Own blocks requested by other ranks; memory for parcels. */
-static mps_status find_border(mps_mpm *mpm, const char *function) {
-  mpsi_partition *partition = mpm->partition;
+static mps_status find_border(const mpsi_rank_part *part, const char *function) {
+  mpsi_partition *partition = part->partition;
   const int64_t *item;
   partition->borders = mpsi_halo_items(partition->halo, &item);
   for (int64_t k = 0; k < partition->borders;
        k++) { /* item[k] >= k: no entry is overwritten before it is read */
     partition->border[k] = partition->border[item[k]];
-    mpm->grid.cells[partition->border[k]].parcel = k;
+    part->grid->cells[partition->border[k]].parcel = k;
   }
-  return mpsi_mpm_reserve_parcels(mpm->context, &mpm->contact, mpm->partition, function);
+  return mpsi_mpm_reserve_parcels(part->context, part->contact, part->partition, function);
 }
 
 static double widest(const search *s) {
@@ -242,28 +242,28 @@ static double widest(const search *s) {
 }
 
 static mps_status join(search *s) {
-  mps_mpm *mpm = s->mpm;
-  mpsi_partition *partition = mpm->partition;
+  const mpsi_rank_part *part = s->part;
+  mpsi_partition *partition = part->partition;
   double most = widest(s);
   mps_status status = choose_ghosts(s);
   if (status == MPS_OK && !put_lists(s))
-    status = mpsi_fail_memory(mpm->context, s->function,
-                              (size_t)(s->count + s->ghosts) * sizeof *mpm->grid.cells);
+    status = mpsi_fail_memory(part->context, s->function,
+                              (size_t)(s->count + s->ghosts) * sizeof *part->grid->cells);
   status = mpsi_domain_agree_max(partition->domain, s->function, status, 1, &most);
   if (status != MPS_OK) return status;
   partition->most = (int32_t)most;
-  mark_blocks(&mpm->grid);
-  mpsi_halo_destroy(mpm->context, &partition->halo);
+  mark_blocks(part->grid);
+  mpsi_halo_destroy(part->context, &partition->halo);
   const mpsi_halo_def def = {.guests = s->ghosts, .rank = s->rank, .index = s->index};
   status = mpsi_halo_create(partition->domain, s->function, &def, &partition->halo);
   if (status != MPS_OK) return status;
-  return mpsi_domain_agree(partition->domain, s->function, find_border(mpm, s->function));
+  return mpsi_domain_agree(partition->domain, s->function, find_border(part, s->function));
 }
 
-mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
-  mpsi_partition *partition = mpm->partition;
+mps_status mpsi_mpm_partition_find_ghosts(const mpsi_rank_part *part, const char *function) {
+  mpsi_partition *partition = part->partition;
   if (!partition->outdated) return MPS_OK;
-  search s = {.mpm = mpm, .function = function, .box.context = mpm->context};
+  search s = {.part = part, .function = function, .box.context = part->context};
   mps_status status = mpsi_domain_agree(partition->domain, function, copy_own(&s));
   if (status == MPS_OK)
     status = mpsi_domain_sum(partition->domain, function,
@@ -272,26 +272,26 @@ mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK) status = join(&s);
   mpsi_domain_free_mail(&s.box);
   void *parts[] = {s.own, s.range, s.sent, s.message, s.ghost, s.rank, s.index};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(part->context, parts[k]);
   partition->outdated = status != MPS_OK;
   partition->searches++;
-  if (partition->outdated) mpm->run.stale = true; /* the lists may have been freed */
+  if (partition->outdated) part->run->stale = true; /* the lists may have been freed */
   return status;
 }
 
-mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_partition_sort(const mpsi_rank_part *part, const char *function) {
   bool moved = false;
-  mpm->partition->outdated = true;
-  mps_status status = mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
-  status = mpsi_mpm_partition_migrate(mpm, function, status, &moved);
+  part->partition->outdated = true;
+  mps_status status = mpsi_mpm_sort_cells(part->context, part->grid, part->p, part->run, function);
+  status = mpsi_mpm_partition_migrate(part, function, status, &moved);
   if (status != MPS_OK) {
-    mpm->run.stale = true;
+    part->run->stale = true;
     return status;
   }
-  if (moved) status = mpsi_mpm_sort_cells(mpm->context, &mpm->grid, &mpm->p, &mpm->run, function);
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK) mpm->run.stale = true;
-  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
+  if (moved) status = mpsi_mpm_sort_cells(part->context, part->grid, part->p, part->run, function);
+  status = mpsi_domain_agree(part->partition->domain, function, status);
+  if (status != MPS_OK) part->run->stale = true;
+  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(part, function) : status;
 }
 
 /* ---- the first cut --------------------------------------------------------------------------- */
@@ -313,16 +313,18 @@ static int64_t take_blocks(mpsi_grid *grid, mpsi_partition *partition, int64_t *
   return count;
 }
 
-static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **former) {
-  int64_t *rows = mpsi_alloc(mpm->context, mpm->p.count, sizeof *rows);
-  if (!rows) return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof *rows);
-  const int64_t count = take_blocks(&mpm->grid, mpm->partition, rows);
-  const mps_status status = mpsi_particles_keep(mpm->p.set, function, count, rows, count, former);
-  mpsi_free(mpm->context, rows);
+static mps_status keep_own(const mpsi_rank_part *part, const char *function,
+                           mpsi_storage **former) {
+  int64_t *rows = mpsi_alloc(part->context, part->p->count, sizeof *rows);
+  if (!rows)
+    return mpsi_fail_memory(part->context, function, (size_t)part->p->count * sizeof *rows);
+  const int64_t count = take_blocks(part->grid, part->partition, rows);
+  const mps_status status = mpsi_particles_keep(part->p->set, function, count, rows, count, former);
+  mpsi_free(part->context, rows);
   if (status != MPS_OK) return status;
-  mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
-  if (mpsi_mpm_shrink_room(mpm, count)) return MPS_OK;
-  return mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
+  mpsi_mpm_bind(part->grid, part->p, part->water);
+  if (mpsi_mpm_shrink_room(part->context, part->grid, part->p, part->rooms, count)) return MPS_OK;
+  return mpsi_fail_memory(part->context, function, (size_t)count * 2 * sizeof *part->grid->radix);
 }
 
 /* Checks that all ranks are given the same definition. */
@@ -353,59 +355,48 @@ static mps_status compare_ranks(const mpsi_grid *grid, const mpsi_columns *p, co
   return mpsi_domain_agree_particles(d->domain, function, status, p->set);
 }
 
-mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
-  mps_domain *domain = mpm->def.domain;
-  if (status == MPS_OK) mpm->partition = mpsi_alloc(mpm->context, 1, sizeof *mpm->partition);
-  if (status == MPS_OK && !mpm->partition)
-    status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->partition);
-  status = mpsi_domain_agree_parts(domain, function, status, mpm->p.set);
+mps_status mpsi_mpm_share_begin(mps_context *context, const mpsi_columns *p, mps_domain *domain,
+                                const char *function, mps_status status, mpsi_partition **out) {
+  mpsi_partition *partition = NULL;
+  if (status == MPS_OK && !(partition = mpsi_alloc(context, 1, sizeof *partition)))
+    status = mpsi_fail_memory(context, function, sizeof *partition);
+  status = mpsi_domain_agree_parts(domain, function, status, p->set);
   if (status != MPS_OK) {
-    mpsi_free(mpm->context, mpm->partition);
-    mpm->partition = NULL;
+    mpsi_free(context, partition);
     return status;
   }
-  *mpm->partition = (mpsi_partition){.domain = mpsi_domain_retain(domain), .outdated = true};
+  *partition = (mpsi_partition){.domain = mpsi_domain_retain(domain), .outdated = true};
+  *out = partition;
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_partition_create(mps_mpm *mpm, const char *function, mps_status status,
+mps_status mpsi_mpm_partition_create(const mpsi_rank_part *part, const char *function,
                                      mpsi_storage **former) {
-  mps_domain *domain = mpm->def.domain;
-  status = mpsi_mpm_share_begin(mpm, function, status);
-  if (status == MPS_OK) status = compare_ranks(&mpm->grid, &mpm->p, &mpm->def, function, status);
+  mps_domain *domain = part->def->domain;
+  mps_status status = compare_ranks(part->grid, part->p, part->def, function, MPS_OK);
   if (status == MPS_OK)
-    status = mpsi_mpm_partition_cut(mpm->context, &mpm->grid, mpm->partition, function, true);
+    status = mpsi_mpm_partition_cut(part->context, part->grid, part->partition, function, true);
   if (status == MPS_OK)
-    status = mpsi_domain_agree(domain, function, keep_own(mpm, function, former));
-  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
+    status = mpsi_domain_agree(domain, function, keep_own(part, function, former));
+  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(part, function) : status;
 }
 
-mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status) {
-  status = compare_ranks(&mpm->grid, &mpm->p, &mpm->def, function, status);
-  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(mpm, function) : status;
+mps_status mpsi_mpm_share_take_part(const mpsi_rank_part *part, const char *function,
+                                    mps_status status) {
+  status = compare_ranks(part->grid, part->p, part->def, function, status);
+  return status == MPS_OK ? mpsi_mpm_partition_find_ghosts(part, function) : status;
 }
 
-void mpsi_mpm_partition_free(mps_mpm *mpm) {
-  mpsi_partition *partition = mpm->partition;
+void mpsi_mpm_partition_free(mps_context *context, mpsi_partition **pointer) {
+  mpsi_partition *partition = *pointer;
   if (!partition) return;
-  mpm->partition = NULL;
-  mpsi_halo_destroy(mpm->context, &partition->halo);
-  mpsi_free(mpm->context, partition->first);
-  mpsi_free(mpm->context, partition->border_room.item);
-  mpsi_free(mpm->context, partition->rank_room.item);
-  mpsi_free(mpm->context, partition->out_room.item);
-  mpsi_free(mpm->context, partition->in_room.item);
+  *pointer = NULL;
+  mpsi_halo_destroy(context, &partition->halo);
+  mpsi_free(context, partition->first);
+  mpsi_free(context, partition->border_room.item);
+  mpsi_free(context, partition->rank_room.item);
+  mpsi_free(context, partition->out_room.item);
+  mpsi_free(context, partition->in_room.item);
   mps_domain_destroy(&partition->domain);
-  mpsi_free(mpm->context, partition);
-}
-
-/* ---- before a step
- * ------------------------------------------------------------------------------- */
-
-mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status) {
-  if (!mpm->run.stale && !mpm->partition->outdated) return status;
-  status = mpsi_domain_agree(mpm->partition->domain, function, status);
-  if (status != MPS_OK || mpm->run.stale) return status;
-  mpm->boundaries.outdated = true;
-  return mpsi_mpm_partition_find_ghosts(mpm, function);
+  mpsi_free(context, partition);
 }

@@ -45,18 +45,34 @@ typedef struct mpsi_partition {
   mpsi_room border_room, rank_room, out_room, in_room;
 } mpsi_partition;
 
-/* partition.c: reduces a solver made with the whole set on each rank to this rank's part. `status`:
- * of the call so far on this rank. Collective, as all of the following unless noted. */
-mps_status mpsi_mpm_partition_create(mps_mpm *mpm, const char *function, mps_status status,
+/* What the functions of this room work on: the particles of this rank, their blocks of cells and
+ * the partition. */
+struct mpsi_rank_part {
+  mps_context *context;
+  mpsi_grid *grid;
+  mpsi_columns *p;
+  mpsi_rooms *rooms;
+  mpsi_water *water; /* NULL: none */
+  const mpsi_contacts *contact;
+  mpsi_run *run;
+  const mps_mpm_def *def;
+  mpsi_partition *partition;
+};
+
+/* partition.c: a new partition, which has no blocks yet. `status`: of the call so far on this rank.
+ * Collective, as all of the following unless noted. */
+mps_status mpsi_mpm_share_begin(mps_context *context, const mpsi_columns *p, mps_domain *domain,
+                                const char *function, mps_status status, mpsi_partition **out);
+/* partition.c: reduces a solver made with the whole set on each rank to this rank's part. */
+mps_status mpsi_mpm_partition_create(const mpsi_rank_part *part, const char *function,
                                      mpsi_storage **former);
-/* partition.c: the first part of that: checks that all ranks take part with the same arguments. */
-mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status);
 /* deal.c: for a set in parts, before the solver has added its fields: sends particles to the ranks
  * of their blocks; partition.c: the rest, with the fields added and the blocks found. */
-mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status status);
-mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_deal(const mpsi_rank_part *part, const char *function);
+mps_status mpsi_mpm_share_take_part(const mpsi_rank_part *part, const char *function,
+                                    mps_status status);
 /* Not collective. */
-void mpsi_mpm_partition_free(mps_mpm *mpm);
+void mpsi_mpm_partition_free(mps_context *context, mpsi_partition **partition);
 /* owners.c: cuts the curve again for the blocks in grid.cells, which are parts on each rank or
  * (`whole`) the same on all; owner of a block (not collective). */
 mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
@@ -64,20 +80,21 @@ mps_status mpsi_mpm_partition_cut(mps_context *context, const mpsi_grid *grid,
 int32_t mpsi_mpm_block_owner(const mpsi_grid *grid, mpsi_partition *partition, const int32_t *at);
 /* owners.c: sends particles in blocks of other ranks to these; `moved`: particles were sent or
  * received. */
-mps_status mpsi_mpm_partition_migrate(mps_mpm *mpm, const char *function, mps_status status,
-                                      bool *moved);
+mps_status mpsi_mpm_partition_migrate(const mpsi_rank_part *part, const char *function,
+                                      mps_status status, bool *moved);
 /* partition.c: sorts and finds the ghosts; finds the ghosts alone, where they are outdated. */
-mps_status mpsi_mpm_partition_sort(mps_mpm *mpm, const char *function);
-mps_status mpsi_mpm_partition_find_ghosts(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_partition_sort(const mpsi_rank_part *part, const char *function);
+mps_status mpsi_mpm_partition_find_ghosts(const mpsi_rank_part *part, const char *function);
 /* collective_status.c: the worst status of all ranks. */
 mps_status mpsi_mpm_agree(mpsi_partition *partition, const char *function, mps_status status);
 /* collective_status.c: the worst status, whether all ranks have the same time and bodies, and the
- * largest of `count` values. In a step also whether signals have the same values. */
+ * largest of `count` values. */
 mps_status mpsi_mpm_agree_alike(const mpsi_contacts *contacts, mpsi_partition *partition,
                                 const mpsi_run *run, const mps_mpm_def *def, const char *function,
                                 mps_status status, int32_t count, double *values);
-mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
-                                  int32_t count, double *values);
+/* collective_status.c: state that is equal on all ranks: time, step, positions of bodies. */
+void mpsi_mpm_give_state(const mpsi_contacts *contacts, const mpsi_run *run, const mps_mpm_def *def,
+                         mpsi_given *list);
 /* collective_status.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank;
  * first all agree on `status`, that of this rank. */
 mps_status mpsi_mpm_check_ids(mps_context *context, const mpsi_columns *p,
@@ -90,16 +107,19 @@ bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g);
  * ghosts. Not collective. */
 bool mpsi_mpm_node_block_complete(const mpsi_grid *grid, int64_t g);
 
-/* row_order.c: as the holder of the set (mpsi_holder): order of this rank's rows in the whole set,
- * by blocks, as on one rank; updates the blocks before particles are removed from the set, on one
- * rank too. Not collective. */
-int64_t mpsi_mpm_row_runs(const void *mpm, mpsi_row_run *out);
-void mpsi_mpm_thin_out(void *mpm, const uint8_t *gone);
-/* collective_status.c: as the holder of the set, agreement on particles that the caller adds and
- * removes. */
-mps_status mpsi_mpm_agree_on_insertion(void *mpm, const char *function, mps_status status,
-                                       int64_t first);
-mps_status mpsi_mpm_find_removed(void *mpm, const char *function, mps_status status, int64_t count,
+/* row_order.c: order of this rank's rows in the whole set (mpsi_holder), by blocks, as on one rank,
+ * to `out` unless it is NULL; returns the number of runs. Updates the blocks before particles
+ * marked in `gone` are removed, on one rank too. Neither is collective. */
+int64_t mpsi_mpm_list_rows(const mpsi_grid *grid, const mpsi_columns *p, mpsi_row_run *out);
+void mpsi_mpm_close_gaps(mpsi_grid *grid, const uint8_t *gone);
+/* collective_status.c: whether all ranks add the same particles, from `first` on; number of the
+ * particles on all ranks that a list names, of which this rank knows `known`: each rank lists
+ * particles that it has, or all ranks the same list. */
+mps_status mpsi_mpm_compare_added(const mpsi_grid *grid, const mpsi_columns *p,
+                                  mpsi_partition *partition, const char *function,
+                                  mps_status status, int64_t first);
+mps_status mpsi_mpm_count_listed(mps_context *context, mpsi_partition *partition,
+                                 const char *function, mps_status status, int64_t count,
                                  const int64_t *ids, int64_t known, int64_t *all);
 /* owners.c: keeps, of the particles from `first` on, which all ranks have, those in blocks of this
  * rank. */
@@ -107,9 +127,6 @@ mps_status mpsi_mpm_keep_own_inserted(mps_context *context, const mpsi_grid *gri
                                       mpsi_water *water, mpsi_partition *partition,
                                       const char *function, mps_status status, int64_t first);
 
-/* partition.c: before the blocks are used: finds the ghosts of the present blocks, sorted or
- * not. */
-mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status);
 /* collective_status.c: whether `any` is true on some rank. */
 mps_status mpsi_mpm_any_rank(mpsi_partition *partition, const char *function, bool *any);
 /* collective_status.c: agreement on what the callers of all ranks have edited. */

@@ -1,6 +1,6 @@
 /* row_order.c - order of the rows of all ranks in the whole set (partition.h).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/mpm_solver.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 
@@ -13,11 +13,10 @@ static int64_t list_added(const mpsi_columns *p, int64_t first, mpsi_row_run *ou
   return p->count - first;
 }
 
-int64_t mpsi_mpm_row_runs(const void *self, mpsi_row_run *out) {
-  const mps_mpm *mpm = self;
+int64_t mpsi_mpm_list_rows(const mpsi_grid *grid, const mpsi_columns *p, mpsi_row_run *out) {
   int64_t count = 0, rows = 0;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
     if (cells->ghost) continue;
     if (out) {
       out[count] = (mpsi_row_run){.rows = cells->end - cells->begin};
@@ -26,18 +25,16 @@ int64_t mpsi_mpm_row_runs(const void *self, mpsi_row_run *out) {
     rows += cells->end - cells->begin;
     count++;
   }
-  return count + list_added(&mpm->p, rows, out ? out + count : NULL);
+  return count + list_added(p, rows, out ? out + count : NULL);
 }
 
-void mpsi_mpm_thin_out(void *self, const uint8_t *gone) {
-  mps_mpm *mpm = self;
+void mpsi_mpm_close_gaps(mpsi_grid *grid, const uint8_t *gone) {
   int64_t out = 0;
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    mpsi_cell_block *cells = &grid->cells[b];
     const int64_t begin = cells->begin - out;
     for (int64_t k = cells->begin; k < cells->end; k++) out += gone[k] != 0;
     cells->begin = begin;
     cells->end -= out;
   }
-  mpm->run.edited = mpm->run.stale = true;
 }

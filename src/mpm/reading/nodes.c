@@ -2,7 +2,7 @@
  * particles' present state, Nakamura (23)-(25), (29), with forces apart from momenta. Only scratch
  * memory changes, or what the next step would change first.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/ranks/parcels.h"
 #include "mpm/step/tiles.h"
@@ -44,7 +44,8 @@ static mps_status find_sums(mps_mpm *mpm, const char *function, mps_status statu
   if (status != MPS_OK) return status; /* on all ranks */
   mpm->grid.apart = true;
   status = mpsi_mpm_evaluate_signals(mpm, function, mps_mpm_dt(mpm), false);
-  status = mpsi_mpm_update_boundaries(mpm, function, status);
+  const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(mpm);
+  status = mpsi_mpm_update_boundaries(&boundaries, function, status);
   status = mpsi_mpm_find_near(mpm, function, status);
   if (status == MPS_OK)
     status =

@@ -3,6 +3,7 @@
  * fit is about the weighted mean of the particles' positions, which limits round-off. On several
  * ranks all receive the particles near the points. Sums are in the order of cells, within a cell of
  * ids. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/base/shape.h"
 

@@ -1,7 +1,7 @@
 /* cut.c - before each step: blocks with particles whose supports are cut, and blocks in which
  * forces are summed apart from momenta (see mpsi_cell_block).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 
 /* Range of nodes, low to high - 1, of a tile. */
 typedef struct box {

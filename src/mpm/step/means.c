@@ -34,7 +34,7 @@ void mpsi_add_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   if (!mpm->partition)
     sum(mpm, b, number);
-  else if (!mpsi_mpm_receive_sums(mpm, b, number, sum))
+  else if (!mpsi_mpm_receive_sums(&mpm->grid, mpm->partition, b, number, sum, mpm))
     return;
   for (int across = 0; across < (cells->thin ? 2 : 1); across++)
     add_tile(&mpm->grid, cells, &mpm->grid.workers[number], across != 0);
@@ -46,7 +46,7 @@ void mpsi_run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_
                           .scatter = add,
                           .gather = gather,
                           .arrive = mpm->partition ? mpsi_step_receive_parcels : NULL};
-  if (mpm->partition) mpsi_mpm_send_sums(mpm, sum);
+  if (mpm->partition) mpsi_mpm_send_sums(mpm->context, &mpm->grid, mpm->partition, sum, mpm);
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
 }
 

@@ -4,7 +4,7 @@
 #ifndef MPSI_MPM_MEANS_H
 #define MPSI_MPM_MEANS_H
 
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 
 enum { MPSI_SUM_VOLUME = 0, MPSI_SUM_VALUE = 1, MPSI_SUM_FLOW = 2, MPSI_SUMS = 3 };
 

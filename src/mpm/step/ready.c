@@ -1,9 +1,15 @@
 /* ready.c - updates before a step where the caller, the ranks or the particles have changed
  * something: blocks of the present positions, masses, boundaries, the Courant limit.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
+
+mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, function);
+  return status == MPS_OK ? mpsi_mpm_check_whole(mpm->context, &mpm->p, &mpm->run, function)
+                          : status;
+}
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   if (!mpm->partition)
@@ -12,9 +18,19 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   if (mpm->contact.bodies > 0)
     status = mpsi_mpm_share_warm_start(&mpm->contact.impulses, mpm->p.set, mpm->partition->domain,
                                        function, status);
-  if (status == MPS_OK) return mpsi_mpm_partition_sort(mpm, function);
+  const mpsi_rank_part part = mpsi_rank_part_of(mpm);
+  if (status == MPS_OK) return mpsi_mpm_partition_sort(&part, function);
   mpm->run.stale = true;
   return status;
+}
+
+mps_status mpsi_mpm_partition_update(mps_mpm *mpm, const char *function, mps_status status) {
+  if (!mpm->run.stale && !mpm->partition->outdated) return status;
+  status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (status != MPS_OK || mpm->run.stale) return status;
+  mpm->boundaries.outdated = true;
+  const mpsi_rank_part part = mpsi_rank_part_of(mpm);
+  return mpsi_mpm_partition_find_ghosts(&part, function);
 }
 
 static void find_speed(void *solver, int64_t b, int32_t worker) {
@@ -44,7 +60,8 @@ mps_status mpsi_mpm_apply_edits(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK) status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, function);
   if (mpm->partition) status = mpsi_mpm_partition_update(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
-  status = mpsi_mpm_list_boundaries(mpm, function, status);
+  const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(mpm);
+  status = mpsi_mpm_list_boundaries(&boundaries, function, status);
   if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_mpm_find_speeds(mpm);

@@ -1,8 +1,7 @@
 /* run.c - running the WLS-MPM solver: the size of its steps, and how many.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
-#include "settle.h"
 #include "core/base/digits.h"
 
 /* Checks that all ranks have the same argument. */

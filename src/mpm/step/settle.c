@@ -1,8 +1,7 @@
 /* settle.c - static equilibrium by dynamic relaxation with kinetic damping: the particles
  * accelerate towards equilibrium, and are stopped when their kinetic energy has passed a peak,
  * since there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
-#include "settle.h"
-
+#include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 

@@ -77,3 +77,29 @@ bool mpsi_mpm_signals_may_refuse(const mpsi_grid *grid, const mpsi_loads *loads,
   }
   return may;
 }
+
+/* ---- ranks ----------------------------------------------------------------------------------- */
+
+/* Values of the signals in the step to be made. */
+static void give_signals(const mpsi_grid *grid, const mpsi_loads *loads,
+                         const mpsi_boundaries *boundaries, const mpsi_contacts *contacts,
+                         const mpsi_settling *settling, mpsi_given *list) {
+  for (int32_t k = 0; k < boundaries->holds; k++)
+    if (boundaries->hold[k].kind != MPSI_BOUNDARY_NONE)
+      mpsi_give_vector(list, "the velocity of a boundary", grid->dim, boundaries->hold[k].v);
+  for (int32_t k = 0; k < loads->count; k++)
+    if (loads->traction[k].count > 0)
+      mpsi_give_vector(list, "the present factor on a load", grid->dim, loads->traction[k].now);
+  for (int32_t b = 0; b < contacts->bodies && !settling->on; b++)
+    if (contacts->handle[b]->source.moves) mpsi_body_give_ahead(list, contacts->body[b]);
+}
+
+mps_status mpsi_mpm_agree_in_step(mps_mpm *mpm, const char *function, mps_status status,
+                                  int32_t count, double *values) {
+  mpsi_given list;
+  mpsi_mpm_give_state(&mpm->contact, &mpm->run, &mpm->def, &list);
+  if (status == MPS_OK)
+    give_signals(&mpm->grid, &mpm->loads, &mpm->boundaries, &mpm->contact, &mpm->settling, &list);
+  return mpsi_domain_agree_given_max(mpm->partition->domain, function, status, &list, count,
+                                     values);
+}

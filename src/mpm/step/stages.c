@@ -12,7 +12,9 @@
 mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function) {
   mps_status status =
       mpsi_mpm_find_forces(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->loads, function);
-  if (status == MPS_OK) status = mpsi_mpm_energy_begin(mpm, function);
+  if (status == MPS_OK)
+    status = mpsi_mpm_energy_begin(mpm->context, &mpm->grid, &mpm->p, &mpm->contact, &mpm->energy,
+                                   &mpm->def, function);
   if (status == MPS_OK)
     status = mpsi_mpm_begin_balance(mpm->context, &mpm->grid, &mpm->p, &mpm->settling, &mpm->def,
                                     function);
@@ -103,7 +105,7 @@ void mpsi_step_complete(mps_mpm *mpm) {
   if (mpm->contact.bodies > 0)
     mpsi_mpm_update_bodies(&mpm->grid, &mpm->contact, &mpm->energy, mpm->partition, &mpm->settling,
                            mpm->run.dt);
-  mpsi_mpm_energy_end(mpm);
+  mpsi_mpm_energy_end(&mpm->grid, &mpm->p, &mpm->contact, mpm->partition, &mpm->energy, &mpm->def);
   mpm->run.moments = true;
   mpm->run.time += mpm->run.dt;
   mpm->run.steps++;

@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_STAGES_H
 #define MPSI_MPM_STAGES_H
 
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/grid/pass.h"
 
 /* A step, as data of its contact stage. */

@@ -20,6 +20,8 @@
 #include "mpm/water/water.h"
 
 static mps_status prepare(mps_mpm *mpm, const char *function) {
+  const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(mpm);
+  const mpsi_contact_setup contacts = mpsi_contact_setup_of(mpm);
   mps_status status = MPS_OK;
   bool removed = true; /* particles have been removed by bodies */
   while (status == MPS_OK && removed) {
@@ -29,11 +31,11 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
       mpm->boundaries.outdated = true;
     }
     if (status == MPS_OK)
-      status = mpsi_mpm_prepare_outflow(mpm->context, &mpm->p, &mpm->boundaries, &mpm->contact,
-                                        &mpm->rooms, function);
-    if (status == MPS_OK) status = mpsi_mpm_update_boundaries(mpm, function, status);
+      status = mpsi_mpm_prepare_outflow(mpm->context, &mpm->p, &mpm->boundaries, &mpm->rooms,
+                                        mpsi_mpm_any_body_removes(&mpm->contact), function);
+    if (status == MPS_OK) status = mpsi_mpm_update_boundaries(&boundaries, function, status);
     if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function, status);
-    if (status == MPS_OK) status = mpsi_mpm_clear_bodies(mpm, function, status, &removed);
+    if (status == MPS_OK) status = mpsi_mpm_clear_bodies(&contacts, function, status, &removed);
     if (removed) status = mpsi_mpm_apply_edits(mpm, function);
   }
   return status == MPS_OK ? mpsi_step_begin_sums(mpm, function) : status;

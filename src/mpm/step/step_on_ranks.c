@@ -19,6 +19,8 @@
 /* Preparation as in step.c. After an error only the tractions at rest of absorbing sides are lost.
  * `status`: of the call so far on this rank; collective. */
 static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status) {
+  const mpsi_boundary_setup boundaries = mpsi_boundary_setup_of(mpm);
+  const mpsi_contact_setup contacts = mpsi_contact_setup_of(mpm);
   bool removed = true;
   while (removed) {
     removed = false;
@@ -30,13 +32,13 @@ static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status)
     }
     if (status != MPS_OK && renewed) return status; /* on all ranks */
     if (status == MPS_OK)
-      status = mpsi_mpm_prepare_outflow(mpm->context, &mpm->p, &mpm->boundaries, &mpm->contact,
-                                        &mpm->rooms, function);
+      status = mpsi_mpm_prepare_outflow(mpm->context, &mpm->p, &mpm->boundaries, &mpm->rooms,
+                                        mpsi_mpm_any_body_removes(&mpm->contact), function);
     const bool dashpots = mpm->boundaries.dashpot_count > 0, well = status == MPS_OK;
-    status = mpsi_mpm_update_boundaries(mpm, function, status);
+    status = mpsi_mpm_update_boundaries(&boundaries, function, status);
     if (well && status != MPS_OK) mpm->run.broken = dashpots;
     status = mpsi_mpm_find_near(mpm, function, status);
-    status = mpsi_mpm_clear_bodies(mpm, function, status, &removed);
+    status = mpsi_mpm_clear_bodies(&contacts, function, status, &removed);
     if (removed) status = mpsi_mpm_apply_edits(mpm, function);
     if (removed && status != MPS_OK) return status;
   }

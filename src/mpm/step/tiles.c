@@ -8,7 +8,7 @@
  * (penalty.c). SPDX-License-Identifier: BSD-3-Clause */
 #include "tiles.h"
 
-#include "mpm/base/kernels.h"
+#include "mpm/base/mpm_solver.h"
 #include "mpm/ranks/parcels.h"
 
 /* The contents of tiles and the memory of a step depend on bodies, boundaries and blocks alone. */

@@ -1,17 +1,16 @@
 /* outflow.c - particles that leave the set at the end of a step: those that have passed an open
  * side of the domain (removal by bodies, before a step: contact/removal.c).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/particles/mpm_particles.h"
+#include "mpm/base/all_parts.h"
 
 #include <string.h>
 
 mps_status mpsi_mpm_prepare_outflow(mps_context *context, const mpsi_columns *p, mpsi_boundaries *b,
-                                    const mpsi_contacts *contacts, mpsi_rooms *rooms,
-                                    const char *function) {
+                                    mpsi_rooms *rooms, bool bodies, const char *function) {
   b->open = 0;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (b->hold[k].kind == MPS_BOUNDARY_OPEN) b->open |= 1u << k;
-  const bool any = b->open != 0 || mpsi_mpm_any_body_removes(contacts);
+  const bool any = b->open != 0 || bodies;
   if (!any || mpsi_room_ensure(context, &rooms->gone, p->count, 1)) return MPS_OK;
   return mpsi_fail_memory(context, function, (size_t)p->count);
 }
