@@ -107,6 +107,26 @@ static mps_material_block block_of(columns *c, int32_t dim, bool hoop, int begin
   return block;
 }
 
+/* A law that is added to src/material/kinds.h comes into all of these tests by a case in make_law.
+ */
+static void every_law_is_here(void **state) {
+  (void)state;
+  bool here[MPSI_LAW_COUNT] = {[MPSI_LAW_CAM_CLAY] = true}; /* test_material_cam_clay.c has it */
+  for (int which = 0; which < LAWS; which++) {
+    mps_material *material = make_law(which);
+    here[material->type->kind] = true;
+    assert_true(mps_material_history_count(material) <=
+                MPSI_SMALL_COLUMNS); /* room of by_field.c */
+    mps_material_destroy(&material);
+  }
+  for (int kind = 0; kind < MPSI_LAW_COUNT; kind++) {
+    if (!here[kind])
+      print_error("make_law of %s has no '%s' of src/material/kinds.h\n", __FILE__,
+                  mpsi_law_types[kind].name);
+    assert_true(here[kind]);
+  }
+}
+
 static void plane_and_axisymmetric_are_three_dimensional(void **state) {
   (void)state;
   for (int which = 0; which < LAWS; which++)
@@ -210,6 +230,7 @@ static void threads_share_a_material(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_law_is_here),
       cmocka_unit_test(plane_and_axisymmetric_are_three_dimensional),
       cmocka_unit_test(blocks_and_instruction_sets_change_no_bit),
       cmocka_unit_test(threads_share_a_material),
