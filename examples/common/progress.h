@@ -10,7 +10,7 @@
 #include <stdbool.h>
 
 typedef struct progress {
-  bool terminal; /* stderr is one: otherwise nothing is drawn */
+  bool terminal; /* whether stderr is a terminal; if not, nothing is drawn */
   bool drawn;
   double started;      /* s, monotonic clock: when the bar was drawn first */
   double first, shown; /* fractions of the whole: drawn first, and last */

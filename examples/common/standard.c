@@ -71,10 +71,11 @@ static const struct {
     {"sample", "s", OPTION_DURATION, "time between rows of the tables"},
     {"frames", "N", OPTION_FROM_TO(0.0, 100000.0), "frames of the series for ParaView (0: none)"},
     {"checkpoint", "FILE", NONE,
-     "written on the way and at Ctrl-C, to go on from with --restart (default OUT/checkpoint.h5)"},
+     "written during the run and at Ctrl-C, to continue with --restart (default "
+     "OUT/checkpoint.h5)"},
     {"every-checkpoint", "s", OPTION_DURATION, "simulated time between checkpoints"},
     {"restart", "FILE", NONE,
-     "go on from a checkpoint made with the same options (but --out, --threads and those of "
+     "continue a checkpoint made with the same options (but --out, --threads and those of "
      "checkpoints); the results are those of the whole run, frames for ParaView those from here "
      "on; "
      "where --out has results already they go to OUT-from-T"},

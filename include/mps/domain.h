@@ -65,7 +65,7 @@ typedef struct mps_domain_def {
    *  NaN. */
   mps_status (*reduce_max)(void *user, int32_t count, double *values);
   mps_status (*reduce_sum)(void *user, int32_t count, int64_t *values);
-  /** Called when the domain goes; NULL (default): nothing to do. */
+  /** Called when the domain is destroyed; NULL (default): nothing to do. */
   void (*destroy)(void *user);
   /** reduce_max in two parts, between which the library computes and copies by stars, so that no
    *  rank waits for one a little behind: `values` are the library's until max_end, which has

@@ -155,7 +155,7 @@ typedef struct mps_elastic_boundary_def {
   double normal[3];      /* ROLLER: any length > 0 */
   const double *values;  /* m, copied: DRIVEN 3 a particle of `ids`, ROLLER 1; NULL: 0 */
   mps_signal *signal[3]; /* kept alive; by component, not of HELD; ROLLER: [0], along `normal`;
-                            NULL: holds */
+                            NULL: at rest */
   double factor[3];      /* finite, default 1 */
 } mps_elastic_boundary_def;
 

@@ -102,12 +102,12 @@ static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def
   return mps_fluid_get_def_sized(fluid, out, sizeof *out);
 }
 
-/** Says what the fluid is made of, from the next step on, between steps: the viscosity of a
- *  Newtonian `material`, as by the member of the definition. All particles are of it: `ids` NULL
- *  with `count` 0, or a list of all. The density stays that of creation. MPS_ERROR_UNSUPPORTED:
- *  another law, or a list of some of the particles; MPS_ERROR_ARGUMENT: no material, a viscosity
- *  beyond 1e6 Pa s, an id that the set lacks. On an error nothing has
- *  changed. */
+/** Sets the viscosity, from the next step on, to that of a Newtonian `material`, as the member of
+ *  the definition does. All particles have the same: `ids` NULL with `count` 0, or a list of all.
+ *  The density stays that of creation. MPS_ERROR_UNSUPPORTED: another law, or a list of some of the
+ *  particles; MPS_ERROR_ARGUMENT: no material, a viscosity beyond 1e6 Pa s, an id that the set
+ *  lacks; MPS_ERROR_STATE: not between steps. On an error nothing has changed.
+ */
 MPS_API MPS_NODISCARD mps_status mps_fluid_set_material(mps_fluid *fluid,
                                                         const mps_material *material, int64_t count,
                                                         const int64_t *ids);

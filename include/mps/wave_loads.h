@@ -1,4 +1,4 @@
-/* mps/wave_loads.h - what a design asks of waves at a wall: pressures and forces by Sainflou and by
+/* mps/wave_loads.h - design values of waves at a wall: pressures and forces by Sainflou and by
  * Goda with the impulsive part of Takahashi, mean overtopping discharge by EurOtop (2018). Closed
  * formulas, each with its range of validity, which is refused outside; docs/waves.md has them,
  * docs/references.md the sources. Forces are per metre of wall.

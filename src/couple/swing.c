@@ -38,8 +38,9 @@ void mpsi_coupling_watch(mps_coupling *c) {
   const double w = acos(fmax(fmin(0.5 * s->across / s->middle, 1.0), -1.0));
   if (!(w > LONGEST) || !(rest < PURE * s->middle)) return;
   s->warned = true;
-  mpsi_log(c->context, MPS_CONTEXT_LOG_WARNING,
-           "the coupling's values swing by %.2f rad a step, omega dt: the step is too long for the "
-           "structure, %.2g of it follows (omega dt up to %g)",
-           w, LONGEST / w, LONGEST);
+  mpsi_log(
+      c->context, MPS_CONTEXT_LOG_WARNING,
+      "the coupling's values oscillate by %.2f rad a step, omega dt: the step is too long for the "
+      "structure, %.2g of it follows (omega dt up to %g)",
+      w, LONGEST / w, LONGEST);
 }

@@ -1,6 +1,7 @@
 /* define.c - creation of materials: the defaults of their definitions, and their history.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
+#include "core/particles/particles_internal.h"
 
 #include <mps/soil.h>
 
@@ -63,9 +64,8 @@ DEF_INIT(user)
 DEF_INIT(cam_clay)
 DEF_INIT(small_strain)
 
-/* A material of the library's own; its columns of history are fields of the table, one for all
- * laws, but for those that only the small-strain law has.
- */
+/* A material of the library's own. A column of its history that is a field of the library is that
+ * field, one for all laws; others lie under the law's name. */
 static mps_status create(mps_context *context, const char *function, mpsi_law_kind kind,
                          const void *def, mps_material **out) {
   const mpsi_law_type *type = &mpsi_law_types[kind];
@@ -80,7 +80,7 @@ static mps_status create(mps_context *context, const char *function, mpsi_law_ki
   material->wave_modulus = mpsi_law_wave_modulus(&law);
   for (int32_t c = 0; c < count; c++) {
     strcpy(material->history_names[c], type->columns[c]);
-    const bool own = kind == MPSI_LAW_SMALL_STRAIN && c != MPSI_SMALL_STRAIN;
+    const bool own = !mpsi_field_is_known(type->columns[c]);
     (void)snprintf(material->history_fields[c], sizeof material->history_fields[c], "%s%s%s",
                    own ? type->name : "", own ? "." : "", type->columns[c]);
   }
@@ -141,10 +141,7 @@ mps_status mps_material_create_by_field(mps_context *context, const mps_material
   if (!law) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law is NULL");
   if (law->context != context)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "law was made from another context");
-  const mpsi_law_kind kind = law->type->kind;
-  if (law->by_field || (kind != MPSI_LAW_LINEAR_ELASTIC && kind != MPSI_LAW_VON_MISES &&
-                        kind != MPSI_LAW_DRUCKER_PRAGER && kind != MPSI_LAW_MOHR_COULOMB &&
-                        kind != MPSI_LAW_SMALL_STRAIN))
+  if (law->by_field || !(law->type->traits & MPSI_LAW_BY_FIELD))
     return mpsi_fail(context, __func__, MPS_ERROR_UNSUPPORTED,
                      "law: it is %s%s, must be linear_elastic, von_mises, drucker_prager, "
                      "mohr_coulomb or small_strain",
@@ -159,7 +156,7 @@ mps_status mps_material_create_by_field(mps_context *context, const mps_material
   for (int32_t c = 0; c < columns + MPSI_FACTORS; c++) {
     const char *name = c < columns ? law->history_names[c] : names[c - columns];
     strcpy(m->history_names[c], name);
-    strcpy(m->history_fields[c], name);
+    strcpy(m->history_fields[c], c < columns ? law->history_fields[c] : name);
     m->history_initial[c] = c < columns ? law->history_initial[c] : 1.0;
   }
   *out = m;

@@ -93,7 +93,7 @@ mps_status mpsi_material_check_elastic(mps_context *context, const char *functio
                      material->name);
   if (material->type->traits & MPSI_LAW_IS_LINEAR) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                   "the law is %s: fields and solvers of elasticity hold linear_elastic ground "
+                   "the law is %s: fields and solvers of elasticity take linear_elastic ground "
                    "only; WLS-MPM takes other laws as they are",
                    material->name);
 }

@@ -6,7 +6,8 @@
  *   kind      MPSI_LAW_... of the enumeration
  *   loop      the function of laws.c that applies it to a block, inlined for each geometry
  *   name      of its materials; NULL: the definition gives it
- *   columns   names of its history; a user's law has those of its definition
+ *   columns   names of its history; a user's law has those of its definition. One that is a row of
+ *             core/particles/fields.h is that field, one for all laws; others are "name.column"
  *   kept      recoverable part of the work of its stresses
  *   traits    MPSI_LAW_... bits, below
  *   define    from its definition to its constants: all checks of the values
@@ -21,13 +22,13 @@
 /* clang-format off */
 #define MPSI_LAW_KINDS(X)                                                                          \
   X(LINEAR_ELASTIC, linear_elastic_loop, "linear_elastic", mpsi_no_columns, MPSI_KEPT_ALL,         \
-    MPSI_LAW_IS_LINEAR,                           mpsi_define_elastic,        NULL)                \
+    MPSI_LAW_IS_LINEAR | MPSI_LAW_BY_FIELD,       mpsi_define_elastic,        NULL)                \
   X(VON_MISES,      von_mises_loop,      "von_mises",      mpsi_metal_columns, MPSI_KEPT_ELASTIC,  \
-    0,                                            mpsi_define_von_mises,      NULL)                \
+    MPSI_LAW_ISOCHORIC | MPSI_LAW_BY_FIELD,       mpsi_define_von_mises,      NULL)                \
   X(DRUCKER_PRAGER, drucker_prager_loop, "drucker_prager", mpsi_sand_columns, MPSI_KEPT_ELASTIC,   \
-    MPSI_LAW_OPENS,                               mpsi_define_drucker_prager, NULL)                \
+    MPSI_LAW_OPENS | MPSI_LAW_BY_FIELD,           mpsi_define_drucker_prager, NULL)                \
   X(MOHR_COULOMB,   mohr_coulomb_loop,   "mohr_coulomb",   mpsi_sand_columns, MPSI_KEPT_ELASTIC,   \
-    MPSI_LAW_OPENS,                               mpsi_define_mohr_coulomb,   NULL)                \
+    MPSI_LAW_OPENS | MPSI_LAW_BY_FIELD,           mpsi_define_mohr_coulomb,   NULL)                \
   X(NEO_HOOKEAN,    neo_hookean_loop,    "neo_hookean",    mpsi_no_columns, MPSI_KEPT_ALL,         \
     MPSI_LAW_READS_VOLUME,                        mpsi_define_neo_hookean,    mpsi_neo_hookean_moduli) \
   X(NEWTONIAN,      newtonian_loop,      "newtonian",      mpsi_no_columns, MPSI_KEPT_PRESSURE,    \
@@ -37,7 +38,7 @@
   X(CAM_CLAY,       cam_clay_loop,       "cam_clay",       mpsi_clay_columns, MPSI_KEPT_ALL,        \
     MPSI_LAW_HAS_START,                           mpsi_define_cam_clay,       mpsi_cam_clay_moduli)  \
   X(SMALL_STRAIN,   small_strain_loop,   "small_strain",   mpsi_small_columns, MPSI_KEPT_UNDISSIPATED, \
-    0,                                            mpsi_define_small_strain,   NULL)
+    MPSI_LAW_ISOCHORIC | MPSI_LAW_BY_FIELD,       mpsi_define_small_strain,   NULL)
 /* clang-format on */
 
 typedef enum mpsi_law_kind {
@@ -52,7 +53,9 @@ typedef enum mpsi_law_trait {
   MPSI_LAW_READS_VOLUME = 2, /* V/V0 decides the stress */
   MPSI_LAW_MAY_REFUSE = 4,   /* a block, with a reason */
   MPSI_LAW_OPENS = 8,        /* a gap opens between grains */
-  MPSI_LAW_HAS_START = 16    /* history that is not 0 at the start stays, and must fit the stress */
+  MPSI_LAW_HAS_START = 16,   /* history that is not 0 at the start stays, and must fit the stress */
+  MPSI_LAW_ISOCHORIC = 32, /* yields without change of volume: locks, and takes a mean (volume.c) */
+  MPSI_LAW_BY_FIELD = 64   /* mps_material_create_by_field scales its constants (by_field.c) */
 } mpsi_law_trait;
 
 struct mpsi_law;
@@ -77,7 +80,7 @@ typedef struct mpsi_law_type {
 extern const mpsi_law_type mpsi_law_types[]; /* by kind */
 extern const char *const mpsi_no_columns[],
     *const mpsi_metal_columns[], *const mpsi_sand_columns[], *const mpsi_clay_columns[],
-    *const mpsi_small_columns[];
+                                                                 *const mpsi_small_columns[];
 /* Columns of Cam-Clay. */
 enum { MPSI_CLAY_STRAIN, MPSI_CLAY_PC, MPSI_CLAY_VOID, MPSI_CLAY_GAP, MPSI_CLAY_COLUMNS };
 /* Columns of the small-strain law: two, and the deviators of its layers (xx, yy, xy, zx, yz). */

@@ -24,7 +24,6 @@ mpsi_volume mpsi_material_volume(const mps_material *material) {
     if (is_frictional(law)) return MPSI_VOLUME_FILTERED;
     return mpsi_material_dilates(material) ? MPSI_VOLUME_OWN : MPSI_VOLUME_MEAN;
   }
-  if (material->type->kind == MPSI_LAW_VON_MISES || material->type->kind == MPSI_LAW_SMALL_STRAIN)
-    return MPSI_VOLUME_MEAN;
+  if (material->type->traits & MPSI_LAW_ISOCHORIC) return MPSI_VOLUME_MEAN;
   return is_nearly_incompressible(law) ? MPSI_VOLUME_MEAN : MPSI_VOLUME_OWN;
 }

@@ -107,6 +107,26 @@ static mps_material_block block_of(columns *c, int32_t dim, bool hoop, int begin
   return block;
 }
 
+/* A law that is added to src/material/kinds.h comes into all of these tests by a case in make_law.
+ */
+static void every_law_is_here(void **state) {
+  (void)state;
+  bool here[MPSI_LAW_COUNT] = {[MPSI_LAW_CAM_CLAY] = true}; /* test_material_cam_clay.c has it */
+  for (int which = 0; which < LAWS; which++) {
+    mps_material *material = make_law(which);
+    here[material->type->kind] = true;
+    assert_true(mps_material_history_count(material) <=
+                MPSI_SMALL_COLUMNS); /* room of by_field.c */
+    mps_material_destroy(&material);
+  }
+  for (int kind = 0; kind < MPSI_LAW_COUNT; kind++) {
+    if (!here[kind])
+      print_error("make_law of %s has no '%s' of src/material/kinds.h\n", __FILE__,
+                  mpsi_law_types[kind].name);
+    assert_true(here[kind]);
+  }
+}
+
 static void plane_and_axisymmetric_are_three_dimensional(void **state) {
   (void)state;
   for (int which = 0; which < LAWS; which++)
@@ -138,6 +158,58 @@ static void plane_and_axisymmetric_are_three_dimensional(void **state) {
         plastic += flat.flags[k] != 0;
       }
       if ((which >= 1 && which <= 4) || which >= 9) assert_true(plastic > COUNT / 4);
+      mps_material_destroy(&material);
+    }
+}
+
+/* The stress s (xx, yy, zz, xy, zx, yz) turned by the rotation of a step of spin w about `axis`,
+ * which is 2 atan(w/2). */
+static void turned(const double *s, int axis, double w, double *out) {
+  static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const double angle = 2.0 * atan(0.5 * w);
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  double R[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  R[a][a] = R[b][b] = cos(angle), R[b][a] = sin(angle), R[a][b] = -sin(angle);
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      double sum = 0.0;
+      for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++) sum += R[i][k] * s[place[k][l]] * R[j][l];
+      out[place[i][j]] = sum;
+    }
+}
+
+/* Of a solid that has been strained, a rotation turns the stress, and changes neither volume nor
+ * plastic strain. The neo-Hookean F is that of (1 + W) F, a rotation to the order of w squared. */
+static void a_rotation_turns_the_stress(void **state) {
+  (void)state;
+  const double w = 1e-3, dt = 1e-3;
+  for (int which = 0; which < LAWS; which++)
+    for (int axis = 0; axis < 3; axis++) {
+      mps_material *material = make_law(which);
+      const mpsi_law_kind kind = material->type->kind;
+      columns now, before;
+      fill(&now, true, true);
+      const mps_material_block block = block_of(&now, 3, true, 0, COUNT);
+      for (int step = 0; step < 5; step++)
+        mps_assert_ok(context, mps_material_update(context, material, &block));
+      memset(now.gradient, 0, sizeof now.gradient);
+      const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+      if (kind == MPSI_LAW_NEWTONIAN) /* its stress at rest is the pressure */
+        mps_assert_ok(context, mps_material_update(context, material, &block));
+      for (int k = 0; k < COUNT; k++)
+        now.gradient[3 * b + a][k] = w / dt, now.gradient[3 * a + b][k] = -w / dt;
+      before = now;
+      mps_assert_ok(context, mps_material_update(context, material, &block));
+      const double order = kind == MPSI_LAW_NEO_HOOKEAN ? 4.0 * w * w : 1e-11;
+      for (int k = 0; k < COUNT; k++) {
+        double s[6], expected[6];
+        for (int i = 0; i < 6; i++) s[i] = before.stress[i][k];
+        turned(s, axis, w, expected);
+        for (int i = 0; i < 6; i++) mps_assert_near(now.stress[i][k], expected[i], 1e7 * order);
+        mps_assert_near(now.volume[k], before.volume[k], order);
+        mps_assert_near(now.history[k], before.history[k], 1e-11);
+      }
       mps_material_destroy(&material);
     }
 }
@@ -210,7 +282,9 @@ static void threads_share_a_material(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_law_is_here),
       cmocka_unit_test(plane_and_axisymmetric_are_three_dimensional),
+      cmocka_unit_test(a_rotation_turns_the_stress),
       cmocka_unit_test(blocks_and_instruction_sets_change_no_bit),
       cmocka_unit_test(threads_share_a_material),
   };

@@ -102,6 +102,26 @@ static void bad_laws_are_refused(void **state) {
   mps_material_destroy(&base);
 }
 
+/* Particles have the same columns of history, in the same fields, as with the law alone. */
+static void histories_lie_in_the_same_fields(void **state) {
+  (void)state;
+  mps_material *law = NULL, *m = NULL;
+  mps_material_small_strain_def def = mps_material_small_strain_defaults();
+  def.shear_modulus = 4e6, def.reference_strain = 1e-4;
+  mps_assert_ok(context, mps_material_create_small_strain(context, &def, &law));
+  mps_assert_ok(context, mps_material_create_by_field(context, law, &m));
+  const int32_t columns = mps_material_history_count(law);
+  for (int32_t c = 0; c < columns; c++) {
+    assert_string_equal(mps_material_history_name(m, c), mps_material_history_name(law, c));
+    assert_string_equal(mps_material_history_field(m, c), mps_material_history_field(law, c));
+  }
+  assert_string_equal(mps_material_history_field(law, 0), "plastic_strain"); /* of the table */
+  assert_string_equal(mps_material_history_field(law, 1), "small_strain.dissipated");
+  assert_string_equal(mps_material_history_field(m, columns + 1), "strength_factor");
+  mps_material_destroy(&law);
+  mps_material_destroy(&m);
+}
+
 /* su grows with depth by a profile; the step's limit is that of the stiffest particle. */
 static void a_profile_by_depth(void **state) {
   (void)state;
@@ -162,6 +182,7 @@ static void a_profile_by_depth(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(factors_are_those_of_the_constants),
+      cmocka_unit_test(histories_lie_in_the_same_fields),
       cmocka_unit_test(bad_laws_are_refused),
       cmocka_unit_test(a_profile_by_depth),
   };

@@ -215,7 +215,7 @@ static void a_step_too_long_for_what_swings_is_warned_of(void **state) {
   (void)state;
   journal j;
   assert_int_equal(warnings(&j, 1.0, 0.5, 0.0), 1);
-  assert_non_null(strstr(j.last, "swing by 0.50 rad a step"));
+  assert_non_null(strstr(j.last, "oscillate by 0.50 rad a step"));
   assert_int_equal(warnings(&j, 1.0, 1.6, 0.0), 1);
   assert_int_equal(warnings(&j, 1.0, 0.5, 0.02), 1);
   assert_int_equal(warnings(&j, 1.0, 0.28, 0.0), 0);

@@ -1,7 +1,7 @@
 /* test_mpm_schemes.c - the original material point method (Nakamura Table 1) with FLIP and PIC
- * beside WLS: what each keeps, on a rotating disc, a vibrating bar and a column under its weight.
- * docs/verification/wls-mpm/original-method.md has the table.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * beside WLS: linear fields, angular momentum and energy that each conserves, on a rotating disc, a
+ * vibrating bar and a column under its weight. docs/verification/wls-mpm/original-method.md has the
+ * table. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
@@ -211,9 +211,9 @@ static void column_rests(void **state) {
   }
 }
 
-/* ---- what a transfer takes off a wave -------------------------------------------------------- */
+/* ---- damping of waves by transfers ----------------------------------------------------------- */
 
-/* B-spline at the distance s (cells), written down anew. */
+/* B-spline at the distance s (cells), written here independently. */
 static double bump(int32_t spline, double s) {
   const double a = fabs(s);
   if (spline == 2) return a < 0.5 ? 0.75 - a * a : a < 1.5 ? 0.5 * (1.5 - a) * (1.5 - a) : 0.0;
@@ -238,8 +238,9 @@ static double left_of_wave(int32_t spline, double k) {
   return given / weight;
 }
 
-/* A shear wave between mirrors, of ground without stiffness to speak of: the share of its amplitude
- * that each step leaves. The first lets the particles have slopes. */
+/* A shear wave between mirrors, of very soft ground: the ratio of its amplitudes after and
+ * before a step. The first five, in which the particles get their velocity gradients, are not
+ * counted. */
 static double left_by_step(int32_t spline, int cells) {
   enum { STEPS = 20 };
   const double h = 0.02, length = cells * h;

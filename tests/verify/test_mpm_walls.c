@@ -33,8 +33,8 @@ static double strip_energy(mpm_scene *s, double young) {
   return sum;
 }
 
-/* A plane wave of velocity v(y + c t) goes down to the base of a layer so wide that its ends are
- * not felt in the middle. Returns the part of its energy that is there when it has come back. */
+/* A plane wave of velocity v(y + c t) goes down to the base of a layer so wide that its ends do
+ * not matter in the middle. Returns the reflected part of its energy. */
 static double reflected(int shear, int32_t wall, int32_t spline) {
   const double E = 1e6, height = 0.6, middle = 0.3, width = 0.07;
   const double G = shear_modulus(E), M = wave_modulus(E), c = sqrt((shear ? G : M) / RHO);
@@ -72,7 +72,7 @@ static void waves_leave(void **state) {
   (void)state;
   for (int shear = 0; shear < 2; shear++) {
     const double held = reflected(shear, MPS_BOUNDARY_HELD, 3);
-    assert_true(held > 0.6); /* the measure sees what comes back */
+    assert_true(held > 0.6); /* a fixed wall reflects: the energy is measured */
     for (int32_t spline = 2; spline <= 3; spline++) {
       const double part = reflected(shear, MPS_BOUNDARY_ABSORBING, spline);
       print_message("%s wave, spline %d: %.3f %% of the energy comes back (fixed wall: %.0f %%)\n",
@@ -164,7 +164,7 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
   mps_signal *signal = constant_velocity(belt);
   mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL, mu, 0, signal, 1.0);
   mps_signal_destroy(&signal);
-  /* It starts with a shiver, during which friction acts across the slope too, and continues
+  /* At first it vibrates, while friction acts across the slope too, and then continues
    * bouncing a little; positions at three instants give the acceleration without that. */
   const double span = dim == 3 ? 0.15 : 0.3;
   double at[3];

@@ -53,6 +53,8 @@ static const table_row *table_find(const char *name) {
   return NULL;
 }
 
+bool mpsi_field_is_known(const char *name) { return table_find(name) != NULL; }
+
 static bool is_f64(mps_dtype dtype) { return dtype.code == 2; }
 
 /* ---- storage --------------------------------------------------------------------------------- */

@@ -18,6 +18,9 @@ double *mpsi_particles_column(mps_particles *particles, const char *name, int32_
 /* The same for a field of one int64, or NULL. */
 int64_t *mpsi_particles_integers(mps_particles *particles, const char *name);
 
+/* Whether `name` is a field of the library's own, a row of fields.h. */
+bool mpsi_field_is_known(const char *name);
+
 /* Whether `ids` are particles of the set. The second takes NULL with a count of 0 for all of them,
  * as functions that assign materials do. */
 mps_status mpsi_particles_check_ids(const mps_particles *particles, const char *function,
@@ -61,7 +64,7 @@ typedef struct mpsi_deal {
   mps_status (*agree)(void *self, const char *function, mps_status status, int64_t count,
                       uint64_t hash);
   mps_status (*settle)(void *self, const char *function, mps_status status);
-  void (*release)(void *self); /* when the set goes */
+  void (*release)(void *self); /* when the set is destroyed */
   uint64_t constants;          /* hash of the names and values of mps_particles_set */
 } mpsi_deal;
 
@@ -139,7 +142,6 @@ mps_status mpsi_particles_ready(const mps_particles *particles, const char *func
  * solver that holds the set; the second also while another field is edited. */
 mps_status mpsi_particles_outside_callbacks(const mps_particles *particles, const char *function);
 mps_status mpsi_particles_writable(const mps_particles *particles, const char *function);
-
 
 /* ---- rollback -------------------------------------------------------------------------------- */
 

@@ -5,7 +5,6 @@
 #define MPSI_FLUID_EXCHANGE_H
 
 #include "fluid/base/flow_solver.h"
-#include "fluid/step/exchange.h"
 
 /* Particle i, of this chunk, gets dv (m/s) from the wall. */
 void mpsi_fluid_exchange_wall(const mps_fluid *fluid, int64_t chunk, int wall, int64_t i,

@@ -12,6 +12,11 @@
 
 #define ON_NODE 1e-6 /* cells: a node this close to the edge of a box belongs to it */
 #define ROUGHEST 1e3 /* largest coefficient of friction */
+/* Kinds of a side, as bits; walls.c has what each does to a node. */
+#define SIDE_KINDS                                                                                 \
+  (1u << MPS_BOUNDARY_HELD | 1u << MPS_BOUNDARY_DRIVEN | 1u << MPS_BOUNDARY_ROLLER |               \
+   1u << MPS_BOUNDARY_FRICTIONAL | 1u << MPS_BOUNDARY_ABSORBING | 1u << MPS_BOUNDARY_FREE |        \
+   1u << MPS_BOUNDARY_OPEN)
 
 static const mps_mpm_boundary_def boundary_defaults = {.struct_size = sizeof(mps_mpm_boundary_def),
                                                        .kind = MPS_BOUNDARY_HELD,
@@ -83,7 +88,7 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
                      "number is %d, and the domain has no %s side across %c", number,
                      number % 2 ? "upper" : "lower", "xyz"[number / 2]);
   const bool open = def->kind == MPS_BOUNDARY_OPEN;
-  if (!mpsi_boundary_kind_in(def->kind, ~(1u << MPS_BOUNDARY_FREE_FIELD)))
+  if (!mpsi_boundary_kind_in(def->kind, SIDE_KINDS))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d (%s), WLS-MPM has on a side 0 (HELD), 1 (DRIVEN), 2 (ROLLER), 3 "
                      "(FRICTIONAL), 4 (ABSORBING), 6 (FREE) and 7 (OPEN)",

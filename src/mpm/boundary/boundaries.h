@@ -6,10 +6,17 @@
 #include "mpm/base/parts.h"
 #include "core/base/exact.h"
 #include "core/state/state.h"
-#include "mpm/life/restart.h"
 #include "core/base/room.h"
 
+#define MPSI_SIDES 6              /* 2 axis + upper */
 enum { MPSI_BOUNDARY_NONE = -1 }; /* besides mps_boundary_kind */
+
+/* Dashpot at a node of an absorbing wall. */
+typedef struct mpsi_dashpot {
+  double across, along; /* rho c A, kg/s */
+  double rest[3];       /* N, force of the wall at rest */
+} mpsi_dashpot;
+enum { MPSI_DASH = 5 }; /* doubles */
 
 /* Impulse, moment and work of a boundary on this rank, as exact sums: they do not depend on the
  * order of addition or on the ranks. */

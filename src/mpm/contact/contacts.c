@@ -337,8 +337,8 @@ mps_status mpsi_mpm_check_depth(mps_context *context, const mpsi_columns *p,
     const mps_status status = mpsi_fail(
         context, function, MPS_ERROR_DIVERGED,
         "step %lld, t = %.6g s: particle %lld is %.4g m below the surface of body %d, at most %.4g "
-        "m is allowed (`depth` of the contact): the body is driven too fast or against what cannot "
-        "yield, or the contact is too soft",
+        "m is allowed (`depth` of the contact): the body moves too fast or against material that "
+        "cannot yield, or the contact is too soft",
         (long long)run->steps, run->time, (long long)id, pair->deepest, pair->body, most);
     mpsi_fail_where(context, run->steps, id);
     return status;

@@ -21,7 +21,6 @@
 
 #include "pass.h"
 #include "mpm/base/columns.h"
-#include "mpm/life/restart.h"
 #include "core/base/room.h"
 
 #define MPSI_SIDE 8
@@ -29,6 +28,12 @@
 #define MPSI_CORNERS 8        /* blocks of nodes under a tile: 4 in 2D */
 #define MPSI_MAX_CELLS 0x1p30 /* from the origin: below, node coordinates are exact */
 #define MPSI_NO_WALL (INT64_C(1) << 30)
+
+/* A block of cells in a snapshot or file: index of its first particle, coordinates (3), and the
+ * part of its tile in use (low 3, high 3). They are of the last sort: the present positions do not
+ * determine them. */
+enum { MPSI_BLOCK_AT = 1, MPSI_BLOCK_LOW = 4, MPSI_BLOCK_HIGH = 7, MPSI_BLOCK = 10 };
+typedef int64_t mpsi_block[MPSI_BLOCK];
 
 /* A block of cells with particles. */
 typedef struct mpsi_cell_block {

@@ -1,8 +1,6 @@
 /* restart.c - the state of the WLS-MPM solver (core/state.h): snapshots, rollback, checkpoints.
  * Sums over particles are taken block by block in the order of the set: a run that continues bit
  * for bit needs both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
-#include "restart.h"
-
 #include "rank_files.h"
 #include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"

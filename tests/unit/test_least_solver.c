@@ -1,0 +1,290 @@
+/* test_least_solver.c - the least that a solver is, to copy (docs/architecture.md, "A new solver"):
+ * particles that fall freely. It has a definition that may grow, holds its set, steps by all
+ * threads, refuses edits under way and calls from callbacks, and goes back bit for bit. In the
+ * library names are mps_x_..., the struct is private to its folder, and the definition is in a
+ * public header. SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "core/particles/particles_internal.h"
+#include "core/state/state.h"
+
+/* ---- the public header ----------------------------------------------------------------------- */
+
+typedef struct fall fall;
+
+typedef struct fall_def {
+  uint32_t struct_size;
+  int32_t reserved;
+  double gravity; /* m/s2 along the last axis, finite; no default */
+  double dt;      /* s, > 0; default 1e-3 */
+} fall_def;
+#define MPSI_RELEASED_fall_def 24 /* bytes; scripts/update-sizes writes that of a public struct */
+
+/* ---- the solver ------------------------------------------------------------------------------ */
+
+struct fall {
+  mps_context *context;
+  mps_particles *particles;
+  fall_def def;
+  mpsi_holder holder; /* of the set, which refers to this member: released before the solver is */
+  mpsi_guard guard;
+  mpsi_identity *identity; /* of its snapshots */
+  double time;
+  int64_t steps, count;
+  double *x, *v; /* columns of the set, bound again where they may have moved */
+};
+
+static const fall_def defaults = {.struct_size = sizeof(fall_def), .gravity = NAN, .dt = 1e-3};
+
+static mps_status fall_def_init(fall_def *def, size_t size) {
+  return MPSI_DEF_INIT(fall_def, def, size, &defaults);
+}
+
+static void bind(void *solver) {
+  fall *f = solver;
+  const int32_t last = mps_particles_dim(f->particles) - 1;
+  f->count = mps_particles_count(f->particles);
+  f->x = mpsi_particles_column(f->particles, "position", last);
+  f->v = mpsi_particles_column(f->particles, "velocity", last);
+}
+
+/* Particles come with velocity 0 and leave without a trace: nothing is to be prepared. */
+static mps_status insert(void *self, const char *function, int64_t first, int64_t count) {
+  (void)self, (void)function, (void)first, (void)count;
+  return MPS_OK;
+}
+
+static mps_status leave(void *self, const char *function, int64_t count, const int64_t *ids) {
+  (void)self, (void)function, (void)count, (void)ids;
+  return MPS_OK;
+}
+
+/* Checks everything before it changes anything; on an error the set is as before. */
+static mps_status fall_create(mps_context *context, mps_particles *particles, const fall_def *user,
+                              fall **out) {
+  fall_def def = defaults;
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!particles || !out)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "particles or out is NULL");
+  *out = NULL;
+  mps_status status = MPSI_DEF_READ(context, __func__, fall_def, user, &def);
+  if (status != MPS_OK) return status;
+  if (!isfinite(def.gravity) || !(def.dt > 0.0 && isfinite(def.dt)))
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "gravity is %g m/s2 and dt %g s: must be finite, and dt > 0", def.gravity,
+                     def.dt);
+  status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
+  if (status == MPS_OK)
+    status = mpsi_as(context, __func__, mps_particles_add_field(particles, "velocity", 0));
+  if (status != MPS_OK) return status;
+  fall *f = mpsi_alloc(context, 1, sizeof *f);
+  if (!f) return mpsi_fail_memory(context, __func__, sizeof *f);
+  f->context = mpsi_context_retain(context);
+  f->particles = particles;
+  f->def = def;
+  bind(f);
+  f->holder = (mpsi_holder){.name = "a solver of free fall",
+                            .self = f,
+                            .kind = MPSI_USE_MOVE,
+                            .guard = &f->guard,
+                            .insert = insert,
+                            .remove = leave,
+                            .renew = bind};
+  (void)mpsi_particles_hold(particles, __func__, &f->holder); /* checked above */
+  *out = f;
+  return MPS_OK;
+}
+
+static void fall_destroy(fall **fallen) {
+  if (!fallen || !*fallen) return;
+  fall *f = *fallen;
+  if (mpsi_guard_check(&f->guard, f->context, __func__) != MPS_OK) return;
+  mps_context *context = f->context;
+  *fallen = NULL;
+  mpsi_state_forget(&f->identity);
+  mpsi_particles_release(f->particles, &f->holder);
+  mpsi_free(context, f);
+  mpsi_context_release(context);
+}
+
+#define BLOCK 64 /* particles of a unit of work: their number depends on the set, not on threads   \
+                  */
+
+static void move_block(void *data, int64_t block, int32_t worker) {
+  (void)worker;
+  const fall *f = data;
+  const double dt = f->def.dt, dv = f->def.gravity * dt;
+  const int64_t end = (block + 1) * BLOCK < f->count ? (block + 1) * BLOCK : f->count;
+  for (int64_t k = block * BLOCK; k < end; k++) {
+    f->x[k] += dt * (f->v[k] + 0.5 * dv);
+    f->v[k] += dv;
+  }
+}
+
+static mps_status fall_step(fall *f, int64_t count) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_guard_check(&f->guard, f->context, __func__);
+  if (status == MPS_OK) status = mpsi_particles_ready(f->particles, __func__);
+  if (status != MPS_OK) return status;
+  if (count < 0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  for (int64_t k = 0; k < count; k++) {
+    mpsi_parallel_for(f->context, (f->count + BLOCK - 1) / BLOCK, move_block, f);
+    status = mpsi_executor_check(f->context, __func__);
+    if (status != MPS_OK) return status;
+    f->time += f->def.dt;
+    f->steps++;
+  }
+  return MPS_OK;
+}
+
+/* ---- its state ------------------------------------------------------------------------------- */
+
+static void list_state(mpsi_state *s, void *solver) {
+  fall *f = solver;
+  mpsi_state_agree_number(s, "gravity", f->def.gravity);
+  mpsi_state_f64(s, "time", &f->time, 1);
+  mpsi_state_i64(s, "steps", &f->steps, 1);
+}
+
+static mpsi_state_of state_of(fall *f) {
+  return (mpsi_state_of){.solver = f,
+                         .name = "free fall",
+                         .context = f->context,
+                         .particles = f->particles,
+                         .identity = &f->identity,
+                         .list = list_state,
+                         .bind = bind,
+                         .time = f->time,
+                         .dt = f->def.dt,
+                         .steps = f->steps};
+}
+
+static mps_status fall_snapshot(fall *f, mps_snapshot **snapshot) {
+  const mpsi_state_of of = state_of(f);
+  const mps_status status = mpsi_guard_check_between(&f->guard, f->context, __func__);
+  return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
+}
+
+static mps_status fall_rollback(fall *f, const mps_snapshot *snapshot) {
+  const mpsi_state_of of = state_of(f);
+  const mps_status status = mpsi_guard_check(&f->guard, f->context, __func__);
+  return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
+}
+
+/* ---- tests ----------------------------------------------------------------------------------- */
+
+static mps_particles *make_set(void) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {3.0, 50.0};
+  def.spacing = 1.0;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+  return set;
+}
+
+static fall *make(mps_particles *set) {
+  fall_def def;
+  fall *f = NULL;
+  assert_int_equal(fall_def_init(&def, sizeof def), MPS_OK);
+  def.gravity = -9.81;
+  mps_assert_ok(context, fall_create(context, set, &def, &f));
+  return f;
+}
+
+static double lowest(mps_particles *set) {
+  mps_view x;
+  double low = INFINITY;
+  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  for (int64_t k = 0; k < x.shape[0]; k++) low = fmin(low, *mps_view_f64(&x, k, 1));
+  return low;
+}
+
+static void it_falls_along_the_parabola(void **state) {
+  (void)state;
+  mps_particles *set = make_set();
+  fall *f = make(set);
+  const double start = lowest(set);
+  mps_assert_ok(context, fall_step(f, 500));
+  mps_assert_near(f->time, 0.5, 1e-12);
+  mps_assert_near(lowest(set), start - 0.5 * 9.81 * 0.25, 1e-12);
+  fall_destroy(&f);
+  assert_null(f);
+  mps_particles_destroy(&set);
+}
+
+static void it_goes_back_bit_for_bit(void **state) {
+  (void)state;
+  mps_particles *set = make_set();
+  fall *f = make(set), *other = NULL;
+  mps_snapshot *then = NULL;
+  mps_assert_ok(context, fall_step(f, 7));
+  mps_assert_ok(context, fall_snapshot(f, &then));
+  mps_assert_ok(context, fall_step(f, 11));
+  const double there = lowest(set), time = f->time;
+  mps_assert_ok(context, fall_rollback(f, then));
+  assert_int_equal(f->steps, 7);
+  mps_assert_ok(context, fall_step(f, 11));
+  assert_true(lowest(set) == there && f->time == time);
+  fall_destroy(&f);
+  other = make(set);
+  mps_assert_fails(context, fall_rollback(other, then), MPS_ERROR_ARGUMENT, "snapshot");
+  mps_snapshot_destroy(&then);
+  fall_destroy(&other);
+  mps_particles_destroy(&set);
+}
+
+static void what_is_wrong_is_refused(void **state) {
+  (void)state;
+  mps_particles *set = make_set();
+  const int32_t fields = mps_particles_field_count(set);
+  fall_def def;
+  fall *f = NULL, *second = NULL;
+  mps_edit edit;
+  assert_int_equal(fall_def_init(&def, sizeof def), MPS_OK);
+  mps_assert_fails(context, fall_create(context, set, &def, &f), MPS_ERROR_ARGUMENT,
+                   "gravity is nan");
+  assert_int_equal(mps_particles_field_count(set), fields);
+  f = make(set);
+  def.gravity = 1.0;
+  mps_assert_fails(context, fall_create(context, set, &def, &second), MPS_ERROR_STATE,
+                   "a solver of free fall");
+  mps_assert_fails(context, fall_step(f, -1), MPS_ERROR_ARGUMENT, "count is -1");
+  mps_assert_ok(context, mps_particles_edit(set, "velocity", &edit));
+  mps_assert_fails(context, fall_step(f, 1), MPS_ERROR_STATE, "velocity");
+  mps_assert_ok(context, mps_particles_abandon(set, &edit));
+  mpsi_guard_enter(&f->guard, context, "a callback");
+  mps_assert_fails(context, fall_step(f, 1), MPS_ERROR_STATE, "a callback");
+  mpsi_guard_end(&f->guard);
+  assert_int_equal(f->steps, 0);
+  fall_destroy(&f);
+  mps_particles_destroy(&set);
+}
+
+static void particles_come_and_go(void **state) {
+  (void)state;
+  mps_particles *set = make_set();
+  fall *f = make(set);
+  const double more[2] = {1.5, -1.0};
+  const int64_t first = 0;
+  mps_assert_ok(context, mps_particles_append(set, 1, more));
+  mps_assert_ok(context, mps_particles_remove(set, 1, &first));
+  assert_int_equal(f->count, 150);
+  mps_assert_ok(context, fall_step(f, 1));
+  mps_assert_near(lowest(set), -1.0 - 0.5 * 9.81e-6, 1e-15);
+  fall_destroy(&f);
+  mps_particles_destroy(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(it_falls_along_the_parabola),
+      cmocka_unit_test(it_goes_back_bit_for_bit),
+      cmocka_unit_test(what_is_wrong_is_refused),
+      cmocka_unit_test(particles_come_and_go),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
