@@ -25,16 +25,32 @@ typedef struct face_flow {
 
 static double weight_of_water(mpsi_water *water) { return water->def.density * MPS_PORE_GRAVITY; }
 
-/* Area (m2) of a face between the filled parts of a cell and of the one beside it. */
+/* Area (m2), at a radius (m; 1 but in axisymmetry), through which water flows between the filled
+ * parts of a cell and of the one beside it. */
 static double area_of(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell,
-                      const mpsi_pore_cell *beside, int direction, double X) {
-  double area = mpsi_pore_radius(grid, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
+                      const mpsi_pore_cell *beside, int direction, double radius) {
+  double area = radius;
   for (int c = 0; c < grid->dim; c++)
     if (c != direction / 2)
       area *= grid->cell * (beside ? fmin(mpsi_pore_edge_of(water, cell)->fill[c],
                                           mpsi_pore_edge_of(water, beside)->fill[c])
                                    : mpsi_pore_edge_of(water, cell)->fill[c]);
   return area;
+}
+
+/* Of a face at grid coordinate X of its cell's box. */
+static double radius_of(const mpsi_grid *grid, int direction, double X) {
+  return mpsi_pore_radius(grid, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
+}
+
+/* Through which water flows from x over a distance (m) to a drained face: half way, as pressures
+ * near a drain follow the logarithm of the radius. */
+static double area_to_drained(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell,
+                              int direction, const double *x, double X, double distance) {
+  double radius = radius_of(grid, direction, X);
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && direction < 2)
+    radius = x[0] + (direction == 1 ? 0.5 : -0.5) * distance;
+  return area_of(grid, water, cell, NULL, direction, radius);
 }
 
 /* Pressure (Pa) of a drained face at x[3]. */
@@ -102,14 +118,15 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
                        .distance = 0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis],
                        .known = true};
   if (mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_DRAINED) {
+    const double way = 0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis];
     *behind = cell;
     return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, cell)->face[direction], direction, x,
-                      0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis], p,
-                      area_of(&mpm->grid, mpm->water, cell, NULL, direction, X));
+                      way, p, area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
   }
   const mpsi_pore_cell *beside = mpsi_pore_beside(&mpm->grid, mpm->water, g, k, direction);
-  const double area =
-      mpm->water->flows ? area_of(&mpm->grid, mpm->water, cell, beside, direction, X) : 0.0;
+  const double area = mpm->water->flows ? area_of(&mpm->grid, mpm->water, cell, beside, direction,
+                                                  radius_of(&mpm->grid, direction, X))
+                                        : 0.0;
   if (!beside->thin)
     return to_cell(&mpm->grid, mpm->water, &mpm->def, cell, beside, direction, p,
                    pressure_of(beside, end), area);
@@ -118,9 +135,9 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
     return none;
   *behind = beside;
   const double own = 0.5 * h + sign * -mpsi_pore_edge_of(mpm->water, cell)->shift[axis];
+  const double way = own + h * mpsi_pore_edge_of(mpm->water, beside)->fill[axis];
   return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, beside)->face[direction], direction, x,
-                    own + h * mpsi_pore_edge_of(mpm->water, beside)->fill[axis], p,
-                    area_of(&mpm->grid, mpm->water, cell, NULL, direction, X));
+                    way, p, area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
 }
 
 /* Centre of the filled part of cell k of a block of nodes; the coordinate of its box along x. */
