@@ -1,6 +1,6 @@
 /* mps-consolidation - water in the pores of ground against exact solutions: a layer that
  * consolidates under a load (Terzaghi; with large strains Xie and Leo), Mandel's plate, Cryer's
- * sphere, and the undrained ground under a strip load.
+ * sphere, Barron's vertical drain, and the undrained ground under a strip load.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "consolidation/consolidation.h"
 
@@ -14,6 +14,7 @@ int main(int argc, char **argv) {
                                  .kappa = 0.044,
                                  .e0 = 1.4,
                                  .initial = 100e3,
+                                 .ratio = 5.0,
                                  .cells = NAN,
                                  .load = NAN,
                                  .duration = NAN,
@@ -24,11 +25,15 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Ground and water"),
-      OPTION_CHOICE("case", "terzaghi|large|mcc|mandel|cryer|strip", &s->kase,
-                    "layer of height H = 1 m: small or large strains, or Cam-Clay; block of half "
-                    "width a = 1 m "
-                    "between plates; sphere of radius a = 1 m; half space under a strip of half "
-                    "width B = 1 m, undrained"),
+      OPTION_CHOICE(
+          "case", "terzaghi|large|mcc|mandel|cryer|strip|barron", &s->kase,
+          "layer of height H = 1 m: small or large strains, or Cam-Clay; block of half "
+          "width a = 1 m "
+          "between plates; sphere of radius a = 1 m; half space under a strip of half "
+          "width B = 1 m, undrained; cylinder of radius a = 1 m that a vertical drain in its "
+          "axis consolidates under a rigid plate"),
+      OPTION_NUMBER("ratio", "1", OPTION_FROM_TO(2.0, 64.0), &s->ratio,
+                    "barron: n, radius of the cylinder over that of the drain"),
       OPTION_NUMBER("nu", "1", OPTION_FROM_TO(0.0, 0.45), &s->nu,
                     "Poisson's ratio of the grains' frame"),
       COMMON_NUMBER("young", &s->young, "of the grains' frame"),
@@ -51,7 +56,7 @@ int main(int argc, char **argv) {
                   "0.01,0.05,0.1,0.2"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
                     "that T = 1 lasts, which gives the permeability; default 300 times that of a "
-                    "wave through H, mandel 1000"),
+                    "wave through H, mandel and barron 1000"),
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("cells", "1", OPTION_FROM_TO(2.0, MOST_CELLS), &s->cells,
                     "along H, a or B, a whole number; default 20, mandel 10, strip 4"),

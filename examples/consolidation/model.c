@@ -3,8 +3,8 @@
  * A load q on a drained surface is given by its difference: all pressures, and so the total
  * stresses, are less q. The surface is then free, its water has the pressure -q, and the ground
  * begins without stress; effective stresses and u = p + q are those under the load. Cam-Clay begins
- * with an effective stress s0, and all pressures are less q + s0. Mandel's plate
- * moves as its exact solution, and begins with the stresses of the undrained load.
+ * with an effective stress s0, and all pressures are less q + s0. The plates of
+ * Mandel and Barron move as the exact solutions, and begin with the stresses of the undrained load.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "consolidation.h"
 
@@ -51,6 +51,9 @@ static const char *read_times(simulation *sim, const option *table) {
   return NULL;
 }
 
+/* Has a rigid plate that moves as the exact solution. */
+static bool has_plate(const settings *s) { return s->kase == MANDEL || s->kase == BARRON; }
+
 /* Options of one kind of ground alone. */
 static const char *check_clay(const settings *s, const option *table) {
   static const char *const clay[] = {"M", "lambda", "kappa", "e0", "initial"};
@@ -63,6 +66,15 @@ static const char *check_clay(const settings *s, const option *table) {
   return NULL;
 }
 
+static const char *check_drain(const settings *s, const option *table) {
+  const double whole = s->cells / s->ratio;
+  if (s->kase != BARRON)
+    return options_given(table, "ratio") ? "--ratio is for --case barron alone" : NULL;
+  return fabs(whole - round(whole)) > 1e-9 || !(whole >= 1.0)
+             ? "--cells must be a multiple of --ratio: the drain's radius in whole cells"
+             : NULL;
+}
+
 const char *consolidation_settle(simulation *sim, const option *table) {
   settings *s = &sim->s;
   const char *unused = check_clay(s, table);
@@ -70,6 +82,8 @@ const char *consolidation_settle(simulation *sim, const option *table) {
   sim->modulus = s->young * (1.0 - s->nu) / ((1.0 + s->nu) * (1.0 - 2.0 * s->nu));
   if (isnan(s->cells)) s->cells = s->kase == STRIP ? 4 : s->kase == MANDEL ? 10 : 20;
   if (s->cells != floor(s->cells)) return "--cells must be a whole number";
+  unused = check_drain(s, table);
+  if (unused) return unused;
   if (s->kase == MCC) {
     if (isnan(s->load)) s->load = s->initial;
     if (!(s->e0 - s->lambda * log(1.0 + s->load / s->initial) > 0.05))
@@ -86,7 +100,7 @@ const char *consolidation_settle(simulation *sim, const option *table) {
            "the exact solution is of small strains";
   if (isnan(s->damping)) s->damping = 0.5 * sqrt(sim->modulus / DENSITY);
   if (isnan(s->duration))
-    s->duration = (s->kase == MANDEL ? 1000.0 : 300.0) / sqrt(sim->modulus / DENSITY);
+    s->duration = (has_plate(s) ? 1000.0 : 300.0) / sqrt(sim->modulus / DENSITY);
   return read_times(sim, table);
 }
 
@@ -97,10 +111,12 @@ static double porosity_of(const settings *s) {
 }
 static double cell_of(const settings *s) { return 1.0 / s->cells; }
 static bool is_column(const settings *s) { return s->kase <= MCC; }
+static double drain_radius(const settings *s) { return s->kase == BARRON ? 1.0 / s->ratio : 0.0; }
 
 static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
   const double h = cell_of(s), size = s->kase == STRIP ? STRIP_WIDTHS : 1.0;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {is_column(s) ? h : size, size};
+  const double lo[2] = {drain_radius(s), 0.0};
+  const double hi[2] = {is_column(s) ? h : size, s->kase == BARRON ? h : size};
   mps_particles_def def = mps_particles_defaults();
   def.spacing = 0.5 * h;
   mps_status status = mpm_model_particles(m, context, &def);
@@ -132,7 +148,7 @@ static mps_status find_profile(simulation *sim) {
   mps_view x, id;
   mps_status status = mps_particles_view(sim->m.particles, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "id", &id);
-  const int along = s->kase == MANDEL || s->kase == CRYER ? 0 : 1;
+  const int along = has_plate(s) || s->kase == CRYER ? 0 : 1;
   const double size = s->kase == STRIP ? STRIP_WIDTHS : 1.0;
   for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
     const double place = *mps_view_f64(&x, k, along), across = *mps_view_f64(&x, k, 1 - along);
@@ -187,6 +203,23 @@ static mps_status begin_mandel(simulation *sim) {
   return status == MPS_OK ? mps_particles_set(set, "stress", 1, -sim->s.load) : status;
 }
 
+/* Undrained under the plate: u0, without strain. The drain is the inner side of the domain. */
+static mps_status begin_barron(simulation *sim) {
+  mps_pore_face_def drain = mps_pore_face_defaults();
+  drain.kind = MPS_PORE_FACE_DRAINED;
+  drain.sides = 1u << MPS_MPM_SIDE_X_LOWER;
+  const mps_status status = mps_particles_set(sim->m.particles, "pore_pressure", 0, sim->s.load);
+  return status == MPS_OK ? mps_mpm_add_pore_face(sim->m.mpm, &drain, NULL) : status;
+}
+
+/* m at T since the load was applied. */
+static double plate_at(const simulation *sim, double T) {
+  const settings *s = &sim->s;
+  const double way =
+      s->kase == MANDEL ? exact_plate(s->nu, T) : exact_drain(s->ratio, T) * cell_of(s);
+  return way * s->load / sim->modulus;
+}
+
 /* The plate is the upper side of the domain with the velocity of the exact solution; the side stays
  * in place, as its displacement is small beside a cell. */
 static mps_status drive_plate(mps_context *context, simulation *sim) {
@@ -196,7 +229,7 @@ static mps_status drive_plate(mps_context *context, simulation *sim) {
   for (int k = 0; k < PLATE_POINTS; k++) {
     const double part = (double)k / (PLATE_POINTS - 1);
     t[k] = end * part * part; /* it begins as the root of time */
-    w[k] = exact_plate(s->nu, t[k] / s->duration) * s->load / sim->modulus;
+    w[k] = plate_at(sim, t[k] / s->duration);
   }
   mps_signal *down = NULL;
   mps_mpm_boundary_def plate = mps_mpm_boundary_defaults();
@@ -239,8 +272,8 @@ static mps_status add_case(mps_context *context, simulation *sim) {
   if (sim->s.kase == MCC)
     status = mps_particles_set(sim->m.particles, "pore_pressure", 0, -sim->s.initial);
   if (status != MPS_OK) return status;
-  if (sim->s.kase != MANDEL) return drain_surface(sim);
-  status = begin_mandel(sim);
+  if (!has_plate(&sim->s)) return drain_surface(sim);
+  status = sim->s.kase == MANDEL ? begin_mandel(sim) : begin_barron(sim);
   return status == MPS_OK ? drive_plate(context, sim) : status;
 }
 
@@ -248,11 +281,16 @@ static mps_status add_case(mps_context *context, simulation *sim) {
 
 static mps_mpm_def solver_of(const settings *s) {
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = s->kase == CRYER ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_PLANE_STRAIN;
+  def.geometry = s->kase == CRYER || s->kase == BARRON ? MPS_MPM_GEOMETRY_AXISYMMETRIC
+                                                       : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = cell_of(s);
   def.courant = s->scheme == IMPLICIT ? 0.5 : COURANT;
   def.lower[0] = def.lower[1] = 0.0;
   if (is_column(s)) def.upper[0] = def.cell;
+  if (s->kase == BARRON) {
+    def.lower[0] = drain_radius(s), def.upper[0] = 1.0;
+    def.upper[1] = def.cell;
+  }
   if (s->kase == MANDEL) def.upper[1] = 1.0;
   if (s->kase == STRIP) def.upper[0] = STRIP_WIDTHS;
   if (s->kase != STRIP) def.viscous_damping = s->damping; /* which settles by itself */
@@ -311,6 +349,24 @@ mps_status consolidation_build(mps_context *context, void *user) {
 
 /* ---- running --------------------------------------------------------------------------------- */
 
+/* Force of the plate over the exact one: the load on its area, of Mandel's block twice that. */
+static double force_over_exact(const settings *s, const mps_reaction *plate) {
+  const double b = drain_radius(s);
+  const double surface = s->kase == MANDEL ? 2.0 : PI * (1.0 - b * b);
+  return fabs(plate->force[1]) / (surface * s->load);
+}
+
+/* Mean of 1 - u/u0 over the cylinder, from its profile. */
+static double degree_of(const simulation *sim, const instant *now) {
+  double sum = 0.0, all = 0.0;
+  for (int k = 0; k < sim->points; k++) {
+    const double r = 1.0 - sim->at[k];
+    sum += r * (1.0 - now->u[k]);
+    all += r;
+  }
+  return sum / all;
+}
+
 static mps_status measure(simulation *sim) {
   const settings *s = &sim->s;
   instant *now = &sim->row[sim->rows];
@@ -321,7 +377,7 @@ static mps_status measure(simulation *sim) {
   mps_status status = mps_particles_view(sim->m.particles, "pore_pressure", &u);
   if (status == MPS_OK) status = mps_mpm_get_totals(sim->m.mpm, &totals);
   if (status == MPS_OK) status = mps_mpm_get_pore_budget(sim->m.mpm, &water);
-  if (status == MPS_OK && sim->s.kase == MANDEL)
+  if (status == MPS_OK && has_plate(s))
     status = mps_mpm_get_reaction(sim->m.mpm, MPS_MPM_SIDE_Y_UPPER, &plate);
   if (status != MPS_OK) return status;
   const bool shifted = is_column(s) || s->kase == CRYER;
@@ -333,7 +389,9 @@ static mps_status measure(simulation *sim) {
   now->T = sim->time[sim->rows];
   now->settlement = is_column(s) ? lost : s->kase == CRYER ? lost / 3.0 : NAN;
   now->settlement_exact = exact_settlement(s, m, now->T);
-  now->force = sim->s.kase == MANDEL ? fabs(plate.force[1]) / (2.0 * s->load) : NAN;
+  now->force = has_plate(s) ? force_over_exact(s, &plate) : NAN;
+  now->degree = s->kase == BARRON ? degree_of(sim, now) : NAN;
+  now->degree_equal = s->kase == BARRON ? exact_drain_equal(s->ratio, now->T) : NAN;
   now->water = water;
   sim->m.samples = ++sim->rows;
   return MPS_OK;

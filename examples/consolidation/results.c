@@ -6,7 +6,8 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char *const names[] = {"terzaghi", "large", "mcc", "mandel", "cryer", "strip"};
+static const char *const names[] = {"terzaghi", "large", "mcc",   "mandel",
+                                    "cryer",    "strip", "barron"};
 
 static double exact_at(const simulation *sim, int r, int point) {
   return exact_pressure(&sim->s, sim->s.load / sim->modulus, sim->at[point], sim->row[r].T);
@@ -67,6 +68,8 @@ static bool write_summary(app *a, const simulation *sim) {
   json_number(&f, "centre_pressure", last->u[sim->points - 1]);
   json_number(&f, "centre_pressure_exact", exact_at(sim, sim->rows - 1, sim->points - 1));
   json_number(&f, "plate_force", last->force);
+  json_number(&f, "degree", last->degree);
+  json_number(&f, "degree_equal_strain", last->degree_equal);
   json_number(&f, "water_start_kg", last->water.start);
   json_number(&f, "water_kg", last->water.mass);
   json_number(&f, "entered_kg", last->water.entered);
@@ -80,10 +83,10 @@ static bool write_summary(app *a, const simulation *sim) {
 static bool draw_profile(app *a, const simulation *sim) {
   static const char *const colours[] = {"#1f4e8c", "#c0392b", "#2e7d32", "#8e44ad",
                                         "#d68910", "#117a65", "#5d4037", "#34495e"};
-  static const char *const titles[] = {"Terzaghi", "Xie and Leo", "Cam-Clay",
-                                       "Mandel",   "Cryer",       "Strip load"};
-  static const char *const depths[] = {"depth/H", "depth/H", "depth/H",
-                                       "1 - x/a", "1 - r/a", "z/B"};
+  static const char *const titles[] = {"Terzaghi", "Xie and Leo", "Cam-Clay", "Mandel",
+                                       "Cryer",    "Strip load",  "Barron"};
+  static const char *const depths[] = {"depth/H", "depth/H", "depth/H", "1 - x/a",
+                                       "1 - r/a", "z/B",     "1 - r/a"};
   output f;
   if (!plot_open(&f, a, sim->s.out, "profile", 900, 700)) return false;
   output_text(&f,
@@ -124,6 +127,7 @@ bool consolidation_finish(app *a, void *user) {
     if (!isnan(now->settlement))
       printf(", settlement %.5f H (exact %.5f, %+.1f %%)", now->settlement, now->settlement_exact,
              100.0 * (now->settlement / now->settlement_exact - 1.0));
+    if (!isnan(now->degree)) printf(", U %.4f (equal strain %.4f)", now->degree, now->degree_equal);
     if (!isnan(now->force)) printf(", force of the plate %.4f of the exact one", now->force);
     printf("\n");
   }

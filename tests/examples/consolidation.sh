@@ -34,6 +34,10 @@ run terzaghi --scheme implicit --cells 20
 within terzaghi 0.012 0.02
 run mandel --scheme implicit --cells 5 --stiffness 50 --times 0.05,0.2
 within mandel 0.03 0
+run barron --cells 10 --times 0.2,1
+within barron 0.03 0
+awk -v u="$(value barron degree)" -v e="$(value barron degree_equal_strain)" -v f="$(value barron plate_force)" 'BEGIN {
+  exit !(u > 0.97 * e && u < 1.03 * e && f > 0.98 && f < 1.02) }' || fail "barron: degree and force of the plate"
 refused() {
   if "$programs/mps-consolidation" --out "$work/refused" "$@" 2>"$work/log"; then fail "$* is not refused"; fi
 }
@@ -41,6 +45,8 @@ refused --M 1
 refused --case mcc --young 1MPa
 refused --case mcc --kappa 0.3
 refused --case mcc --load 1e8
+refused --ratio 4
+refused --case barron --cells 12
 run strip --cells 2
 within strip 0.03 0
 run strip --cells 2 --scheme implicit

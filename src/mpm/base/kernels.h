@@ -1,6 +1,6 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * cut_scatter.c, cut_gather.c, search.c, sweep.c, cell_loops.c; common code is in loops.h.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * cut_scatter.c, cut_gather.c, search.c, sweep.c, cell_loops.c, whole_cells.c; common code is in
+ * loops.h. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H
 
@@ -48,6 +48,10 @@ typedef struct mpsi_kernels {
   mpsi_transfer_fn speed;            /* largest c + |v| of a block */
   mpsi_transfer_fn pore_sum;  /* water in the pores: sums of a block in the worker's tiles, which */
   mpsi_transfer_fn pore_give; /* are clear; and back from the tiles (water/cell_loops.c) */
+  /* Of cells of a block of nodes that have whole ones on all faces: pressures at the end of the
+   * step with flow; slopes of these (water/whole_cells.c). */
+  void (*pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
+  void (*pore_slopes)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
   mpsi_fit_fn fit;
   mpsi_foot_fn foot;
   /* search.c, of particles [begin, end): the largest speed (m/s); the first that is not known to be

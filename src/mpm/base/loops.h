@@ -298,5 +298,7 @@ void MPSI_LEVELLED(mpsi_mpm_speed)(const mpsi_transfer *work);
 void MPSI_LEVELLED(mpsi_mpm_flush)(const mpsi_transfer *work);
 void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work);
 void MPSI_LEVELLED(mpsi_pore_give)(const mpsi_transfer *work);
+void MPSI_LEVELLED(mpsi_pore_advance)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
+void MPSI_LEVELLED(mpsi_pore_slopes)(const mpsi_transfer *work, int64_t g, const uint64_t *whole);
 
 #endif

@@ -148,11 +148,15 @@ static void stiffen_by_water(const mpsi_grid *grid, const mpsi_columns *p, mpsi_
   const mps_pore_water_def *water = &pores->def;
   const double v = 2.0 * grid->dim * def->courant / 0.3 * grid->inverse *
                    (water->bulk / (water->density * MPS_PORE_GRAVITY));
-  for (int64_t k = begin; k < end; k++) {
-    moduli[k - begin] += water->bulk / p->n[k];
-    if (!p->k) continue;
-    const double c = v * p->k[k] / p->n[k];
-    moduli[k - begin] = fmax(moduli[k - begin], c * c * p->m[k] / p->V[k]);
+  const double *n = p->n + begin, *V = p->V + begin, *m = p->m + begin;
+  if (!p->k) {
+    for (int64_t k = 0; k < end - begin; k++) moduli[k] += water->bulk / n[k];
+    return;
+  }
+  for (int64_t k = 0; k < end - begin; k++) {
+    const double inverse = 1.0 / n[k], c = v * inverse * p->k[begin + k];
+    const double waves = moduli[k] + water->bulk * inverse, flow = c * c * (m[k] / V[k]);
+    moduli[k] = waves > flow ? waves : flow;
   }
 }
 

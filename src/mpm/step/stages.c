@@ -4,6 +4,7 @@
 
 #include "core/particles/particles_internal.h"
 #include "mpm/particles/mpm_particles.h"
+#include "mpm/water/water.h"
 #include "means.h"
 #include "tiles.h"
 
@@ -61,6 +62,7 @@ static void gather(void *solver, int64_t b, int32_t worker) {
   mps_mpm *mpm = solver;
   const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
   if (mpm->undo.on) mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
+  mpsi_pore_keep_volumes(mpm, b);
   mpm->kernels->g2p[mpm->grid.geometry][mpm->grid.spline - 2](&work);
 }
 

@@ -15,7 +15,7 @@ typedef struct region {
 
 static region region_of(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   region out = {{0.0}, {0}, {0}};
-  mpsi_pore_region(cells, out.low, out.last);
+  mpsi_pore_region(grid, cells, out.low, out.last);
   for (int c = 0; c < grid->dim; c++) {
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, most = grid->high[c] - 1 - first;
     out.first[c] = (double)first;
@@ -96,6 +96,14 @@ MPSI_INLINE void add_sums(const places *in, int n, const sums *from, const mpsi_
   }
 }
 
+/* v = 1/(1 - n) follows the volume. */
+MPSI_INLINE void change_porosities(const mpsi_columns *p, const double *former, int64_t begin,
+                                   int n) {
+  double *porosity = p->n + begin;
+  const double *V = p->V + begin, *past = former + begin;
+  MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] = 1.0 - (1.0 - porosity[k]) * (past[k] / V[k]);
+}
+
 MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_cell_block *cells, const mpsi_worker *worker, int dim) {
   const region in = region_of(grid, cells);
@@ -105,8 +113,10 @@ MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wat
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     find_cells(grid, p, &in, dim, k, n, &at);
     find_sums(p, water->former, &at, dim, k, n, &part);
-    for (int i = 0; i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
+    for (int i = 0; water->system && i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
     add_sums(&at, n, &part, worker);
+    if (water->flows) mpsi_pore_change_permeability(p, water, k, k + n);
+    change_porosities(p, water->former, k, n);
   }
 }
 
@@ -151,14 +161,6 @@ MPSI_INLINE void give_pressures(const mpsi_columns *p, const places *in, const t
   }
 }
 
-/* v = 1/(1 - n) follows the volume. */
-MPSI_INLINE void give_porosities(const mpsi_columns *p, const double *former, int64_t begin,
-                                 int n) {
-  double *porosity = p->n + begin;
-  const double *V = p->V + begin, *past = former + begin;
-  MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] = 1.0 - (1.0 - porosity[k]) * (past[k] / V[k]);
-}
-
 MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
   const mpsi_columns *p = work->p;
   const mpsi_cell_block *cells = work->cells;
@@ -178,7 +180,6 @@ MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
       MPSI_SIMD for (int i = 0; i < n; i++) m[i] += from.gain[i] * V[i];
       mpsi_pore_give_flow(work, k, k + n);
     }
-    give_porosities(p, work->water->former, k, n);
   }
 }
 

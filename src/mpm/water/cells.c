@@ -13,9 +13,10 @@
 
 /* ---- to the tile ----------------------------------------------------------------------------- */
 
-static void clear_region(const mpsi_cell_block *cells, const mpsi_worker *worker) {
+static void clear_region(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker) {
   int low[3], high[3];
-  mpsi_pore_region(cells, low, high);
+  mpsi_pore_region(grid, cells, low, high);
   const size_t bytes = (size_t)(high[0] - low[0]) * sizeof(mpsi_node);
   for (int k = low[2]; k < high[2]; k++)
     for (int j = low[1]; j < high[1]; j++) {
@@ -28,7 +29,7 @@ static void clear_region(const mpsi_cell_block *cells, const mpsi_worker *worker
 static void sum_block(void *data, int64_t b, int32_t number) {
   mps_mpm *mpm = data;
   const mpsi_transfer work = mpsi_transfer_of(mpm, b, number);
-  clear_region(work.cells, work.worker);
+  clear_region(work.grid, work.cells, work.worker);
   mpm->kernels->pore_sum(&work);
 }
 
@@ -36,53 +37,49 @@ static void sum_block(void *data, int64_t b, int32_t number) {
 
 static void clear(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
-  uint64_t *filled = mpm->water->block[g].filled;
   (void)worker;
-  memset(filled, 0, sizeof mpm->water->block[g].filled);
+  memset(mpm->water->block[g].filled, 0, sizeof mpm->water->block[g].filled);
 }
 
-/* The first sums of a cell take the place of what it had in the last step. */
-static void add_to_cell(mpsi_pore_cell *cell, bool first, const double *sum, const double *flow) {
-  if (first) {
-    cell->volume = sum[MPSI_PORE_VOLUME];
-    cell->change = sum[MPSI_PORE_CHANGE];
-    cell->p = sum[MPSI_PORE_PRESSURE];
-    cell->n = sum[MPSI_PORE_POROSITY];
-    cell->k = flow[MPSI_PORE_PERMEABILITY];
-    for (int c = 0; c < 3; c++) cell->g[c] = flow[MPSI_PORE_SLOPE + c];
-    return;
-  }
-  cell->volume += sum[MPSI_PORE_VOLUME];
-  cell->change += sum[MPSI_PORE_CHANGE];
-  cell->p += sum[MPSI_PORE_PRESSURE];
-  cell->n += sum[MPSI_PORE_POROSITY];
-  cell->k += flow[MPSI_PORE_PERMEABILITY];
-  for (int c = 0; c < 3; c++) cell->g[c] += flow[MPSI_PORE_SLOPE + c];
+MPSI_INLINE void add_to_cell(mpsi_pore_cell *cell, bool first, const double *sum,
+                             const double *flow) {
+  cell->volume = sum[MPSI_PORE_VOLUME] + (first ? 0.0 : cell->volume);
+  cell->change = sum[MPSI_PORE_CHANGE] + (first ? 0.0 : cell->change);
+  cell->p = sum[MPSI_PORE_PRESSURE] + (first ? 0.0 : cell->p);
+  cell->n = sum[MPSI_PORE_POROSITY] + (first ? 0.0 : cell->n);
+  cell->k = flow[MPSI_PORE_PERMEABILITY] + (first ? 0.0 : cell->k);
+  for (int c = 0; c < 3; c++) cell->g[c] = flow[MPSI_PORE_SLOPE + c] + (first ? 0.0 : cell->g[c]);
 }
 
-static void add_row(mpsi_pore_cell *cell, uint64_t *filled, int local, int cells, mpsi_node *sum,
-                    mpsi_node *flow) {
-  for (int i = 0; i < cells; i++) {
-    if (sum[i][MPSI_PORE_VOLUME] == 0.0) continue;
-    const bool first = !mpsi_pore_marked(filled, local + i);
-    mpsi_pore_mark(filled, local + i);
-    add_to_cell(cell + i, first, sum[i], flow[i]);
-  }
+/* To cells of a row of block g, from number `local` on; marks those that have sums, of which some
+ * may be zero. The first sums of a cell take the place of what it had in the last step. */
+static void add_row(const mpsi_grid *grid, mpsi_water *water, int64_t g, int local, int cells,
+                    const mpsi_node *sum, const mpsi_node *flow) {
+  mpsi_pore_cell *cell = water->cell + mpsi_first_node(grid, g) + local;
+  uint64_t *word = &water->block[g].filled[local >> 6];
+  const uint64_t row = ((UINT64_C(1) << cells) - 1) << (local & 63), before = *word & row;
+  *word |= row;
+  if (before == 0)
+    for (int i = 0; i < cells; i++) add_to_cell(cell + i, true, sum[i], flow[i]);
+  else if (before == row)
+    for (int i = 0; i < cells; i++) add_to_cell(cell + i, false, sum[i], flow[i]);
+  else
+    for (int i = 0; i < cells; i++)
+      add_to_cell(cell + i, !(before >> ((local & 63) + i) & 1), sum[i], flow[i]);
 }
 
 static void add_tile(const mpsi_grid *grid, mpsi_water *water, int64_t b,
                      const mpsi_worker *worker) {
   const mpsi_cell_block *cells = &grid->cells[b];
   int low[3], high[3];
-  mpsi_pore_region(cells, low, high);
+  mpsi_pore_region(grid, cells, low, high);
   for (int k = low[2]; k < high[2]; k++)
     for (int j = low[1]; j < high[1]; j++)
       for (int i = low[0], end; i < high[0]; i = end) {
-        const int32_t g = mpsi_block_under(cells, i, j, k);
-        const int local = mpsi_local_under(i, j, k), at = mpsi_tile_index(i, j, k);
+        const int at = mpsi_tile_index(i, j, k);
         end = i < MPSI_SIDE && high[0] > MPSI_SIDE ? MPSI_SIDE : high[0];
-        add_row(water->cell + mpsi_first_node(grid, g) + local, water->block[g].filled, local,
-                end - i, worker->tile + at, worker->force + at);
+        add_row(grid, water, mpsi_block_under(cells, i, j, k), mpsi_local_under(i, j, k), end - i,
+                (const mpsi_node *)(worker->tile + at), (const mpsi_node *)(worker->force + at));
       }
 }
 
@@ -95,18 +92,32 @@ static void add_block(void *data, int64_t b, int32_t number) {
   add_tile(&mpm->grid, mpm->water, b, &mpm->grid.workers[number]);
 }
 
+/* As if the cell were inside: faces.c sees to those that are not. */
+static void find_mean(mpsi_water *water, mpsi_pore_cell *cell) {
+  const double inverse = 1.0 / cell->volume;
+  cell->p *= inverse;
+  cell->n *= inverse;
+  cell->k *= inverse;
+  for (int c = 0; c < 3; c++) cell->g[c] *= inverse;
+  cell->inside = true;
+  cell->free = 0;
+  cell->thin = false;
+  if (!water->flows) cell->now = cell->p + mpsi_pore_squeeze(water, cell);
+}
+
 static void find_means(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
+  uint64_t *filled = mpm->water->block[g].filled;
   (void)worker;
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (!mpsi_pore_marked(mpm->water->block[g].filled, k)) continue;
-    const double inverse = 1.0 / cell[k].volume;
-    cell[k].p *= inverse;
-    cell[k].n *= inverse;
-    cell[k].k *= inverse;
-    for (int c = 0; c < mpm->grid.dim; c++) cell[k].g[c] *= inverse;
-  }
+  for (int w = 0; w < MPSI_PORE_WORDS; w++)
+    for (uint64_t left = filled[w]; left; left &= left - 1) {
+      const int k = 64 * w + mpsi_pore_lowest(left);
+      if (cell[k].volume == 0.0)
+        filled[w] &= ~(left & (~left + 1));
+      else
+        find_mean(mpm->water, &cell[k]);
+    }
 }
 
 void mpsi_pore_find_cells(mps_mpm *mpm) {

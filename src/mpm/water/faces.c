@@ -163,19 +163,17 @@ static void find_faces(void *data, int64_t g, int32_t worker) {
     leave_sides(&mpm->grid, g, inside);
   }
   memcpy(block->full, inside, sizeof block->full);
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (!mpsi_pore_marked(block->filled, k)) continue;
-    cell[k].inside = mpsi_pore_marked(inside, k);
-    cell[k].free = 0;
-    cell[k].thin = false;
-    if (!cell[k].inside) {
+  memcpy(block->inside, inside, sizeof block->inside);
+  for (int w = 0; w < MPSI_PORE_WORDS; w++)
+    for (uint64_t left = block->filled[w] & ~inside[w]; left; left &= left - 1) {
+      const int k = 64 * w + mpsi_pore_lowest(left);
       int place[3];
       mpsi_unravel(k, MPSI_SIDE, place);
+      cell[k].inside = false;
       find_edge(&mpm->grid, &mpm->contact, water, g, k, place, &cell[k]);
       if (cell[k].free == 0) mpsi_pore_mark(block->full, k);
+      if (!water->flows) cell[k].now = cell[k].p + mpsi_pore_squeeze(water, &cell[k]);
     }
-    if (!water->flows) cell[k].now = cell[k].p + mpsi_pore_squeeze(water, &cell[k]);
-  }
 }
 
 void mpsi_pore_find_faces(mps_mpm *mpm) {

@@ -25,16 +25,32 @@ typedef struct face_flow {
 
 static double weight_of_water(mpsi_water *water) { return water->def.density * MPS_PORE_GRAVITY; }
 
-/* Area (m2) of a face between the filled parts of a cell and of the one beside it. */
+/* Area (m2), at a radius (m; 1 but in axisymmetry), through which water flows between the filled
+ * parts of a cell and of the one beside it. */
 static double area_of(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell,
-                      const mpsi_pore_cell *beside, int direction, double X) {
-  double area = mpsi_pore_radius(grid, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
+                      const mpsi_pore_cell *beside, int direction, double radius) {
+  double area = radius;
   for (int c = 0; c < grid->dim; c++)
     if (c != direction / 2)
       area *= grid->cell * (beside ? fmin(mpsi_pore_edge_of(water, cell)->fill[c],
                                           mpsi_pore_edge_of(water, beside)->fill[c])
                                    : mpsi_pore_edge_of(water, cell)->fill[c]);
   return area;
+}
+
+/* Of a face at grid coordinate X of its cell's box. */
+static double radius_of(const mpsi_grid *grid, int direction, double X) {
+  return mpsi_pore_radius(grid, direction == 1 ? X + 1.0 : direction == 0 ? X : X + 0.5);
+}
+
+/* Through which water flows from x over a distance (m) to a drained face: half way, as pressures
+ * near a drain follow the logarithm of the radius. */
+static double area_to_drained(const mpsi_grid *grid, mpsi_water *water, const mpsi_pore_cell *cell,
+                              int direction, const double *x, double X, double distance) {
+  double radius = radius_of(grid, direction, X);
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC && direction < 2)
+    radius = x[0] + (direction == 1 ? 0.5 : -0.5) * distance;
+  return area_of(grid, water, cell, NULL, direction, radius);
 }
 
 /* Pressure (Pa) of a drained face at x[3]. */
@@ -102,14 +118,15 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
                        .distance = 0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis],
                        .known = true};
   if (mpsi_pore_edge_of(mpm->water, cell)->beyond[direction] == MPSI_PORE_DRAINED) {
+    const double way = 0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis];
     *behind = cell;
     return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, cell)->face[direction], direction, x,
-                      0.5 * h * mpsi_pore_edge_of(mpm->water, cell)->fill[axis], p,
-                      area_of(&mpm->grid, mpm->water, cell, NULL, direction, X));
+                      way, p, area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
   }
   const mpsi_pore_cell *beside = mpsi_pore_beside(&mpm->grid, mpm->water, g, k, direction);
-  const double area =
-      mpm->water->flows ? area_of(&mpm->grid, mpm->water, cell, beside, direction, X) : 0.0;
+  const double area = mpm->water->flows ? area_of(&mpm->grid, mpm->water, cell, beside, direction,
+                                                  radius_of(&mpm->grid, direction, X))
+                                        : 0.0;
   if (!beside->thin)
     return to_cell(&mpm->grid, mpm->water, &mpm->def, cell, beside, direction, p,
                    pressure_of(beside, end), area);
@@ -118,9 +135,9 @@ static face_flow at_face(const mps_mpm *mpm, int64_t g, int k, int direction, bo
     return none;
   *behind = beside;
   const double own = 0.5 * h + sign * -mpsi_pore_edge_of(mpm->water, cell)->shift[axis];
+  const double way = own + h * mpsi_pore_edge_of(mpm->water, beside)->fill[axis];
   return to_drained(mpm, cell, mpsi_pore_edge_of(mpm->water, beside)->face[direction], direction, x,
-                    own + h * mpsi_pore_edge_of(mpm->water, beside)->fill[axis], p,
-                    area_of(&mpm->grid, mpm->water, cell, NULL, direction, X));
+                    way, p, area_to_drained(&mpm->grid, mpm->water, cell, direction, x, X, way));
 }
 
 /* Centre of the filled part of cell k of a block of nodes; the coordinate of its box along x. */
@@ -136,53 +153,18 @@ static double centre_of(const mpsi_grid *grid, mpsi_water *water, int64_t g, int
 
 /* ---- cells among whole cells ----------------------------------------------------------------- */
 
-/* Cells of a block that are inside, with cells on all faces that have no free face. */
-static void find_whole(const mpsi_grid *grid, const mpsi_water *water, int64_t g, uint64_t *whole) {
-  const mpsi_pore_cell *cell = water->cell + mpsi_first_node(grid, g);
+/* Cells of a block that are inside, with cells on all faces that have no free face: whole_cells.c.
+ * Returns whether there are any. */
+static bool find_whole(const mpsi_grid *grid, const mpsi_water *water, int64_t g, uint64_t *whole) {
+  uint64_t any = 0;
   memset(whole, 0, MPSI_PORE_WORDS * sizeof *whole);
-  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) return;
+  if (grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC) return false;
   mpsi_pore_surrounded(grid, water, g, true, whole);
-  for (int k = 0; k < grid->block_nodes; k++)
-    if (mpsi_pore_marked(whole, k) && !cell[k].inside) whole[k >> 6] &= ~(UINT64_C(1) << (k & 63));
-}
-
-/* The cells on all faces of such a one. */
-static void list_beside(const mpsi_grid *grid, mpsi_water *water, int64_t g, int k,
-                        const mpsi_pore_cell **beside) {
-  for (int d = 0; d < 2 * grid->dim; d++) {
-    int at = k;
-    const int32_t block = mpsi_pore_step(water, g, &at, d);
-    beside[d] = water->cell + mpsi_first_node(grid, block) + at;
+  for (int w = 0; w < MPSI_PORE_WORDS; w++) {
+    whole[w] &= water->block[g].inside[w];
+    any |= whole[w];
   }
-}
-
-/* The cell's part of the slope to the one beside it, outwards, without that of water at rest. */
-static double drive_to(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def,
-                       const mpsi_pore_cell *cell, const mpsi_pore_cell *beside, int direction,
-                       double difference) {
-  const double still = water->def.density * def->gravity[direction / 2];
-  const double drive = difference * grid->inverse + (direction & 1 ? -still : still);
-  return water->flows ? 2.0 * beside->k / (cell->k + beside->k) * drive : drive;
-}
-
-/* Flux (m3/s) into it, as to_cell has for each face. */
-static double flux_among_whole(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def,
-                               const mpsi_pore_cell *cell, const mpsi_pore_cell *const *beside) {
-  const double h = grid->cell;
-  double sum = 0.0;
-  for (int d = 0; d < 2 * grid->dim; d++)
-    sum += drive_to(grid, water, def, cell, beside[d], d, beside[d]->p - cell->p);
-  return sum * (grid->dim == 3 ? h * h : h) * cell->k / weight_of_water(water);
-}
-
-static void slope_among_whole(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_def *def,
-                              mpsi_pore_cell *cell, const mpsi_pore_cell *const *beside) {
-  for (int c = 0; c < grid->dim; c++) {
-    const mpsi_pore_cell *below = beside[2 * c], *above = beside[2 * c + 1];
-    cell->g[c] = water->def.density * def->gravity[c] +
-                 0.5 * (drive_to(grid, water, def, cell, above, 2 * c + 1, above->now - cell->now) -
-                        drive_to(grid, water, def, cell, below, 2 * c, below->now - cell->now));
-  }
+  return any != 0;
 }
 
 /* ---- pressures at the end of the step -------------------------------------------------------- */
@@ -224,14 +206,12 @@ static double space_of(const mpsi_pore_edge *edge) {
   return fmax(edge->space, 0.5 * edge->space / fmax(1e-3, filled));
 }
 
-static void advance(mps_mpm *mpm, int64_t g, int k, bool whole, mpsi_pore_cell *cell) {
+/* Of a cell that is not among whole ones (whole_cells.c). */
+static void advance(mps_mpm *mpm, int64_t g, int k, mpsi_pore_cell *cell) {
   mpsi_water *water = mpm->water;
-  const mpsi_pore_cell *beside[6];
   const double h = mpm->grid.cell;
   double space = mpm->grid.dim == 3 ? h * h * h : h * h;
-  if (whole) list_beside(&mpm->grid, water, g, k, beside);
-  cell->gain = whole ? flux_among_whole(&mpm->grid, water, &mpm->def, cell, beside)
-                     : flux_into(mpm, g, k, false, cell);
+  cell->gain = flux_into(mpm, g, k, false, cell);
   if (!cell->inside) space = space_of(mpsi_pore_edge_of(water, cell));
   cell->now = cell->p + water->def.bulk / cell->n * (mpm->run.dt * cell->gain / space) +
               mpsi_pore_squeeze(mpm->water, cell);
@@ -239,18 +219,20 @@ static void advance(mps_mpm *mpm, int64_t g, int k, bool whole, mpsi_pore_cell *
 
 static void find_pressures(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
+  const mpsi_transfer work = mpsi_transfer_begin(mpm);
   mpsi_pore_cell *cell = mpm->water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
   (void)worker;
   memset(mpm->water->outflow[g], 0, sizeof mpm->water->outflow[g]);
-  find_whole(&mpm->grid, mpm->water, g, whole);
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (!mpsi_pore_marked(mpm->water->block[g].filled, k)) continue;
-    if (cell[k].thin)
-      squeeze(&mpm->grid, mpm->water, mpm->run.dt, g, &cell[k]);
-    else
-      advance(mpm, g, k, mpsi_pore_marked(whole, k), &cell[k]);
-  }
+  if (find_whole(&mpm->grid, mpm->water, g, whole)) mpm->kernels->pore_advance(&work, g, whole);
+  for (int w = 0; w < MPSI_PORE_WORDS; w++)
+    for (uint64_t left = mpm->water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
+      const int k = 64 * w + mpsi_pore_lowest(left);
+      if (cell[k].thin)
+        squeeze(&mpm->grid, mpm->water, mpm->run.dt, g, &cell[k]);
+      else
+        advance(mpm, g, k, &cell[k]);
+    }
 }
 
 /* ---- slopes ---------------------------------------------------------------------------------- */
@@ -305,22 +287,19 @@ static void interpolate(const mpsi_grid *grid, mpsi_water *water, const mps_mpm_
 static void find_slopes(void *data, int64_t g, int32_t worker) {
   mps_mpm *mpm = data;
   mpsi_water *water = mpm->water;
+  const mpsi_transfer work = mpsi_transfer_begin(mpm);
   mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
   uint64_t whole[MPSI_PORE_WORDS];
   (void)worker;
-  find_whole(&mpm->grid, water, g, whole);
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
-    if (!mpsi_pore_marked(water->block[g].filled, k)) continue;
-    if (cell[k].thin) {
-      interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
-    } else if (mpsi_pore_marked(whole, k)) {
-      const mpsi_pore_cell *beside[6];
-      list_beside(&mpm->grid, water, g, k, beside);
-      slope_among_whole(&mpm->grid, water, &mpm->def, &cell[k], beside);
-    } else {
-      find_slope(mpm, g, k, &cell[k]);
+  if (find_whole(&mpm->grid, water, g, whole)) mpm->kernels->pore_slopes(&work, g, whole);
+  for (int w = 0; w < MPSI_PORE_WORDS; w++)
+    for (uint64_t left = water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
+      const int k = 64 * w + mpsi_pore_lowest(left);
+      if (cell[k].thin)
+        interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
+      else
+        find_slope(mpm, g, k, &cell[k]);
     }
-  }
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
@@ -333,14 +312,19 @@ static double permeability_after(const mps_pore_water_def *def, double k, double
   return k;
 }
 
+void mpsi_pore_change_permeability(const mpsi_columns *p, const mpsi_water *water, int64_t begin,
+                                   int64_t end) {
+  const mps_pore_water_def *def = &water->def;
+  if (def->exponent == 0.0 && !(def->ratio_slope < INFINITY)) return;
+  for (int64_t k = begin; k < end; k++)
+    p->k[k] = permeability_after(def, p->k[k], p->n[k], p->V[k] / water->former[k]);
+}
+
 void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end) {
   const mpsi_columns *p = work->p;
   mpsi_water *water = work->water;
   const mps_pore_water_def *def = &water->def;
   const double weight = weight_of_water(water);
-  if (def->exponent != 0.0 || def->ratio_slope < INFINITY)
-    for (int64_t k = begin; k < end; k++)
-      p->k[k] = permeability_after(def, p->k[k], p->n[k], p->V[k] / water->former[k]);
   for (int c = 0; c < work->grid->dim && water->seepage[0]; c++)
     for (int64_t k = begin; k < end; k++)
       water->seepage[c][k] =
@@ -368,7 +352,7 @@ static void load_tile(const mpsi_transfer *work) {
   const mpsi_grid *grid = work->grid;
   const mpsi_cell_block *cells = work->cells;
   int low[3], high[3];
-  mpsi_pore_region(cells, low, high);
+  mpsi_pore_region(grid, cells, low, high);
   for (int k = low[2]; k < high[2]; k++)
     for (int j = low[1]; j < high[1]; j++)
       for (int i = low[0], end; i < high[0]; i = end) {

@@ -184,7 +184,7 @@ static double widest(const mps_mpm *mpm) {
   double most = 1.0;
   for (int64_t k = 0; k < mpm->partition->borders; k++) {
     int low[3], high[3];
-    mpsi_pore_region(&mpm->grid.cells[mpm->partition->border[k]], low, high);
+    mpsi_pore_region(&mpm->grid, &mpm->grid.cells[mpm->partition->border[k]], low, high);
     double cells = 1.0;
     for (int c = 0; c < 3; c++) cells *= high[c] - low[c];
     most = fmax(most, cells);
@@ -236,10 +236,10 @@ void mpsi_pore_free_layers(mps_context *context, mpsi_pore_layers **pointer) {
 /* ---- parcels --------------------------------------------------------------------------------- */
 
 /* The region of both tiles, to or from a parcel. */
-static void copy_region(const mpsi_cell_block *cells, const mpsi_worker *worker, char *parcel,
-                        bool pack) {
+static void copy_region(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                        const mpsi_worker *worker, char *parcel, bool pack) {
   int low[3], high[3];
-  mpsi_pore_region(cells, low, high);
+  mpsi_pore_region(grid, cells, low, high);
   const size_t bytes = (size_t)(high[0] - low[0]) * sizeof(mpsi_node);
   for (int which = 0; which < 2; which++)
     for (int k = low[2]; k < high[2]; k++)
@@ -263,7 +263,7 @@ static void pack_parcel(void *data, int64_t k, int32_t number) {
   const mpsi_pore_layers *layers = mpm->water->layers;
   const int32_t b = mpm->partition->border[k];
   s->sum(mpm, b, number);
-  copy_region(&mpm->grid.cells[b], &mpm->grid.workers[number],
+  copy_region(&mpm->grid, &mpm->grid.cells[b], &mpm->grid.workers[number],
               (char *)layers->out_room.item + k * parcel_bytes(layers), true);
 }
 
@@ -287,8 +287,8 @@ bool mpsi_pore_take_parcel(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_pore_layers *layers = mpm->water->layers;
   if (cells->ghost && mpm->partition->lost != MPS_OK) return false; /* the step has failed */
   char *parcels = cells->ghost ? layers->in_room.item : layers->out_room.item;
-  copy_region(cells, &mpm->grid.workers[number], parcels + cells->parcel * parcel_bytes(layers),
-              false);
+  copy_region(&mpm->grid, cells, &mpm->grid.workers[number],
+              parcels + cells->parcel * parcel_bytes(layers), false);
   return true;
 }
 

@@ -77,10 +77,9 @@ static mps_status renew_layers(mps_mpm *mpm, const char *function, mps_status st
   return status;
 }
 
-static void keep_volumes(void *data, int64_t b, int32_t worker) {
-  mps_mpm *mpm = data;
+void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  (void)worker;
+  if (!mpm->water) return;
   memcpy(mpm->water->former + cells->begin, mpm->p.V + cells->begin,
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
@@ -100,7 +99,6 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
     mpsi_pore_mass(&mpm->p, mpm->water, &mpm->water->start);
   }
   link_blocks(&mpm->grid, mpm->water);
-  mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, keep_volumes, mpm);
   return MPS_OK;
 }
 

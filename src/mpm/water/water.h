@@ -39,6 +39,7 @@ typedef struct mpsi_pore_cell {
 typedef struct mpsi_pore_block {
   uint64_t filled[MPSI_PORE_WORDS]; /* there are particles */
   uint64_t full[MPSI_PORE_WORDS];   /* and no face is free */
+  uint64_t inside[MPSI_PORE_WORDS]; /* cells that are `inside`; only of the rank's own blocks */
   int32_t beside[6];                /* numbers of the blocks beside it, or -1 */
 } mpsi_pore_block;
 
@@ -70,10 +71,10 @@ struct mpsi_water {
   mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
   double *former;                     /* m3, volumes at the beginning of the step */
-  uint16_t *place;                    /* of each particle: its cell in the tile of its block */
-  double *seepage[3];                 /* of the set, or NULL */
-  int64_t linked;                     /* blocks of nodes for which `beside` was found, */
-  int32_t (*linked_at)[3];            /* and where they were */
+  uint16_t *place;         /* of each particle: its cell in the tile of its block, for implicit.c */
+  double *seepage[3];      /* of the set, or NULL */
+  int64_t linked;          /* blocks of nodes for which `beside` was found, */
+  int32_t (*linked_at)[3]; /* and where they were */
   mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, place_room, linked_room;
   mpsi_pore_layers *layers; /* on several ranks, else NULL */
   mpsi_pore_system *system; /* where pressures are implicit, else NULL */
@@ -93,11 +94,16 @@ static inline int32_t mpsi_pore_own_block(const mpsi_grid *grid, const int32_t *
   return found && !grid->nodes[low].foreign ? (int32_t)low : -1;
 }
 
-/* The part of a tile that its particles may be in after a step. */
-static inline void mpsi_pore_region(const mpsi_cell_block *cells, int *low, int *high) {
+/* The part of a tile that its particles may be in after a step: a cell more on each side than
+ * before it. A particle's cell is that above the lowest node of its stencil or, of quadratic
+ * weights, that or the one before; along x, stencils have four nodes (g2p.c). */
+static inline void mpsi_pore_region(const mpsi_grid *grid, const mpsi_cell_block *cells, int *low,
+                                    int *high) {
   for (int c = 0; c < 3; c++) {
-    low[c] = cells->low[c] > 0 ? cells->low[c] - 1 : 0;
-    high[c] = cells->high[c];
+    const int before = grid->spline == 2 && cells->low[c] > 0 ? 1 : 0;
+    const int behind = grid->spline == 3 || c == 0 ? 1 : 0;
+    low[c] = c < grid->dim ? cells->low[c] - before : 0;
+    high[c] = c < grid->dim ? cells->high[c] - behind : 1;
   }
 }
 
@@ -107,6 +113,8 @@ static inline bool mpsi_pore_marked(const uint64_t *marks, int k) {
 static inline void mpsi_pore_mark(uint64_t *marks, int k) {
   marks[k >> 6] |= UINT64_C(1) << (k & 63);
 }
+/* Number of the lowest of the bits that are set, of which there is one. */
+static inline int mpsi_pore_lowest(uint64_t bits) { return __builtin_ctzll(bits); }
 
 /* Radius (m) that volumes and faces are multiplied by at grid coordinate X; 1 but in axisymmetry.
  */
@@ -141,8 +149,11 @@ void mpsi_pore_surrounded(const mpsi_grid *grid, const mpsi_water *water, int64_
                           uint64_t *out);
 /* What the pressure of a cell grows by in the step without flow, Pa. */
 static inline double mpsi_pore_squeeze(mpsi_water *water, const mpsi_pore_cell *cell) {
-  return -water->def.bulk / cell->n * (cell->change / (cell->volume - cell->change));
+  return -(water->def.bulk * cell->change) / (cell->n * (cell->volume - cell->change));
 }
+/* update.c: before the G2P of block of cells b: keeps the volumes of its particles, which are in
+ * the cache then. */
+void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b);
 /* cells.c: sums of the particles and their means: which cells are filled, and with what. */
 void mpsi_pore_find_cells(mps_mpm *mpm);
 /* faces.c: what lies beyond the faces of the cells, their filled parts, and without flow their

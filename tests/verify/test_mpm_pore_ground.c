@@ -1,0 +1,110 @@
+/* test_mpm_pore_ground.c - water in grounds of other shapes than a layer: radial flow through two
+ * rings against its closed form, a layer whose surface lies at any tenth of a cell, an impervious
+ * body that is pushed into saturated ground, a load on a part of the surface.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "pore_column.h"
+#include "test_fixture.h"
+
+#include <mps/contact.h>
+
+#define LOAD 1000.0 /* Pa */
+
+/* ---- rings ----------------------------------------------------------------------------------- */
+
+enum { RINGS = 16 };
+#define INNER 0.2 /* m */
+#define BORDER 0.5
+#define OUTER 1.0
+#define SLOW 1e-4 /* m/s */
+#define FAST 5e-4
+
+/* Steady flow from the outer side to a drain: u = q ln(r/r_0)/(2 pi k) rho_w g, in each ring. */
+static void flows_through_rings(void **state) {
+  (void)state;
+  const double h = (OUTER - INNER) / RINGS, lo[] = {INNER, 0.0}, hi[] = {OUTER, h};
+  mpm_scene s = mpm_scene_begin_in(context, 2, 0.5 * h, 0.0, 0.0, PORE_YOUNG);
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "permeability", 0));
+  mps_edit k;
+  const mps_view x = mpm_scene_view(&s, "position");
+  mps_assert_ok(context, mps_particles_edit(s.particles, "permeability", &k));
+  for (int64_t p = 0; p < x.shape[0]; p++)
+    *mps_edit_f64(&k, p, 0) = *mps_view_f64(&x, p, 0) < BORDER ? SLOW : FAST;
+  mps_assert_ok(context, mps_particles_commit(s.particles, &k));
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  def.cell = h;
+  def.viscous_damping = 20.0;
+  for (int c = 0; c < 2; c++) def.lower[c] = lo[c], def.upper[c] = hi[c];
+  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  mps_pore_water_def water = mps_pore_water_defaults();
+  water.porosity = 0.4;
+  mps_assert_ok(context, mps_mpm_add_pore_water(s.mpm, &water));
+  mps_pore_face_def face = mps_pore_face_defaults();
+  face.kind = MPS_PORE_FACE_DRAINED;
+  face.sides = 1u << MPS_MPM_SIDE_X_LOWER;
+  int32_t drain;
+  mps_assert_ok(context, mps_mpm_add_pore_face(s.mpm, &face, &drain));
+  face.sides = 1u << MPS_MPM_SIDE_X_UPPER;
+  face.pressure = LOAD;
+  mps_assert_ok(context, mps_mpm_add_pore_face(s.mpm, &face, NULL));
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 20.0, 1000000, NULL, NULL));
+  double rate, worst = 0.0;
+  mps_assert_ok(context, mps_mpm_get_pore_flow(s.mpm, drain, &rate, NULL));
+  const double inner = log(BORDER / INNER) / SLOW, outer = log(OUTER / BORDER) / FAST;
+  const double exact =
+      2.0 * 3.14159265358979323846 * h * LOAD / (MPS_PORE_GRAVITY * (inner + outer)); /* kg/s */
+  const mps_view now = mpm_scene_view(&s, "position"), u = mpm_scene_view(&s, "pore_pressure");
+  for (int64_t p = 0; p < u.shape[0]; p++) {
+    const double r = *mps_view_f64(&now, p, 0);
+    const double part = r < BORDER ? log(r / INNER) / SLOW : inner + log(r / BORDER) / FAST;
+    worst = fmax(worst, fabs(*mps_view_f64(&u, p, 0) / LOAD - part / (inner + outer)));
+  }
+  print_message("rings: p within %.2f %%, %.6g kg/s, exact %.6g\n", 100.0 * worst, rate, exact);
+  assert_true(worst < 0.01);
+  mps_assert_near(rate, exact, 0.01 * exact);
+  mpm_scene_end(&s);
+}
+
+/* ---- the surface at any tenth of a cell -------------------------------------------------------
+ */
+
+static void consolidates_at_any_place(void **state) {
+  (void)state;
+  const double T = 0.2;
+  for (int tenth = 0; tenth < 10; tenth++) {
+    pore_column c =
+        pore_column_begin(context, MPS_MPM_GEOMETRY_PLANE_STRAIN, 20.0 - 0.1 * tenth, 0.0, 10.0);
+    mps_pore_water_def water = mps_pore_water_defaults();
+    mps_pore_face_def face = mps_pore_face_defaults();
+    water.porosity = 0.4;
+    water.bulk = 0.4 * 50.0 * c.modulus;
+    water.permeability = 0.25 * 1000.0 * MPS_PORE_GRAVITY / c.modulus;
+    face.kind = MPS_PORE_FACE_DRAINED;
+    face.sides = 1u << MPS_MPM_SIDE_Y_UPPER;
+    face.pressure = -LOAD;
+    mps_assert_ok(context, mps_mpm_add_pore_water(c.s.mpm, &water));
+    mps_assert_ok(context, mps_mpm_add_pore_face(c.s.mpm, &face, NULL));
+    const double volume = mpm_scene_totals(&c.s).volume;
+    mps_assert_ok(context, mps_mpm_run(c.s.mpm, T * 4.0, 1000000, NULL, NULL));
+    const mps_view x = mpm_scene_view(&c.s, "position"), u = mpm_scene_view(&c.s, "pore_pressure");
+    double worst = 0.0;
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      const double exact = pore_terzaghi(1.0 - *mps_view_f64(&x, k, 1), T);
+      worst = fmax(worst, fabs(*mps_view_f64(&u, k, 0) / LOAD + 1.0 - exact));
+    }
+    const double settled = (1.0 - mpm_scene_totals(&c.s).volume / volume) * c.modulus / LOAD;
+    print_message("%.1f cells: u/q within %.2f %%, S M'/(q H) %+.2f %%\n", 20.0 - 0.1 * tenth,
+                  100.0 * worst, 100.0 * (settled / pore_terzaghi_degree(T) - 1.0));
+    assert_true(worst < 0.02);
+    mps_assert_near(settled, pore_terzaghi_degree(T), 0.03 * pore_terzaghi_degree(T));
+    mpm_scene_end(&c.s);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(flows_through_rings),
+                                     cmocka_unit_test(consolidates_at_any_place)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
