@@ -319,6 +319,7 @@ mps_status pen_load_soil(const penetrometer *p, pen_run *r) {
     mps_pore_water_def water = mps_pore_water_defaults();
     water.porosity = s->e0 / (1.0 + s->e0);
     water.permeability = s->permeability;
+    if (!isnan(s->permeability)) water.scheme = MPS_PORE_SCHEME_IMPLICIT; /* else dt ~ h^2/k */
     water.density = PEN_WATER;
     status = mps_mpm_add_pore_water(r->m.mpm, &water);
   }

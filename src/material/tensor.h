@@ -73,8 +73,8 @@ MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_law_columns *c, 
   }
 }
 
-/* Q = (1 - w/2)^-1 (1 + w/2) in space, from Q - 1 = r (w + w.w/2), r = 1/(1 + |w|^2/4); w_xy = w.xy,
- * w_yz = w.yz, w_zx = w.zx. */
+/* Q = (1 - w/2)^-1 (1 + w/2) in space, from Q - 1 = r (w + w.w/2), r = 1/(1 + |w|^2/4); w_xy =
+ * w.xy, w_yz = w.yz, w_zx = w.zx. */
 typedef struct mpsi_rotation {
   double xx, xy, xz, yx, yy, yz, zx, zy, zz;
 } mpsi_rotation;

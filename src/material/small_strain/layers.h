@@ -12,7 +12,7 @@
 
 #include "material/tensor.h"
 
-#define AHEAD 4 /* layers from the fetch of deviators to their step */
+#define AHEAD 4        /* layers from the fetch of deviators to their step */
 #define LAYER_CHUNK 64 /* particles whose sums are in memory at a time */
 
 /* Sums over the layers, of the particles of a chunk. */
@@ -128,15 +128,15 @@ MPSI_INLINE void layer_step(const int geometry, const mpsi_law *law, const int i
     if (geometry == MPSI_SPACE)
       t.zx = s.zx + shear * frame->strain[3][k], t.yz = s.yz + shear * frame->strain[4][k];
     t.zz = -(t.xx + t.yy);
-    const double j2 = 0.5 * (t.xx * t.xx + t.yy * t.yy + t.zz * t.zz) +
-                      (t.xy * t.xy + t.yz * t.yz + t.zx * t.zx);
+    const double j2 =
+        0.5 * (t.xx * t.xx + t.yy * t.yy + t.zz * t.zz) + (t.xy * t.xy + t.yz * t.yz + t.zx * t.zx);
     const double root = layer_inverse_root(j2), least = bears * root;
     const double scale = least < 1.0 ? least : 1.0;
     /* plastic strain is s (q/k - 1)/(2 G); its work by the mean of both stresses, which a budget of
      * energy takes too, is never negative, as neither exceeds the strength */
     const double over = (j2 * root) * per_bears - 1.0, plastic = over > 0.0 ? over : 0.0;
-    const double product = (t.xx * s.xx + t.yy * s.yy + t.zz * s.zz) +
-                           2.0 * (t.xy * s.xy + t.yz * s.yz + t.zx * s.zx);
+    const double product =
+        (t.xx * s.xx + t.yy * s.yy + t.zz * s.zz) + 2.0 * (t.xy * s.xy + t.yz * s.yz + t.zx * s.zx);
     const double both = scale * (2.0 * scale * j2 + product);
     xx[k] = scale * t.xx, yy[k] = scale * t.yy, xy[k] = scale * t.xy;
     sums->change[0][k] += scale * t.xx - s.xx;
