@@ -37,6 +37,8 @@ int main(int argc, char **argv) {
       OPTION_TEXT("domain", "WxH", &s->domain,
                   "width of the half model and depth of the ground in m, whole cells"),
       COMMON_NUMBER_IN("cohesion", OPTION_FROM_TO(1.0, 1e11), &s->cohesion, "von Mises: undrained"),
+      OPTION_NUMBER("strength-gradient", "Pa/m", OPTION_FROM_TO(0.0, 1e9), &s->gradient,
+                    "growth of the cohesion with depth, --cohesion at the surface; von Mises"),
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.1, 50.0), &s->phi, "Drucker-Prager"),
       COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi,
                        "at most phi; default phi; Drucker-Prager"),

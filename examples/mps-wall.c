@@ -13,6 +13,10 @@ static const char *settle(settings *s) {
   if (isnan(s->k0)) s->k0 = 1.0 - sine; /* Jaky */
   if (isnan(s->path)) s->path = (active ? 0.01 : 0.02) * s->height;
   if (isnan(s->h)) s->h = s->height / 16.0;
+  if (isnan(s->sheet)) /* turning about its toe, the part below would push the ground back */
+    s->sheet = active && s->motion != TURNS_ABOUT_TOE && s->base >= 4.0 * s->h * (1.0 - 1e-9)
+                   ? 2.0 * s->h
+                   : 0.0;
   s->length = s->h * ceil(s->length / s->h - 1e-9);
   s->front = s->h * ceil(s->height / s->h - 1e-9);
   if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
@@ -20,10 +24,14 @@ static const char *settle(settings *s) {
   if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
   if (s->base > 0.0 && s->base < 2.0 * s->h * (1.0 - 1e-9))
     return "--base must be 0 or at least 2 cells of --h";
+  if (s->sheet > 0.0 && s->base < s->sheet + 2.0 * s->h * (1.0 - 1e-9))
+    return "--base must be at least 2 cells of --h more than --sheet";
+  if (fabs(s->sheet / s->h - nearbyint(s->sheet / s->h)) > 1e-6)
+    return "--sheet must be whole cells of --h";
   if (s->length < s->height) return "--length must be at least --height";
   if (s->path > 0.2 * s->height) return "--path must be at most a fifth of --height";
-  if (s->density * s->gravity * (s->height + s->base) > 0.1 * s->young)
-    return "--young must be at least 10 times the stress at the toe, density g height";
+  if (s->density * s->gravity * (s->height + s->base) + s->surcharge > 0.1 * s->young)
+    return "--young must be at least 10 times the stress at the toe, density g height + surcharge";
   const double ground = s->length * (s->height + s->base) + s->front * s->base;
   return mpm_model_too_large(ground / (s->h * s->h) * (double)s->ppc);
 }
@@ -38,6 +46,7 @@ int main(int argc, char **argv) {
                                  .density = 1800.0,
                                  .gravity = 9.81,
                                  .corner = 0.6,
+                                 .sheet = NAN,
                                  .path = NAN,
                                  .rate = 0.02,
                                  .h = NAN,
@@ -61,6 +70,13 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
       OPTION_NUMBER("base", "m", OPTION_FROM_TO(0.0, 1e6), &s->base,
                     "depth of ground below the toe and in front of it; 0: a smooth bed"),
+      OPTION_NUMBER("sheet", "m", OPTION_FROM_TO(0.0, 1e6), &s->sheet,
+                    "of the wall below the ground in front, whole cells, beside which no pressure "
+                    "is counted; default 2 cells with --pressure active and --base of at least 4 "
+                    "cells, but not "
+                    "with --motion toe"),
+      OPTION_NUMBER("surcharge", "Pa", OPTION_FROM_TO(0.0, 1e9), &s->surcharge,
+                    "on the surface behind the wall"),
       OPTION_NUMBER(
           "length", "m", OPTION_LENGTH, &s->length,
           "of the ground behind the wall, up to whole cells; default 2.5 heights, passive 5"),

@@ -63,9 +63,9 @@ plot [0:1.7] [0:14] for [k=0:2] cone(word('50 100 200', k + 1)) every ::1 using 
 set terminal pngcairo size 1200,420 enhanced font 'DejaVu Sans,11'
 set output 'docs/images/textbook-sand.png'
 set multiplot layout 1,2
-set title 'Wall that leaves sand, ground below the toe'
+set title 'Wall that leaves sand, {/Symbol y} = {/Symbol f}, ground below the toe'
 set xlabel 'path over height'; set ylabel 'K'; set key top right
-walls = 'out/verify/mps-wall_--base_0.5_--h_'
+walls = 'out/verify/mps-wall_--base_0.5_--psi_30_--h_'
 plot [0:0.01] [0:0.6] walls.'0.125/pressure.csv' every ::2 using 1:3 with lines lc rgb grey title 'h = H/8', walls.'0.0625/pressure.csv' every ::2 using 1:3 with lines lc rgb green title 'h = H/16', walls.'0.03125/pressure.csv' every ::2 using 1:3 with lines lw 2 lc rgb blue title 'h = H/32', 1.0/3 dt '--' lc rgb red title 'Rankine'
 set title 'Cylinders of sand, run-out over time'
 set xlabel 't (s)'; set ylabel '(L - L_0)/L_0'; set key bottom right

@@ -7,6 +7,9 @@
  *   alpha: dx/dz = tan(theta - e),  ds - 2 R dtheta/cos(phi) = weight (dz + tan(phi) dx)
  *   beta:  dx/dz = tan(theta + e),  ds + 2 R dtheta/cos(phi) = weight (dz - tan(phi) dx)
  *
+ * Where c grows with depth and phi = 0, equilibrium has -dc/dz (sin(2 theta), cos(2 theta)) more,
+ * which adds dc/dz dx along alpha and takes as much off along beta (Davis and Booker 1973).
+ *
  * A beta line starts at the surface beside the footing (theta = pi/2), goes down and inward through
  * the fan of alpha lines at the footing's edge, and ends
  *   under a smooth base on the base (theta = 0): the last one at its middle;
@@ -35,7 +38,8 @@ typedef struct point {
  * first, and the angle where the fan, or the base, ends. */
 typedef struct net {
   const strip_footing *f;
-  double adhesion, sine, tangent, secant; /* c cos(phi), and of phi */
+  double adhesion, sine, tangent, secant; /* c cos(phi) at the surface, and of phi */
+  double across;                          /* N/m3: of dx along alpha, less of it along beta */
   double e;           /* rad, between the characteristics and the major stress */
   int lines;          /* in the fan, and in either part of the surface */
   double base, wedge; /* m, lengths of the parts */
@@ -45,7 +49,10 @@ typedef struct net {
   double load;        /* N/m, on half the footing */
 } net;
 
-static double strength(const net *n, double s) { return n->adhesion + s * n->sine; }
+static double adhesion_at(const net *n, double z) { return n->adhesion + n->f->gradient * z; }
+
+/* R where the mean stress is s and the depth z. */
+static double strength(const net *n, double s, double z) { return adhesion_at(n, z) + s * n->sine; }
 
 /* ---- points ---------------------------------------------------------------------------------- */
 
@@ -58,7 +65,7 @@ static point surface_point(const net *n, double distance) {
 /* The edge, in the fan: weight has no part in it. */
 static point edge_point(const net *n, double theta) {
   point p = surface_point(n, 0.0);
-  const double turn = 0.5 * PI - theta, R = strength(n, p.s);
+  const double turn = 0.5 * PI - theta, R = strength(n, p.s, 0.0);
   p.s += n->sine > 0.0 ? R * expm1(2.0 * n->tangent * turn) / n->sine : 2.0 * R * turn;
   p.theta = theta;
   return p;
@@ -69,7 +76,7 @@ static point inner_point(const net *n, const point *a, const point *b) {
   const double w = n->f->weight;
   point p = {0.0, 0.0, 0.5 * (a->s + b->s), 0.5 * (a->theta + b->theta)};
   for (int k = 0; k < ITERATIONS; k++) {
-    const double old = p.theta, R = strength(n, p.s);
+    const double old = p.theta;
     const double alpha = 0.5 * (a->theta + p.theta) - n->e;
     const double beta = 0.5 * (b->theta + p.theta) + n->e;
     const double ca = cos(alpha), sa = sin(alpha), cb = cos(beta), sb = sin(beta);
@@ -77,9 +84,11 @@ static point inner_point(const net *n, const point *a, const point *b) {
     const double det = sa * cb - ca * sb;
     p.x = (sa * db - sb * da) / det;
     p.z = (ca * db - cb * da) / det;
-    const double A = (strength(n, a->s) + R) * n->secant, B = (strength(n, b->s) + R) * n->secant;
-    const double ra = a->s - A * a->theta + w * (p.z - a->z + n->tangent * (p.x - a->x));
-    const double rb = b->s + B * b->theta + w * (p.z - b->z - n->tangent * (p.x - b->x));
+    const double R = strength(n, p.s, p.z);
+    const double A = (strength(n, a->s, a->z) + R) * n->secant;
+    const double B = (strength(n, b->s, b->z) + R) * n->secant;
+    const double ra = a->s - A * a->theta + w * (p.z - a->z) + n->across * (p.x - a->x);
+    const double rb = b->s + B * b->theta + w * (p.z - b->z) - n->across * (p.x - b->x);
     p.theta = (rb - ra) / (A + B);
     p.s = (B * ra + A * rb) / (A + B);
     if (!(fabs(p.theta - old) > 1e-14)) break;
@@ -91,9 +100,10 @@ static point inner_point(const net *n, const point *a, const point *b) {
 static point base_point(const net *n, const point *b) {
   const double beta = 0.5 * (b->theta + n->theta) + n->e;
   const double x = b->x - b->z * tan(beta);
-  const double right = b->s - n->f->weight * (b->z + n->tangent * (x - b->x));
+  const double right = b->s - n->f->weight * b->z - n->across * (x - b->x);
   const double turn = (b->theta - n->theta) * n->secant;
-  const double s = (right + turn * (2.0 * n->adhesion + n->sine * b->s)) / (1.0 - turn * n->sine);
+  const double s =
+      (right + turn * (n->adhesion + strength(n, b->s, b->z))) / (1.0 - turn * n->sine);
   return (point){x, 0.0, s, n->theta};
 }
 
@@ -105,7 +115,7 @@ static double piece_of_load(const net *n, const point *p, const point *q) {
   double vertical = 0.0, shear = 0.0;
   const point *both[2] = {p, q};
   for (int k = 0; k < 2; k++) {
-    const double R = strength(n, both[k]->s);
+    const double R = strength(n, both[k]->s, both[k]->z);
     vertical += 0.5 * (both[k]->s + R * cos(2.0 * both[k]->theta));
     shear += 0.5 * R * sin(2.0 * both[k]->theta);
   }
@@ -207,7 +217,7 @@ static double wedge_from_base(net *n, double length) {
 
 static void solve_rough(net *n) {
   const double limit = -(0.5 * PI - n->e); /* alpha lines along the base */
-  if (n->f->weight == 0.0 || n->f->friction == 0.0) {
+  if (n->across == 0.0) {
     wedge_from_edge(n, 0.0); /* Prandtl's wedge */
   } else if (wedge_from_edge(n, limit) < 0.0) {
     wedge_from_edge(n, search(n, wedge_from_edge, limit, 0.8));
@@ -222,6 +232,7 @@ double characteristics_capacity(const strip_footing *f, int lines) {
   net n = {.f = f, .lines = lines};
   n.adhesion = f->cohesion * cos(f->friction);
   n.sine = sin(f->friction), n.tangent = tan(f->friction), n.secant = 1.0 / cos(f->friction);
+  n.across = f->weight * n.tangent + f->gradient;
   n.e = 0.25 * PI - 0.5 * f->friction;
   const size_t most = (size_t)(4 * lines + 8);
   n.row[0] = calloc(2 * most, sizeof *n.row[0]);

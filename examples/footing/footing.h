@@ -16,6 +16,7 @@ typedef struct settings {
   double width, depth;      /* m, of the half model */
   double phi, psi;          /* degrees */
   double cohesion, young;   /* Pa */
+  double gradient;          /* Pa/m, growth of the cohesion with depth */
   double surcharge;         /* Pa, on the ground beside the footing */
   double tolerance;         /* of the ground at rest, in the second half of the path */
   double top, top_cohesion; /* m, Pa: of an upper layer; 0: none */

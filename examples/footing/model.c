@@ -5,6 +5,7 @@
 
 #include <mps/geostatic.h>
 #include <mps/mpm_settle.h>
+#include <mps/soil.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,7 +32,10 @@ const char *footing_settle(settings *s, const option *table) {
   if (large) return large;
   if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --h";
   if (!s->settled && options_given(table, "tolerance")) return "--tolerance is for --quasi-static";
-  const bool layer = !cone && s->shape == STRIP;
+  const bool grows = s->gradient > 0.0, layer = !cone && s->shape == STRIP && !grows;
+  if (grows && (cone || s->shape == CIRCLE))
+    return "--strength-gradient is for --model vonmises and --shape strip";
+  if (grows && s->top > 0.0) return "--strength-gradient and --top exclude each other";
   if (s->width < 3.0 * s->half_width || (!layer && footing_is_thin(s)))
     return "--domain must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
            "the ground moves when it fails; a strip on cohesive ground may have a thinner layer";
@@ -144,7 +148,24 @@ static mps_status make_clay(mps_context *context, const settings *s, double cohe
   return mps_material_create_von_mises(context, &law, out);
 }
 
-static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
+/* Clay whose strength grows with depth: its factor goes with each particle. */
+static mps_status make_growing_clay(mps_context *context, const settings *s, mps_particles *set,
+                                    mps_material **out) {
+  const double depth[] = {0.0, s->depth};
+  const double factor[] = {1.0, 1.0 + s->gradient * s->depth / s->cohesion};
+  mps_geostatic_def ground = mps_geostatic_defaults();
+  mps_material *clay = NULL;
+  ground.surface = s->depth;
+  mps_status status = mps_particles_set_profile(set, "strength_factor", 2, depth, factor, &ground);
+  if (status == MPS_OK) status = make_clay(context, s, s->cohesion, &clay);
+  if (status == MPS_OK) status = mps_material_create_by_field(context, clay, out);
+  mps_material_destroy(&clay);
+  return status;
+}
+
+static mps_status make_material(mps_context *context, const settings *s, mps_particles *set,
+                                mps_material **out) {
+  if (s->gradient > 0.0) return make_growing_clay(context, s, set, out);
   if (s->model == VON_MISES) return make_clay(context, s, s->cohesion, out);
   mps_material_drucker_prager_def law = mps_material_drucker_prager_defaults();
   law.cone = s->cone;
@@ -206,7 +227,7 @@ mps_status footing_build(mps_context *context, void *user) {
                              .user = sim};
   mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = make_ground(context, s, &sim->m);
-  if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
+  if (status == MPS_OK) status = make_material(context, s, sim->m.particles, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = s->shape == CIRCLE ? MPS_MPM_GEOMETRY_AXISYMMETRIC : MPS_MPM_GEOMETRY_PLANE_STRAIN;
   def.cell = s->h;

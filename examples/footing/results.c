@@ -40,13 +40,34 @@ static void fit_path(const simulation *sim, capacity *c) {
   for (int k = sim->rows - fifth; k < sim->rows; k++) c->last += sim->q[k] / unit / fifth;
 }
 
-/* Cohesive ground: Prandtl (52), whatever the weight and the base. A circle: smooth, R. T. Shield,
+/* The limit by characteristics, which supposes associated flow; its error falls with the square of
+ * the lines and is extrapolated. */
+static double limit(const settings *s, bool rough) {
+  const strip_footing f = {.half_width = s->half_width,
+                           .friction = s->model == VON_MISES ? 0.0 : s->phi * PI / 180.0,
+                           .cohesion = s->cohesion,
+                           .weight = s->density * s->gravity,
+                           .gradient = s->gradient,
+                           .surcharge = s->surcharge,
+                           .rough = rough};
+  const double coarse = characteristics_capacity(&f, LINES / 2);
+  const double fine = characteristics_capacity(&f, LINES);
+  return (4.0 * fine - coarse) / 3.0 / f.cohesion;
+}
+
+/* Cohesive ground: Prandtl (52), whatever the weight and the base, where the cohesion does not grow
+ * with depth. A circle: smooth, R. T. Shield,
  * J. Mech. Phys. Solids 4 (1955) 10-16; rough, G. Eason and R. T. Shield, Z. angew. Math. Phys. 11
  * (1960) 33-43. Coulomb's friction lets the base bear c, as a rough one does, where mu q > c. */
 static void find_cohesive_limits(const settings *s, capacity *c) {
   if (s->top >
       0.0) { /* known by bounds alone: R. S. Merifield et al., Geotechnique 49 (1999) 471 */
     c->smooth = c->rough = c->exact = NAN;
+    return;
+  }
+  if (s->gradient > 0.0) {
+    c->smooth = limit(s, false), c->rough = limit(s, true);
+    c->exact = s->mu == 0.0 ? c->smooth : s->mu >= 1.0 ? c->rough : NAN;
     return;
   }
   if (footing_is_thin(s)) { /* a rough strip: G. G. Meyerhof, T. K. Chaplin 1953 */
@@ -57,20 +78,6 @@ static void find_cohesive_limits(const settings *s, capacity *c) {
   if (s->shape == STRIP) return;
   c->smooth = 5.69, c->rough = 6.05;
   c->exact = s->mu == 0.0 ? c->smooth : s->mu * c->smooth >= 1.0 ? c->rough : NAN;
-}
-
-/* The limit by characteristics, which supposes associated flow; its error falls with the square of
- * the lines and is extrapolated. */
-static double limit(const settings *s, bool rough) {
-  const strip_footing f = {.half_width = s->half_width,
-                           .friction = s->phi * PI / 180.0,
-                           .cohesion = s->cohesion,
-                           .weight = s->density * s->gravity,
-                           .surcharge = s->surcharge,
-                           .rough = rough};
-  const double coarse = characteristics_capacity(&f, LINES / 2);
-  const double fine = characteristics_capacity(&f, LINES);
-  return (4.0 * fine - coarse) / 3.0 / f.cohesion;
 }
 
 static capacity measure(const simulation *sim) {
@@ -181,7 +188,10 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   const bool cone = s->model == DRUCKER_PRAGER;
   const bool circle = s->shape == CIRCLE;
   if (!cone && !circle)
-    draw_limit(&f, scale * c->exact, "--", footing_is_thin(s) ? "Meyerhof, Chaplin" : "Prandtl");
+    draw_limit(&f, scale * c->exact, "--",
+               s->gradient > 0.0    ? "characteristics"
+               : footing_is_thin(s) ? "Meyerhof, Chaplin"
+                                    : "Prandtl");
   if (circle && c->exact != c->rough)
     draw_limit(&f, scale * c->smooth, "--", "smooth base, Shield");
   if (circle && c->exact != c->smooth)
@@ -277,6 +287,7 @@ static void print(const settings *s, const capacity *c) {
   if (s->model == VON_MISES) {
     printf("bearing capacity q/c %.3f (%s %.3f, %+.1f %%)\n", c->last,
            footing_is_thin(s)  ? "thin layer, rough base"
+           : s->gradient > 0.0 ? "characteristics"
            : s->shape == STRIP ? "Prandtl"
            : s->mu > 0.0       ? "rough base"
                                : "smooth base",

@@ -94,6 +94,14 @@ static double lower_of(const penetrometer *p, const pen_run *r, int c) {
   return whole && c < 2 ? -r->size[c] : 0.0;
 }
 
+/* Cam-Clay whose pores are full of water hardly changes its volume around a tip: with each
+ * particle's own change it would lock, as clay does, and particles beside the tip swell and shrink
+ * by tenths. */
+static int32_t volumetric_of(const pen_settings *s) {
+  const bool by_law = s->volumetric == MPS_MPM_VOLUMETRIC_BY_LAW;
+  return by_law && s->law == PEN_CAM_CLAY ? MPS_MPM_VOLUMETRIC_CELL : s->volumetric;
+}
+
 /* After `status`, that of the rank's own objects. */
 static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   const pen_settings *s = &p->s;
@@ -102,7 +110,7 @@ static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   def.geometry = r->geometry;
   def.cell = s->h;
   def.spline = s->spline + 2;
-  def.volumetric = s->volumetric;
+  def.volumetric = volumetric_of(s);
   def.courant = s->courant;
   for (int c = 0; c <= up; c++) {
     def.lower[c] = lower_of(p, r, c);
@@ -201,8 +209,8 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   mps_body **body = &r->m.body[0];
   mps_body_def def = mps_body_defaults();
   def.position[up] = r->size[up] + pen_gap(p) - p->s.start;
-  mps_status status =
-      mps_signal_create_table(p->context, MPS_SIGNAL_QUANTITY_VELOCITY, 4 - skip, t + skip, v + skip, &down);
+  mps_status status = mps_signal_create_table(p->context, MPS_SIGNAL_QUANTITY_VELOCITY, 4 - skip,
+                                              t + skip, v + skip, &down);
   if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_STL)

@@ -319,6 +319,7 @@ mps_status pen_load_soil(const penetrometer *p, pen_run *r) {
     mps_pore_water_def water = mps_pore_water_defaults();
     water.porosity = s->e0 / (1.0 + s->e0);
     water.permeability = s->permeability;
+    if (!isnan(s->permeability)) water.scheme = MPS_PORE_SCHEME_IMPLICIT; /* else dt ~ h^2/k */
     water.density = PEN_WATER;
     status = mps_mpm_add_pore_water(r->m.mpm, &water);
   }
@@ -331,9 +332,9 @@ double pen_vertical(const penetrometer *p, double depth) {
   return p->s.surcharge + p->s.density * p->s.gravity * depth;
 }
 
-/* Of a smooth cone. C. I. Teh, G. T. Houlsby, Geotechnique 41 (1991) 17-34, for Ir from 50 to 500
- * (von Mises); Q. Lu, M. F. Randolph, Y. Hu, I. C. Bugarski, Geotechnique 54 (2004) 257-267
- * (Tresca). */
+/* Of a smooth cone of 60 degrees. C. I. Teh, G. T. Houlsby, Geotechnique 41 (1991) 17-34, for Ir
+ * from 50 to 500 (von Mises); Q. Lu, M. F. Randolph, Y. Hu, I. C. Bugarski, Geotechnique 54 (2004)
+ * 257-267 (Tresca). */
 pen_factor pen_factor_of(const penetrometer *p, double q, double depth) {
   const pen_settings *s = &p->s;
   pen_factor f = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
@@ -345,7 +346,7 @@ pen_factor pen_factor_of(const penetrometer *p, double q, double depth) {
   f.n_kt = (q - f.vertical) / su;
   const double sideways = p->state.sideways + s->k0 * weight;
   f.deviation = (f.vertical - sideways) / (2.0 * su);
-  if (s->tip != PEN_CONE || s->friction > 0.0) return f;
+  if (s->tip != PEN_CONE || s->friction > 0.0 || fabs(s->angle - 60.0) > 1e-9) return f;
   const double ln = log(f.rigidity);
   if (f.rigidity >= 50.0 * (1.0 - 1e-9) && f.rigidity <= 500.0 * (1.0 + 1e-9))
     f.teh_houlsby = 4.0 / 3.0 * (1.0 + ln) * (1.25 + f.rigidity / 2000.0) - 1.8 * f.deviation;

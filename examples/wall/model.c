@@ -1,19 +1,40 @@
 /* model.c - ground, wall and the run of mps-wall. The wall is x <= 0, the ground behind it x > 0;
  * it moves away from the ground (active) or into it (passive), as a whole or about its toe or top.
  * With a base ground lies below the toe and in front of the wall; without one the wall
- * stands on a smooth bed. SPDX-License-Identifier: BSD-3-Clause */
+ * stands on a smooth bed. Ground beside a toe shares its nodes with the ground below, which stays:
+ * so a wall with a base goes down some cells further (`sheet`), and pressures count from the ground
+ * in front upwards. SPDX-License-Identifier: BSD-3-Clause */
 #include "wall.h"
 
 #include <mps/geostatic.h>
 
 #include <math.h>
+#include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180.0)
 #define RAMP 0.05  /* of the path: up to the full speed */
 #define THICK 0.25 /* of the height */
 #define ABOVE 0.5  /* of the height: the wall reaches above the ground, which rises */
 
+/* Whole cells, which the particles in front of the wall leave free. */
+static double thickness_of(const settings *s) {
+  return s->h * ceil(THICK * s->height / s->h - 1e-9);
+}
+
 /* ---- ground ---------------------------------------------------------------------------------- */
+
+/* The ground in front of the wall does not bear the surcharge. */
+static mps_status unload_front(const settings *s, mps_particles *set) {
+  mps_view x;
+  mps_edit stress;
+  mps_status status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_edit(set, "stress", &stress);
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    for (int c = 0; c < 3 && *mps_view_f64(&x, k, 0) < 0.0; c++)
+      *mps_edit_f64(&stress, k, c) += s->surcharge * (c == 1 ? 1.0 : s->k0);
+  return mps_particles_commit(set, &stress);
+}
 
 static mps_status set_stress(const settings *s, mps_particles *set) {
   const mps_geostatic_layer layer = {.thickness = INFINITY, .k0 = s->k0, .density = NAN};
@@ -22,22 +43,29 @@ static mps_status set_stress(const settings *s, mps_particles *set) {
   mps_geostatic_def def = mps_geostatic_defaults();
   def.layers = &layer, def.layer_count = 1;
   def.gravity = s->gravity;
+  def.surcharge = s->surcharge;
   if (s->base > 0.0)
     def.surface_line = line, def.surface_points = 2;
   else
     def.surface = s->height;
-  return mps_particles_set_geostatic(set, &def);
+  const mps_status status = mps_particles_set_geostatic(set, &def);
+  return status == MPS_OK && s->surcharge > 0.0 && s->base > 0.0 ? unload_front(s, set) : status;
 }
 
 static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
+  const double thick = thickness_of(s);
   const double lo[] = {0.0, 0.0}, hi[] = {s->length, s->base + s->height};
-  const double before_lo[] = {-s->front, 0.0}, before_hi[] = {0.0, s->base};
+  const double before_lo[] = {-s->front, 0.0};
+  const double before_hi[] = {s->sheet > 0.0 ? -thick : 0.0, s->base};
+  const double below_lo[] = {-thick, 0.0}, below_hi[] = {0.0, s->base - s->sheet};
   mps_particles_def set = mps_particles_defaults();
   set.spacing = s->h / sqrt((double)s->ppc);
   mps_status status = mpm_model_particles(m, context, &set);
   if (status == MPS_OK) status = mps_particles_fill_box(m->particles, lo, hi, NULL);
   if (status == MPS_OK && s->base > 0.0)
     status = mps_particles_fill_box(m->particles, before_lo, before_hi, NULL);
+  if (status == MPS_OK && s->sheet > 0.0)
+    status = mps_particles_fill_box(m->particles, below_lo, below_hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
   return status == MPS_OK ? set_stress(s, m->particles) : status;
 }
@@ -47,6 +75,26 @@ static mps_status make_law(mps_context *context, const settings *s, mps_material
   law.young = s->young, law.poisson = s->poisson;
   law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE, law.cohesion = s->cohesion;
   return mps_material_create_mohr_coulomb(context, &law, out);
+}
+
+/* The surcharge is a load on the uppermost particles, which it follows. */
+static mps_status press(const settings *s, mpm_model *m) {
+  mps_view x, id;
+  mps_mpm_load_def load = mps_mpm_load_defaults();
+  int64_t count = 0;
+  mps_status status = mps_particles_view(m->particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(m->particles, "id", &id);
+  if (status != MPS_OK) return status;
+  int64_t *ids = malloc((size_t)(x.shape[0] + 1) * sizeof *ids);
+  if (!ids) return MPS_ERROR_MEMORY;
+  const double top = s->base + s->height - mps_particles_spacing(m->particles);
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    if (*mps_view_f64(&x, k, 1) > top) ids[count++] = *mps_view_i64(&id, k, 0);
+  load.ids = ids, load.id_count = count;
+  load.traction[1] = -s->surcharge;
+  status = mps_mpm_add_load(m->mpm, &load, NULL);
+  free(ids);
+  return status;
 }
 
 /* ---- wall ------------------------------------------------------------------------------------ */
@@ -66,15 +114,19 @@ static mps_status make_wall(mps_context *context, simulation *sim) {
   const bool top = s->motion == TURNS_ABOUT_TOP;
   const double foot = top ? -s->height : s->base > 0.0 ? 0.0 : -ABOVE * s->height;
   const double low = top && s->base == 0.0 ? foot - ABOVE * s->height : foot;
-  const double head = (top ? 0.0 : s->height) + ABOVE * s->height, thick = THICK * s->height;
+  const double head = (top ? 0.0 : s->height) + ABOVE * s->height, thick = thickness_of(s);
   const double corners[] = {0.0, low, 0.0, head, -thick, head, -thick, low};
+  const double deep = foot - s->sheet;
+  const double sheet[] = {0.0, deep, 0.0, foot, 0.0, head, -thick, head, -thick, deep};
   mps_signal *path = NULL;
   mps_body_def def = mps_body_defaults();
   def.position[1] = s->base + (top ? s->height : 0.0);
   mps_status status = make_path(context, sim, &path);
   if (status == MPS_OK)
-    status = mps_body_create_polygon(context, &def, 4, corners, &sim->m.body[0]);
-  if (status == MPS_OK) status = mps_body_name_part(sim->m.body[0], "face", 0, 1, &sim->face);
+    status = s->sheet > 0.0 ? mps_body_create_polygon(context, &def, 5, sheet, &sim->m.body[0])
+                            : mps_body_create_polygon(context, &def, 4, corners, &sim->m.body[0]);
+  if (status == MPS_OK)
+    status = mps_body_name_part(sim->m.body[0], "face", s->sheet > 0.0 ? 1 : 0, 1, &sim->face);
   const double away = s->pressure == ACTIVE ? 1.0 : -1.0;
   if (status == MPS_OK && s->motion == TRANSLATES)
     status = mps_body_drive(sim->m.body[0], 0, path, -away);
@@ -127,6 +179,7 @@ mps_status wall_build(mps_context *context, void *user) {
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->base > 0.0)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD, 0.0);
+  if (status == MPS_OK && s->surcharge > 0.0) status = press(s, &sim->m);
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->friction;
   contact.corner = s->corner * s->h;

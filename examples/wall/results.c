@@ -14,6 +14,7 @@ typedef struct pressure {
   double across, along, height; /* height: of the force across over H above the toe */
   double theory;                /* Rankine, of a smooth wall; Coulomb, active and rough; NaN */
   double cracked;               /* Rankine below a tension crack: active, smooth, cohesive; NaN */
+  double reduced;               /* Rankine with Davis' strength: active, smooth, psi < phi; NaN */
 } pressure;
 
 static double unit(const settings *s) {
@@ -26,17 +27,20 @@ static double rankine(const settings *s) {
   return pow(tan((45.0 + side * 0.5 * s->phi) * DEGREE), 2.0);
 }
 
-/* Rankine: K rho g H^2/2 -+ 2 c sqrt(K) H. Coulomb's wedge on a vertical wall whose friction is at
- * most that of the ground: within some percent of the exact one in the active case, not in the
- * passive one, nor on a smooth bed, on which the ground at the toe slides along with the wall. */
+/* Rankine: K (rho g H^2/2 + q H) -+ 2 c sqrt(K) H. Coulomb's wedge on a vertical wall whose
+ * friction is at most that of the ground: within some percent of the exact one in the active case,
+ * not in the passive one, nor on a smooth bed, on which the ground at the toe slides along with the
+ * wall. */
 static double find_theory(const settings *s) {
   const double phi = s->phi * DEGREE, side = s->pressure == ACTIVE ? -1.0 : 1.0;
   const double k = rankine(s);
-  if (s->friction == 0.0) return k + side * 2.0 * s->cohesion * sqrt(k) * s->height / unit(s);
+  const double above = s->surcharge * s->height / unit(s);
+  if (s->friction == 0.0)
+    return k * (1.0 + above) + side * 2.0 * s->cohesion * sqrt(k) * s->height / unit(s);
   if (s->pressure == PASSIVE || s->cohesion > 0.0 || s->base == 0.0) return NAN;
   const double delta = fmin(atan(s->friction), phi);
   const double root = sqrt(sin(phi + delta) * sin(phi) / cos(delta));
-  return pow(cos(phi), 2.0) / pow(1.0 + root, 2.0); /* its component across the wall */
+  return (1.0 + above) * pow(cos(phi), 2.0) / pow(1.0 + root, 2.0); /* across the wall */
 }
 
 /* A wall cannot pull: Rankine's stress where it is a pressure, below 2 c/(rho g sqrt(K)). It is in
@@ -44,8 +48,24 @@ static double find_theory(const settings *s) {
  * would need less than the ground does. */
 static double find_cracked(const settings *s) {
   if (s->pressure == PASSIVE || s->friction > 0.0 || s->cohesion == 0.0) return NAN;
-  const double k = rankine(s), depth = 2.0 * s->cohesion / (s->density * s->gravity * sqrt(k));
+  const double k = rankine(s);
+  const double depth =
+      (2.0 * s->cohesion / sqrt(k) - s->surcharge) / (s->density * s->gravity); /* of the crack */
+  if (depth <= 0.0) return NAN;
   return k * pow(fmax(0.0, 1.0 - depth / s->height), 2.0);
+}
+
+/* Sand that dilates by less than its friction slides along planes on which less than its strength
+ * is mobilised, tan(phi*) = cos(psi) sin(phi)/(1 - sin(psi) sin(phi)) (Davis 1968): the force is
+ * between Rankine's of phi and of phi*. On a smooth bed the ground is free to take planes of phi.
+ */
+static double find_reduced(const settings *s) {
+  if (s->pressure == PASSIVE || s->friction > 0.0 || s->cohesion > 0.0 || s->base == 0.0 ||
+      !(s->psi < s->phi))
+    return NAN;
+  const double phi = s->phi * DEGREE, psi = s->psi * DEGREE;
+  const double less = atan(cos(psi) * sin(phi) / (1.0 - sin(psi) * sin(phi)));
+  return pow(tan(45.0 * DEGREE - 0.5 * less), 2.0) * (1.0 + s->surcharge * s->height / unit(s));
 }
 
 /* Mean over the last fifth of the path; NaN where it has not ended. */
@@ -55,7 +75,8 @@ static pressure measure(const simulation *sim) {
                 .along = NAN,
                 .height = NAN,
                 .theory = find_theory(s),
-                .cracked = find_cracked(s)};
+                .cracked = find_cracked(s),
+                .reduced = find_reduced(s)};
   if (sim->rows < WALL_SAMPLES) return p;
   const int n = WALL_SAMPLES / 5;
   double moment = 0.0;
@@ -96,6 +117,7 @@ static bool write_summary(app *a, const simulation *sim, const pressure *p) {
   json_number(&f, "force_height", p->height);
   json_number(&f, "K_theory", p->theory);
   json_number(&f, "K_cracked", p->cracked);
+  json_number(&f, "K_reduced", p->reduced);
   json_end(&f);
   return output_close(&f);
 }
@@ -194,6 +216,8 @@ static void print(const settings *s, const pressure *p) {
   else if (!isnan(p->theory))
     printf(" (%s %.4f, %+.1f %%)", s->friction == 0.0 ? "Rankine" : "Coulomb", p->theory,
            100.0 * (p->across / p->theory - 1.0));
+  if (!isnan(p->reduced))
+    printf(", %.4f with the strength that Davis takes for psi < phi", p->reduced);
   printf("\n");
 }
 

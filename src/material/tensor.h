@@ -73,6 +73,27 @@ MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_law_columns *c, 
   }
 }
 
+/* Q = (1 - w/2)^-1 (1 + w/2) in space, from Q - 1 = r (w + w.w/2), r = 1/(1 + |w|^2/4); w_xy =
+ * w.xy, w_yz = w.yz, w_zx = w.zx. */
+typedef struct mpsi_rotation {
+  double xx, xy, xz, yx, yy, yz, zx, zy, zz;
+} mpsi_rotation;
+
+MPSI_INLINE mpsi_rotation mpsi_rotation_of(mpsi_spin w) {
+  const double a = w.xy * w.xy, b = w.yz * w.yz, c = w.zx * w.zx;
+  const double r = 1.0 / (1.0 + 0.25 * (a + b + c)), h = 0.5 * r;
+  const double exy = h * w.yz * w.zx, eyz = h * w.zx * w.xy, ezx = h * w.xy * w.yz;
+  return (mpsi_rotation){.xx = 1.0 - h * (a + c),
+                         .yy = 1.0 - h * (a + b),
+                         .zz = 1.0 - h * (b + c),
+                         .xy = exy + r * w.xy,
+                         .yx = exy - r * w.xy,
+                         .yz = eyz + r * w.yz,
+                         .zy = eyz - r * w.yz,
+                         .zx = ezx + r * w.zx,
+                         .xz = ezx - r * w.zx};
+}
+
 /* Rotates a stress by the spin increment: Q s Q^T with Q = (1 - w/2)^-1 (1 + w/2), a proper
  * rotation that agrees with (45) to first order. With the sum s + w.s - s.w the deviator of a body
  * that rotates once in n steps would grow by the factor exp(8 pi^2/n). */
@@ -86,29 +107,22 @@ MPSI_INLINE mpsi_sym mpsi_turn(const int geometry, mpsi_sym s, mpsi_spin w) {
     s.yy -= change;
     return s;
   }
-  /* Q - 1 = r (w + w.w/2), r = 1/(1 + |w|^2/4); w_xy = w.xy, w_yz = w.yz, w_zx = w.zx */
-  const double a = w.xy * w.xy, b = w.yz * w.yz, c = w.zx * w.zx;
-  const double r = 1.0 / (1.0 + 0.25 * (a + b + c)), h = 0.5 * r;
-  const double qxx = 1.0 - h * (a + c), qyy = 1.0 - h * (a + b), qzz = 1.0 - h * (b + c);
-  const double exy = h * w.yz * w.zx, eyz = h * w.zx * w.xy, ezx = h * w.xy * w.yz;
-  const double qxy = exy + r * w.xy, qyx = exy - r * w.xy;
-  const double qyz = eyz + r * w.yz, qzy = eyz - r * w.yz;
-  const double qzx = ezx + r * w.zx, qxz = ezx - r * w.zx;
-  const double axx = qxx * s.xx + qxy * s.xy + qxz * s.zx; /* Q s */
-  const double axy = qxx * s.xy + qxy * s.yy + qxz * s.yz;
-  const double axz = qxx * s.zx + qxy * s.yz + qxz * s.zz;
-  const double ayx = qyx * s.xx + qyy * s.xy + qyz * s.zx;
-  const double ayy = qyx * s.xy + qyy * s.yy + qyz * s.yz;
-  const double ayz = qyx * s.zx + qyy * s.yz + qyz * s.zz;
-  const double azx = qzx * s.xx + qzy * s.xy + qzz * s.zx;
-  const double azy = qzx * s.xy + qzy * s.yy + qzz * s.yz;
-  const double azz = qzx * s.zx + qzy * s.yz + qzz * s.zz;
-  return (mpsi_sym){.xx = axx * qxx + axy * qxy + axz * qxz,
-                    .yy = ayx * qyx + ayy * qyy + ayz * qyz,
-                    .zz = azx * qzx + azy * qzy + azz * qzz,
-                    .xy = axx * qyx + axy * qyy + axz * qyz,
-                    .yz = ayx * qzx + ayy * qzy + ayz * qzz,
-                    .zx = azx * qxx + azy * qxy + azz * qxz};
+  const mpsi_rotation q = mpsi_rotation_of(w);
+  const double axx = q.xx * s.xx + q.xy * s.xy + q.xz * s.zx; /* Q s */
+  const double axy = q.xx * s.xy + q.xy * s.yy + q.xz * s.yz;
+  const double axz = q.xx * s.zx + q.xy * s.yz + q.xz * s.zz;
+  const double ayx = q.yx * s.xx + q.yy * s.xy + q.yz * s.zx;
+  const double ayy = q.yx * s.xy + q.yy * s.yy + q.yz * s.yz;
+  const double ayz = q.yx * s.zx + q.yy * s.yz + q.yz * s.zz;
+  const double azx = q.zx * s.xx + q.zy * s.xy + q.zz * s.zx;
+  const double azy = q.zx * s.xy + q.zy * s.yy + q.zz * s.yz;
+  const double azz = q.zx * s.zx + q.zy * s.yz + q.zz * s.zz;
+  return (mpsi_sym){.xx = axx * q.xx + axy * q.xy + axz * q.xz,
+                    .yy = ayx * q.yx + ayy * q.yy + ayz * q.yz,
+                    .zz = azx * q.zx + azy * q.zy + azz * q.zz,
+                    .xy = axx * q.yx + axy * q.yy + axz * q.yz,
+                    .yz = ayx * q.zx + ayy * q.zy + ayz * q.zz,
+                    .zx = azx * q.xx + azy * q.xy + azz * q.xz};
 }
 
 /* s + C:d. */

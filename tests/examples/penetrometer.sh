@@ -83,7 +83,14 @@ su=$(awk 'BEGIN { K = 0.74797; M = 0.92; p = 1e5 * (1 + 2 * K) / 3; q = 1e5 * (1
   print M / 2 * p * exp((1 - 0.044 / 0.205) * log(pc / (2 * p))) }')
 in_range "$work/mcc/summary.json" su "$(awk "BEGIN { print $su * 0.999 }")" "$(awk "BEGIN { print $su * 1.001 }")"
 in_range "$work/mcc/summary.json" n_kt 6.5 20
+in_range "$work/mcc/summary.json" volume_ratio_min 0.97 1 # undrained ground keeps its volume
+in_range "$work/mcc/summary.json" volume_ratio_max 1 1.03
 in_range "$work/mcc/summary.json" particles_inside 0 0
+
+# Drained, as vD/c_v is well below 1, it bears more than undrained, at pressures that are implicit.
+"$1/mps-penetrometer" $deep --law mcc --surcharge 100kPa --soil 5x5x4 --start 0.2 --depth 0.26 --permeability 1e-3 \
+  --out "$work/drained" >/dev/null 2>&1
+in_range "$work/drained/summary.json" n_kt "$(sed -n 's/^ *"n_kt": \([^,]*\),*$/\1/p' "$work/mcc/summary.json")" 60
 
 # A mesh: an octahedron, tip down, by its STL file. Its widest section is 0.637 of the circle that N is
 # reckoned with: 5.14 at least, and the deep cavity's 9.2 at most with corners a cell further out.

@@ -77,10 +77,34 @@ static void cohesion_with_weight(void **state) {
   mps_assert_near(finer, rough, 2e-3 * rough);
 }
 
+/* Strength that grows a little with depth: the mechanisms of constant strength are optimal to the
+ * first order, and their work in k z is k B under Hill's (smooth) and 2 k B under Prandtl's
+ * (rough). Weight counts no more than without the growth, and a rough base bears more. */
+static void cohesion_that_grows(void **state) {
+  (void)state;
+  for (int rough = 0; rough < 2; rough++) {
+    strip_footing f = {.half_width = 0.5, .cohesion = 1.0, .gradient = 0.001, .rough = rough};
+    const double slope = (characteristics_capacity(&f, 40) - (2.0 + PI)) / 0.001;
+    mps_assert_near(slope, rough ? 2.0 : 1.0, rough ? 0.003 : 0.001);
+    f.gradient = 4.0;
+    const double coarse = characteristics_capacity(&f, 20), fine = characteristics_capacity(&f, 40);
+    mps_assert_near(fine, coarse, 2e-4 * fine);
+    f.weight = 10.0;
+    mps_assert_near(characteristics_capacity(&f, 40), fine, 1e-6 * fine);
+    f.half_width *= 2.0, f.gradient *= 0.5;
+    mps_assert_near(characteristics_capacity(&f, 40), fine, 1e-6 * fine);
+  }
+  strip_footing f = {.half_width = 0.5, .cohesion = 1.0, .gradient = 4.0};
+  const double smooth = characteristics_capacity(&f, 20);
+  f.rough = true;
+  assert_true(characteristics_capacity(&f, 20) > 1.1 * smooth);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(prandtl_without_friction),
                                      cmocka_unit_test(prandtl_and_reissner_with_friction),
                                      cmocka_unit_test(published_factors_of_weight),
-                                     cmocka_unit_test(cohesion_with_weight)};
+                                     cmocka_unit_test(cohesion_with_weight),
+                                     cmocka_unit_test(cohesion_that_grows)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
