@@ -1,4 +1,4 @@
-/* goring.h - a piston that makes a solitary wave of height H in the depth d, after Goring (1978):
+/* goring.h - a piston that makes a solitary wave of height H in the depth d, after Goring (1979):
  *
  *   X = S tanh(theta),  theta = k (c (t - t0) - X),  c^2 = g (d + H),  k^2 = 3 H/(4 d^3),
  *   S = H/(k d),
