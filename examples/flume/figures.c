@@ -255,6 +255,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
   f->mean_level = f->water = NAN;
   f->force_mean = f->force_harmonic = f->force_linear = NAN;
+  f->bound = f->bound_stokes = f->unbound = f->back = f->length = NAN;
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
   f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
   f->force_still = m->rest.force;
@@ -272,6 +273,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   if (flume_is_loaded(m)) find_forces(m, f);
   if (!flume_is_loaded(m) && m->gauges >= 3) find_loss(m, f);
   flume_find_regular_forces(m, f);
+  flume_find_harmonics(m, f);
   if (f->separated) find_goda(a, m, f);
   if (f->separated) find_discharge(a, m, f);
   return true;

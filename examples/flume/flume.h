@@ -215,6 +215,7 @@ typedef struct flume_figures {
   double mean_level;                           /* m above that at rest, of all gauges */
   double water; /* mean of the water before the crest, over that at the start */
   double loss;  /* of the height, a wave length */
+  double bound, bound_stokes, unbound, back, length; /* of regular waves, m the last: harmonics.c */
   mps_goda goda;
   mps_eurotop eurotop;
   bool has_goda, has_eurotop;
@@ -234,6 +235,8 @@ typedef struct flume_statistics {
 bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s);
 /* regular.c: force_mean and those after it, of an upright wall. */
 void flume_find_regular_forces(const flume *m, flume_figures *f);
+/* harmonics.c: bound and those after it, NAN where the gauges do not tell them apart. */
+void flume_find_harmonics(const flume *m, flume_figures *f);
 /* figures.c. False after an error line. */
 bool flume_find_figures(app *a, flume *m, flume_figures *f);
 void flume_free_figures(flume_figures *f);

@@ -178,10 +178,19 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, there, "residual", g->split.residual);
   json_number_if(f, there, "mean_level", g->mean_level);
   json_number(f, "loss_per_wavelength", g->loss);
+  json_number_if(f, !isnan(g->bound), "harmonic_bound", g->bound);
+  json_number_if(f, !isnan(g->bound), "harmonic_stokes", g->bound_stokes);
+  json_number_if(f, !isnan(g->bound), "harmonic_free", g->unbound);
+  json_number_if(f, !isnan(g->bound), "harmonic_back", g->back);
+  json_number_if(f, !isnan(g->bound), "wave_length_measured", g->length);
   if (there)
     printf("incident Hm0 %.4f m, linear target in the same window %.4f m; Tp %.3f s; reflection "
            "%.3f\n",
            g->split.incident_height, g->target_height, g->split.peak_period, g->split.reflection);
+  if (!isnan(g->bound))
+    printf("second harmonic over the first: bound %.4f (Stokes %.4f), free %.4f, sent back %.4f; "
+           "wave length %.4f m\n",
+           g->bound, g->bound_stokes, g->unbound, g->back, g->length);
 }
 
 static void summarise_absorption(output *f, const flume *m) {

@@ -8,7 +8,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOVING_SIDE = 800 }; /* pixels of a frame of the animation, at most */
+enum {
+  MOVING_SIDE = 800, /* pixels of a frame of the animation, at most */
+  ROOM_OF_TIC = 26   /* pixels */
+};
 
 typedef struct section {
   double lower[2], upper[2]; /* m */
@@ -79,16 +82,20 @@ static void draw_solids(output *f, const flume *m, const section *v) {
             "'#8b6f47' front");
 }
 
-static void begin(output *f, const flume *m, const section *v, double least, double most) {
+/* Tics that a picture of `high` pixels has room for: a long flume is a narrow band. */
+static void begin(output *f, const flume *m, const section *v, int high, double least,
+                  double most) {
   output_text(f,
               "set size ratio -1\nunset grid\nset xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\nset "
               "xlabel 'x (m)'\nset ylabel 'y (m)'\nset ytics %.6g\nset cblabel 'pressure (kPa)' "
               "offset 1.2\nset palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 "
               "'#f4d03f')\n",
               v->lower[0], v->upper[0], v->lower[1], v->upper[1],
-              plot_tics(v->upper[1] - v->lower[1], 4.0));
+              plot_tics(v->upper[1] - v->lower[1], fmin(high / (double)ROOM_OF_TIC, 4.0)));
   draw_solids(f, m, v);
   plot_colours(f, least, most, least, most);
+  if (high < 6 * ROOM_OF_TIC)
+    output_text(f, "set cbtics %.6g\n", plot_tics(most - least, high / (double)ROOM_OF_TIC));
 }
 
 static bool draw_still(app *a, const flume *m, const section *v) {
@@ -105,7 +112,7 @@ static bool draw_still(app *a, const flume *m, const section *v) {
   if (!plot_open(&f, a, m->s.out, "water", 1300, high + 170)) return false;
   output_text(&f, "set title 't = %.2f s%s'\n", m->look.t,
               flume_is_loaded(m) ? ", at the largest force" : "");
-  begin(&f, m, v, least, most);
+  begin(&f, m, v, (int)(990.0 * shape), least, most);
   output_text(&f, "plot ");
   area_plot(&f, "water.bin", &picture, 1.0, 1e-3);
   output_text(&f, "\n");
@@ -122,7 +129,7 @@ static bool draw_frames(app *a, const flume *m, const section *v, const area *pi
   if (!plot_open_animation(&f, a, m->s.out, "animation", 960, high + 150,
                            span / (double)(m->frames - 1)))
     return false;
-  begin(&f, m, v, least, most);
+  begin(&f, m, v, (int)(730.0 * shape), least, most);
   for (int64_t k = 0; k < m->frames; k++) {
     output_text(&f, "set title 't = %.2f s'\nplot ", m->frame[k].t);
     area_plot(&f, "frames.bin", &picture[k], 1.0, 1e-3);

@@ -54,8 +54,14 @@ is "$work/still/force.csv" force_N -1 784.8 16
 has "$work/log" "lower than 4 spacings of 0.025 m: of the water that passes the crest small events will be lost"
 
 # A zone before the far end; a focused group; a record.
-"$1/mps-flume" $coarse --length 5 --height 0.1 --duration 13 --absorb zone --frames 0 --out "$work/zone" >"$work/log"
+"$1/mps-flume" $coarse --length 5 --height 0.1 --duration 13 --absorb zone --frames 0 --gauge 0.8,1.2,1.5,2,2.4 \
+  --out "$work/zone" >"$work/log"
 in_range "$work/zone/summary.json" reflection 0 0.1
+in_range "$work/zone/summary.json" harmonic_stokes 0.15 0.18
+in_range "$work/zone/summary.json" harmonic_bound 0.13 0.20
+in_range "$work/zone/summary.json" harmonic_free 0 0.02 # .03 with --order linear
+in_range "$work/zone/summary.json" wave_length_measured 2.3 2.5
+has "$work/log" "second harmonic over the first"
 "$1/mps-flume" $coarse --waves focused --focus 2,6 --height 0.15 --length 4 --duration 2 --frames 0 \
   --out "$work/focus" >"$work/log" 2>&1
 awk 'BEGIN { for (k = 0; k <= 400; k++) printf "%g,%g\n", 0.05 * k, 0.04 * cos(4.5 * 0.05 * k) }' >"$work/record.csv"

@@ -11,57 +11,16 @@
  * .288 tan ANGLE. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include "fluid_tank.h"
+#include "goring.h"
 
 #define DEPTH 0.3  /* m */
 #define LENGTH 5.0 /* m */
-#define SAMPLES 1200
-
-/* Goring's piston for H sech^2: X = S tanh(theta), theta = k (c (t - t0) - X), from theta = -3.8.
- */
-typedef struct wave {
-  double height, speed, number, stroke; /* H, c, k, S = H/(k d) */
-} wave;
-
-static wave wave_of(double e) {
-  wave w = {.height = e * DEPTH};
-  w.speed = sqrt(TANK_G * (DEPTH + w.height));
-  w.number = sqrt(3.0 * w.height / (4.0 * DEPTH * DEPTH * DEPTH));
-  w.stroke = w.height / (w.number * DEPTH);
-  return w;
-}
-
-static double time_at(const wave *w, double theta) {
-  return (theta / w->number + w->stroke * tanh(theta)) / w->speed;
-}
-
-static mps_signal *piston(const wave *w) {
-  double times[SAMPLES], x[SAMPLES];
-  mps_signal *signal = NULL;
-  const double start = time_at(w, -3.8);
-  for (int k = 0; k < SAMPLES; k++) {
-    double low = -4.0, high = 40.0;
-    times[k] = 0.005 * k;
-    for (int n = 0; n < 60; n++) {
-      const double middle = 0.5 * (low + high);
-      if (time_at(w, middle) - start < times[k])
-        low = middle;
-      else
-        high = middle;
-    }
-    x[k] = w->stroke * (tanh(low) - tanh(-3.8));
-  }
-  x[0] = 0.0;
-  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_DISPLACEMENT, SAMPLES,
-                                                 times, x, &signal));
-  return signal;
-}
 
 /* Highest levels above rest (in depths): `passing` at 1.5 m from the wall before the wave comes
  * back, `wall` at the wall. */
 static void climb(double e, double l0, double *passing, double *wall) {
-  const wave w = wave_of(e);
-  mps_signal *signal = piston(&w);
+  const solitary w = solitary_of(DEPTH, e * DEPTH);
+  mps_signal *signal = goring_piston(context, &w);
   tank t = tank_make(context, LENGTH, DEPTH, l0, signal, 0.1 * l0);
   const double station[] = {LENGTH - 1.5, LENGTH - 0.5 * l0};
   const double end = 3.8 / (w.number * w.speed) + LENGTH / w.speed + 0.8;
@@ -143,8 +102,8 @@ static double highest(const tank *t, const slope *s, double l0) {
 
 static void climb_slope(double e, double l0, double angle) {
   const slope s = {LENGTH, angle * TANK_PI / 180.0};
-  const wave w = wave_of(e);
-  mps_signal *signal = piston(&w);
+  const solitary w = solitary_of(DEPTH, e * DEPTH);
+  mps_signal *signal = goring_piston(context, &w);
   tank t = before_a_slope(&s, l0, signal);
   const double station = LENGTH - 1.5, start = 3.8 / (w.number * w.speed);
   double passing = 0.0, run_up = 0.0;
