@@ -143,9 +143,7 @@ static void caisson_feels_no_side_force(void **state) {
 }
 
 /* Lattices shifted against walls and rock leave gaps, and the water sloshes as they close: forces
- * sway by some N and no energy is gained. Root mean squares of ten shifts, as a particle that
- * crosses a face of the rock may change the force of one step: 4.4 to 6.8 N along, 3.7 to 13.9 N
- * upwards in eight sets of displacements. */
+ * sway by some N and no energy is gained. */
 static void rest_gains_no_energy(void **state) {
   (void)state;
   double squares[2] = {0.0, 0.0};
@@ -164,8 +162,34 @@ static void rest_gains_no_energy(void **state) {
   assert_true(sqrt(squares[0]) < 10.0 && sqrt(squares[1]) < 25.0);
 }
 
+/* Particle by particle water passes below the caisson's corner on the rock. As the particle's own
+ * image appeared in the base, its velocity towards or from the base was divergence at once, and the
+ * uplift of that step was 14.6 % low in this run (1.2 % with that part of the divergence faded in).
+ */
+static void no_step_falls_out(void **state) {
+  (void)state;
+  const double shift[2] = {0.8, 0.56};
+  double up[3] = {0.0, 0.0, 0.0}, worst = 0.0;
+  start(shift, 0.1, 2010, BEDDING_RADIUS);
+  const double uplift = buoyancy();
+  while (mps_fluid_time(fluid) < 0.6) {
+    mps_reaction r;
+    mps_assert_ok(context, mps_fluid_step(fluid, 1));
+    mps_assert_ok(context, mps_fluid_get_reaction(fluid, CAISSON, &r));
+    up[0] = up[1], up[1] = up[2], up[2] = -r.force[1];
+    if (mps_fluid_time(fluid) > 0.3)
+      worst = fmax(worst, fabs(up[1] - 0.5 * (up[0] + up[2])) / uplift);
+  }
+  print_message("largest difference of a step's uplift from the mean of the steps beside it: "
+                "%.1f %%\n",
+                100.0 * worst);
+  assert_true(worst > 0.0 && worst < 0.06);
+  end();
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(caisson_feels_no_side_force),
-                                     cmocka_unit_test(rest_gains_no_energy)};
+                                     cmocka_unit_test(rest_gains_no_energy),
+                                     cmocka_unit_test(no_step_falls_out)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

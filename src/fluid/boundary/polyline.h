@@ -46,6 +46,19 @@ static inline double mpsi_fluid_before_segment(const mpsi_fluid_segment *s, cons
   return (x[0] - at[0]) * n[0] + (x[1] - at[1]) * n[1];
 }
 
+/* Distance (m) of the foot of x on a segment from the nearer one of its ends around which the water
+ * turns; infinite where it turns around neither. */
+static inline double mpsi_fluid_past_turn(const mpsi_fluid_segment *s, const double *x) {
+  const double along[2] = {-s->wall.normal[1], s->wall.normal[0]};
+  double least = INFINITY;
+  for (int e = 0; e < 2; e++) {
+    const double d[2] = {x[0] - s->end[e][0], x[1] - s->end[e][1]};
+    if (!s->infinite[e] && s->angle[e] > 3.141592653589793 + 1e-9)
+      least = fmin(least, fabs(d[0] * along[0] + d[1] * along[1]));
+  }
+  return least;
+}
+
 /* A polyline's own segments from its corners; of a boundary with this number. */
 mps_status mpsi_fluid_make_polyline(mps_fluid *fluid, const char *function, int32_t number,
                                     int64_t corners, const double *xy, mpsi_fluid_wall *wall);

@@ -33,6 +33,7 @@
 #define CONE 0.70710678118654752
 #define LEAST_RATIO 0.1 /* of the eigenvalues of M */
 #define ZONE 1.6        /* l0 */
+#define FADE 0.5        /* l0, along a segment from a corner around which the water turns */
 #define LEAST_DEPTH 0.5 /* l0, of the second row below the surface */
 
 static double invert(const double *M, double *inverse) {
@@ -110,6 +111,29 @@ static void mark_zone(mps_fluid *f, int64_t i) {
   }
 }
 
+/* Takes out of a particle's divergence what its own images in segments of a polyline add within
+ * half a spacing of the end of the segment, at a corner around which the water turns: all of it at
+ * the end, where the image appears. */
+static void fade_divergence(const mps_fluid *f, int64_t i, const double *I, double *divergence) {
+  const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
+  const float *w = f->w + mpsi_fluid_pairs(f, i);
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int64_t j = index[k];
+    if (j < f->count || f->parent[j - f->count] != i) continue;
+    const mpsi_fluid_path *path = mpsi_fluid_path_of(f, j - f->count);
+    if (!path || path->count != 1) continue;
+    const double x[2] = {f->x[0][i], f->x[1][i]};
+    const double seen = mpsi_fluid_past_turn(mpsi_fluid_segment_of(f, path->segment[0]), x);
+    const double part = 1.0 - seen / (FADE * f->l0);
+    if (!(part > 0.0)) continue;
+    const double d[2] = {f->x[0][j] - x[0], f->x[1][j] - x[1]};
+    const double du[2] = {f->u[0][j] - f->u[0][i], f->u[1][j] - f->u[1][i]};
+    const double r2 = fmax(d[0] * d[0] + d[1] * d[1], 0.0025 * f->l0 * f->l0);
+    *divergence -= part * w[k] / r2 *
+                   (du[0] * (I[0] * d[0] + I[1] * d[1]) + du[1] * (I[1] * d[0] + I[2] * d[1]));
+  }
+}
+
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const bool near_rock = mpsi_fluid_near_rock(f, chunk);
   for (int64_t i = begin; i < end; i++) {
@@ -137,6 +161,8 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
         local.rest[c] = (float)((s.du[c] - by_x * plain[0] - by_y * plain[1]) / s.n);
         local.shift[c] = (float)(s.shift[c] / n0);
       }
+      if (f->segments > 0 && mpsi_fluid_near_turn(f, i))
+        fade_divergence(f, i, I, &local.divergence);
       const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
       f->state[i] = at_surface(f, i, fill, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
