@@ -10,6 +10,8 @@ set(CPACK_PACKAGE_NAME libmps-meshfree) # Debian's libmps3 and libmps-dev are MP
 set(CPACK_PACKAGE_VENDOR "the libmps authors")
 set(CPACK_PACKAGE_CONTACT "the libmps authors <maintainers@libmps.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DESCRIPTION "Explicit MPS dynamics, WLS-MPM with frictional contact, implicit particle elasticity and
+free-surface flow: library, headers, programs, pages and the Python package.")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
@@ -26,6 +28,9 @@ mark_as_advanced(MPS_DPKG MPS_RPMBUILD)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION math)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON) # and with it the call of ldconfig
+set(CPACK_DEBIAN_PACKAGE_CONFLICTS "libmps-meshfree-dev, libmps-meshfree-tools, libmps-meshfree-doc, python3-libmps")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, fonts-dejavu-core, python3-cffi, python3-numpy")
 set(CPACK_RPM_FILE_NAME RPM-DEFAULT)
 # Directories of the system: those that cpack does not know to be such.
 set(share ${CMAKE_INSTALL_DATADIR})

@@ -180,6 +180,7 @@ def show(reader, path, field=None, component=None, time=None, warp=None, film=Fa
     if len(times) > 1:
         stamp = simple.AnnotateTimeFilter(Input=reader, Format="t = {time:.4g} s")
         styled(simple.Show(stamp, view), "Upper Left Corner")
+    source.UpdatePipeline(view.ViewTime)  # a warp has no bounds before
     limits, bounds = limits_of(values_of(data, field, component)), source.GetDataInformation().GetBounds()
     if film and len(times) > 1:
         limits, bounds = span_of(reader, source, times, field, component)
