@@ -1,6 +1,7 @@
 /* boundaries.c - the boundaries of a solver: sides of the domain, boxes of nodes, lists of
  * particles; their definitions and reactions. Their action in a step: walls.c, absorb.c.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "free_field.h"
 #include "mpm/particles/mpm_particles.h"
 
 #include "core/base/boundary_kind.h"
@@ -83,10 +84,10 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
                      "number is %d, and the domain has no %s side across %c", number,
                      number % 2 ? "upper" : "lower", "xyz"[number / 2]);
   const bool open = def->kind == MPS_BOUNDARY_OPEN;
-  if (!mpsi_boundary_kind_in(def->kind, ~(1u << MPS_BOUNDARY_FREE_FIELD)))
+  if (!mpsi_boundary_kind_in(def->kind, ~0u))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d (%s), WLS-MPM has on a side 0 (HELD), 1 (DRIVEN), 2 (ROLLER), 3 "
-                     "(FRICTIONAL), 4 (ABSORBING), 6 (FREE) and 7 (OPEN)",
+                     "(FRICTIONAL), 4 (ABSORBING), 5 (FREE_FIELD), 6 (FREE) and 7 (OPEN)",
                      def->kind, mpsi_boundary_kind_name(def->kind));
   if (def->ids || def->id_count != 0 || def->dofs != 0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -103,6 +104,7 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
                      def->kind, def->signal[0] ? "given" : "NULL");
   for (int c = 0; c < grid->dim; c++)
     if (def->signal[c] && (def->kind == MPS_BOUNDARY_FREE || open ||
+                           def->kind == MPS_BOUNDARY_FREE_FIELD ||
                            (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given, and a side of kind %d does not hold that component", c,
@@ -171,12 +173,13 @@ static void place_side(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
   hold->axis = axis;
   /* the standard scheme has nodes beyond the side too */
   const int64_t beyond = grid->standard ? MPSI_SIDE : 0;
+  const int64_t inwards = kind == MPS_BOUNDARY_FREE_FIELD ? MPSI_FIELD_PLANES - 1 : 0;
   for (int c = 0; c < grid->dim; c++)
     hold->first[c] = grid->low[c] - beyond, hold->last[c] = grid->high[c] + beyond;
   if (number % 2)
-    hold->first[axis] = grid->high[axis];
+    hold->first[axis] = grid->high[axis] - inwards;
   else
-    hold->last[axis] = grid->low[axis];
+    hold->last[axis] = grid->low[axis] + inwards;
   hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
   hold->finds = kind == MPS_BOUNDARY_ABSORBING;
   hold->found = 0.0;
@@ -231,6 +234,7 @@ static void take_numbers(mpsi_boundary *hold, const mps_mpm_boundary_def *def) {
 static void drop(mps_context *context, mpsi_boundary *hold) {
   const mps_mpm_boundary_def rest = boundary_defaults;
   take_numbers(hold, &rest);
+  mpsi_mpm_free_field_free(context, &hold->field);
   mpsi_free(context, hold->ids);
   hold->ids = NULL;
   hold->id_count = 0;
@@ -370,6 +374,17 @@ static mps_status find(mps_context *context, const mpsi_grid *grid,
       number);
 }
 
+/* The column of a free-field side, of the present particles. */
+static mps_status make_field(mps_mpm *mpm, const char *function, int32_t number,
+                             mpsi_free_field **out) {
+  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
+  mps_status status = mpsi_mpm_check_free_field(mpm, function, number);
+  if (status == MPS_OK) status = mpsi_mpm_apply_edits(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_make_free_field(mpm, function, number, out);
+  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
+  return status;
+}
+
 mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_boundary_def def = boundary_defaults;
@@ -383,7 +398,14 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
   status = mpsi_mpm_agree(
       mpm->partition, __func__,
       check_side(mpm->context, &mpm->grid, &mpm->run, &mpm->def, __func__, number, &def));
+  if (status == MPS_OK)
+    status = mpsi_mpm_check_beside_field(mpm->context, &mpm->boundaries, __func__, number, def.kind);
+  mpsi_free_field *field = NULL;
+  if (status == MPS_OK && def.kind == MPS_BOUNDARY_FREE_FIELD)
+    status = make_field(mpm, __func__, number, &field);
   if (status != MPS_OK) return status;
+  mpsi_mpm_free_field_free(mpm->context, &hold->field);
+  hold->field = field;
   /* a side that is driven is held, and moves with its signals; DRIVEN is of boxes and particles */
   const int32_t kind = def.kind == MPS_BOUNDARY_DRIVEN ? MPS_BOUNDARY_HELD : def.kind;
   if (hold->kind != kind || kind == MPS_BOUNDARY_ABSORBING) {

@@ -39,6 +39,7 @@ typedef struct mpsi_boundary {
   double v[3];              /* m/s, of the step being made */
   mpsi_boundary_sums *sums; /* allocated with the first boundary of this number, and reused */
   int64_t count, removed;   /* as in mps_reaction, on this rank */
+  struct mpsi_free_field *field; /* FREE_FIELD: its column (free_field.h), else NULL */
   bool finds;               /* absorbing: the forces at rest are still being determined */
   double found;             /* s, duration of that, with the step being made */
 } mpsi_boundary;

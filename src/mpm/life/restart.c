@@ -4,6 +4,7 @@
 #include "restart.h"
 
 #include "rank_files.h"
+#include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
@@ -261,6 +262,7 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_state_enter(s, "boundary%d", k);
     mpsi_state_agree_integer(s, "kind", hold ? hold->kind : MPSI_BOUNDARY_NONE);
     /* a side that has been set free still shows its last force and what it has done */
+    if (hold && hold->field) mpsi_mpm_list_free_field(s, hold->field);
     if (hold && (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums))) {
       mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_BOUNDARY_MASS * MPSI_EXACT_LIMBS);
       mpsi_state_i64(s, "all", hold->sums->all[0].limb,
