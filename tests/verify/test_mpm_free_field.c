@@ -235,7 +235,6 @@ static void yielding_ground_moves_alike(void **state) {
 }
 
 int main(void) {
-  if (getenv("ONLY")) cmocka_set_test_filter(getenv("ONLY"));
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(layer_amplifies), cmocka_unit_test(rests_as_between_rollers),
       cmocka_unit_test(waves_leave), cmocka_unit_test(energy_is_balanced),

@@ -5,6 +5,7 @@
 
 #include "core/base/boundary_kind.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,19 +78,22 @@ static void lay_out(mpsi_free_field *f) {
   f->rest = at + f->histories * f->count;
 }
 
+static bool take(mps_context *context, void *pointer, int64_t count, size_t size) {
+  void *memory = mpsi_alloc(context, count, size);
+  memcpy(pointer, &memory, sizeof memory);
+  return memory != NULL;
+}
+
 static bool reserve(mps_context *context, mpsi_free_field *f) {
   const int64_t n = f->count;
   f->doubles = (FIXED + f->histories) * n + RESTS;
-  f->state = mpsi_alloc(context, f->doubles, sizeof *f->state);
-  f->kept = mpsi_alloc(context, f->doubles, sizeof *f->kept);
-  f->law = mpsi_alloc(context, n, sizeof *f->law);
-  f->id = mpsi_alloc(context, n, sizeof *f->id);
-  f->row_of = mpsi_alloc(context, n, sizeof *f->row_of);
-  f->row = mpsi_alloc(context, n, sizeof *f->row);
-  f->derivative[0] = mpsi_alloc(context, 2 * n, sizeof(double));
-  f->node = mpsi_alloc(context, f->nodes, sizeof *f->node);
-  if (!f->state || !f->kept || !f->law || !f->id || !f->row_of || !f->row || !f->derivative[0] ||
-      !f->node)
+  if (!take(context, &f->state, f->doubles, sizeof *f->state) ||
+      !take(context, &f->kept, f->doubles, sizeof *f->kept) ||
+      !take(context, &f->law, n, sizeof *f->law) || !take(context, &f->id, n, sizeof *f->id) ||
+      !take(context, &f->row_of, n, sizeof *f->row_of) ||
+      !take(context, &f->row, n, sizeof *f->row) ||
+      !take(context, &f->derivative[0], 2 * n, sizeof(double)) ||
+      !take(context, &f->node, f->nodes, sizeof *f->node))
     return false;
   f->derivative[1] = f->derivative[0] + n;
   lay_out(f);
@@ -205,9 +209,9 @@ mps_status mpsi_mpm_make_free_field(const mps_mpm *mpm, const char *function, in
                      "particles, must hold the ground that goes on beyond it",
                      number);
   mpsi_free_field *f = mpsi_alloc(mpm->context, 1, sizeof *f);
-  source *from = mpsi_alloc(mpm->context, count, sizeof *from);
-  double(*scratch)[2] = mpsi_alloc(mpm->context, count, sizeof *scratch);
-  bool good = f && from && scratch;
+  source *from = f ? mpsi_alloc(mpm->context, count, sizeof *from) : NULL;
+  double(*scratch)[2] = from ? mpsi_alloc(mpm->context, count, sizeof *scratch) : NULL;
+  bool good = scratch != NULL;
   if (good) {
     f->count = count;
     for (int32_t k = 0; k < p->laws.count; k++)
@@ -238,7 +242,25 @@ void mpsi_mpm_list_free_field(mpsi_state *state, const mpsi_free_field *field) {
   mpsi_state_agree_integer(state, "column_histories", field->histories);
   mpsi_state_agree_integer(state, "column_rows", field->rows);
   mpsi_state_agree_integer(state, "column_nodes", field->nodes);
+  mpsi_state_agree_integer(state, "column_first", field->first);
   mpsi_state_f64(state, "column", field->state, field->doubles);
   mpsi_state_i64(state, "column_laws", field->law, field->count);
   mpsi_state_i64(state, "column_ids", field->id, field->count);
+  mpsi_state_i64(state, "column_row_of", field->row_of, field->count);
+}
+
+bool mpsi_mpm_free_field_fits(const mpsi_free_field *field, int32_t number, int32_t laws,
+                              mps_snapshot *from) {
+  static const char *const names[2] = {"column_laws", "column_row_of"};
+  const int64_t most[2] = {laws, field->rows};
+  for (int n = 0; n < 2; n++) {
+    char name[MPSI_STATE_NAME];
+    (void)snprintf(name, sizeof name, "boundary%d/%s", number, names[n]);
+    const mpsi_value *value = mpsi_values_find(&from->state, name);
+    for (int64_t k = 0; k < field->count; k++) {
+      const int64_t at = ((const int64_t *)value->data)[k];
+      if (at < 0 || at >= most[n]) return false;
+    }
+  }
+  return true;
 }

@@ -42,7 +42,7 @@ typedef struct mpsi_free_field {
   double *rest; /* N: force at rest of absorbing sides across y, [side][component]; and 1 where it
                    is still to be found */
   int64_t *law, *id; /* id: of the particle that was copied */
-  double *derivative[2], *volume; /* scratch: dv/dy for the laws, rows of stresses */
+  double *derivative[2];         /* 1/s, scratch: dv/dy for the laws */
   double (*row)[4]; /* y, sigma_xx, sigma_xy, V: rows of particles, from below */
   int64_t rows, *row_of;
   int64_t first, nodes; /* coordinate of the lowest node */
@@ -63,6 +63,9 @@ void mpsi_mpm_free_field_free(mps_context *context, mpsi_free_field **field);
 bool mpsi_mpm_has_free_field(const mpsi_boundaries *boundaries);
 /* free_field.c: its state, for snapshots and checkpoints. */
 void mpsi_mpm_list_free_field(mpsi_state *state, const mpsi_free_field *field);
+/* free_field.c: whether laws and rows of a file are some of the solver's, which has `laws` laws. */
+bool mpsi_mpm_free_field_fits(const mpsi_free_field *field, int32_t number, int32_t laws,
+                              mps_snapshot *from);
 
 /* free_field_step.c: the tractions of the columns on the nodes of their sides, and a step of the
  * columns. On an error they have not moved. */

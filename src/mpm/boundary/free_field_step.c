@@ -46,9 +46,10 @@ static void fit(const mpsi_grid *grid, int64_t base, places *out) {
 static bool place(const mpsi_grid *grid, const mpsi_free_field *f, double y, places *out) {
   const double at = mpsi_grid_at(grid, Y, y), lowest = mpsi_base(grid->spline, at);
   double w[4], slope[4];
+  if (!(lowest >= (double)f->first && lowest + grid->spline < (double)(f->first + f->nodes)))
+    return false; /* or not finite */
   const int64_t base = (int64_t)lowest;
   out->at = base - f->first;
-  if (!(out->at >= 0 && out->at + grid->spline < f->nodes)) return false;
   mpsi_weights(grid->spline, at - lowest, w);
   mpsi_slopes(grid->spline, at - lowest, slope);
   if (grid->spline == 2) slope[3] = 0.0;
