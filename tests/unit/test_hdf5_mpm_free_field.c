@@ -1,6 +1,6 @@
-/* test_hdf5_mpm_free_field.c - free-field sides of WLS-MPM: what they need and refuse; their columns
- * go back with a snapshot, go on from a file, and stay where a step is undone, bit for bit; refused
- * memory. SPDX-License-Identifier: BSD-3-Clause */
+/* test_hdf5_mpm_free_field.c - free-field sides of WLS-MPM: what they need and refuse; their
+ * columns go back with a snapshot, go on from a file, and stay where a step is undone, bit for bit;
+ * refused memory. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_free_field.h"
 #include "pthread_executor.h"
 #include "test_allocator.h"
@@ -26,9 +26,17 @@ static mpm_scene shaken(mps_context *on, int32_t sides) {
   mps_signal *signal = NULL;
   mps_assert_ok(on, mps_material_create_mohr_coulomb(on, &law, &sand));
   mps_assert_ok(on, mps_signal_create_sine(on, 4.0, 1.0, 20.0, &signal));
-  const field_ground of = {.width = 6.0, .height = 8.0, .spacing = 0.5, .vs = 100.0, .rock = 300.0,
-                           .below = 2.0, .gravity = 9.81, .sides = sides,
-                           .base = MPS_BOUNDARY_ABSORBING, .motion = signal, .law = sand};
+  const field_ground of = {.width = 6.0,
+                           .height = 8.0,
+                           .spacing = 0.5,
+                           .vs = 100.0,
+                           .rock = 300.0,
+                           .below = 2.0,
+                           .gravity = 9.81,
+                           .sides = sides,
+                           .base = MPS_BOUNDARY_ABSORBING,
+                           .motion = signal,
+                           .law = sand};
   mpm_scene s = field_scene(on, &of);
   mps_material_destroy(&sand);
   mps_signal_destroy(&signal);
@@ -131,9 +139,15 @@ static mpm_scene fussy_scene(fussy *of, mps_signal *signal) {
   law.shear_modulus = FIELD_RHO * 1e4;
   mps_material *material = NULL;
   mps_assert_ok(context, mps_material_create_user(context, &law, &material));
-  const field_ground ground = {.width = 6.0, .height = 6.0, .spacing = 0.5, .vs = 100.0,
-                               .gravity = 9.81, .sides = MPS_BOUNDARY_FREE_FIELD,
-                               .base = MPS_BOUNDARY_HELD, .motion = signal, .law = material};
+  const field_ground ground = {.width = 6.0,
+                               .height = 6.0,
+                               .spacing = 0.5,
+                               .vs = 100.0,
+                               .gravity = 9.81,
+                               .sides = MPS_BOUNDARY_FREE_FIELD,
+                               .base = MPS_BOUNDARY_HELD,
+                               .motion = signal,
+                               .law = material};
   mpm_scene s = field_scene(context, &ground);
   mps_material_destroy(&material);
   return s;
@@ -160,8 +174,7 @@ static void refused_steps_are_undone(void **state) {
   mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
   const mps_view va = mpm_scene_view(&twin, "velocity"), vb = mpm_scene_view(&s, "velocity");
   for (int64_t k = 0; k < va.shape[0]; k++)
-    for (int c = 0; c < 2; c++)
-      assert_true(*mps_view_f64(&va, k, c) == *mps_view_f64(&vb, k, c));
+    for (int c = 0; c < 2; c++) assert_true(*mps_view_f64(&va, k, c) == *mps_view_f64(&vb, k, c));
   mps_signal_destroy(&signal);
   mpm_scene_end(&twin);
   mpm_scene_end(&s);
@@ -263,10 +276,11 @@ static void refused_memory_leaves_nothing(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(goes_back_bit_for_bit), cmocka_unit_test(goes_on_from_a_file),
-      cmocka_unit_test(refused_steps_are_undone), cmocka_unit_test(refuses_by_name),
-      cmocka_unit_test(refuses_ground_without_neighbour),
-      cmocka_unit_test(refused_memory_leaves_nothing)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(goes_back_bit_for_bit),
+                                     cmocka_unit_test(goes_on_from_a_file),
+                                     cmocka_unit_test(refused_steps_are_undone),
+                                     cmocka_unit_test(refuses_by_name),
+                                     cmocka_unit_test(refuses_ground_without_neighbour),
+                                     cmocka_unit_test(refused_memory_leaves_nothing)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

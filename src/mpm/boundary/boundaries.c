@@ -103,9 +103,9 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
                      "(DRIVEN) and 2 (ROLLER), and the radial velocity is 0",
                      def->kind, def->signal[0] ? "given" : "NULL");
   for (int c = 0; c < grid->dim; c++)
-    if (def->signal[c] && (def->kind == MPS_BOUNDARY_FREE || open ||
-                           def->kind == MPS_BOUNDARY_FREE_FIELD ||
-                           (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
+    if (def->signal[c] &&
+        (def->kind == MPS_BOUNDARY_FREE || open || def->kind == MPS_BOUNDARY_FREE_FIELD ||
+         (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given, and a side of kind %d does not hold that component", c,
                        def->kind);
@@ -399,7 +399,8 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
       mpm->partition, __func__,
       check_side(mpm->context, &mpm->grid, &mpm->run, &mpm->def, __func__, number, &def));
   if (status == MPS_OK)
-    status = mpsi_mpm_check_beside_field(mpm->context, &mpm->boundaries, __func__, number, def.kind);
+    status =
+        mpsi_mpm_check_beside_field(mpm->context, &mpm->boundaries, __func__, number, def.kind);
   mpsi_free_field *field = NULL;
   if (status == MPS_OK && def.kind == MPS_BOUNDARY_FREE_FIELD)
     status = make_field(mpm, __func__, number, &field);

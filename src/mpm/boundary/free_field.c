@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAME_ROW 1e-6 /* cells */
+#define SAME_ROW 1e-6            /* cells */
 enum { MARGIN = 8, GHOSTS = 2 }; /* nodes above and below the particles; beyond a side */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -103,8 +103,7 @@ static bool reserve(mps_context *context, mpsi_free_field *f) {
 void mpsi_mpm_free_field_free(mps_context *context, mpsi_free_field **pointer) {
   mpsi_free_field *f = *pointer;
   if (!f) return;
-  void *parts[] = {f->state,  f->kept, f->law,           f->id,
-                   f->row_of, f->row,  f->derivative[0], f->node};
+  void *parts[] = {f->state, f->kept, f->law, f->id, f->row_of, f->row, f->derivative[0], f->node};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_free(context, f);
   *pointer = NULL;

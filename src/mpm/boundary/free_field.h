@@ -23,27 +23,27 @@ enum { MPSI_FIELD_CELLS = 4 };  /* least width of a domain with such a side, cel
 
 /* Nodes of the column along y. */
 typedef struct mpsi_field_node {
-  double mass;                        /* kg */
-  double v[2], before[2];             /* m/s: with the forces and without */
-  double force[2];                    /* N */
-  double across, along;               /* kg/s, dashpots of the side */
-  double pull[MPSI_FIELD_PLANES][2];  /* N, traction of the column's stresses on the side's nodes */
+  double mass;                       /* kg */
+  double v[2], before[2];            /* m/s: with the forces and without */
+  double force[2];                   /* N */
+  double across, along;              /* kg/s, dashpots of the side */
+  double pull[MPSI_FIELD_PLANES][2]; /* N, traction of the column's stresses on the side's nodes */
 } mpsi_field_node;
 
 /* The particles' columns lie in `state`, which is all that steps change, and is what is saved. */
 typedef struct mpsi_free_field {
   int64_t count, doubles;
-  int32_t histories; /* columns */
-  double *state, *kept; /* kept: of before the present step */
-  double *y, *v[2], *slope[2]; /* m, m/s, 1/s: dv/dy */
+  int32_t histories;               /* columns */
+  double *state, *kept;            /* kept: of before the present step */
+  double *y, *v[2], *slope[2];     /* m, m/s, 1/s: dv/dy */
   double *s[4], *V, *m, *J, *F[5]; /* as in mpsi_columns */
-  double *cp, *cs, *temperature; /* m/s, elastic waves; K */
-  double *history;               /* one column after the other */
+  double *cp, *cs, *temperature;   /* m/s, elastic waves; K */
+  double *history;                 /* one column after the other */
   double *rest; /* N: force at rest of absorbing sides across y, [side][component]; and 1 where it
                    is still to be found */
-  int64_t *law, *id; /* id: of the particle that was copied */
-  double *derivative[2];         /* 1/s, scratch: dv/dy for the laws */
-  double (*row)[4]; /* y, sigma_xx, sigma_xy, V: rows of particles, from below */
+  int64_t *law, *id;     /* id: of the particle that was copied */
+  double *derivative[2]; /* 1/s, scratch: dv/dy for the laws */
+  double (*row)[4];      /* y, sigma_xx, sigma_xy, V: rows of particles, from below */
   int64_t rows, *row_of;
   int64_t first, nodes; /* coordinate of the lowest node */
   mpsi_field_node *node;

@@ -229,8 +229,7 @@ static void unfold(const mps_mpm *mpm, mpsi_free_field *f, int32_t number) {
   int64_t ghost, partner;
   if (!find_mirror(mpm, number, keeps, carried)) return;
   for (int64_t layer = 1; find_couple(mpm, f, number, layer, &ghost, &partner); layer++)
-    for (int c = 0; c < 2; c++)
-      f->node[ghost].v[c] = keeps[c] * f->node[partner].v[c] + carried[c];
+    for (int c = 0; c < 2; c++) f->node[ghost].v[c] = keeps[c] * f->node[partner].v[c] + carried[c];
 }
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
@@ -240,9 +239,8 @@ static void update(const mps_mpm *mpm, mpsi_free_field *f) {
     mpsi_field_node *node = &f->node[n];
     for (int c = 0; c < 2; c++) {
       node->before[c] = node->mass > 0.0 ? node->v[c] / node->mass : 0.0;
-      node->v[c] = node->mass > 0.0
-                       ? node->before[c] + mpm->run.dt * (node->force[c] / node->mass)
-                       : 0.0;
+      node->v[c] =
+          node->mass > 0.0 ? node->before[c] + mpm->run.dt * (node->force[c] / node->mass) : 0.0;
     }
     node->across = fmax(node->across, 0.0); /* the shape functions of a fit can be negative */
     node->along = fmax(node->along, 0.0);
@@ -265,8 +263,8 @@ static void absorb(const mps_mpm *mpm, mpsi_free_field *f, int32_t number, mpsi_
 }
 
 /* Coefficients of the dashpots at side `number`: sums over the particles in the cells there. */
-static void find_dashpot(const mps_mpm *mpm, const mpsi_free_field *f, int32_t number,
-                         int64_t wall, double *out) {
+static void find_dashpot(const mps_mpm *mpm, const mpsi_free_field *f, int32_t number, int64_t wall,
+                         double *out) {
   const int64_t layer = wall - number % 2;
   out[0] = out[1] = 0.0;
   for (int64_t k = 0; k < f->count; k++) {
@@ -404,8 +402,7 @@ static mps_status step(const mps_mpm *mpm, const char *function, int32_t number,
   if (status != MPS_OK) return status;
   for (int32_t k = MPS_MPM_SIDE_Y_LOWER; k <= MPS_MPM_SIDE_Y_UPPER; k++) fold(mpm, f, k);
   update(mpm, f);
-  for (int32_t k = 0; k < 2; k++)
-    hold_node(mpm, f, MPS_MPM_SIDE_Y_LOWER + k, &wall[k], &fixed[k]);
+  for (int32_t k = 0; k < 2; k++) hold_node(mpm, f, MPS_MPM_SIDE_Y_LOWER + k, &wall[k], &fixed[k]);
   damp(mpm, f, wall, fixed);
   for (int32_t k = MPS_MPM_SIDE_Y_UPPER; k >= MPS_MPM_SIDE_Y_LOWER; k--) unfold(mpm, f, k);
   gather(mpm, f);

@@ -99,8 +99,8 @@ static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
               .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
               .inwards = k % 2 ? -1 : 1};
   for (int a = 0; a < 3; a++) {
-    const bool turns = hold->kind == MPS_BOUNDARY_HELD ||
-                       (a == c && hold->kind != MPS_BOUNDARY_FREE_FIELD);
+    const bool turns =
+        hold->kind == MPS_BOUNDARY_HELD || (a == c && hold->kind != MPS_BOUNDARY_FREE_FIELD);
     out.keeps[a] = turns ? -1.0 : 1.0;
     out.velocity[a] = turns ? 2.0 * hold->v[a] : 0.0;
   }

@@ -329,11 +329,10 @@ void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boun
   static const struct {
     int32_t kind;
     hold_fn work;
-  } order[] = {{MPS_BOUNDARY_FREE_FIELD, add_traction},
-               {MPS_BOUNDARY_ROLLER, hold_across},     {MPS_BOUNDARY_ABSORBING, absorb},
-               {MPS_BOUNDARY_FREE_FIELD, absorb_to_field},
-               {MPS_BOUNDARY_FRICTIONAL, stop_inward}, {MPS_BOUNDARY_FRICTIONAL, apply_friction},
-               {MPS_BOUNDARY_HELD, prescribe},         {MPS_BOUNDARY_DRIVEN, prescribe}};
+  } order[] = {{MPS_BOUNDARY_FREE_FIELD, add_traction}, {MPS_BOUNDARY_ROLLER, hold_across},
+               {MPS_BOUNDARY_ABSORBING, absorb},        {MPS_BOUNDARY_FREE_FIELD, absorb_to_field},
+               {MPS_BOUNDARY_FRICTIONAL, stop_inward},  {MPS_BOUNDARY_FRICTIONAL, apply_friction},
+               {MPS_BOUNDARY_HELD, prescribe},          {MPS_BOUNDARY_DRIVEN, prescribe}};
   const mpsi_node_block *nodes = &grid->nodes[g];
   if (nodes->holds == 0) return;
   mpsi_held *first = boundaries->held + nodes->first_held;
