@@ -198,9 +198,9 @@ static void yielding_ground_moves_alike(void **state) {
       peak = fmax(peak, fabs(b[0])), yielded = fmax(yielded, b[1]);
     }
     for (int c = 0; c < 2; c++) most[c] = fmax(most[c], apart[c]);
-    print_message("%g m wide: velocity differs by %.3g of %.3g m/s, plastic strain by %.3g of "
-                  "%.3g\n",
-                  width[w], apart[0], peak, apart[1], yielded);
+    print_message("%g m wide: velocity differs by %.3f %% of %.3g m/s, plastic strain by %.3f %% "
+                  "of %.3g\n",
+                  width[w], 100.0 * apart[0] / peak, peak, 100.0 * apart[1] / yielded, yielded);
     mpm_scene_end(&s);
   }
   assert_true(yielded > 1e-3);

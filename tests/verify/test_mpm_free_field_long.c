@@ -6,12 +6,13 @@
 
 static void layer_amplifies(void **state) {
   (void)state;
-  static const double share[] = {0.5, 1.0, 2.0};
+  static const double share[] = {0.5, 1.0, 2.0, 3.0};
   for (int shear = 0; shear < 2; shear++)
     for (size_t q = 0; q < sizeof share / sizeof *share; q++) {
       const field_response r = field_shake_layer(context, 0.25, share[q], shear);
       field_print_response(&r);
-      mps_assert_near(r.amplification, r.exact, 0.02 * r.exact);
+      /* the transfers damp the third mode, of 32 cells a wave length (docs/verification) */
+      mps_assert_near(r.amplification, r.exact, (share[q] < 3.0 ? 0.02 : 0.15) * r.exact);
       assert_true(r.apart < 1e-6);
     }
 }
