@@ -97,7 +97,8 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mp
 /** Gives boundary `number` another definition, from the next step on; its impulse and work are
  *  kept. An absorbing side determines its R again. MPS_ERROR_ARGUMENT: no boundary `number`, a side
  *  that the domain does not have, or a member of `def` out of range; MPS_ERROR_STATE: a callback of
- *  the solver is running. */
+ *  the solver is running, or a free-field side is set and new particles have no density;
+ *  MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number,
                                                       const mps_mpm_boundary_def *def);
 /** Removes a boundary: its nodes or particles are free; a side becomes FREE. MPS_ERROR_ARGUMENT: no

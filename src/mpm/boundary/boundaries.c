@@ -375,14 +375,11 @@ static mps_status find(mps_context *context, const mpsi_grid *grid,
 }
 
 /* The column of a free-field side, of the present particles. */
-static mps_status make_field(mps_mpm *mpm, const char *function, int32_t number,
+static mps_status make_field(const mps_mpm *mpm, const char *function, int32_t number,
                              mpsi_free_field **out) {
-  const mpsi_edit_state before = mpsi_mpm_edit_state(&mpm->run);
   mps_status status = mpsi_mpm_check_free_field(mpm, function, number);
-  if (status == MPS_OK) status = mpsi_mpm_apply_edits(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_make_free_field(mpm, function, number, out);
-  if (status != MPS_OK) mpsi_mpm_restore_edit_state(&mpm->run, &before);
-  return status;
+  if (status == MPS_OK) status = mpsi_mpm_check_masses(mpm->context, &mpm->p, function);
+  return status == MPS_OK ? mpsi_mpm_make_free_field(mpm, function, number, out) : status;
 }
 
 mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {

@@ -205,7 +205,7 @@ mps_status mpsi_mpm_make_free_field(const mps_mpm *mpm, const char *function, in
   if (count == 0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is 5 (FREE_FIELD) of side %d, and the cells at that side hold no "
-                     "particles, must hold the ground that goes on beyond it",
+                     "particles, must hold the ground that is beyond it too",
                      number);
   mpsi_free_field *f = mpsi_alloc(mpm->context, 1, sizeof *f);
   source *from = f ? mpsi_alloc(mpm->context, count, sizeof *from) : NULL;
