@@ -1,6 +1,7 @@
 /* test_hdf5_mpm_free_field.c - free-field sides of WLS-MPM: what they need and refuse; their
  * columns go back with a snapshot, go on from a file, and stay where a step is undone, bit for bit;
  * refused memory. SPDX-License-Identifier: BSD-3-Clause */
+#include "domain_threads.h"
 #include "mpm_free_field.h"
 #include "pthread_executor.h"
 #include "test_allocator.h"
@@ -243,6 +244,57 @@ static void refuses_ground_without_neighbour(void **state) {
   mpm_scene_end(&s);
 }
 
+/* What a rank has been answered. */
+typedef struct answer {
+  mps_status made, set, stepped;
+  char message[512];
+} answer;
+
+/* A body on two ranks: its column would need the particles of both. */
+static void ask_on_rank(void *user, team *t, int32_t rank) {
+  answer *out = (answer *)user + rank;
+  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mps_domain *domain = NULL;
+  mps_particles *particles = NULL;
+  mps_material *material = NULL;
+  mps_mpm *mpm = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {16.0, 8.0};
+  const mps_domain_def domain_def = team_domain_def(t, rank);
+  mps_particles_def set_def = mps_particles_defaults();
+  set_def.spacing = 0.5;
+  mps_status status = mps_domain_create(own, &domain_def, &domain);
+  if (status == MPS_OK) status = mps_particles_create(own, &set_def, &particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1800.0);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(own, 1e7, 0.3, &material);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 1.0;
+  def.domain = domain;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 16.0;
+  if (status == MPS_OK) status = mps_mpm_create(own, particles, material, &def, &mpm);
+  out->made = status;
+  out->set = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  (void)snprintf(out->message, sizeof out->message, "%s", mps_context_error(own)->message);
+  out->stepped = mps_mpm_step(mpm, 2);
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&particles);
+  mps_material_destroy(&material);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void refused_on_ranks(void **state) {
+  (void)state;
+  answer of[2] = {{0}};
+  team_compute(2, ask_on_rank, of);
+  for (int rank = 0; rank < 2; rank++) {
+    assert_int_equal(of[rank].made, MPS_OK);
+    assert_int_equal(of[rank].set, MPS_ERROR_ARGUMENT);
+    assert_non_null(strstr(of[rank].message, "on several ranks"));
+    assert_int_equal(of[rank].stepped, MPS_OK);
+  }
+}
+
 /* ---- memory ---------------------------------------------------------------------------------- */
 
 static mps_status make(mps_context *own, int what) {
@@ -281,6 +333,7 @@ int main(void) {
                                      cmocka_unit_test(refused_steps_are_undone),
                                      cmocka_unit_test(refuses_by_name),
                                      cmocka_unit_test(refuses_ground_without_neighbour),
+                                     cmocka_unit_test(refused_on_ranks),
                                      cmocka_unit_test(refused_memory_leaves_nothing)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
