@@ -61,8 +61,9 @@ typedef enum mps_boundary_kind {
   MPS_BOUNDARY_ROLLER = 2, /* no motion across, free along. In a fluid: slip */
   MPS_BOUNDARY_FRICTIONAL = 3, /* no motion into it, Coulomb's friction along it */
   MPS_BOUNDARY_ABSORBING = 4,  /* Lysmer dashpots: waves leave */
-  MPS_BOUNDARY_FREE_FIELD = 5, /* reserved: free-field ground beside the model. No solver has this
-                                  kind yet; explicit dynamics has mps_dynamics_add_free_field */
+  MPS_BOUNDARY_FREE_FIELD = 5, /* a column of soil beside the model, which moves as level ground
+                                  without end: WLS-MPM; explicit dynamics has
+                                  mps_dynamics_add_free_field */
   MPS_BOUNDARY_FREE = 6,       /* an edge of the domain without constraint */
   MPS_BOUNDARY_OPEN = 7        /* the same, and particles that pass it are removed from the set */
 } mps_boundary_kind;

@@ -86,7 +86,8 @@ static inline mpsi_boundary_setup mpsi_boundary_setup_of(mps_mpm *mpm) {
                                .mirrors = &mpm->mirrors,
                                .partition = mpm->partition,
                                .run = &mpm->run,
-                               .def = &mpm->def};
+                               .def = &mpm->def,
+                               .has_water = mpm->water != NULL};
 }
 
 static inline mpsi_load_setup mpsi_load_setup_of(mps_mpm *mpm) {

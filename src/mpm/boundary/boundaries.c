@@ -1,6 +1,7 @@
 /* boundaries.c - the boundaries of a solver: sides of the domain, boxes of nodes, lists of
  * particles; their definitions and reactions (public functions: life/conditions.c). Their action in
  * a step: walls.c, absorb.c. SPDX-License-Identifier: BSD-3-Clause */
+#include "free_field.h"
 #include "mpm/particles/mpm_particles.h"
 
 #include "core/base/boundary_kind.h"
@@ -16,7 +17,7 @@
 #define SIDE_KINDS                                                                                 \
   (1u << MPS_BOUNDARY_HELD | 1u << MPS_BOUNDARY_DRIVEN | 1u << MPS_BOUNDARY_ROLLER |               \
    1u << MPS_BOUNDARY_FRICTIONAL | 1u << MPS_BOUNDARY_ABSORBING | 1u << MPS_BOUNDARY_FREE |        \
-   1u << MPS_BOUNDARY_OPEN)
+   1u << MPS_BOUNDARY_FREE_FIELD | 1u << MPS_BOUNDARY_OPEN)
 
 static const mps_mpm_boundary_def boundary_defaults = {.struct_size = sizeof(mps_mpm_boundary_def),
                                                        .kind = MPS_BOUNDARY_HELD,
@@ -91,7 +92,7 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
   if (!mpsi_boundary_kind_in(def->kind, SIDE_KINDS))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d (%s), WLS-MPM has on a side 0 (HELD), 1 (DRIVEN), 2 (ROLLER), 3 "
-                     "(FRICTIONAL), 4 (ABSORBING), 6 (FREE) and 7 (OPEN)",
+                     "(FRICTIONAL), 4 (ABSORBING), 5 (FREE_FIELD), 6 (FREE) and 7 (OPEN)",
                      def->kind, mpsi_boundary_kind_name(def->kind));
   if (def->ids || def->id_count != 0 || def->dofs != 0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -107,8 +108,9 @@ static mps_status check_side(mps_context *context, const mpsi_grid *grid, mpsi_r
                      "(DRIVEN) and 2 (ROLLER), and the radial velocity is 0",
                      def->kind, def->signal[0] ? "given" : "NULL");
   for (int c = 0; c < grid->dim; c++)
-    if (def->signal[c] && (def->kind == MPS_BOUNDARY_FREE || open ||
-                           (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
+    if (def->signal[c] &&
+        (def->kind == MPS_BOUNDARY_FREE || open || def->kind == MPS_BOUNDARY_FREE_FIELD ||
+         (def->kind == MPS_BOUNDARY_ROLLER && c != number / 2)))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given, and a side of kind %d does not hold that component", c,
                        def->kind);
@@ -178,12 +180,13 @@ static void place_side(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
   hold->axis = axis;
   /* the standard scheme has nodes beyond the side too */
   const int64_t beyond = grid->standard ? MPSI_SIDE : 0;
+  const int64_t inwards = kind == MPS_BOUNDARY_FREE_FIELD ? MPSI_FIELD_PLANES - 1 : 0;
   for (int c = 0; c < grid->dim; c++)
     hold->first[c] = grid->low[c] - beyond, hold->last[c] = grid->high[c] + beyond;
   if (number % 2)
-    hold->first[axis] = grid->high[axis];
+    hold->first[axis] = grid->high[axis] - inwards;
   else
-    hold->last[axis] = grid->low[axis];
+    hold->last[axis] = grid->low[axis] + inwards;
   hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
   hold->finds = kind == MPS_BOUNDARY_ABSORBING;
   hold->found = 0.0;
@@ -238,6 +241,7 @@ static void take_numbers(mpsi_boundary *hold, const mps_mpm_boundary_def *def) {
 static void drop(mps_context *context, mpsi_boundary *hold) {
   const mps_mpm_boundary_def rest = boundary_defaults;
   take_numbers(hold, &rest);
+  mpsi_mpm_free_field_free(context, &hold->field);
   mpsi_free(context, hold->ids);
   hold->ids = NULL;
   hold->id_count = 0;
@@ -376,6 +380,14 @@ static mps_status find(mps_context *context, const mpsi_grid *grid,
       number);
 }
 
+/* The column of a free-field side, of the present particles. */
+static mps_status make_field(const mpsi_boundary_setup *setup, const char *function, int32_t number,
+                             mpsi_free_field **out) {
+  mps_status status = mpsi_mpm_check_free_field(setup, function, number);
+  if (status == MPS_OK) status = mpsi_mpm_check_masses(setup->context, setup->p, function);
+  return status == MPS_OK ? mpsi_mpm_make_free_field(setup, function, number, out) : status;
+}
+
 mps_status mpsi_mpm_set_boundary(const mpsi_boundary_setup *setup, const char *function,
                                  int32_t number, const mps_mpm_boundary_def *user) {
   mps_mpm_boundary_def def = boundary_defaults;
@@ -390,7 +402,15 @@ mps_status mpsi_mpm_set_boundary(const mpsi_boundary_setup *setup, const char *f
   status = mpsi_mpm_agree(
       setup->partition, function,
       check_side(setup->context, setup->grid, setup->run, setup->def, function, number, &def));
+  if (status == MPS_OK)
+    status =
+        mpsi_mpm_check_beside_field(setup->context, setup->boundaries, function, number, def.kind);
+  mpsi_free_field *field = NULL;
+  if (status == MPS_OK && def.kind == MPS_BOUNDARY_FREE_FIELD)
+    status = make_field(setup, function, number, &field);
   if (status != MPS_OK) return status;
+  mpsi_mpm_free_field_free(setup->context, &hold->field);
+  hold->field = field;
   /* a side that is driven is held, and moves with its signals; DRIVEN is of boxes and particles */
   const int32_t kind = def.kind == MPS_BOUNDARY_DRIVEN ? MPS_BOUNDARY_HELD : def.kind;
   if (hold->kind != kind || kind == MPS_BOUNDARY_ABSORBING) {

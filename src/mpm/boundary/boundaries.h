@@ -43,11 +43,12 @@ typedef struct mpsi_boundary {
   double friction, settle;
   mps_signal *signal[3];
   double factor[3];
-  double v[3];              /* m/s, of the step being made */
-  mpsi_boundary_sums *sums; /* allocated with the first boundary of this number, and reused */
-  int64_t count, removed;   /* as in mps_reaction, on this rank */
-  bool finds;               /* absorbing: the forces at rest are still being determined */
-  double found;             /* s, duration of that, with the step being made */
+  double v[3];                   /* m/s, of the step being made */
+  mpsi_boundary_sums *sums;      /* allocated with the first boundary of this number, and reused */
+  int64_t count, removed;        /* as in mps_reaction, on this rank */
+  struct mpsi_free_field *field; /* FREE_FIELD: its column (free_field.h), else NULL */
+  bool finds;                    /* absorbing: the forces at rest are still being determined */
+  double found;                  /* s, duration of that, with the step being made */
 } mpsi_boundary;
 
 /* Range of the nodes of a block that belong to a side or box, from low to high. */
@@ -112,6 +113,7 @@ struct mpsi_boundary_setup {
   mpsi_partition *partition; /* NULL: one rank */
   mpsi_run *run;
   const mps_mpm_def *def;
+  bool has_water; /* pore water */
 };
 
 /* boundaries.c: mps_mpm_add_boundary and its like, for the public `function`. */

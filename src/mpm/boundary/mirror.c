@@ -12,6 +12,7 @@ enum { LAYERS = 2 }; /* layers of ghosts: round-off alone puts particles in reac
 static bool is_mirror(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
                       const mps_mpm_def *def, int32_t k) {
   const int32_t kind = boundaries->hold[k].kind;
+  if (kind == MPS_BOUNDARY_FREE_FIELD) return true;
   return def->walls == MPS_MPM_WALLS_MIRROR && !grid->standard &&
          (kind == MPS_BOUNDARY_ROLLER || kind == MPS_BOUNDARY_HELD);
 }
@@ -98,7 +99,8 @@ static side side_of(const mpsi_grid *grid, const mpsi_boundaries *boundaries,
               .wall = (int)(node - (int64_t)cells->at[c] * MPSI_SIDE),
               .inwards = k % 2 ? -1 : 1};
   for (int a = 0; a < 3; a++) {
-    const bool turns = hold->kind == MPS_BOUNDARY_HELD || a == c;
+    const bool turns =
+        hold->kind == MPS_BOUNDARY_HELD || (a == c && hold->kind != MPS_BOUNDARY_FREE_FIELD);
     out.keeps[a] = turns ? -1.0 : 1.0;
     out.velocity[a] = turns ? 2.0 * hold->v[a] : 0.0;
   }

@@ -5,6 +5,7 @@
  * Coulomb friction along a frictional side, Nakamura (33), (34): the impulse normal to the side
  * removes the velocity into it; the impulse along the side is the smaller of mu times that and the
  * impulse that stops the sliding. SPDX-License-Identifier: BSD-3-Clause */
+#include "free_field.h"
 #include "mpm/base/all_parts.h"
 
 #include <string.h>
@@ -178,6 +179,43 @@ static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) 
     if (!(b->held[k] >> c & 1)) set(b, hold, held, k, c, v[c]);
 }
 
+/* Changes component c of the velocity of node k by an impulse; its work is another's to count. */
+static void push(block *b, mpsi_held *held, int k, int c, double impulse) {
+  double x[3];
+  mpsi_node_place(b->grid, held->at, k, x);
+  held->impulse[c] += impulse;
+  held->moment[(c + 2) % 3] -= x[(c + 1) % 3] * impulse;
+  held->moment[(c + 1) % 3] += x[(c + 2) % 3] * impulse;
+  b->node[k][MPSI_VECTOR + c] += impulse / b->node[k][MPSI_MASS];
+}
+
+/* Traction by the stresses of the column at a free-field side. */
+static void add_traction(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
+  int plane;
+  const mpsi_field_node *beside = mpsi_mpm_beside(b->grid, hold, held->at, k, &plane);
+  if (!beside || b->again || !(b->node[k][MPSI_MASS] > 0.0)) return;
+  for (int c = 0; c < 2; c++) push(b, held, k, c, b->dt * beside->pull[plane][c]);
+}
+
+/* Dashpots between the column and a free-field side, implicit; then the work of both: that of the
+ * stresses by the velocity of the node at the end, that of the dashpots by the column's. */
+static void absorb_to_field(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
+  int plane;
+  const mpsi_field_node *beside = mpsi_mpm_beside(b->grid, hold, held->at, k, &plane);
+  const double m = b->node[k][MPSI_MASS];
+  if (!beside || b->again || !(m > 0.0)) return;
+  for (int c = 0; c < 2; c++) {
+    const double damping = plane > 0 ? 0.0 : c == hold->axis ? beside->across : beside->along;
+    const double per_mass = b->dt * damping / m, *v = &b->node[k][MPSI_VECTOR + c];
+    const double impulse = m * (per_mass / (1.0 + per_mass)) * (beside->v[c] - *v);
+    if (!(b->held[k] >> c & 1)) {
+      push(b, held, k, c, impulse);
+      held->work += impulse * beside->v[c];
+    }
+    held->work += b->dt * beside->pull[plane][c] * *v;
+  }
+}
+
 /* Removes the velocity into a frictional side. */
 static void stop_inward(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) {
   const int c = hold->axis, number = held->hold;
@@ -261,6 +299,7 @@ void mpsi_mpm_prescribe_mirrors(const mpsi_grid *grid, const mpsi_boundaries *bo
     for (int32_t t = 0; t < nodes->holds; t++) {
       const mpsi_boundary *hold = &boundaries->hold[first[t].hold];
       const bool holds_all = hold->kind == MPS_BOUNDARY_HELD;
+      if (hold->kind == MPS_BOUNDARY_FREE_FIELD) continue; /* its nodes move */
       if (mpsi_is_mirror(mirrors, first[t].hold) && holds_all == (pass == 1))
         for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
     }
@@ -276,9 +315,10 @@ void mpsi_mpm_prescribe_nodes(const mpsi_grid *grid, const mpsi_boundaries *boun
   static const struct {
     int32_t kind;
     hold_fn work;
-  } order[] = {{MPS_BOUNDARY_ROLLER, hold_across},     {MPS_BOUNDARY_ABSORBING, absorb},
-               {MPS_BOUNDARY_FRICTIONAL, stop_inward}, {MPS_BOUNDARY_FRICTIONAL, apply_friction},
-               {MPS_BOUNDARY_HELD, prescribe},         {MPS_BOUNDARY_DRIVEN, prescribe}};
+  } order[] = {{MPS_BOUNDARY_FREE_FIELD, add_traction}, {MPS_BOUNDARY_ROLLER, hold_across},
+               {MPS_BOUNDARY_ABSORBING, absorb},        {MPS_BOUNDARY_FREE_FIELD, absorb_to_field},
+               {MPS_BOUNDARY_FRICTIONAL, stop_inward},  {MPS_BOUNDARY_FRICTIONAL, apply_friction},
+               {MPS_BOUNDARY_HELD, prescribe},          {MPS_BOUNDARY_DRIVEN, prescribe}};
   const mpsi_node_block *nodes = &grid->nodes[g];
   if (nodes->holds == 0) return;
   mpsi_held *first = boundaries->held + nodes->first_held;

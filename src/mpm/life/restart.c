@@ -3,6 +3,7 @@
  * for bit needs both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
 #include "rank_files.h"
 #include "mpm/base/mpm_solver.h"
+#include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/step/insertion.h"
 #include "mpm/water/water.h"
@@ -278,6 +279,7 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_state_enter(s, "boundary%d", k);
     mpsi_state_agree_integer(s, "kind", hold ? hold->kind : MPSI_BOUNDARY_NONE);
     /* a side that has been set free still shows its last force and what it has done */
+    if (hold && hold->field) mpsi_mpm_list_free_field(s, hold->field);
     if (hold && (hold->kind != MPSI_BOUNDARY_NONE || (k < MPSI_SIDES && hold->sums))) {
       mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_BOUNDARY_MASS * MPSI_EXACT_LIMBS);
       mpsi_state_i64(s, "all", hold->sums->all[0].limb,
@@ -428,6 +430,11 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
     if (size < 0 || size > MPSI_NO_WALL) return false;
   }
   if (!holds_particles(&mpm->grid, &mpm->p, from)) return false;
+  *what = "the columns of its free-field sides have other laws or rows";
+  for (int32_t k = 0; k < 2; k++) {
+    const mpsi_free_field *field = mpm->boundaries.hold[k].field;
+    if (field && !mpsi_mpm_free_field_fits(field, k, mpm->p.laws.count, from)) return false;
+  }
   *what = "its impulses of contact are not one of each particle and body";
   return holds_impulses(&mpm->contact, from);
 }

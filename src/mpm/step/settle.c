@@ -2,6 +2,7 @@
  * accelerate towards equilibrium, and are stopped when their kinetic energy has passed a peak,
  * since there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
+#include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
@@ -260,6 +261,14 @@ static mps_status read_def(mps_context *context, const char *function,
   return MPS_OK;
 }
 
+/* The column of a free-field side moves in time, and is made of ground that has settled. */
+static mps_status check_sides(mps_context *context, const mpsi_boundaries *boundaries,
+                              const char *function) {
+  if (!mpsi_mpm_has_free_field(boundaries)) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_STATE,
+                   "a side is of kind 5 (FREE_FIELD): settle between rollers (2), then make it one");
+}
+
 mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mps_mpm_settled *out,
                                 size_t size) {
   static const char function[] = "mps_mpm_settle";
@@ -272,6 +281,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   mps_status status = mpsi_mpm_ready(mpm, function);
   if (status == MPS_OK) status = read_def(mpm->context, function, user, &def);
   if (status == MPS_OK) status = check_still(mpm->context, &mpm->contact, mpm->water, function);
+  if (status == MPS_OK) status = check_sides(mpm->context, &mpm->boundaries, function);
   if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
   if (mpm->partition) {
     mpsi_given given;

@@ -16,6 +16,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "stages.h"
 
+#include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
@@ -108,11 +109,16 @@ mps_status mpsi_mpm_step_alone(mps_mpm *mpm, const char *function, double dt) {
   if (status != MPS_OK) return status;
   mpsi_step_begin(mpm, dt);
   const mpsi_contact_stage stage = mpsi_contact_stage_of(mpm);
+  const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
   status = mpsi_mpm_find_constraints(&stage, function);
-  if (status == MPS_OK) status = transfer(mpm, function, dt);
+  if (status == MPS_OK) status = mpsi_mpm_move_free_fields(&setup, function);
   if (status != MPS_OK) return status;
-  mpsi_step_after_gather(mpm);
-  if (mpm->p.laws.refusal.cells) return mpsi_step_refuse(mpm, function);
+  status = transfer(mpm, function, dt);
+  if (status == MPS_OK) mpsi_step_after_gather(mpm);
+  const bool refused = status == MPS_OK && mpm->p.laws.refusal.cells;
+  if (status != MPS_OK || refused) mpsi_mpm_return_free_fields(&mpm->boundaries);
+  if (refused) return mpsi_step_refuse(mpm, function);
+  if (status != MPS_OK) return status;
   mpsi_step_complete(mpm);
   status = mpsi_mpm_collect_block_results(mpm, function);
   if (mpm->run.broken) return status;

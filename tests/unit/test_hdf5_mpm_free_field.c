@@ -1,0 +1,339 @@
+/* test_hdf5_mpm_free_field.c - free-field sides of WLS-MPM: what they need and refuse; their
+ * columns go back with a snapshot, go on from a file, and stay where a step is undone, bit for bit;
+ * refused memory. SPDX-License-Identifier: BSD-3-Clause */
+#include "domain_threads.h"
+#include "mpm_free_field.h"
+#include "pthread_executor.h"
+#include "test_allocator.h"
+#include "test_fixture.h"
+
+#include <mps/domain.h>
+#include <mps/experimental.h>
+#include <mps/mpm_settle.h>
+#include <mps/pore_water.h>
+
+#include <string.h>
+
+static const char path[] = TEST_TMP "/mpm_free_field.h5";
+
+/* Sand over rock on an absorbing base, shaken. */
+static mpm_scene shaken(mps_context *on, int32_t sides) {
+  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
+  law.young = field_young(100.0);
+  law.poisson = FIELD_NU;
+  law.friction = 0.5;
+  law.cohesion = 500.0;
+  mps_material *sand = NULL;
+  mps_signal *signal = NULL;
+  mps_assert_ok(on, mps_material_create_mohr_coulomb(on, &law, &sand));
+  mps_assert_ok(on, mps_signal_create_sine(on, 4.0, 1.0, 20.0, &signal));
+  const field_ground of = {.width = 6.0,
+                           .height = 8.0,
+                           .spacing = 0.5,
+                           .vs = 100.0,
+                           .rock = 300.0,
+                           .below = 2.0,
+                           .gravity = 9.81,
+                           .sides = sides,
+                           .base = MPS_BOUNDARY_ABSORBING,
+                           .motion = signal,
+                           .law = sand};
+  mpm_scene s = field_scene(on, &of);
+  mps_material_destroy(&sand);
+  mps_signal_destroy(&signal);
+  return s;
+}
+
+/* The particles' fields, and the forces of the sides, bit for bit. */
+static void same(mpm_scene *a, mpm_scene *b) {
+  static const char *const names[] = {"position", "velocity", "stress", "volume", "plastic_strain"};
+  for (size_t f = 0; f < sizeof names / sizeof *names; f++) {
+    const mps_view va = mpm_scene_view(a, names[f]), vb = mpm_scene_view(b, names[f]);
+    const mps_view id = mpm_scene_view(a, "id");
+    for (int64_t k = 0; k < va.shape[0]; k++) {
+      const int64_t m = mps_particles_index(b->particles, *mps_view_i64(&id, k, 0));
+      for (int c = 0; c < va.shape[1]; c++)
+        assert_true(*mps_view_f64(&va, k, c) == *mps_view_f64(&vb, m, c));
+    }
+  }
+  for (int32_t k = 0; k < 3; k++) {
+    double fa[3], fb[3];
+    mpm_scene_force(a, k, fa);
+    mpm_scene_force(b, k, fb);
+    assert_memory_equal(fa, fb, sizeof fa);
+  }
+}
+
+static void goes_back_bit_for_bit(void **state) {
+  (void)state;
+  mpm_scene x = shaken(context, MPS_BOUNDARY_FREE_FIELD);
+  mpm_scene twin = shaken(context, MPS_BOUNDARY_FREE_FIELD);
+  mps_snapshot *snapshot = NULL;
+  mps_assert_ok(context, mps_mpm_step(x.mpm, 40));
+  mps_assert_ok(context, mps_mpm_step(twin.mpm, 40));
+  mps_assert_ok(context, mps_mpm_snapshot(x.mpm, &snapshot));
+  mps_assert_ok(context, mps_mpm_step(x.mpm, 33));
+  mps_assert_ok(context, mps_mpm_rollback(x.mpm, snapshot));
+  same(&x, &twin);
+  mps_assert_ok(context, mps_mpm_step(x.mpm, 100));
+  mps_assert_ok(context, mps_mpm_step(twin.mpm, 100));
+  same(&x, &twin);
+  double force[3];
+  mpm_scene_force(&x, MPS_MPM_SIDE_X_LOWER, force);
+  assert_true(fabs(force[0]) > 1e4 && fabs(force[1]) > 100.0); /* K0 and the shear of the waves */
+  mps_snapshot_destroy(&snapshot);
+  mpm_scene_end(&x);
+  mpm_scene_end(&twin);
+}
+
+static void goes_on_from_a_file(void **state) {
+  (void)state;
+  mpm_scene whole = shaken(context, MPS_BOUNDARY_FREE_FIELD);
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, 60));
+  mps_assert_ok(context, mps_mpm_save(whole.mpm, path, NULL));
+  int32_t threads = 3;
+  mps_context_def def = pthread_executor_def(&threads);
+  mps_context *other = NULL;
+  assert_int_equal(mps_context_create(&def, &other, NULL, 0), MPS_OK);
+  mpm_scene next = shaken(other, MPS_BOUNDARY_FREE_FIELD);
+  mps_assert_ok(other, mps_mpm_step(next.mpm, 7)); /* where it is does not matter */
+  mps_assert_ok(other, mps_mpm_restore(next.mpm, path, NULL));
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, 100));
+  mps_assert_ok(other, mps_mpm_step(next.mpm, 100));
+  same(&whole, &next);
+  mpm_scene_end(&next);
+  next = shaken(other, MPS_BOUNDARY_ROLLER);
+  mps_assert_fails(other, mps_mpm_restore(next.mpm, path, NULL), MPS_ERROR_ARGUMENT,
+                   "boundary0/kind");
+  mpm_scene_end(&next);
+  mps_context_destroy(&other);
+  mpm_scene_end(&whole);
+}
+
+/* ---- steps that are undone ------------------------------------------------------------------- */
+
+/* Elastic, but for a step in which it refuses particles of `from` or later calls. */
+typedef struct fussy {
+  int64_t calls, refuse_at;
+} fussy;
+
+static mps_status update(void *user, const mps_material_block *b) {
+  fussy *of = user;
+  if (++of->calls == of->refuse_at) return MPS_ERROR_NUMERIC;
+  const double G = FIELD_RHO * 100.0 * 100.0, lambda = 1.5 * G;
+  for (int64_t k = 0; k < b->count; k++) {
+    const double xx = b->gradient[0][k], yy = b->gradient[4][k];
+    const double xy = b->gradient[1][k] + b->gradient[3][k];
+    b->stress[0][k] += b->dt * (lambda * (xx + yy) + 2.0 * G * xx);
+    b->stress[1][k] += b->dt * (lambda * (xx + yy) + 2.0 * G * yy);
+    b->stress[2][k] += b->dt * lambda * (xx + yy);
+    b->stress[3][k] += b->dt * G * xy;
+  }
+  return MPS_OK;
+}
+
+static mpm_scene fussy_scene(fussy *of, mps_signal *signal) {
+  mps_material_user_def law = mps_material_user_defaults();
+  law.update = update;
+  law.user = of;
+  law.bulk_modulus = FIELD_RHO * 1e4 * (1.5 + 2.0 / 3.0);
+  law.shear_modulus = FIELD_RHO * 1e4;
+  mps_material *material = NULL;
+  mps_assert_ok(context, mps_material_create_user(context, &law, &material));
+  const field_ground ground = {.width = 6.0,
+                               .height = 6.0,
+                               .spacing = 0.5,
+                               .vs = 100.0,
+                               .gravity = 9.81,
+                               .sides = MPS_BOUNDARY_FREE_FIELD,
+                               .base = MPS_BOUNDARY_HELD,
+                               .motion = signal,
+                               .law = material};
+  mpm_scene s = field_scene(context, &ground);
+  mps_material_destroy(&material);
+  return s;
+}
+
+/* A law refuses at any of its calls of a step, of either column or of the particles: the step is
+ * undone, and is made afterwards as if nothing had been. */
+static void refused_steps_are_undone(void **state) {
+  (void)state;
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_create_sine(context, 4.0, 1.0, 20.0, &signal));
+  fussy plain = {0}, of = {0};
+  mpm_scene twin = fussy_scene(&plain, signal), s = fussy_scene(&of, signal);
+  mps_assert_ok(context, mps_mpm_step(twin.mpm, 21));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 20));
+  const int64_t calls = plain.calls / 21;
+  assert_true(calls > 2);
+  for (int64_t k = 1; k <= calls; k++) {
+    of = (fussy){.refuse_at = k};
+    assert_int_equal(mps_mpm_step(s.mpm, 1), MPS_ERROR_NUMERIC);
+    assert_int_equal(mps_mpm_steps(s.mpm), 20);
+  }
+  of = (fussy){0};
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  const mps_view va = mpm_scene_view(&twin, "velocity"), vb = mpm_scene_view(&s, "velocity");
+  for (int64_t k = 0; k < va.shape[0]; k++)
+    for (int c = 0; c < 2; c++) assert_true(*mps_view_f64(&va, k, c) == *mps_view_f64(&vb, k, c));
+  mps_signal_destroy(&signal);
+  mpm_scene_end(&twin);
+  mpm_scene_end(&s);
+}
+
+/* ---- refusals -------------------------------------------------------------------------------- */
+
+#define REFUSES(text, call) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, text)
+
+static mps_status set(mpm_scene *s, int32_t side, int32_t kind) {
+  return mps_mpm_set_side(s->mpm, side, kind, 0.0);
+}
+
+static void refuses_by_name(void **state) {
+  (void)state;
+  mpm_scene s = shaken(context, MPS_BOUNDARY_ROLLER);
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_create_sine(context, 4.0, 1.0, 20.0, &signal));
+  REFUSES("kind is 5 (FREE_FIELD) of side 2", set(&s, MPS_MPM_SIDE_Y_LOWER, 5));
+  def.kind = MPS_BOUNDARY_FREE_FIELD, def.signal[0] = signal;
+  REFUSES("signal[0] is given", mps_mpm_set_boundary(s.mpm, 0, &def));
+  REFUSES("kind is 8", set(&s, 0, 8));
+  mps_assert_ok(context, set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
+  REFUSES("beside side 2 of kind 3", set(&s, 0, 5));
+  mps_assert_ok(context, set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_HELD));
+  mps_assert_ok(context, set(&s, 0, 5));
+  REFUSES("beside a free-field side", set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
+  mps_assert_fails(context, mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_STATE,
+                   "settle between rollers");
+  mps_assert_fails(context, mps_mpm_add_pore_water(s.mpm, NULL), MPS_ERROR_STATE,
+                   "kind 5 (FREE_FIELD)");
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 3)); /* it still works */
+  mps_assert_ok(context, mps_mpm_remove_boundary(s.mpm, 0));
+  mps_assert_ok(context, set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
+  mps_signal_destroy(&signal);
+  mpm_scene_end(&s);
+}
+
+static mpm_scene block(int32_t geometry, double width, double from) {
+  mpm_scene s = mpm_scene_begin(context, 0.5, 0.0, 0.0, 1e7);
+  mpm_scene_box(&s, from, 0.0, width, 4.0);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 1.0;
+  def.geometry = geometry;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = width;
+  mpm_scene_solve(&s, &def);
+  return s;
+}
+
+static void refuses_ground_without_neighbour(void **state) {
+  (void)state;
+  mpm_scene s = block(MPS_MPM_GEOMETRY_AXISYMMETRIC, 6.0, 0.0);
+  REFUSES("with geometry 1", set(&s, 1, 5));
+  mpm_scene_end(&s);
+  s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 3.0, 0.0);
+  REFUSES("3 cells wide", set(&s, 1, 5));
+  mpm_scene_end(&s);
+  s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6.0, 2.0);
+  REFUSES("hold no particles", set(&s, 0, 5));
+  mps_assert_ok(context, set(&s, 1, 5));
+  mpm_scene_end(&s);
+  s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6.0, 0.0);
+  mps_assert_ok(context, mps_experimental_mpm_standard(s.mpm, 0.9));
+  REFUSES("standard method", set(&s, 1, 5));
+  mpm_scene_end(&s);
+}
+
+/* What a rank has been answered. */
+typedef struct answer {
+  mps_status made, set, stepped;
+  char message[512];
+} answer;
+
+/* A body on two ranks: its column would need the particles of both. */
+static void ask_on_rank(void *user, team *t, int32_t rank) {
+  answer *out = (answer *)user + rank;
+  mps_context *own = team_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
+  mps_domain *domain = NULL;
+  mps_particles *particles = NULL;
+  mps_material *material = NULL;
+  mps_mpm *mpm = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {16.0, 8.0};
+  const mps_domain_def domain_def = team_domain_def(t, rank);
+  mps_particles_def set_def = mps_particles_defaults();
+  set_def.spacing = 0.5;
+  mps_status status = mps_domain_create(own, &domain_def, &domain);
+  if (status == MPS_OK) status = mps_particles_create(own, &set_def, &particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1800.0);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(own, 1e7, 0.3, &material);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 1.0;
+  def.domain = domain;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 16.0;
+  if (status == MPS_OK) status = mps_mpm_create(own, particles, material, &def, &mpm);
+  out->made = status;
+  out->set = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  (void)snprintf(out->message, sizeof out->message, "%s", mps_context_error(own)->message);
+  out->stepped = mps_mpm_step(mpm, 2);
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&particles);
+  mps_material_destroy(&material);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void refused_on_ranks(void **state) {
+  (void)state;
+  answer of[2] = {{0}};
+  team_compute(2, ask_on_rank, of);
+  for (int rank = 0; rank < 2; rank++) {
+    assert_int_equal(of[rank].made, MPS_OK);
+    assert_int_equal(of[rank].set, MPS_ERROR_ARGUMENT);
+    assert_non_null(strstr(of[rank].message, "on several ranks"));
+    assert_int_equal(of[rank].stepped, MPS_OK);
+  }
+}
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+static mps_status make(mps_context *own, int what) {
+  (void)what;
+  mps_particles_def set_def = mps_particles_defaults();
+  mps_particles *particles = NULL;
+  mps_material *material = NULL;
+  mps_mpm *mpm = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 2.0};
+  set_def.spacing = 0.5;
+  mps_status status = mps_particles_create(own, &set_def, &particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1800.0);
+  if (status == MPS_OK) status = mps_material_create_linear_elastic(own, 1e7, 0.3, &material);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 1.0;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 4.0;
+  if (status == MPS_OK) status = mps_mpm_create(own, particles, material, &def, &mpm);
+  if (status == MPS_OK) status = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  if (status == MPS_OK) status = mps_mpm_set_side(mpm, 0, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  if (status == MPS_OK) status = mps_mpm_step(mpm, 2);
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&particles);
+  mps_material_destroy(&material);
+  return status;
+}
+
+static void refused_memory_leaves_nothing(void **state) {
+  (void)state;
+  test_allocator_sweep(make, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(goes_back_bit_for_bit),
+                                     cmocka_unit_test(goes_on_from_a_file),
+                                     cmocka_unit_test(refused_steps_are_undone),
+                                     cmocka_unit_test(refuses_by_name),
+                                     cmocka_unit_test(refuses_ground_without_neighbour),
+                                     cmocka_unit_test(refused_on_ranks),
+                                     cmocka_unit_test(refused_memory_leaves_nothing)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

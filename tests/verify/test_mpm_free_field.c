@@ -1,0 +1,219 @@
+/* test_mpm_free_field.c - free-field sides of WLS-MPM: ground shaken from below moves at every x as
+ * level ground without end, against the closed form of a layer on a half space and against the
+ * motion between rollers; ground at rest stays so; the waves of a source leave.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_free_field.h"
+#include "test_fixture.h"
+
+#include <mps/mpm_energy.h>
+
+/* ---- layer on a half space ------------------------------------------------------------------- */
+
+/* On coarse cells; mpm_free_field_long has others. */
+static void layer_amplifies(void **state) {
+  (void)state;
+  for (int shear = 0; shear < 2; shear++)
+    for (int q = 1; q <= 2; q++) {
+      const field_response r = field_shake_layer(context, 0.5, q == 1 ? 0.5 : 2.0, shear);
+      field_print_response(&r);
+      mps_assert_near(r.amplification, r.exact, 0.025 * r.exact);
+      assert_true(r.apart < 1e-6);
+    }
+}
+
+/* ---- at rest --------------------------------------------------------------------------------- */
+
+/* Level ground moves alike between rollers, which are mirrors, and between free-field sides, and
+ * with either on its left edge of the grid anywhere. */
+static void rests_as_between_rollers(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++) {
+    field_ground of = {.width = 8.0,
+                       .height = 8.0,
+                       .spacing = 0.5,
+                       .vs = 100.0,
+                       .gravity = 9.81,
+                       .sides = MPS_BOUNDARY_FREE_FIELD,
+                       .base = MPS_BOUNDARY_HELD,
+                       .spline = spline};
+    mpm_scene a = field_scene(context, &of);
+    of.sides = MPS_BOUNDARY_ROLLER;
+    mpm_scene b = field_scene(context, &of);
+    double fastest = 0.0, most = 0.0;
+    for (int k = 0; k < 50; k++) {
+      mps_assert_ok(context, mps_mpm_step(a.mpm, 100));
+      mps_assert_ok(context, mps_mpm_step(b.mpm, 100));
+      const mps_view va = mpm_scene_view(&a, "velocity"), vb = mpm_scene_view(&b, "velocity");
+      const mps_view ids = mpm_scene_view(&a, "id");
+      for (int64_t n = 0; n < va.shape[0]; n++) {
+        const int64_t m = mps_particles_index(b.particles, *mps_view_i64(&ids, n, 0));
+        for (int c = 0; c < 2; c++) {
+          most = fmax(most, fabs(*mps_view_f64(&va, n, c) - *mps_view_f64(&vb, m, c)));
+          fastest = fmax(fastest, fabs(*mps_view_f64(&vb, m, c)));
+        }
+      }
+    }
+    print_message("spline %d: largest velocity %.3g m/s between rollers; differs by %.3g m/s, "
+                  "stresses by %.2g\n",
+                  spline, fastest, most, mpm_scene_stress_difference(&a, &b));
+    mps_reaction r;
+    mps_assert_ok(context, mps_mpm_get_reaction(a.mpm, MPS_MPM_SIDE_X_LOWER, &r));
+    print_message("force of the left side %.6g N, of the stress %.6g N\n", r.force[0],
+                  0.5 * FIELD_K0 * FIELD_RHO * 9.81 * 64.0);
+    mps_assert_near(r.force[0], 0.5 * FIELD_K0 * FIELD_RHO * 9.81 * 64.0,
+                    0.02 * 0.5 * FIELD_K0 * FIELD_RHO * 9.81 * 64.0);
+    assert_true(most < 1e-10);
+    mpm_scene_end(&a);
+    mpm_scene_end(&b);
+  }
+}
+
+/* ---- waves of a source ----------------------------------------------------------------------- */
+
+/* Share of the energy of a blow on the middle of the surface that is left when the slowest wave
+ * could have left. */
+static double left_over(int32_t sides, double width) {
+  const double height = 16.0, vs = 100.0;
+  field_ground of = {.width = width,
+                     .height = height,
+                     .spacing = 0.25,
+                     .vs = vs,
+                     .sides = sides,
+                     .base = MPS_BOUNDARY_ABSORBING,
+                     .shift = -0.5 * width};
+  mpm_scene s = field_scene(context, &of);
+  const mps_view x = mpm_scene_view(&s, "position");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double X = *mps_view_f64(&x, k, 0), Y = *mps_view_f64(&x, k, 1) - height;
+    *mps_edit_f64(&v, k, 1) = -1e-3 * exp(-(X * X + Y * Y) / (1.5 * 1.5));
+  }
+  mpm_scene_commit(&s, &v);
+  const double young = field_young(vs), before = field_energy(&s, young);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 1.6 * width / vs, 1000000, NULL, NULL));
+  const double after = field_energy(&s, young);
+  mpm_scene_end(&s);
+  return after / before;
+}
+
+static void waves_leave(void **state) {
+  (void)state;
+  const double field = left_over(MPS_BOUNDARY_FREE_FIELD, 16.0);
+  const double absorbing = left_over(MPS_BOUNDARY_ABSORBING, 16.0);
+  const double rollers = left_over(MPS_BOUNDARY_ROLLER, 16.0);
+  print_message(
+      "left of the energy: free field %.3f %%, absorbing sides %.3f %%, rollers %.1f %%\n",
+      100.0 * field, 100.0 * absorbing, 100.0 * rollers);
+  assert_true(rollers > 0.1);
+  assert_true(field < 0.02);
+}
+
+/* ---- energy ---------------------------------------------------------------------------------- */
+
+static void energy_is_balanced(void **state) {
+  (void)state;
+  mps_signal *signal = field_shaking(context, 3.0, 0.1, 2.0);
+  const field_ground of = {.width = 8.0,
+                           .height = 8.0,
+                           .spacing = 0.5,
+                           .vs = 100.0,
+                           .gravity = 9.81,
+                           .sides = MPS_BOUNDARY_FREE_FIELD,
+                           .base = MPS_BOUNDARY_ABSORBING,
+                           .motion = signal,
+                           .budget = 1};
+  mpm_scene s = field_scene(context, &of);
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  for (int64_t k = 0; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = k % 7 == 0 ? 0.01 : 0.0;
+  mpm_scene_commit(&s, &v);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 1.0, 1000000, NULL, NULL));
+  mps_mpm_losses l;
+  mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
+  const mps_totals t = mpm_scene_totals(&s);
+  const double size = t.kinetic + fabs(t.work_boundaries) + fabs(l.transfer) + fabs(l.stepping);
+  mps_reaction r;
+  mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, MPS_MPM_SIDE_X_LOWER, &r));
+  print_message("residual %.2g of %.4g J; dashpots took %.4g J, left side did %.4g J\n",
+                l.residual / size, size, l.boundaries, r.work);
+  assert_true(fabs(l.residual) < 1e-11 * size);
+  assert_true(l.boundaries >= 0.0);
+  mps_signal_destroy(&signal);
+  mpm_scene_end(&s);
+}
+
+/* ---- ground that yields ---------------------------------------------------------------------- */
+
+static mpm_scene shaken_sand(double width, int32_t sides, double end, mps_signal *signal) {
+  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
+  law.young = field_young(100.0);
+  law.poisson = FIELD_NU;
+  law.friction = 30.0 * PI / 180.0;
+  law.cohesion = 1000.0;
+  mps_material *sand = NULL;
+  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &law, &sand));
+  const field_ground of = {.width = width,
+                           .height = 8.0,
+                           .spacing = 0.5,
+                           .vs = 100.0,
+                           .gravity = 9.81,
+                           .sides = sides,
+                           .base = MPS_BOUNDARY_HELD,
+                           .motion = signal,
+                           .law = sand};
+  mpm_scene s = field_scene(context, &of);
+  mps_material_destroy(&sand);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, end, 1000000, NULL, NULL));
+  return s;
+}
+
+/* Velocity and shear strain of the particles nearest to (X, Y) at rest: v_x, plastic strain. */
+static void look(mpm_scene *s, int64_t id, double *out) {
+  const int64_t k = mps_particles_index(s->particles, id);
+  const mps_view v = mpm_scene_view(s, "velocity"), x = mpm_scene_view(s, "position");
+  const mps_view strain = mpm_scene_view(s, "plastic_strain");
+  out[0] = *mps_view_f64(&v, k, 0);
+  out[1] = *mps_view_f64(&strain, k, 0);
+  out[2] = *mps_view_f64(&x, k, 1);
+}
+
+/* The reference is the middle of ground so wide that nothing of its sides has come there. */
+static void yielding_ground_moves_alike(void **state) {
+  (void)state;
+  const double end = 1.2, far = 480.0;
+  mps_signal *signal = field_shaking(context, 3.0, 0.3, end);
+  mpm_scene wide = shaken_sand(far, MPS_BOUNDARY_ROLLER, end, signal);
+  double peak = 0.0, yielded = 0.0, most[2] = {0.0};
+  static const double width[] = {6.0, 16.0};
+  for (size_t w = 0; w < sizeof width / sizeof *width; w++) {
+    mpm_scene s = shaken_sand(width[w], MPS_BOUNDARY_FREE_FIELD, end, signal);
+    double apart[2] = {0.0};
+    const mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
+    const double shift = floor(0.5 * far);
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      double a[3], b[3];
+      const double at[2] = {*mps_view_f64(&x, k, 0) + shift, *mps_view_f64(&x, k, 1)};
+      look(&s, *mps_view_i64(&id, k, 0), a);
+      look(&wide, mps_particles_nearest(wide.particles, at), b);
+      for (int c = 0; c < 2; c++) apart[c] = fmax(apart[c], fabs(a[c] - b[c]));
+      peak = fmax(peak, fabs(b[0])), yielded = fmax(yielded, b[1]);
+    }
+    for (int c = 0; c < 2; c++) most[c] = fmax(most[c], apart[c]);
+    print_message("%g m wide: velocity differs by %.3f %% of %.3g m/s, plastic strain by %.3f %% "
+                  "of %.3g\n",
+                  width[w], 100.0 * apart[0] / peak, peak, 100.0 * apart[1] / yielded, yielded);
+    mpm_scene_end(&s);
+  }
+  assert_true(yielded > 1e-3);
+  assert_true(most[0] < 0.02 * peak);
+  assert_true(most[1] < 0.02 * yielded);
+  mps_signal_destroy(&signal);
+  mpm_scene_end(&wide);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(layer_amplifies), cmocka_unit_test(rests_as_between_rollers),
+      cmocka_unit_test(waves_leave), cmocka_unit_test(energy_is_balanced),
+      cmocka_unit_test(yielding_ground_moves_alike)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
