@@ -138,12 +138,21 @@ static int64_t return_plastic(const mpsi_law *law, const clay_return *c, mpsi_cl
   return MPS_MATERIAL_FLAG_PLASTIC;
 }
 
-/* The mean pressure after the volume strain `growth`, and the fraction of the trial deviator that
- * is left. */
-static int64_t find_invariants(const mpsi_law *law, double p0, double growth, double shear,
-                               double m2, double q, mpsi_clay *clay, double *scale, double *p) {
-  const double v0 = 1.0 + clay->void_ratio, half = 0.5 * growth;
-  const double v1 = v0 * ((1.0 + half) / (1.0 - half)), x0 = log(p0);
+/* Trial state of a substep. */
+typedef struct clay_trial {
+  double p0;     /* Pa, mean pressure before it */
+  double growth; /* volume strain of it */
+  double shear;  /* Pa, modulus */
+  double m2;     /* M^2 in the direction of the deviator */
+  double q;      /* Pa, of the trial deviator */
+} clay_trial;
+
+/* The mean pressure after the substep, and the fraction of the trial deviator that is left. */
+static int64_t find_invariants(const mpsi_law *law, const clay_trial *trial, mpsi_clay *clay,
+                               double *scale, double *p) {
+  const double shear = trial->shear, m2 = trial->m2, q = trial->q;
+  const double v0 = 1.0 + clay->void_ratio, half = 0.5 * trial->growth;
+  const double v1 = v0 * ((1.0 + half) / (1.0 - half)), x0 = log(trial->p0);
   const double x = x0 + (v0 - v1) / law->swelling, least = law->log_least;
   if (x < least) {
     const double v = v0 - law->swelling * (least - x0);
@@ -187,7 +196,8 @@ static int64_t substep(const mpsi_law *law, const double *d, double *s, mpsi_cla
     flags = part(law, m2, shear, q, clay, &scale, &p);
   } else {
     clay->gap = 0.0;
-    flags = find_invariants(law, p0, apart ? closed : growth, shear, m2, q, clay, &scale, &p);
+    const clay_trial trial = {p0, apart ? closed : growth, shear, m2, q};
+    flags = find_invariants(law, &trial, clay, &scale, &p);
     if (apart) flags |= MPS_MATERIAL_FLAG_PLASTIC | MPS_MATERIAL_FLAG_APEX;
   }
   for (int c = 0; c < 6; c++) s[c] = scale * dev[c] - (c < 3 ? p : 0.0);

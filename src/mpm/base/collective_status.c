@@ -1,6 +1,6 @@
 /* collective_status.c - agreement of all ranks: on one status, on equal state and arguments, and on
  * largest values. SPDX-License-Identifier: BSD-3-Clause */
-#include "kernels.h"
+#include "all_parts.h"
 
 bool mpsi_mpm_counts_node_block(const mpsi_grid *grid, int64_t g) {
   const mpsi_node_block *nodes = &grid->nodes[g];

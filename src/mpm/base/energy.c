@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm/contact/particle.h"
-#include "kernels.h"
+#include "all_parts.h"
 
 #include <string.h>
 

@@ -296,8 +296,7 @@ mps_status mpsi_mpm_add_contact(const mpsi_contact_setup *setup, const char *fun
                                                         : setup->grid->cell;
   status = check_thickness(setup->context, setup->grid, setup->contact, function, contact);
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
-    status = mpsi_mpm_clear_body(setup->context, setup->grid, setup->p, setup->contact,
-                                 setup->partition, function, contact);
+    status = mpsi_mpm_clear_body(setup, function, contact);
   else if (status == MPS_OK)
     status = mpsi_mpm_agree(
         setup->partition, function,

@@ -138,9 +138,8 @@ mps_status mpsi_mpm_check_inside(mps_context *context, const mpsi_grid *grid, co
 bool mpsi_mpm_any_body_removes(const mpsi_contacts *contacts);
 mps_status mpsi_mpm_clear_bodies(const mpsi_contact_setup *setup, const char *function,
                                  mps_status status, bool *cleared);
-mps_status mpsi_mpm_clear_body(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
-                               mpsi_contacts *contacts, mpsi_partition *partition,
-                               const char *function, mps_contact *contact);
+mps_status mpsi_mpm_clear_body(const mpsi_contact_setup *setup, const char *function,
+                               mps_contact *contact);
 /* contacts.c: MPS_ERROR_DIVERGED where a particle is deeper in a body than its contact allows; ends
  * all contacts. */
 mps_status mpsi_mpm_check_depth(mps_context *context, const mpsi_columns *p,

@@ -40,24 +40,23 @@ enum { MASS, COUNT, AMOUNTS };
 typedef mpsi_exact amounts[AMOUNTS];
 
 /* Adds number and mass of the particles that a body removes on all ranks to its reactions. */
-static mps_status add_removed(const mpsi_grid *grid, const mpsi_columns *p,
-                              const mpsi_contacts *contacts, mpsi_partition *partition,
-                              const char *function, mps_contact *contact, const uint8_t *gone,
-                              uint8_t mark) {
-  amounts *sum = contacts->sum_room.item;
+static mps_status add_removed(const mpsi_contact_setup *setup, const char *function,
+                              mps_contact *contact, const uint8_t *gone, uint8_t mark) {
+  const mpsi_columns *p = setup->p;
+  amounts *sum = setup->contact->sum_room.item;
   const int32_t parts = contact->body->parts;
   mps_status status = MPS_OK;
   memset(sum, 0, (size_t)parts * sizeof *sum);
   for (int64_t k = 0; k < p->count; k++) {
     double x[3];
     if (gone[k] != mark) continue;
-    const mpsi_foot foot = mpsi_body_foot(contact->body, place_of(grid, p, k, x));
+    const mpsi_foot foot = mpsi_body_foot(contact->body, place_of(setup->grid, p, k, x));
     const int32_t part = contact->body->part_of[foot.face];
     mpsi_exact_add(&sum[part][MASS], p->m[k]);
     mpsi_exact_add(&sum[part][COUNT], 1.0);
   }
-  if (partition)
-    status = mpsi_domain_sum_exact(partition->domain, function, parts * AMOUNTS, sum[0]);
+  if (setup->partition)
+    status = mpsi_domain_sum_exact(setup->partition->domain, function, parts * AMOUNTS, sum[0]);
   for (int32_t part = 0; status == MPS_OK && part < parts; part++) {
     mps_reaction *r = &contact->source.reaction[part];
     r->removed += (int64_t)mpsi_exact_value(&sum[part][COUNT]);
@@ -104,18 +103,17 @@ static int64_t mark_all(const mpsi_grid *grid, const mpsi_columns *p, const mpsi
 
 /* Adds what each body removes, on all ranks, to its reactions; where bodies overlap the first
  * removes. */
-static mps_status add_removed_by_body(const mpsi_grid *grid, const mpsi_columns *p,
-                                      const mpsi_contacts *contacts, mpsi_partition *partition,
-                                      const mpsi_rooms *rooms, const char *function) {
-  uint8_t *gone = rooms->gone.item;
+static mps_status add_removed_by_body(const mpsi_contact_setup *setup, const char *function) {
+  const mpsi_contacts *contacts = setup->contact;
+  const int64_t particles = setup->p->count;
+  uint8_t *gone = setup->rooms->gone.item;
   mps_status status = MPS_OK;
-  if (p->count > 0) memset(gone, 0, (size_t)p->count);
+  if (particles > 0) memset(gone, 0, (size_t)particles);
   for (int32_t b = 0; b < contacts->bodies && status == MPS_OK; b++) {
     if (!removes_particles(contacts->handle[b])) continue;
-    mark_inside(grid, p, contacts, rooms, b, REMOVED_BY_THIS);
-    status = add_removed(grid, p, contacts, partition, function, contacts->handle[b], gone,
-                         REMOVED_BY_THIS);
-    for (int64_t k = 0; k < p->count; k++)
+    mark_inside(setup->grid, setup->p, contacts, setup->rooms, b, REMOVED_BY_THIS);
+    status = add_removed(setup, function, contacts->handle[b], gone, REMOVED_BY_THIS);
+    for (int64_t k = 0; k < particles; k++)
       if (gone[k]) gone[k] = REMOVED;
   }
   return status;
@@ -132,29 +130,28 @@ mps_status mpsi_mpm_clear_bodies(const mpsi_contact_setup *setup, const char *fu
   if (setup->partition)
     status = mpsi_domain_agree_max(setup->partition->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
-  status = add_removed_by_body(setup->grid, setup->p, setup->contact, setup->partition,
-                               setup->rooms, function);
+  status = add_removed_by_body(setup, function);
   if (status == MPS_OK && count > 0)
     mpsi_particles_take_out(setup->p->set, setup->rooms->gone.item);
   *cleared = status == MPS_OK;
   return status;
 }
 
-mps_status mpsi_mpm_clear_body(mps_context *context, const mpsi_grid *grid, const mpsi_columns *p,
-                               mpsi_contacts *contacts, mpsi_partition *partition,
-                               const char *function, mps_contact *contact) {
+mps_status mpsi_mpm_clear_body(const mpsi_contact_setup *setup, const char *function,
+                               mps_contact *contact) {
   if (!removes_particles(contact)) return MPS_OK;
-  uint8_t *gone = mpsi_alloc(context, p->count, 1);
+  const mpsi_columns *p = setup->p;
+  uint8_t *gone = mpsi_alloc(setup->context, p->count, 1);
   mps_status status = MPS_OK;
-  if (!gone) status = mpsi_fail_memory(context, function, (size_t)p->count);
-  if (status == MPS_OK) status = ensure_amounts(context, contacts, function, contact);
-  status = mpsi_mpm_agree(partition, function, status);
+  if (!gone) status = mpsi_fail_memory(setup->context, function, (size_t)p->count);
+  if (status == MPS_OK) status = ensure_amounts(setup->context, setup->contact, function, contact);
+  status = mpsi_mpm_agree(setup->partition, function, status);
   int64_t count = 0;
   if (status == MPS_OK) {
-    count = mark_deeper(grid, p, contact, 0.0, 0, p->count, gone, REMOVED);
-    status = add_removed(grid, p, contacts, partition, function, contact, gone, REMOVED);
+    count = mark_deeper(setup->grid, p, contact, 0.0, 0, p->count, gone, REMOVED);
+    status = add_removed(setup, function, contact, gone, REMOVED);
   }
   if (status == MPS_OK && count > 0) mpsi_particles_take_out(p->set, gone);
-  mpsi_free(context, gone);
+  mpsi_free(setup->context, gone);
   return status;
 }

@@ -77,15 +77,17 @@ static mps_status number_particles(mpsi_columns *p) {
 }
 
 /* Number of the law in the list, to which it is added if it is new. */
-static mps_status list_law(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
-                           mpsi_rooms *rooms, const mps_mpm_def *def, const char *function,
-                           mps_material *material, int32_t *number) {
+static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *material,
+                           int32_t *number) {
+  mpsi_columns *p = &mpm->p;
   *number = number_of(p, material);
   if (*number < p->laws.count) return MPS_OK;
   const bool numbered = p->law != NULL;
   const int32_t fields = mps_particles_field_count(p->set);
-  mps_status status = mpsi_as(context, function, number_particles(p));
-  if (status == MPS_OK) status = mpsi_mpm_add_law(context, grid, p, rooms, def, function, material);
+  mps_status status = mpsi_as(mpm->context, function, number_particles(p));
+  if (status == MPS_OK)
+    status =
+        mpsi_mpm_add_law(mpm->context, &mpm->grid, p, &mpm->rooms, &mpm->def, function, material);
   if (status == MPS_OK || numbered) return status;
   mpsi_particles_drop_fields(p->set, fields);
   p->law = NULL;
@@ -102,9 +104,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
                                     status);
   if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
   status = mpsi_mpm_agree(mpm->partition, __func__, status);
-  if (status == MPS_OK)
-    status = list_law(mpm->context, &mpm->grid, &mpm->p, &mpm->rooms, &mpm->def, __func__, material,
-                      &number);
+  if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
   status = mpsi_mpm_agree(mpm->partition, __func__, status);
   if (status != MPS_OK) return status;
   for (int64_t i = 0; i < listed(&mpm->p, count, ids); i++) {

@@ -6,7 +6,6 @@
  * numbers of each (owners.c). Beyond MOST_BLOCKS the list itself would be large: the curve is then
  * laid over the bounds of all blocks. Results do not depend on the owners.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
 #include "mpm/particles/mpm_particles.h"
 
 #include <stdlib.h>

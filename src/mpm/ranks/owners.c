@@ -230,19 +230,19 @@ static bool is_own(const mpsi_grid *grid, const mpsi_columns *p, mpsi_partition 
   return mpsi_mpm_block_owner(grid, partition, block) == mps_domain_rank(partition->domain);
 }
 
-mps_status mpsi_mpm_keep_own_inserted(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
-                                      mpsi_water *water, mpsi_partition *partition,
-                                      const char *function, mps_status status, int64_t first) {
+mps_status mpsi_mpm_keep_own_inserted(const mpsi_rank_part *part, const char *function,
+                                      mps_status status, int64_t first) {
+  mpsi_columns *p = part->p;
   uint8_t *gone = NULL;
-  if (status == MPS_OK && !(gone = mpsi_alloc(context, p->count, 1)))
-    status = mpsi_fail_memory(context, function, (size_t)p->count);
-  status = mpsi_domain_agree(partition->domain, function, status);
+  if (status == MPS_OK && !(gone = mpsi_alloc(part->context, p->count, 1)))
+    status = mpsi_fail_memory(part->context, function, (size_t)p->count);
+  status = mpsi_domain_agree(part->partition->domain, function, status);
   if (status == MPS_OK) {
     memset(gone, 0, (size_t)first);
-    for (int64_t k = first; k < p->count; k++) gone[k] = !is_own(grid, p, partition, k);
+    for (int64_t k = first; k < p->count; k++) gone[k] = !is_own(part->grid, p, part->partition, k);
     mpsi_particles_make_way(p->set, gone);
-    mpsi_mpm_bind(grid, p, water);
+    mpsi_mpm_bind(part->grid, p, part->water);
   }
-  mpsi_free(context, gone);
+  mpsi_free(part->context, gone);
   return status;
 }

@@ -3,7 +3,6 @@
  * All ranks begin with the same set, sort it in the same way and keep their own blocks of it.
  * Ghosts are found from the blocks that exist: each rank sends the list of its blocks to the ranks
  * whose blocks may be beside them. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm/base/kernels.h"
 #include "mpm/particles/mpm_particles.h"
 #include "block_range.h"
 #include "parcels.h"

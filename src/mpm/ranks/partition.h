@@ -123,9 +123,8 @@ mps_status mpsi_mpm_count_listed(mps_context *context, mpsi_partition *partition
                                  const int64_t *ids, int64_t known, int64_t *all);
 /* owners.c: keeps, of the particles from `first` on, which all ranks have, those in blocks of this
  * rank. */
-mps_status mpsi_mpm_keep_own_inserted(mps_context *context, const mpsi_grid *grid, mpsi_columns *p,
-                                      mpsi_water *water, mpsi_partition *partition,
-                                      const char *function, mps_status status, int64_t first);
+mps_status mpsi_mpm_keep_own_inserted(const mpsi_rank_part *part, const char *function,
+                                      mps_status status, int64_t first);
 
 /* collective_status.c: whether `any` is true on some rank. */
 mps_status mpsi_mpm_any_rank(mpsi_partition *partition, const char *function, bool *any);

@@ -57,20 +57,13 @@ static bool near_thin(const mpsi_grid *grid, const mpsi_contacts *contacts,
   return any && contacts->thin;
 }
 
-/* Whether forces are needed apart from the momenta at all nodes. */
-static bool all_apart(const mpsi_grid *grid, const mpsi_energy *energy,
-                      const mpsi_settling *settling, const mps_mpm_def *def) {
-  return mpsi_forces_apart(energy, settling, def) || grid->apart;
-}
-
 /* Assigns side values to the blocks of nodes under a cut block of cells, and marks those that are
- * split. */
-static void mark_cut(mpsi_grid *grid, const mpsi_contacts *contacts, const mpsi_energy *energy,
-                     const mpsi_settling *settling, const mps_mpm_def *def,
-                     const mpsi_cell_block *cells, const box *near, bool finds) {
+ * split. `apart`: forces are needed apart from the momenta at all nodes; `finds`: an absorbing side
+ * needs the forces of this step. */
+static void mark_cut(mpsi_grid *grid, const mpsi_contacts *contacts, const mpsi_cell_block *cells,
+                     const box *near, bool apart, bool finds) {
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
-  const bool all = all_apart(grid, energy, settling, def) || grid->by_weight || grid->flip > 0.0 ||
-                   (finds && cells->edge);
+  const bool all = apart || grid->by_weight || grid->flip > 0.0 || (finds && cells->edge);
   bool rough = false;
   for (int32_t k = 0; cells->inside && k < cells->pairs; k++) {
     const int32_t body = contacts->cell_pair[cells->first_pair + k].body;
@@ -82,8 +75,7 @@ static void mark_cut(mpsi_grid *grid, const mpsi_contacts *contacts, const mpsi_
     box under = box_under(cells, q, low, high);
     under = common(&under, near);
     const bool in_contact = !is_empty(&under);
-    if (!in_contact && !cells->edge && !grid->standard && !all_apart(grid, energy, settling, def))
-      continue;
+    if (!in_contact && !cells->edge && !grid->standard && !apart) continue;
     if (nodes->side < 0) nodes->side = (int32_t)grid->side_count++;
     nodes->split = nodes->split || all || (in_contact && (rough || cells->pairs > 1));
   }
@@ -110,6 +102,7 @@ static bool list_fits(mps_context *context, mpsi_grid *grid) {
  * by forces, FLIP, and the transfer by weights, which divides momentum and force by different
  * masses, as nodes of small mass between two bodies do (node_update.c). */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
+  const bool apart = mpsi_forces_apart(&mpm->energy, &mpm->settling, &mpm->def) || mpm->grid.apart;
   bool finds = false; /* an absorbing side needs the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     const mpsi_boundary *hold = &mpm->boundaries.hold[k];
@@ -125,9 +118,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     cells->thin = cells->ghost ? cells->thin && mpm->contact.thin
                                : near_thin(&mpm->grid, &mpm->contact, cells);
     cells->cut = cells->edge || cells->inside || cells->thin || mpm->grid.standard;
-    if (cells->cut || all_apart(&mpm->grid, &mpm->energy, &mpm->settling, &mpm->def))
-      mark_cut(&mpm->grid, &mpm->contact, &mpm->energy, &mpm->settling, &mpm->def, cells, &near,
-               finds);
+    if (cells->cut || apart) mark_cut(&mpm->grid, &mpm->contact, cells, &near, apart, finds);
   }
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];

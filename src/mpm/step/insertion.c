@@ -90,9 +90,9 @@ static mps_status add_particles(mps_mpm *mpm, const char *function, int64_t firs
 mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
   mps_mpm *mpm = self;
   const mps_status status = add_particles(mpm, function, first, count);
-  return mpm->partition ? mpsi_mpm_keep_own_inserted(mpm->context, &mpm->grid, &mpm->p, mpm->water,
-                                                     mpm->partition, function, status, first)
-                        : status;
+  if (!mpm->partition) return status;
+  const mpsi_rank_part part = mpsi_rank_part_of(mpm);
+  return mpsi_mpm_keep_own_inserted(&part, function, status, first);
 }
 
 mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
