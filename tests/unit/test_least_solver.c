@@ -108,8 +108,9 @@ static void fall_destroy(fall **fallen) {
   mpsi_context_release(context);
 }
 
-#define BLOCK 64 /* particles of a unit of work: their number depends on the set, not on threads   \
-                  */
+#define BLOCK                                                                                      \
+  64 /* particles of a unit of work: their number depends on the set, not on threads               \
+      */
 
 static void move_block(void *data, int64_t block, int32_t worker) {
   (void)worker;
@@ -279,12 +280,36 @@ static void particles_come_and_go(void **state) {
   mps_particles_destroy(&set);
 }
 
+/* Its state has no room for other particles: it goes back only to those that it has. */
+static void other_particles_have_another_state(void **state) {
+  (void)state;
+  mps_particles *set = make_set();
+  fall *f = make(set);
+  mps_snapshot *then = NULL;
+  const double place[2] = {1.5, -1.0};
+  const int64_t first = 0;
+  mps_assert_ok(context, fall_snapshot(f, &then));
+  mps_assert_ok(context, fall_step(f, 3));
+  mps_assert_ok(context, mps_particles_remove(set, 1, &first));
+  const double there = lowest(set);
+  mps_assert_fails(context, fall_rollback(f, then), MPS_ERROR_STATE,
+                   "the state is of 150 particles, the set has 149");
+  mps_assert_ok(context, mps_particles_append(set, 1, place));
+  mps_assert_fails(context, fall_rollback(f, then), MPS_ERROR_STATE,
+                   "a particle of id 0, the set has none");
+  assert_true(f->steps == 3 && lowest(set) == fmin(there, -1.0)); /* nothing has changed */
+  mps_snapshot_destroy(&then);
+  fall_destroy(&f);
+  mps_particles_destroy(&set);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(it_falls_along_the_parabola),
       cmocka_unit_test(it_goes_back_bit_for_bit),
       cmocka_unit_test(what_is_wrong_is_refused),
       cmocka_unit_test(particles_come_and_go),
+      cmocka_unit_test(other_particles_have_another_state),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
