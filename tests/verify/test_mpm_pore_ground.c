@@ -1,11 +1,8 @@
 /* test_mpm_pore_ground.c - water in grounds of other shapes than a layer: radial flow through two
- * rings against its closed form, a layer whose surface lies at any tenth of a cell, an impervious
- * body that is pushed into saturated ground, a load on a part of the surface.
+ * rings against its closed form, a layer whose surface lies at any tenth of a cell.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pore_column.h"
 #include "test_fixture.h"
-
-#include <mps/contact.h>
 
 #define LOAD 1000.0 /* Pa */
 
