@@ -11,7 +11,8 @@ typedef struct strip_footing {
   double friction;   /* rad, phi in [0, 60 degrees] */
   double cohesion;   /* Pa, c; either c or the surcharge > 0 */
   double weight;     /* N/m3, rho g, >= 0 */
-  double gradient;   /* Pa/m, growth of c with depth, >= 0; where c > 0 and phi = 0 */
+  double gradient;   /* Pa/m, growth of c with depth, >= 0; where c > 0 and phi = 0; rough up to 5
+                        c/half_width */
   double surcharge;  /* Pa, pressure on the surface beside the footing, >= 0 */
   bool rough;        /* its base: smooth, or as rough as the ground */
 } strip_footing;

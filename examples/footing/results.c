@@ -271,8 +271,14 @@ static void print(const settings *s, const capacity *c) {
     printf("no bearing capacity: the footing has not settled as far as --settlement\n");
     return;
   }
-  if (s->model == VON_MISES && isnan(c->rough)) {
+  if (s->top > 0.0) {
     printf("bearing capacity q/c %.3f, c that of the upper layer\n", c->last);
+    return;
+  }
+  if (s->model == VON_MISES && isnan(c->exact) && isnan(c->rough)) {
+    printf(
+        "bearing capacity q/c %.3f (smooth base %.3f; no characteristics found of a rough one)\n",
+        c->last, c->smooth);
     return;
   }
   if (s->model == VON_MISES && isnan(c->exact) && isnan(c->smooth)) {

@@ -17,9 +17,7 @@
 #define ABOVE 0.5  /* of the height: the wall reaches above the ground, which rises */
 
 /* Whole cells, which the particles in front of the wall leave free. */
-static double thickness_of(const settings *s) {
-  return s->h * ceil(THICK * s->height / s->h - 1e-9);
-}
+double wall_thickness(const settings *s) { return s->h * ceil(THICK * s->height / s->h - 1e-9); }
 
 /* ---- ground ---------------------------------------------------------------------------------- */
 
@@ -53,7 +51,7 @@ static mps_status set_stress(const settings *s, mps_particles *set) {
 }
 
 static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
-  const double thick = thickness_of(s);
+  const double thick = wall_thickness(s);
   const double lo[] = {0.0, 0.0}, hi[] = {s->length, s->base + s->height};
   const double before_lo[] = {-s->front, 0.0};
   const double before_hi[] = {s->sheet > 0.0 ? -thick : 0.0, s->base};
@@ -114,7 +112,7 @@ static mps_status make_wall(mps_context *context, simulation *sim) {
   const bool top = s->motion == TURNS_ABOUT_TOP;
   const double foot = top ? -s->height : s->base > 0.0 ? 0.0 : -ABOVE * s->height;
   const double low = top && s->base == 0.0 ? foot - ABOVE * s->height : foot;
-  const double head = (top ? 0.0 : s->height) + ABOVE * s->height, thick = thickness_of(s);
+  const double head = (top ? 0.0 : s->height) + ABOVE * s->height, thick = wall_thickness(s);
   const double corners[] = {0.0, low, 0.0, head, -thick, head, -thick, low};
   const double deep = foot - s->sheet;
   const double sheet[] = {0.0, deep, 0.0, foot, 0.0, head, -thick, head, -thick, deep};

@@ -184,12 +184,14 @@ static bool draw_ground(app *a, const simulation *sim) {
               def.lower[0], wide, high);
   const double path = (s->pressure == ACTIVE ? -1.0 : 1.0) * sim->path[sim->rows - 1];
   const double foot = s->motion == TURNS_ABOUT_TOE ? 0.0 : path;
+  const double toe = s->base - s->sheet; /* m; where ground lies before it, as thick as it is */
+  const double thick = s->sheet > 0.0 ? wall_thickness(s) : 0.1 * s->height;
   const double head = s->motion == TURNS_ABOUT_TOP ? 0.0 : path;
   output_text(&f,
               "set object 1 polygon from %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to %.9g,%.9g to "
               "%.9g,%.9g fillcolor rgb '#888888' fillstyle solid front\n",
-              foot, s->base, head, s->base + s->height, head - 0.1 * s->height, s->base + s->height,
-              foot - 0.1 * s->height, s->base, foot, s->base);
+              foot, toe, head, s->base + s->height, head - thick, s->base + s->height, foot - thick,
+              toe, foot, toe);
   plot_colours(&f, 0.0, 0.5 * most_strain(&sim->shot), image.least, image.most);
   output_text(&f, "plot ");
   area_plot(&f, "ground.bin", &image, 1.0, 1.0);

@@ -38,6 +38,7 @@ typedef struct simulation {
   mpm_course course;
 } simulation;
 
+double wall_thickness(const settings *s); /* m */
 mps_status wall_build(mps_context *context, void *user);
 mps_status wall_march(void *user);
 bool wall_finish(app *a, void *user);
