@@ -13,7 +13,7 @@
 #define DEPTH 0.2   /* m */
 #define HEIGHT 0.07 /* m, of the wave */
 #define PISTON 2.9  /* m, its place at rest */
-#define SHORE 11.0  /* m, where the beach without the wall meets the water at rest */
+#define SHORE 11.0  /* m, where the beach without the wall leaves the water at rest */
 #define SPAN 4.2    /* s, after the crest at the first gauge */
 #define SAMPLE 0.02 /* s */
 
