@@ -235,7 +235,7 @@ typedef struct flume_statistics {
 bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s);
 /* regular.c: force_mean and those after it, of an upright wall. */
 void flume_find_regular_forces(const flume *m, flume_figures *f);
-/* harmonics.c: bound and those after it, NAN where the gauges do not tell them apart. */
+/* harmonics.c: bound and those after it, NAN where the gauges are too near. */
 void flume_find_harmonics(const flume *m, flume_figures *f);
 /* figures.c. False after an error line. */
 bool flume_find_figures(app *a, flume *m, flume_figures *f);

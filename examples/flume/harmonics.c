@@ -70,37 +70,44 @@ static bool find_amplitudes(const flume *m, const flume_figures *f, int gauge,
   return true;
 }
 
-/* Waves of the wave numbers k[] (negative: they come back) at the gauges. Returns the residual,
+/* The level at x of waves of amplitude 1 and the wave numbers k[]; negative: they come back. */
+static void level_of(const double *k, int count, double x, double complex *row) {
+  for (int n = 0; n < count; n++) row[n] = cexp(-I * k[n] * x);
+}
+
+/* Amplitudes of such waves from a harmonic at the gauges. Returns the sum of squares that is left,
  * INFINITY where they are not determined. */
 static double fit(const flume *m, double complex (*amplitude)[2], int harmonic, int count,
                   const double *k, double complex *wave) {
   system s = {.unknowns = count};
+  double complex row[3];
   double sum = 0.0;
-  for (int pass = 0; pass < 2; pass++) {
-    for (int g = 0; g < m->gauges; g++) {
-      double complex row[3], left = 0.0;
-      for (int n = 0; n < count; n++) row[n] = cexp(-I * k[n] * m->s.gauge[g]);
-      if (pass == 0) {
-        add(&s, row, amplitude[g][harmonic]);
-        continue;
-      }
-      for (int n = 0; n < count; n++) left += row[n] * wave[n];
-      sum += pow(cabs(left - amplitude[g][harmonic]), 2.0);
-    }
-    if (pass == 0 && !solve(&s, wave)) return INFINITY;
+  for (int g = 0; g < m->gauges; g++) {
+    level_of(k, count, m->s.gauge[g], row);
+    add(&s, row, amplitude[g][harmonic]);
+  }
+  if (!solve(&s, wave)) return INFINITY;
+  for (int g = 0; g < m->gauges; g++) {
+    double complex left = amplitude[g][harmonic];
+    level_of(k, count, m->s.gauge[g], row);
+    for (int n = 0; n < count; n++) left -= row[n] * wave[n];
+    sum += creal(left * conj(left));
   }
   return sum;
 }
 
-/* Wave number with which incident and reflected waves fit the first harmonic best. */
+/* Wave number with which incident and reflected waves fit the first harmonic best; NAN where that
+ * is an end of the trials: there is none then. */
 static double find_number(const flume *m, double complex (*amplitude)[2], double complex *wave) {
   const double linear = 2.0 * WAVES_PI / m->wave_length;
   double best = INFINITY, number = NAN;
   for (int n = 0; n < TRIALS; n++) {
     const double k = linear * (1.0 + WIDEST * (2.0 * n / (TRIALS - 1) - 1.0));
-    double complex trial[2];
+    double complex trial[2] = {0.0};
     const double left = fit(m, amplitude, 0, 2, (double[]){k, -k}, trial);
-    if (left < best) best = left, number = k, wave[0] = trial[0], wave[1] = trial[1];
+    if (!(left < best)) continue;
+    best = left, number = n > 0 && n < TRIALS - 1 ? k : NAN;
+    wave[0] = trial[0], wave[1] = trial[1];
   }
   return number;
 }
