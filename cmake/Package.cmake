@@ -36,7 +36,8 @@ set(CPACK_RPM_FILE_NAME RPM-DEFAULT)
 set(share ${CMAKE_INSTALL_DATADIR})
 foreach(directory ${CMAKE_INSTALL_LIBDIR} ${CMAKE_INSTALL_LIBDIR}/cmake ${CMAKE_INSTALL_LIBDIR}/pkgconfig
         ${CMAKE_INSTALL_LIBDIR}/python3 ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages ${share}/man ${share}/man/man1
-        ${share}/bash-completion ${share}/bash-completion/completions ${share}/zsh ${share}/zsh/site-functions)
+        ${share}/bash-completion ${share}/bash-completion/completions ${share}/zsh ${share}/zsh/site-functions
+        ${share}/zsh/vendor-completions)
   list(APPEND CPACK_RPM_EXCLUDE_FROM_AUTO_FILELIST_ADDITION /usr/${directory})
 endforeach()
 set(CPACK_RPM_SPEC_MORE_DEFINE "%define _build_id_links none") # no package of debugging symbols

@@ -260,7 +260,7 @@ static mps_status march_case(simulation *sim, column_case *c) {
       c->shots++;
     }
     const bool rests = status == MPS_OK && k > 0 && c->kinetic[k] <= AT_REST * c->peak;
-    if (status == MPS_OK) status = mpm_course_sample(&sim->course, k, SAMPLES);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, rests ? SAMPLES : k, SAMPLES);
     if (!rests) continue;
     c->time_at_rest = c->t[k];
     break;

@@ -91,15 +91,22 @@ def title_of(field, component, count):
     return f"{words} ({UNITS[field]})" if field in UNITS else words
 
 
+def points_of(reader, time):
+    """Places of the particles at a time, to which the reader is brought."""
+    reader.UpdatePipeline(time)
+    points = servermanager.Fetch(reader).GetPoints()
+    return vtk_to_numpy(points.GetData()) if points and points.GetNumberOfPoints() else numpy.zeros((0, 3))
+
+
 def spacing_of(points):
-    """The distance of neighbours: the median over some particles of that to the nearest one."""
+    """The distance of neighbours: the median over some particles of that to the nearest one; 0 where there are none."""
     distances = []
     for k in range(0, len(points), max(1, len(points) // 100)):
         square = ((points - points[k]) ** 2).sum(axis=1)
         square[k] = numpy.inf
         distances.append(square.min() ** 0.5)
     found = float(numpy.median(distances)) if distances else 0.0
-    return found if numpy.isfinite(found) and found > 0 else 1.0
+    return found if numpy.isfinite(found) else 0.0
 
 
 def warp_of(points, displacement):
@@ -159,9 +166,10 @@ def show(reader, path, field=None, component=None, time=None, warp=None, film=Fa
     view = simple.GetActiveViewOrCreate("RenderView")
     simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
     view.ViewTime = time if time is not None else (times[-1] if times else 0.0)
-    reader.UpdatePipeline(view.ViewTime)
+    spacing = spacing_of(points_of(reader, times[0])) if times else None  # later frames may be strained
+    points = points_of(reader, view.ViewTime)
+    spacing = spacing or spacing_of(points) or 1.0
     data = servermanager.Fetch(reader)
-    points = vtk_to_numpy(data.GetPoints().GetData())
     information = reader.GetPointDataInformation()
     arrays = {information.GetArray(k).Name: information.GetArray(k).GetNumberOfComponents()
               for k in range(information.GetNumberOfArrays())}
@@ -187,7 +195,7 @@ def show(reader, path, field=None, component=None, time=None, warp=None, film=Fa
     flat = numpy.ptp(points[:, 2]) == 0.0
     display = simple.Show(source, view)
     display.SetRepresentationType("Point Gaussian")
-    display.GaussianRadius = (0.65 if flat else 0.6) * spacing_of(points)
+    display.GaussianRadius = (0.65 if flat else 0.6) * spacing
     display.ShaderPreset = "Plain circle" if flat else "Sphere"
     wide = flat and bounds[3] - bounds[2] < 0.6 * (bounds[1] - bounds[0])
     paint(display, view, field, component, arrays[field], limits, wide)

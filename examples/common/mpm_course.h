@@ -48,7 +48,8 @@ mps_status mpm_course_load(mpm_course *c, mps_context *context);
  * not of an earlier one of the run. */
 mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores);
 /* After sample `k` of 0 to `samples`, of which 0 is the start: the frame and the checkpoint that
- * are due. */
+ * are due. Where a run ends before its time, that sample is the last one, `k` = `samples`: the
+ * series has its end. */
 mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples);
 /* Closes the series, of a run that ended with `status`, and writes a checkpoint of one that Ctrl-C
  * has ended. Returns `status`, or that of an error here. */

@@ -185,7 +185,8 @@ mps_status slope_march_trial(simulation *sim) {
     if (k > 0) status = mpm_model_advance(&sim->m, end * k / SLOPE_SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(sim, now);
     const bool ended = status == MPS_OK && has_ended(sim, now);
-    if (status == MPS_OK) status = mpm_course_sample(&sim->course, k, SLOPE_SAMPLES);
+    if (status == MPS_OK)
+      status = mpm_course_sample(&sim->course, ended ? SLOPE_SAMPLES : k, SLOPE_SAMPLES);
     if (ended) break;
   }
   return status;

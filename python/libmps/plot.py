@@ -140,7 +140,7 @@ def particles(particles: Particles, field: str | tuple[str, int] | ArrayLike | N
     ax._libmps_bars = []
     corners = 0.5 * numpy.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     polygons = position[which][:, None, axes] + numpy.einsum("nij,kj->nki", size * _shapes(particles, which, axes), corners)
-    drawn = PolyCollection(polygons, cmap=cmap, linewidths=0, antialiaseds=False, zorder=2)
+    drawn = PolyCollection(polygons, cmap=cmap, edgecolors="face", linewidths=0.5, antialiaseds=False, zorder=2)
     if values is None:
         drawn.set_facecolor("tab:blue")
     else:

@@ -309,6 +309,24 @@ class Pictures(unittest.TestCase):
         column, row = to_pixel((1.04, 5.5))
         self.assertEqual(pixels[pixels.shape[0] - 1 - int(row), int(column)].tolist(), [255, 255, 255])
 
+    def test_neighbours_that_move_apart_leave_no_white_lines(self):
+        """Squares whose edges round to other pixels than their neighbours' do, in a block that has been strained a little."""
+        from libmps import plot
+
+        context = mps.Context(threads=1)
+        sand = block(context, spacing=0.05)
+        solver = context.mpm_create(sand, own(context), cell=0.1, dt=5e-4)
+        solver.step(40)
+        ax = plot.particles(sand, "velocity")
+        pixels = self.drawn(ax)
+        x = np.array(sand["position"])
+        (left, low), (right, high) = (ax.transData.transform(x[k]) for k in (x.sum(axis=1).argmin(), x.sum(axis=1).argmax()))
+        margin = 0.1 * (right - left)
+        rows = slice(int(pixels.shape[0] - high + margin), int(pixels.shape[0] - low - margin))
+        inside = pixels[rows, int(left + margin):int(right - margin)]
+        self.assertGreater(inside.size, 10000)
+        self.assertEqual(int((inside.min(axis=2) == 255).sum()), 0)
+
     def test_squares_are_deformed(self):
         """A homogeneous simple shear: the parallelograms have the corners of F times the square."""
         from libmps import plot
