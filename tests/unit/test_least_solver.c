@@ -3,8 +3,6 @@
  * threads, refuses edits under way and calls from callbacks, and goes back bit for bit. In the
  * library names are mps_x_..., the struct is private to its folder, and the definition is in a
  * public header. SPDX-License-Identifier: BSD-3-Clause */
-#include "test_fixture.h"
-
 #include "core/particles/particles_internal.h"
 #include "core/state/state.h"
 
@@ -176,6 +174,8 @@ static mps_status fall_rollback(fall *f, const mps_snapshot *snapshot) {
 }
 
 /* ---- tests ----------------------------------------------------------------------------------- */
+
+#include "test_fixture.h"
 
 static mps_particles *make_set(void) {
   mps_particles_def def = mps_particles_defaults();
