@@ -21,7 +21,7 @@ typedef struct fall_def {
 /* ---- the solver ------------------------------------------------------------------------------ */
 
 struct fall {
-  mps_context *context;
+  mps_context *owner;
   mps_particles *particles;
   fall_def def;
   mpsi_holder holder; /* of the set, which refers to this member: released before the solver is */
@@ -58,27 +58,27 @@ static mps_status leave(void *self, const char *function, int64_t count, const i
 }
 
 /* Checks everything before it changes anything; on an error the set is as before. */
-static mps_status fall_create(mps_context *context, mps_particles *particles, const fall_def *user,
+static mps_status fall_create(mps_context *owner, mps_particles *particles, const fall_def *user,
                               fall **out) {
   fall_def def = defaults;
-  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!owner) return MPS_ERROR_ARGUMENT;
   if (!particles || !out)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "particles or out is NULL");
+    return mpsi_fail(owner, __func__, MPS_ERROR_ARGUMENT, "particles or out is NULL");
   *out = NULL;
-  mps_status status = MPSI_DEF_READ(context, __func__, fall_def, user, &def);
+  mps_status status = MPSI_DEF_READ(owner, __func__, fall_def, user, &def);
   if (status != MPS_OK) return status;
   if (!isfinite(def.gravity) || !(def.dt > 0.0 && isfinite(def.dt)))
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(owner, __func__, MPS_ERROR_ARGUMENT,
                      "gravity is %g m/s2 and dt %g s: must be finite, and dt > 0", def.gravity,
                      def.dt);
   status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
   if (status == MPS_OK)
-    status = mpsi_as(context, __func__, mps_particles_add_field(particles, "velocity", 0));
+    status = mpsi_as(owner, __func__, mps_particles_add_field(particles, "velocity", 0));
   if (status != MPS_OK) return status;
-  fall *f = mpsi_alloc(context, 1, sizeof *f);
-  if (!f) return mpsi_fail_memory(context, __func__, sizeof *f);
-  f->context = mpsi_context_retain(context);
+  fall *f = mpsi_alloc(owner, 1, sizeof *f);
+  if (!f) return mpsi_fail_memory(owner, __func__, sizeof *f);
+  f->owner = mpsi_context_retain(owner);
   f->particles = particles;
   f->def = def;
   bind(f);
@@ -97,13 +97,13 @@ static mps_status fall_create(mps_context *context, mps_particles *particles, co
 static void fall_destroy(fall **fallen) {
   if (!fallen || !*fallen) return;
   fall *f = *fallen;
-  if (mpsi_guard_check(&f->guard, f->context, __func__) != MPS_OK) return;
-  mps_context *context = f->context;
+  if (mpsi_guard_check(&f->guard, f->owner, __func__) != MPS_OK) return;
+  mps_context *owner = f->owner;
   *fallen = NULL;
   mpsi_state_forget(&f->identity);
   mpsi_particles_release(f->particles, &f->holder);
-  mpsi_free(context, f);
-  mpsi_context_release(context);
+  mpsi_free(owner, f);
+  mpsi_context_release(owner);
 }
 
 #define BLOCK                                                                                      \
@@ -123,15 +123,15 @@ static void move_block(void *data, int64_t block, int32_t worker) {
 
 static mps_status fall_step(fall *f, int64_t count) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_guard_check(&f->guard, f->context, __func__);
+  mps_status status = mpsi_guard_check(&f->guard, f->owner, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(f->particles, __func__);
   if (status != MPS_OK) return status;
   if (count < 0)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+    return mpsi_fail(f->owner, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
   for (int64_t k = 0; k < count; k++) {
-    mpsi_parallel_for(f->context, (f->count + BLOCK - 1) / BLOCK, move_block, f);
-    status = mpsi_executor_check(f->context, __func__);
+    mpsi_parallel_for(f->owner, (f->count + BLOCK - 1) / BLOCK, move_block, f);
+    status = mpsi_executor_check(f->owner, __func__);
     if (status != MPS_OK) return status;
     f->time += f->def.dt;
     f->steps++;
@@ -151,7 +151,7 @@ static void list_state(mpsi_state *s, void *solver) {
 static mpsi_state_of state_of(fall *f) {
   return (mpsi_state_of){.solver = f,
                          .name = "free fall",
-                         .context = f->context,
+                         .context = f->owner,
                          .particles = f->particles,
                          .identity = &f->identity,
                          .list = list_state,
@@ -163,13 +163,13 @@ static mpsi_state_of state_of(fall *f) {
 
 static mps_status fall_snapshot(fall *f, mps_snapshot **snapshot) {
   const mpsi_state_of of = state_of(f);
-  const mps_status status = mpsi_guard_check_between(&f->guard, f->context, __func__);
+  const mps_status status = mpsi_guard_check_between(&f->guard, f->owner, __func__);
   return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
 }
 
 static mps_status fall_rollback(fall *f, const mps_snapshot *snapshot) {
   const mpsi_state_of of = state_of(f);
-  const mps_status status = mpsi_guard_check(&f->guard, f->context, __func__);
+  const mps_status status = mpsi_guard_check(&f->guard, f->owner, __func__);
   return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
 }
 
