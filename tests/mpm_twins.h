@@ -33,7 +33,8 @@ static inline mps_status make_material(mps_context *context, const change *c, mp
   return mps_material_create_drucker_prager(context, &law, out);
 }
 
-static inline mps_status make_free_body(mps_context *context, int32_t dim, mps_body **out) {
+static inline mps_status make_free_body(mps_context *context, int32_t geometry, mps_body **out) {
+  const int32_t dim = geometry == MPS_MPM_GEOMETRY_SPACE ? 3 : 2;
   mps_body_def def = mps_body_defaults();
   def.motion = MPS_BODY_MOTION_FREE;
   def.mass = dim == 3 ? 1.0 : 20.0;
@@ -41,8 +42,9 @@ static inline mps_status make_free_body(mps_context *context, int32_t dim, mps_b
   def.gravity[1] = -9.81;
   def.position[0] = 0.25, def.position[1] = dim == 3 ? 0.28 : 0.33;
   def.position[2] = dim == 3 ? 0.1 : 0.0;
-  def.velocity[0] = 0.5, def.velocity[1] = -3.0;
-  def.spin[0] = dim == 3 ? 20.0 : 0.0, def.spin[2] = 10.0;
+  def.velocity[1] = -3.0;
+  if (geometry != MPS_MPM_GEOMETRY_AXISYMMETRIC) def.velocity[0] = 0.5, def.spin[2] = 10.0;
+  if (dim == 3) def.spin[0] = 20.0;
   return dim == 3 ? mps_body_create_cylinder(context, &def, 0.04, 0.1, out)
                   : mps_body_create_box(context, &def, 0.1, 0.06, out);
 }
@@ -97,7 +99,7 @@ static inline mps_status try_build(mps_context *context, int32_t geometry, const
   mps_status status = make_set(context, dim, c, &s->particles);
   if (status == MPS_OK) status = make_material(context, c, &s->material);
   if (status == MPS_OK) status = mps_mpm_create(context, s->particles, s->material, &def, &s->mpm);
-  if (status == MPS_OK) status = make_free_body(context, dim, &out->body[FREE]);
+  if (status == MPS_OK) status = make_free_body(context, geometry, &out->body[FREE]);
   if (status == MPS_OK) status = make_driven_body(context, dim, c, &out->body[DRIVEN]);
   mps_contact_def contact = mps_contact_defaults();
   contact.thin = 1; /* where the cell is another */
