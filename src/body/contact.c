@@ -160,6 +160,7 @@ void mpsi_contact_join(mps_contact *contact) { mpsi_body_join(contact->body, &co
 
 void mpsi_contact_leave(mps_contact *contact) {
   mpsi_body_leave(contact->body, &contact->source);
+  if (!contact->body->sources) contact->body->axial = false;
   contact->owner = NULL;
   mpsi_contact_release(contact);
 }
