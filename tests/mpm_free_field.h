@@ -21,6 +21,7 @@ typedef struct field_ground {
   mps_signal *heave;   /* along y */
   mps_material *law;   /* of the layer in place of elasticity */
   int32_t budget, spline;
+  bool heated; /* the set has the field `temperature` */
 } field_ground;
 
 static inline double field_young(double vs) { return 2.0 * (1.0 + FIELD_NU) * FIELD_RHO * vs * vs; }
@@ -54,6 +55,7 @@ static inline mpm_scene field_scene(mps_context *context, const field_ground *of
   mpm_scene s = mpm_scene_begin(context, of->spacing, of->shift, 0.0, field_young(of->vs));
   mpm_scene_box(&s, of->shift, 0.0, of->shift + of->width, of->height);
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, FIELD_RHO));
+  if (of->heated) mps_assert_ok(context, mps_particles_add_field(s.particles, "temperature", 0));
   if (of->gravity > 0.0) mpm_scene_weigh(&s, FIELD_RHO * of->gravity, FIELD_K0, of->height);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 2.0 * of->spacing;

@@ -47,12 +47,13 @@ typedef enum mps_mpm_side {
  *               (all but FRICTIONAL). The side has the tractions of the column's stresses, and
  *               dashpots rho c_p across and rho c_s along on the difference between the velocities
  *               of column and side. The column is made of the particles in the cells at the side
- *               when the side is set, with their stresses, histories and laws, and the loads that
- *               these particles have in each step; it does not feel boxes, lists of particles or
- *               bodies. Set it again where ground, laws or `volume` have been changed. Each
- *               particle of the column has its own change of volume (MPS_MPM_VOLUMETRIC_POINT).
- *               Displacements across the side must stay below half a spacing. Not on several
- *               ranks, with pore water or the standard method, nor in mps_mpm_settle
+ *               when the side is set, with their stresses, histories and laws, and the loads and
+ *               temperatures that these particles have in each step; it does not feel boxes, lists
+ *               of particles or bodies. For a law it lies at the x of the side. Set it again where
+ *               ground, laws or `volume` have been changed. Each particle of the column has its own
+ *               change of volume (MPS_MPM_VOLUMETRIC_POINT). Displacements across the side must
+ *               stay below half a spacing. Not on several ranks, with pore water or the standard
+ *               method, nor in mps_mpm_settle
  *   FREE        an edge of the grid without constraint
  *   OPEN        the same; particles that pass it are removed at the end of the step. The reaction's
  *               `removed` and `removed_mass` count them, its `count` those of the last step; its
@@ -97,8 +98,8 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mp
 /** Gives boundary `number` another definition, from the next step on; its impulse and work are
  *  kept. An absorbing side determines its R again. MPS_ERROR_ARGUMENT: no boundary `number`, a side
  *  that the domain does not have, or a member of `def` out of range; MPS_ERROR_STATE: a callback of
- *  the solver is running, or a free-field side is set and new particles have no density;
- *  MPS_ERROR_MEMORY. */
+ *  the solver is running, or a free-field side is set and new particles have no density or
+ *  mps_mpm_settle was cancelled; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number,
                                                       const mps_mpm_boundary_def *def);
 /** Removes a boundary: its nodes or particles are free; a side becomes FREE. MPS_ERROR_ARGUMENT: no

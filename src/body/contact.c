@@ -158,8 +158,18 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
 
 void mpsi_contact_join(mps_contact *contact) { mpsi_body_join(contact->body, &contact->source); }
 
+/* The body may move in the plane again; radial forces and moments of the last step, which cancel
+ * around the ring, do not move it. */
+static void leave_axis(mps_body *body) {
+  if (!body->axial) return;
+  body->axial = false;
+  body->pending.force[0] = 0.0;
+  memset(body->pending.moment, 0, sizeof body->pending.moment);
+}
+
 void mpsi_contact_leave(mps_contact *contact) {
   mpsi_body_leave(contact->body, &contact->source);
+  if (!contact->body->sources) leave_axis(contact->body);
   contact->owner = NULL;
   mpsi_contact_release(contact);
 }

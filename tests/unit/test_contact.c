@@ -2,6 +2,7 @@
  * solvers share, and what must not pass without a word: thin walls, particles inside, bodies driven
  * through the ground.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_tank.h"
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
@@ -357,6 +358,12 @@ static void free_bodies_stay_on_the_axis(void **state) {
   const mps_contact_def contact = mps_contact_defaults();
   REFUSES("another solver, which is axisymmetric",
           mps_mpm_add_contact(plane.mpm, body, &contact, NULL));
+  tank t = tank_make(context, 0.6, 0.3, 0.03, NULL, 2e-3);
+  mps_body *lid = box_at(0.0, 0.3, 0.2, 0.1);
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, lid, &contact, NULL));
+  REFUSES("another solver, which is axisymmetric", mps_fluid_add_contact(t.fluid, lid, NULL, NULL));
+  mps_body_destroy(&lid);
+  tank_free(&t);
   mps_body_state now;
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.05, 100000, NULL, NULL));
   mps_assert_ok(context, mps_body_get_state(body, &now));
@@ -365,6 +372,7 @@ static void free_bodies_stay_on_the_axis(void **state) {
   assert_true(now.velocity[1] > -0.5); /* falling freely it would have -1.5 m/s */
   mpm_scene_end(&plane);
   mpm_scene_end(&s);
+  mps_assert_ok(context, mps_body_set_load(body, sideways, NULL)); /* on no axis any more */
   mps_body_destroy(&body);
 }
 

@@ -12,7 +12,13 @@
 #include <mps/mpm_settle.h>
 #include <mps/pore_water.h>
 
+#include <core/internal.h>
+#include <io/replace.h>
+
+#include <fcntl.h>
+#include <hdf5.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char path[] = TEST_TMP "/mpm_free_field.h5";
 
@@ -110,9 +116,103 @@ static void goes_on_from_a_file(void **state) {
   mpm_scene_end(&whole);
 }
 
+static void move_one(mpm_scene *s) {
+  mps_edit x = mpm_scene_edit(s, "position");
+  int64_t k = 0;
+  while (*mps_view_f64(&x.view, k, 0) > 0.5 || *mps_view_f64(&x.view, k, 1) < 5.0) k++;
+  *mps_edit_f64(&x, k, 1) += 0.01;
+  mpm_scene_commit(s, &x);
+  mpm_scene_side(s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_FREE_FIELD, 0.0);
+}
+
+/* The column of a file was made of ground with a particle between two rows, as after settling, the
+ * solver's of ground before that. */
+static void takes_the_rows_of_a_file(void **state) {
+  (void)state;
+  mpm_scene whole = shaken(context, MPS_BOUNDARY_FREE_FIELD);
+  mpm_scene next = shaken(context, MPS_BOUNDARY_FREE_FIELD);
+  move_one(&whole);
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, 60));
+  mps_assert_ok(context, mps_mpm_save(whole.mpm, path, NULL));
+  mps_assert_ok(context, mps_mpm_restore(next.mpm, path, NULL));
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, 100));
+  mps_assert_ok(context, mps_mpm_step(next.mpm, 100));
+  same(&whole, &next);
+  mpm_scene_end(&next);
+  mpm_scene_end(&whole);
+}
+
+/* Writes the first number of a list of integers of the left column in the file, a dataset or an
+ * attribute, and seals the file again. */
+static void write_number(const char *name, int64_t value) {
+  enum { MOST = 1024 };
+  static int64_t number[MOST];
+  static char data[1 << 22];
+  const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t group = H5Gopen2(file, "solver/boundary0", H5P_DEFAULT);
+  if (H5Aexists(group, name) > 0) {
+    const hid_t attribute = H5Aopen(group, name, H5P_DEFAULT);
+    assert_true(H5Aget_storage_size(attribute) <= sizeof number);
+    assert_true(H5Aread(attribute, H5T_NATIVE_INT64, number) >= 0);
+    number[0] = value;
+    assert_true(H5Awrite(attribute, H5T_NATIVE_INT64, number) >= 0);
+    H5Aclose(attribute);
+  } else {
+    const hid_t set = H5Dopen2(group, name, H5P_DEFAULT);
+    assert_true(H5Dget_storage_size(set) <= sizeof number);
+    assert_true(H5Dread(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, number) >= 0);
+    number[0] = value;
+    assert_true(H5Dwrite(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, number) >= 0);
+    H5Dclose(set);
+  }
+  H5Gclose(group);
+  H5Fclose(file);
+  mpsi_replacement again;
+  mps_assert_ok(context, mpsi_replace_begin(context, "test", path, &again));
+  const int fd = open(path, O_RDONLY);
+  const ssize_t size = read(fd, data, sizeof data);
+  assert_true(size > 0 && size < (ssize_t)sizeof data);
+  assert_int_equal(write(again.fd, data, (size_t)size), size);
+  close(fd);
+  mps_assert_ok(context, mpsi_replace_commit(context, "test", &again));
+}
+
+/* A sealed file with contents that no run writes: laws that the column has no memory for, or that
+ * do not exist; rows that do not exist. */
+static void columns_of_other_laws_are_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *list;
+    int64_t value;
+  } bad[] = {{"column_laws", 1},    {"column_laws", 2},        {"column_laws", -1},
+             {"column_row_of", 99}, {"column_row_of", -1},     {"column_rows", 0},
+             {"column_rows", 5},    {"column_rows", INT64_MAX}};
+  const field_ground of = {
+      .width = 6.0, .height = 8.0, .spacing = 0.5, .vs = 100.0, .sides = MPS_BOUNDARY_FREE_FIELD};
+  mpm_scene s = field_scene(context, &of);
+  mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
+  mps_material *sand = NULL;
+  const double middle[2] = {3.25, 4.25};
+  law.young = field_young(100.0);
+  law.friction = 0.5;
+  mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &law, &sand));
+  const int64_t id = mps_particles_nearest(s.particles, middle);
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, sand, 1, &id));
+  mps_material_destroy(&sand);
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    mps_assert_ok(context, mps_mpm_save(s.mpm, path, NULL));
+    write_number(bad[k].list, bad[k].value);
+    mps_assert_fails(context, mps_mpm_restore(s.mpm, path, NULL), MPS_ERROR_FORMAT,
+                     "other laws or rows");
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  }
+  mpm_scene_end(&s);
+}
+
 /* ---- steps that are undone ------------------------------------------------------------------- */
 
-/* Elastic, but for a step in which it refuses particles of `from` or later calls. */
+/* Elastic, with a pressure that rises with the temperature; but in the call `refuse_at`, and where
+ * it is not given the places of particles in the ground, it refuses. */
 typedef struct fussy {
   int64_t calls, refuse_at;
 } fussy;
@@ -122,12 +222,17 @@ static mps_status update(void *user, const mps_material_block *b) {
   if (++of->calls == of->refuse_at) return MPS_ERROR_NUMERIC;
   const double G = FIELD_RHO * 100.0 * 100.0, lambda = 1.5 * G;
   for (int64_t k = 0; k < b->count; k++) {
+    const bool placed = b->position[0] && b->position[1] && b->position[0][k] >= 0.0 &&
+                        b->position[0][k] <= 6.0 && b->position[1][k] > 0.0;
+    if (!placed) return MPS_ERROR_ARGUMENT;
     const double xx = b->gradient[0][k], yy = b->gradient[4][k];
     const double xy = b->gradient[1][k] + b->gradient[3][k];
     b->stress[0][k] += b->dt * (lambda * (xx + yy) + 2.0 * G * xx);
     b->stress[1][k] += b->dt * (lambda * (xx + yy) + 2.0 * G * yy);
     b->stress[2][k] += b->dt * lambda * (xx + yy);
     b->stress[3][k] += b->dt * G * xy;
+    for (int c = 0; b->temperature && c < 3; c++)
+      b->stress[c][k] -= b->dt * 100.0 * b->temperature[k];
   }
   return MPS_OK;
 }
@@ -148,7 +253,8 @@ static mpm_scene fussy_scene(fussy *of, mps_signal *signal) {
                                .sides = MPS_BOUNDARY_FREE_FIELD,
                                .base = MPS_BOUNDARY_HELD,
                                .motion = signal,
-                               .law = material};
+                               .law = material,
+                               .heated = signal == NULL};
   mpm_scene s = field_scene(context, &ground);
   mps_material_destroy(&material);
   return s;
@@ -181,6 +287,37 @@ static void refused_steps_are_undone(void **state) {
   mpm_scene_end(&s);
 }
 
+/* Ground that is heated as a whole moves as between rollers: its columns have its temperatures. */
+static void columns_are_heated_with_the_ground(void **state) {
+  (void)state;
+  fussy of = {0};
+  mpm_scene s[2];
+  for (int k = 0; k < 2; k++) {
+    s[k] = fussy_scene(&of, NULL);
+    if (k == 1)
+      for (int32_t side = 0; side < 2; side++)
+        mpm_scene_side(&s[k], side, MPS_BOUNDARY_ROLLER, 0.0);
+    for (int round = 1; round <= 3; round++) {
+      mps_assert_ok(context, mps_particles_set(s[k].particles, "temperature", 0, 100.0 * round));
+      mps_assert_ok(context, mps_mpm_step(s[k].mpm, 20));
+    }
+  }
+  const mps_view va = mpm_scene_view(&s[0], "velocity"), vb = mpm_scene_view(&s[1], "velocity");
+  const mps_view id = mpm_scene_view(&s[0], "id");
+  double apart = 0.0, fastest = 0.0;
+  for (int64_t k = 0; k < va.shape[0]; k++) {
+    const int64_t m = mps_particles_index(s[1].particles, *mps_view_i64(&id, k, 0));
+    for (int c = 0; c < 2; c++) {
+      apart = fmax(apart, fabs(*mps_view_f64(&va, k, c) - *mps_view_f64(&vb, m, c)));
+      fastest = fmax(fastest, fabs(*mps_view_f64(&vb, m, c)));
+    }
+  }
+  print_message("heated ground: %.3g m/s, differs by %.2g m/s\n", fastest, apart);
+  assert_true(fastest > 1e-4);
+  assert_true(apart < 1e-9 * fastest);
+  for (int k = 0; k < 2; k++) mpm_scene_end(&s[k]);
+}
+
 /* ---- refusals -------------------------------------------------------------------------------- */
 
 #define REFUSES(text, call) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, text)
@@ -206,6 +343,9 @@ static void refuses_by_name(void **state) {
   REFUSES("beside a free-field side", set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));
   mps_assert_fails(context, mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_STATE,
                    "settle between rollers");
+  REFUSES("boundary 0 is of kind 5", mps_experimental_mpm_standard(s.mpm, 0.9));
+  REFUSES("transfer is 1 (weight)",
+          mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT));
   mps_assert_fails(context, mps_mpm_add_pore_water(s.mpm, NULL), MPS_ERROR_STATE,
                    "kind 5 (FREE_FIELD)");
   mps_assert_ok(context, mps_mpm_step(s.mpm, 3)); /* it still works */
@@ -224,6 +364,28 @@ static mpm_scene block(int32_t geometry, double width, double from) {
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = width;
   mpm_scene_solve(&s, &def);
   return s;
+}
+
+static int32_t cancel(void *user) {
+  (void)user;
+  return 1;
+}
+
+/* Velocities of relaxation are no motion of the ground: the column would keep them. */
+static void refuses_ground_that_settles(void **state) {
+  (void)state;
+  mpm_scene s = block(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6.0, 0.0);
+  const double down[2] = {0.0, -9.81};
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
+  for (int c = 0; c < 2; c++)
+    mps_assert_ok(context, mps_particles_set(s.particles, "body_acceleration", c, down[c]));
+  mps_context_set_cancel(context, cancel, NULL);
+  mps_assert_fails(context, mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_CANCELLED, "cancel");
+  mps_context_set_cancel(context, NULL, NULL);
+  mps_assert_fails(context, set(&s, 0, 5), MPS_ERROR_STATE, "mps_mpm_settle was cancelled");
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  mps_assert_ok(context, set(&s, 0, 5));
+  mpm_scene_end(&s);
 }
 
 static void refuses_ground_without_neighbour(void **state) {
@@ -330,8 +492,12 @@ static void refused_memory_leaves_nothing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(goes_back_bit_for_bit),
                                      cmocka_unit_test(goes_on_from_a_file),
+                                     cmocka_unit_test(takes_the_rows_of_a_file),
+                                     cmocka_unit_test(columns_of_other_laws_are_refused),
                                      cmocka_unit_test(refused_steps_are_undone),
+                                     cmocka_unit_test(columns_are_heated_with_the_ground),
                                      cmocka_unit_test(refuses_by_name),
+                                     cmocka_unit_test(refuses_ground_that_settles),
                                      cmocka_unit_test(refuses_ground_without_neighbour),
                                      cmocka_unit_test(refused_on_ranks),
                                      cmocka_unit_test(refused_memory_leaves_nothing)};

@@ -73,11 +73,14 @@ static mps_status fall_create(mps_context *owner, mps_particles *particles, cons
                      def.dt);
   status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
-  if (status == MPS_OK)
-    status = mpsi_as(owner, __func__, mps_particles_add_field(particles, "velocity", 0));
   if (status != MPS_OK) return status;
   fall *f = mpsi_alloc(owner, 1, sizeof *f);
   if (!f) return mpsi_fail_memory(owner, __func__, sizeof *f);
+  status = mpsi_as(owner, __func__, mps_particles_add_field(particles, "velocity", 0));
+  if (status != MPS_OK) {
+    mpsi_free(owner, f);
+    return status;
+  }
   f->owner = mpsi_context_retain(owner);
   f->particles = particles;
   f->def = def;
@@ -106,9 +109,8 @@ static void fall_destroy(fall **fallen) {
   mpsi_context_release(owner);
 }
 
-#define BLOCK                                                                                      \
-  64 /* particles of a unit of work: their number depends on the set, not on threads               \
-      */
+/* Particles of a unit of work: their number depends on the set, not on threads. */
+#define BLOCK 64
 
 static void move_block(void *data, int64_t block, int32_t worker) {
   (void)worker;

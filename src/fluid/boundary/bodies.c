@@ -238,6 +238,10 @@ static mps_status check_body(mps_fluid *f, const char *function, const mps_body 
   if (body->context != f->context || body->dim != 2 || body->shape != MPSI_POLYGON)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the body is no polygon in the plane of the fluid's context");
+  if (body->axial)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "the body is in contact with another solver, which is axisymmetric: make a "
+                     "body for each");
   if (kind != MPS_BOUNDARY_ROLLER && kind != MPS_BOUNDARY_HELD)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "kind of the body is %d, allowed are 0 (HELD: no slip) and 2 (ROLLER: slip)",

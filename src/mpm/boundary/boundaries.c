@@ -221,6 +221,11 @@ mps_status mpsi_mpm_widen_sides(mps_context *context, const mpsi_grid *grid,
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "mpm: boundary %d is absorbing, which the standard method does not allow",
                        k);
+    else if (hold[k].kind == MPS_BOUNDARY_FREE_FIELD)
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "mpm: boundary %d is of kind 5 (FREE_FIELD), which the standard method does "
+                       "not allow",
+                       k);
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (hold[k].kind != MPSI_BOUNDARY_NONE) place_side(grid, boundaries, k, hold[k].kind);
   boundaries->outdated = true;

@@ -61,6 +61,11 @@ mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const cha
                        "%s beside side %d of kind 3 (FRICTIONAL): allowed there are 0 (HELD), 1 "
                        "(DRIVEN), 2 (ROLLER), 4 (ABSORBING), 6 (FREE) and 7 (OPEN)",
                        kind, k);
+  if (setup->has_relaxation)
+    return mpsi_fail(setup->context, function, MPS_ERROR_STATE,
+                     "%s after mps_mpm_settle was cancelled, which has left velocities that are no "
+                     "motion of the ground: let it end, or make a step",
+                     kind);
   return MPS_OK;
 }
 
@@ -93,10 +98,11 @@ static bool reserve(mps_context *context, mpsi_free_field *f) {
       !take(context, &f->law, n, sizeof *f->law) || !take(context, &f->id, n, sizeof *f->id) ||
       !take(context, &f->row_of, n, sizeof *f->row_of) ||
       !take(context, &f->row, n, sizeof *f->row) ||
-      !take(context, &f->derivative[0], 2 * n, sizeof(double)) ||
+      !take(context, &f->derivative[0], 3 * n, sizeof(double)) ||
       !take(context, &f->node, f->nodes, sizeof *f->node))
     return false;
   f->derivative[1] = f->derivative[0] + n;
+  f->x = f->derivative[0] + 2 * n;
   lay_out(f);
   return true;
 }
@@ -193,8 +199,14 @@ static void find_nodes(const mpsi_grid *grid, const source *from, mpsi_free_fiel
   f->nodes = last - first + 1;
 }
 
-static void fill(const mpsi_boundary_setup *setup, const source *from, mpsi_free_field *f) {
-  for (int64_t k = 0; k < f->count; k++) copy_particle(setup->p, from[k].index, k, f);
+static void fill(const mpsi_boundary_setup *setup, const source *from, int32_t number,
+                 mpsi_free_field *f) {
+  const mpsi_grid *grid = setup->grid;
+  const int64_t wall = number == MPS_MPM_SIDE_X_LOWER ? grid->low[0] : grid->high[0];
+  for (int64_t k = 0; k < f->count; k++) {
+    copy_particle(setup->p, from[k].index, k, f);
+    f->x[k] = grid->origin[0] + grid->cell * (double)wall;
+  }
   for (int side = 0; side < 2; side++) f->rest[3 * side + 2] = 1.0;
 }
 
@@ -221,7 +233,7 @@ mps_status mpsi_mpm_make_free_field(const mpsi_boundary_setup *setup, const char
     good = reserve(setup->context, f);
   }
   if (good) {
-    fill(setup, from, f);
+    fill(setup, from, number, f);
     find_rows(grid, f, scratch);
     memcpy(f->kept, f->state, (size_t)f->doubles * sizeof *f->state);
   }
@@ -237,30 +249,34 @@ mps_status mpsi_mpm_make_free_field(const mpsi_boundary_setup *setup, const char
 
 /* ---- state ----------------------------------------------------------------------------------- */
 
-void mpsi_mpm_list_free_field(mpsi_state *state, const mpsi_free_field *field) {
+void mpsi_mpm_list_free_field(mpsi_state *state, mpsi_free_field *field) {
   mpsi_state_agree_integer(state, "column_particles", field->count);
   mpsi_state_agree_integer(state, "column_histories", field->histories);
-  mpsi_state_agree_integer(state, "column_rows", field->rows);
   mpsi_state_agree_integer(state, "column_nodes", field->nodes);
   mpsi_state_agree_integer(state, "column_first", field->first);
+  /* ground that was set when it had settled otherwise may have its particles in other rows */
+  mpsi_state_i64(state, "column_rows", &field->rows, 1);
   mpsi_state_f64(state, "column", field->state, field->doubles);
   mpsi_state_i64(state, "column_laws", field->law, field->count);
   mpsi_state_i64(state, "column_ids", field->id, field->count);
   mpsi_state_i64(state, "column_row_of", field->row_of, field->count);
 }
 
-bool mpsi_mpm_free_field_fits(const mpsi_free_field *field, int32_t number, int32_t laws,
+static const int64_t *read_saved(mps_snapshot *from, int32_t number, const char *what) {
+  char name[MPSI_STATE_NAME];
+  (void)snprintf(name, sizeof name, "boundary%d/%s", number, what);
+  return mpsi_values_find(&from->state, name)->data;
+}
+
+bool mpsi_mpm_free_field_fits(const mpsi_free_field *field, int32_t number, const mpsi_laws *laws,
                               mps_snapshot *from) {
-  static const char *const names[2] = {"column_laws", "column_row_of"};
-  const int64_t most[2] = {laws, field->rows};
-  for (int n = 0; n < 2; n++) {
-    char name[MPSI_STATE_NAME];
-    (void)snprintf(name, sizeof name, "boundary%d/%s", number, names[n]);
-    const mpsi_value *value = mpsi_values_find(&from->state, name);
-    for (int64_t k = 0; k < field->count; k++) {
-      const int64_t at = ((const int64_t *)value->data)[k];
-      if (at < 0 || at >= most[n]) return false;
-    }
-  }
+  const int64_t rows = *read_saved(from, number, "column_rows");
+  const int64_t *law = read_saved(from, number, "column_laws");
+  const int64_t *row = read_saved(from, number, "column_row_of");
+  if (rows < 1 || rows > field->count) return false;
+  for (int64_t k = 0; k < field->count; k++)
+    if (row[k] < 0 || row[k] >= rows || law[k] < 0 || law[k] >= laws->count ||
+        laws->law[law[k]].columns > field->histories)
+      return false;
   return true;
 }

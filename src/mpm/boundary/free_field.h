@@ -23,11 +23,12 @@ enum { MPSI_FIELD_CELLS = 4 };  /* least width of a domain with such a side, cel
 
 /* Nodes of the column along y. */
 typedef struct mpsi_field_node {
-  double mass;                       /* kg */
-  double v[2], before[2];            /* m/s: with the forces and without */
-  double force[2];                   /* N */
-  double across, along;              /* kg/s, dashpots of the side */
-  double pull[MPSI_FIELD_PLANES][2]; /* N, traction of the column's stresses on the side's nodes */
+  double mass;            /* kg */
+  double v[2], before[2]; /* m/s: with the forces and without */
+  double force[2];        /* N */
+  double across, along;   /* kg/s, dashpots of the side */
+  double traction[MPSI_FIELD_PLANES]
+                 [2]; /* N, traction of the column's stresses on the side's nodes */
 } mpsi_field_node;
 
 /* The particles' columns lie in `state`, which is all that steps change, and is what is saved. */
@@ -43,13 +44,15 @@ typedef struct mpsi_free_field {
                    is still to be found */
   int64_t *law, *id;     /* id: of the particle that was copied */
   double *derivative[2]; /* 1/s, scratch: dv/dy for the laws */
+  double *x;             /* m, that of the side, for the laws */
   double (*row)[4];      /* y, sigma_xx, sigma_xy, V: rows of particles, from below */
   int64_t rows, *row_of;
   int64_t first, nodes; /* coordinate of the lowest node */
   mpsi_field_node *node;
 } mpsi_free_field;
 
-/* free_field.c: MPS_ERROR_ARGUMENT where side `number` cannot have a column. */
+/* free_field.c: MPS_ERROR_ARGUMENT where side `number` cannot have a column, MPS_ERROR_STATE where
+ * particles have velocities of a cancelled mps_mpm_settle. */
 mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const char *function,
                                      int32_t number);
 /* free_field.c: MPS_ERROR_ARGUMENT where side `number` has a free-field side beside it and cannot
@@ -63,9 +66,10 @@ void mpsi_mpm_free_field_free(mps_context *context, mpsi_free_field **field);
 /* free_field.c: whether some side is a free field. */
 bool mpsi_mpm_has_free_field(const mpsi_boundaries *boundaries);
 /* free_field.c: its state, for snapshots and checkpoints. */
-void mpsi_mpm_list_free_field(mpsi_state *state, const mpsi_free_field *field);
-/* free_field.c: whether laws and rows of a file are some of the solver's, which has `laws` laws. */
-bool mpsi_mpm_free_field_fits(const mpsi_free_field *field, int32_t number, int32_t laws,
+void mpsi_mpm_list_free_field(mpsi_state *state, mpsi_free_field *field);
+/* free_field.c: whether the column of a file has its particles in its rows, and laws of the solver
+ * whose histories it has memory for. */
+bool mpsi_mpm_free_field_fits(const mpsi_free_field *field, int32_t number, const mpsi_laws *laws,
                               mps_snapshot *from);
 
 /* free_field_step.c: the tractions of the columns on the nodes of their sides, and a step of the

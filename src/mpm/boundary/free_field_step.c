@@ -130,7 +130,7 @@ static mps_status add_traction(const mpsi_boundary_setup *setup, const char *fun
   for (int i = 0; i <= setup->grid->spline; i++)
     for (int q = 0; q < MPSI_FIELD_PLANES; q++)
       for (int c = 0; c < 2; c++)
-        f->node[along.at + i].pull[q][c] += p->V[k] * planes[q] * along.along[i] * stress[c];
+        f->node[along.at + i].traction[q][c] += p->V[k] * planes[q] * along.along[i] * stress[c];
   return MPS_OK;
 }
 
@@ -221,7 +221,8 @@ static void fold(const mpsi_boundary_setup *setup, mpsi_free_field *f, int32_t n
     for (int c = 0; c < 2; c++) {
       to->v[c] += keeps[c] * from->v[c] + from->mass * carried[c];
       to->force[c] += keeps[c] * from->force[c];
-      for (int q = 0; q < MPSI_FIELD_PLANES; q++) to->pull[q][c] += keeps[c] * from->pull[q][c];
+      for (int q = 0; q < MPSI_FIELD_PLANES; q++)
+        to->traction[q][c] += keeps[c] * from->traction[q][c];
     }
     memset(from, 0, sizeof *from);
   }
@@ -368,6 +369,7 @@ static mps_status apply_law(const mpsi_boundary_setup *setup, const char *functi
   for (int c = 0; c < 5; c++)
     block.deformation[planar[c]] = law->needs_deformation ? f->F[c] + begin : NULL;
   for (int c = 0; c < 4; c++) block.stress[c] = f->s[c] + begin;
+  block.position[0] = f->x + begin, block.position[Y] = f->y + begin;
   if (setup->p->laws.temperature) block.temperature = f->temperature + begin;
   for (int32_t h = 0; h < law->columns; h++) history[h] = f->history + h * f->count + begin;
   block.history = history;
@@ -384,9 +386,18 @@ static mps_status apply_law(const mpsi_boundary_setup *setup, const char *functi
                                there ? f->id[begin + refused] : -1, setup->run->steps);
 }
 
+/* The present temperatures of the particles that were copied, while they are there. */
+static void update_temperatures(const mpsi_columns *p, mpsi_free_field *f) {
+  for (int64_t k = 0; p->laws.temperature && k < f->count; k++) {
+    const int64_t from = mps_particles_index(p->set, f->id[k]);
+    if (from >= 0) f->temperature[k] = p->laws.temperature[from];
+  }
+}
+
 static mps_status apply_laws(const mpsi_boundary_setup *setup, const char *function,
                              mpsi_free_field *f) {
   mps_status status = MPS_OK;
+  update_temperatures(setup->p, f);
   for (int64_t k = 0, n; k < f->count && status == MPS_OK; k += n) {
     for (n = 1; n < MPSI_CHUNK && k + n < f->count && f->law[k + n] == f->law[k];) n++;
     status = apply_law(setup, function, f, k, n);

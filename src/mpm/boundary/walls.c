@@ -180,7 +180,7 @@ static void absorb(block *b, const mpsi_boundary *hold, mpsi_held *held, int k) 
 }
 
 /* Changes component c of the velocity of node k by an impulse; its work is another's to count. */
-static void push(block *b, mpsi_held *held, int k, int c, double impulse) {
+static void add_impulse(block *b, mpsi_held *held, int k, int c, double impulse) {
   double x[3];
   mpsi_node_place(b->grid, held->at, k, x);
   held->impulse[c] += impulse;
@@ -194,7 +194,7 @@ static void add_traction(block *b, const mpsi_boundary *hold, mpsi_held *held, i
   int plane;
   const mpsi_field_node *beside = mpsi_mpm_beside(b->grid, hold, held->at, k, &plane);
   if (!beside || b->again || !(b->node[k][MPSI_MASS] > 0.0)) return;
-  for (int c = 0; c < 2; c++) push(b, held, k, c, b->dt * beside->pull[plane][c]);
+  for (int c = 0; c < 2; c++) add_impulse(b, held, k, c, b->dt * beside->traction[plane][c]);
 }
 
 /* Dashpots between the column and a free-field side, implicit; then the work of both: that of the
@@ -209,10 +209,10 @@ static void absorb_to_field(block *b, const mpsi_boundary *hold, mpsi_held *held
     const double per_mass = b->dt * damping / m, *v = &b->node[k][MPSI_VECTOR + c];
     const double impulse = m * (per_mass / (1.0 + per_mass)) * (beside->v[c] - *v);
     if (!(b->held[k] >> c & 1)) {
-      push(b, held, k, c, impulse);
+      add_impulse(b, held, k, c, impulse);
       held->work += impulse * beside->v[c];
     }
-    held->work += b->dt * beside->pull[plane][c] * *v;
+    held->work += b->dt * beside->traction[plane][c] * *v;
   }
 }
 

@@ -1,6 +1,7 @@
 /* create.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm/base/mpm_solver.h"
+#include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/step/insertion.h"
 #include "mpm/water/water.h"
@@ -642,6 +643,9 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
+  if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT && mpsi_mpm_has_free_field(&mpm->boundaries))
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "transfer is 1 (weight), which a side of kind 5 (FREE_FIELD) does not allow");
   mpm->grid.by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
   return MPS_OK;
 }

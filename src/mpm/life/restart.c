@@ -433,7 +433,7 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
   *what = "the columns of its free-field sides have other laws or rows";
   for (int32_t k = 0; k < 2; k++) {
     const mpsi_free_field *field = mpm->boundaries.hold[k].field;
-    if (field && !mpsi_mpm_free_field_fits(field, k, mpm->p.laws.count, from)) return false;
+    if (field && !mpsi_mpm_free_field_fits(field, k, &mpm->p.laws, from)) return false;
   }
   *what = "its impulses of contact are not one of each particle and body";
   return holds_impulses(&mpm->contact, from);
