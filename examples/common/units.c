@@ -47,6 +47,7 @@ static const quantity quantities[] = {
       {"kN/m2", 1e3},
       {"MN/m2", 1e6},
       {"N/mm2", 1e6}}},
+    {"a pressure over a length", 3, {{"Pa/m", 1.0}, {"kPa/m", 1e3}, {"MPa/m", 1e6}}},
     {"a force over a length", 4, {{"N/m", 1.0}, {"kN/m", 1e3}, {"MN/m", 1e6}, {"GN/m", 1e9}}},
     {"a viscosity", 1, {{"Pa s", 1.0}, {"mPa s", 1e-3}, {"Pas", 1.0}, {"mPas", 1e-3}}},
     {"a mass", 1, {{"kg", 1.0}, {"g", 1e-3}, {"t", 1e3}}},

@@ -24,7 +24,7 @@ cmp "$work/whole/pressure.csv" "$work/rest/pressure.csv" || fail "the run that w
   fail "a restart with other options"
 grep -q "was made with other options" "$work/log" || fail "which option differs"
 # Strength that grows by 4 c/B: characteristics have 7.819.
-"$1/mps-footing" --strength-gradient 40000 --domain 2x1 --settlement 0.3mm --threads 1 --out "$work/grows" >"$work/log"
+"$1/mps-footing" --strength-gradient 40kPa/m --domain 2x1 --settlement 0.3mm --threads 1 --out "$work/grows" >"$work/log"
 has "$work/log" "characteristics"
 in_range "$work/grows/summary.json" q_exact 7.818 7.82
 in_range "$work/grows/summary.json" q_over_c 7.4 8.4

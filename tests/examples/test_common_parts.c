@@ -152,11 +152,11 @@ static void numbers_may_have_a_unit(void **state) {
   static const struct {
     const char *text, *unit;
     double value;
-  } good[] = {{"10MPa", "Pa", 1e7},         {"2.5 kPa", "Pa", 2500.0}, {"5mm/s", "m/s", 5e-3},
-              {"2000kN/m", "N/m", 2e6},     {"18kN/m3", "N/m3", 18e3}, {"30cm", "m", 0.3},
-              {"2ms", "s", 2e-3},           {"1g", "m/s2", 9.80665},   {"5g", "kg", 5e-3},
-              {"1.8t/m3", "kg/m3", 1800.0}, {"-0.5", "1", -0.5},       {"30deg", "degrees", 30.0},
-              {"1e-3m", "m", 1e-3}};
+  } good[] = {{"10MPa", "Pa", 1e7},       {"2.5 kPa", "Pa", 2500.0},    {"5mm/s", "m/s", 5e-3},
+              {"2000kN/m", "N/m", 2e6},   {"40kPa/m", "Pa/m", 4e4},     {"18kN/m3", "N/m3", 18e3},
+              {"30cm", "m", 0.3},         {"2ms", "s", 2e-3},           {"1g", "m/s2", 9.80665},
+              {"5g", "kg", 5e-3},         {"1.8t/m3", "kg/m3", 1800.0}, {"-0.5", "1", -0.5},
+              {"30deg", "degrees", 30.0}, {"1e-3m", "m", 1e-3}};
   static const struct {
     const char *text, *unit;
     units_status status;
