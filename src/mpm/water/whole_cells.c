@@ -15,34 +15,40 @@ typedef struct plane {
   double of[SIDE + 2][SIDE + 2];
 } plane;
 
-/* The quantity at `offset` of a cell. */
-MPSI_INLINE double read(const mpsi_pore_cell *cell, size_t offset) {
-  double out;
-  memcpy(&out, (const char *)cell + offset, sizeof out);
-  return out;
+/* The cells of a block of nodes, and which of them have no free face. */
+typedef struct block {
+  const mpsi_pore_cell *cell; /* NULL where there is no block */
+  const uint64_t *full;
+} block;
+
+static block block_of(const mpsi_grid *grid, const mpsi_water *water, int32_t g) {
+  if (g < 0) return (block){NULL, NULL};
+  return (block){water->cell + mpsi_first_node(grid, g), water->block[g].full};
 }
 
-/* Cells of a block of nodes; NULL where there is none. */
-static const mpsi_pore_cell *cells_of(const mpsi_grid *grid, const mpsi_water *water, int32_t g) {
-  return g < 0 ? NULL : water->cell + mpsi_first_node(grid, g);
+/* The quantity at `offset` of cell c, 0 where it has a free face: no cell among whole ones asks for
+ * it, and another thread may be writing the pressure of one at a drained surface. */
+MPSI_INLINE double read(const block *from, int c, size_t offset) {
+  double out;
+  if (!from->cell || !mpsi_pore_marked(from->full, c)) return 0.0;
+  memcpy(&out, (const char *)(from->cell + c) + offset, sizeof out);
+  return out;
 }
 
 /* Plane `z` of block g, with the cells on its sides; 0 where there is no block. */
 static void load_plane(const mpsi_grid *grid, const mpsi_water *water, int64_t g, int z,
                        size_t offset, plane *out) {
-  const int32_t *beside = water->block[g].beside;
-  const mpsi_pore_cell *own = cells_of(grid, water, (int32_t)g) + z * PLANE, *at[4];
-  for (int d = 0; d < 4; d++) {
-    at[d] = cells_of(grid, water, beside[d]);
-    if (at[d]) at[d] += z * PLANE;
-  }
+  const block own = block_of(grid, water, (int32_t)g);
+  const int from = z * PLANE;
+  block at[4];
+  for (int d = 0; d < 4; d++) at[d] = block_of(grid, water, water->block[g].beside[d]);
   for (int j = 0; j < SIDE; j++)
-    for (int i = 0; i < SIDE; i++) out->of[j + 1][i + 1] = read(own + j * SIDE + i, offset);
+    for (int i = 0; i < SIDE; i++) out->of[j + 1][i + 1] = read(&own, from + j * SIDE + i, offset);
   for (int i = 0; i < SIDE; i++) {
-    out->of[i + 1][0] = at[0] ? read(at[0] + i * SIDE + SIDE - 1, offset) : 0.0;
-    out->of[i + 1][SIDE + 1] = at[1] ? read(at[1] + i * SIDE, offset) : 0.0;
-    out->of[0][i + 1] = at[2] ? read(at[2] + (SIDE - 1) * SIDE + i, offset) : 0.0;
-    out->of[SIDE + 1][i + 1] = at[3] ? read(at[3] + i, offset) : 0.0;
+    out->of[i + 1][0] = read(&at[0], from + i * SIDE + SIDE - 1, offset);
+    out->of[i + 1][SIDE + 1] = read(&at[1], from + i * SIDE, offset);
+    out->of[0][i + 1] = read(&at[2], from + (SIDE - 1) * SIDE + i, offset);
+    out->of[SIDE + 1][i + 1] = read(&at[3], from + i, offset);
   }
 }
 
@@ -50,9 +56,9 @@ static void load_plane(const mpsi_grid *grid, const mpsi_water *water, int64_t g
 static void load_layer(const mpsi_grid *grid, const mpsi_water *water, int64_t g, int z,
                        size_t offset, double *out) {
   const int32_t to = z < 0 ? water->block[g].beside[4] : water->block[g].beside[5];
-  const mpsi_pore_cell *cell = cells_of(grid, water, z < 0 || z == SIDE ? to : (int32_t)g);
-  if (cell) cell += (z & (SIDE - 1)) * PLANE;
-  for (int k = 0; k < PLANE; k++) out[k] = cell ? read(cell + k, offset) : 0.0;
+  const block of = block_of(grid, water, z < 0 || z == SIDE ? to : (int32_t)g);
+  const int from = (z & (SIDE - 1)) * PLANE;
+  for (int k = 0; k < PLANE; k++) out[k] = read(&of, from + k, offset);
 }
 
 /* k times the drive through the faces of a plane, towards the cell before them: between two cells k
