@@ -101,7 +101,7 @@ struct mps_body {
   double angular[3];  /* kg m2/s, angular momentum in space: free bodies in 3D */
   mpsi_course ahead;  /* prescribed: at the end of the step being made */
   bool outside;       /* prescribed: moves by mps_body_set_motion, not by the signals */
-  bool axial; /* in contact in axisymmetry: a free one moves along y alone, mpsi_body_gives */
+  bool axial; /* in contact in axisymmetry: a free one moves along y alone, mpsi_body_moves_along */
   mpsi_pose pose;
   /* m/s, rad/s: those of the last advance by which forces do their work; of a free body the means
    * of before it and after it, without damping */
@@ -114,7 +114,9 @@ struct mps_body {
 
 /* Whether forces move a free body along axis c. In axisymmetry those along r cancel around the
  * ring, as do all moments. */
-static inline bool mpsi_body_gives(const mps_body *body, int c) { return !body->axial || c == 1; }
+static inline bool mpsi_body_moves_along(const mps_body *body, int c) {
+  return !body->axial || c == 1;
+}
 /* Refuses (MPS_ERROR_ARGUMENT) what a free body in axisymmetry cannot have: velocity or gravity
  * along r, or spin. */
 mps_status mpsi_body_check_axial(mps_context *context, const char *function, const double *velocity,

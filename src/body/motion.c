@@ -143,7 +143,7 @@ static void advance_velocity(mps_body *body, const mpsi_load *contact, double dt
   const mps_body_def *def = &body->def;
   mpsi_pose *pose = &body->pose;
   for (int c = 0; c < 3; c++) {
-    if (!mpsi_body_gives(body, c)) continue;
+    if (!mpsi_body_moves_along(body, c)) continue;
     const double load = body->load.force[c], before = pose->v[c];
     const double v = before + dt * ((load + contact->force[c]) / def->mass + def->gravity[c]);
     const double middle = body->middle_v[c] = 0.5 * (before + v);

@@ -52,7 +52,7 @@ void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double 
   for (int c = 0; c < 3; c++) {
     const double force = dt * body->load.force[c] + body->pending.force[c];
     b->spin[c] = b->left[1] * (b->spin[c] + spin[c]);
-    if (!mpsi_body_gives(body, c)) continue;
+    if (!mpsi_body_moves_along(body, c)) continue;
     b->v[c] = b->left[0] * (b->v[c] + force / def->mass + dt * def->gravity[c]);
   }
 }
@@ -75,7 +75,7 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) 
   spin_by(b->body, moment, spin);
   for (int c = 0; c < 3; c++) {
     b->spin[c] += b->left[1] * spin[c];
-    if (mpsi_body_gives(b->body, c)) b->v[c] -= b->left[0] * by[c] / b->body->def.mass;
+    if (mpsi_body_moves_along(b->body, c)) b->v[c] -= b->left[0] * by[c] / b->body->def.mass;
   }
 }
 
