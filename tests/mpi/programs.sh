@@ -54,7 +54,7 @@ on 2 "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/f" >/dev/null 
 one mps-wave "receivers.csv: No space left on device"
 
 # Ctrl-C, as mpirun passes it on: one line, the results so far, and the state.
-long=400 # s of the model
+long=200 # s of the model
 # begin_wave DIRECTORY: three ranks, until they compute.
 begin_wave() {
   # shellcheck disable=SC2086

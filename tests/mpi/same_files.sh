@@ -29,7 +29,6 @@ fi
 same collapse mps-column-collapse --aspect 1 --width 0.02 --h 0.005 --ppc 4
 same dam mps-dam-break --h 0.005715 --duration 0.1 --frames 4
 same box mps-sliding-box --h 0.02
-same disc mps-rolling-disc --h 0.02 --duration 0.1
 same free_disc mps-rolling-disc --h 0.02 --body disc --duration 0.1
 same footing mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
 same cone mps-penetrometer --h 0.05 --diameter 0.2 --soil 4x4x2 --depth 0.1 --rate 2 --ppc 1
