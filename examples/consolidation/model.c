@@ -113,6 +113,9 @@ static double cell_of(const settings *s) { return 1.0 / s->cells; }
 static bool is_column(const settings *s) { return s->kase <= MCC; }
 static double drain_radius(const settings *s) { return s->kase == BARRON ? 1.0 / s->ratio : 0.0; }
 
+/* The vertical effective stress before the load, Pa. */
+static double start_of(const settings *s) { return s->kase == MCC ? s->initial : 0.0; }
+
 static mps_status make_ground(mps_context *context, const settings *s, mpm_model *m) {
   const double h = cell_of(s), size = s->kase == STRIP ? STRIP_WIDTHS : 1.0;
   const double lo[2] = {drain_radius(s), 0.0};
@@ -143,11 +146,11 @@ static mps_status cut_ball(mps_particles *set) {
 }
 
 /* Particles of the profile: the lowest row of the ground or its first column. */
-static mps_status find_profile(simulation *sim) {
+static mps_status list_profile(simulation *sim, mps_particles *whole) {
   const settings *s = &sim->s;
   mps_view x, id;
-  mps_status status = mps_particles_view(sim->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "id", &id);
+  mps_status status = mps_particles_view(whole, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(whole, "id", &id);
   const int along = has_plate(s) || s->kase == CRYER ? 0 : 1;
   const double size = s->kase == STRIP ? STRIP_WIDTHS : 1.0;
   for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
@@ -161,6 +164,31 @@ static mps_status find_profile(simulation *sim) {
     sim->id[i] = *mps_view_i64(&id, k, 0);
   }
   return status;
+}
+
+/* On several ranks rank 0 lists them, and all know their number and depths. */
+static mps_status find_profile(simulation *sim) {
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(&sim->m, &whole);
+  if (status == MPS_OK && whole) status = list_profile(sim, whole);
+  double points = sim->points;
+  status = mpm_model_tell(&sim->m, status, 1, &points);
+  sim->points = (int)points;
+  return status == MPS_OK ? mpm_model_tell(&sim->m, status, sim->points, sim->at) : status;
+}
+
+/* u/u0 of the profile, on all ranks. */
+static mps_status read_profile(simulation *sim, instant *now) {
+  const settings *s = &sim->s;
+  const bool shifted = is_column(s) || s->kase == CRYER;
+  const double shift = shifted ? 1.0 + start_of(s) / s->load : 0.0;
+  mps_particles *whole;
+  mps_view u;
+  mps_status status = mpm_model_whole(&sim->m, &whole);
+  if (status == MPS_OK && whole) status = mps_particles_view(whole, "pore_pressure", &u);
+  for (int k = 0; status == MPS_OK && whole && k < sim->points; k++)
+    now->u[k] = *mps_view_f64(&u, mps_particles_index(whole, sim->id[k]), 0) / s->load + shift;
+  return mpm_model_tell(&sim->m, status, sim->points, now->u);
 }
 
 /* ---- water and loads ------------------------------------------------------------------------- */
@@ -182,9 +210,6 @@ static mps_status add_water(simulation *sim) {
   }
   return mps_mpm_add_pore_water(sim->m.mpm, &water);
 }
-
-/* The vertical effective stress before the load, Pa. */
-static double start_of(const settings *s) { return s->kase == MCC ? s->initial : 0.0; }
 
 static mps_status drain_surface(simulation *sim) {
   mps_pore_face_def face = mps_pore_face_defaults();
@@ -243,22 +268,36 @@ static mps_status drive_plate(mps_context *context, simulation *sim) {
   return status;
 }
 
-/* Pressure q on the strip x < B: 3/2 of it on the highest row of particles less 1/2 on the next,
- * whose resultant acts at the surface. */
-static mps_status load_strip(simulation *sim) {
+/* Particles under the strip x < B in the highest row, or those below it: their ids. */
+static mps_status list_row(const simulation *sim, mps_particles *whole, int layer, double *ids,
+                           double *count) {
   const double spacing = 0.5 * cell_of(&sim->s);
   mps_view x, id;
-  mps_status status = mps_particles_view(sim->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "id", &id);
+  mps_status status = mps_particles_view(whole, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(whole, "id", &id);
+  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
+    const double depth = STRIP_WIDTHS - *mps_view_f64(&x, k, 1);
+    if (*mps_view_f64(&x, k, 0) < 1.0 && (int)floor(depth / spacing) == layer)
+      ids[(int)(*count)++] = (double)*mps_view_i64(&id, k, 0);
+  }
+  return status;
+}
+
+/* Pressure q on the strip x < B: 3/2 of it on the highest row of particles less 1/2 on the next,
+ * whose resultant acts at the surface. All ranks give the whole rows. */
+static mps_status load_strip(simulation *sim) {
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(&sim->m, &whole);
   for (int layer = 0; layer < 2 && status == MPS_OK; layer++) {
-    int64_t ids[2 * MOST_CELLS], count = 0;
+    double listed[2 * MOST_CELLS], count = 0.0;
+    int64_t ids[2 * MOST_CELLS];
     mps_mpm_load_def load = mps_mpm_load_defaults();
-    for (int64_t k = 0; k < x.shape[0]; k++) {
-      const double depth = STRIP_WIDTHS - *mps_view_f64(&x, k, 1);
-      if (*mps_view_f64(&x, k, 0) < 1.0 && (int)floor(depth / spacing) == layer)
-        ids[count++] = *mps_view_i64(&id, k, 0);
-    }
-    load.ids = ids, load.id_count = count;
+    if (whole) status = list_row(sim, whole, layer, listed, &count);
+    status = mpm_model_tell(&sim->m, status, 1, &count);
+    if (status == MPS_OK) status = mpm_model_tell(&sim->m, status, (int)count, listed);
+    if (status != MPS_OK) return status;
+    for (int k = 0; k < (int)count; k++) ids[k] = (int64_t)listed[k];
+    load.ids = ids, load.id_count = (int64_t)count;
     load.traction[1] = sim->s.load * (layer == 0 ? -1.5 : 0.5);
     status = mps_mpm_add_load(sim->m.mpm, &load, NULL);
   }
@@ -370,21 +409,15 @@ static double degree_of(const simulation *sim, const instant *now) {
 static mps_status measure(simulation *sim) {
   const settings *s = &sim->s;
   instant *now = &sim->row[sim->rows];
-  mps_view u;
   mps_totals totals;
   mps_pore_budget water;
   mps_reaction plate = {0};
-  mps_status status = mps_particles_view(sim->m.particles, "pore_pressure", &u);
+  mps_status status = read_profile(sim, now);
   if (status == MPS_OK) status = mps_mpm_get_totals(sim->m.mpm, &totals);
   if (status == MPS_OK) status = mps_mpm_get_pore_budget(sim->m.mpm, &water);
   if (status == MPS_OK && has_plate(s))
     status = mps_mpm_get_reaction(sim->m.mpm, MPS_MPM_SIDE_Y_UPPER, &plate);
   if (status != MPS_OK) return status;
-  const bool shifted = is_column(s) || s->kase == CRYER;
-  for (int k = 0; k < sim->points; k++) {
-    const int64_t at = mps_particles_index(sim->m.particles, sim->id[k]);
-    now->u[k] = *mps_view_f64(&u, at, 0) / s->load + (shifted ? 1.0 + start_of(s) / s->load : 0.0);
-  }
   const double m = s->load / sim->modulus, lost = 1.0 - totals.volume / sim->volume;
   now->T = sim->time[sim->rows];
   now->settlement = is_column(s) ? lost : s->kase == CRYER ? lost / 3.0 : NAN;

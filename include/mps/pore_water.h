@@ -39,7 +39,7 @@ typedef enum mps_pore_scheme {
 
 typedef struct mps_pore_water_def {
   uint32_t struct_size;
-  int32_t scheme;      /* mps_pore_scheme, of pressures in time; IMPLICIT in one process only */
+  int32_t scheme;      /* mps_pore_scheme, of pressures in time */
   double porosity;     /* n in (0, 1) of all particles. NaN (default): the field `porosity` */
   double permeability; /* k, m/s, > 0 and at most 1, of all particles at their present porosity.
                           NaN (default): the field `permeability`, > 0 everywhere, where the set has
@@ -71,8 +71,8 @@ static inline mps_pore_water_def mps_pore_water_defaults(void) {
  *  member of `def` or a field out of range (the message names the particle), a density below that
  *  of the water in the pores, a law without a modulus at rest and no `bulk`, or a fixed dt above
  *  the new limit; MPS_ERROR_STATE: the solver has taken steps or has water already;
- *  MPS_ERROR_UNSUPPORTED: the energy budget, or implicit pressures on several ranks;
- *  MPS_ERROR_MEMORY. On an error the solver is as before. */
+ *  MPS_ERROR_UNSUPPORTED: the energy budget; MPS_ERROR_MEMORY. On an error the solver is as before.
+ */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_pore_water(mps_mpm *mpm,
                                                         const mps_pore_water_def *def);
 /** The definition of the water, with its defaults completed (`porosity` and `permeability` stay NaN

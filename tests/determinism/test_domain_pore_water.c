@@ -9,36 +9,37 @@
 
 /* Ground that falls on a corner, so that its surface crosses cells: layers in the plane, a body
  * that goes into it, a ring and a block in space. */
-enum { LAYERS, SETTLED, AROUND, BLOCK, UNDRAINED };
+enum { LAYERS, SETTLED, AROUND, BLOCK, UNDRAINED, KINDS };
+enum { IMPLICIT = KINDS }; /* to add to these: pressures are implicit */
 
-static int dim_here(int what) { return what == BLOCK ? 3 : 2; }
+static int dim_here(int kind) { return kind == BLOCK ? 3 : 2; }
 
-static mps_mpm_def ground_def(mps_domain *domain, int what) {
+static mps_mpm_def ground_def(mps_domain *domain, int kind) {
   mps_mpm_def def = mps_mpm_defaults();
   def.domain = domain;
-  def.geometry = what == AROUND  ? MPS_MPM_GEOMETRY_AXISYMMETRIC
-                 : what == BLOCK ? MPS_MPM_GEOMETRY_SPACE
+  def.geometry = kind == AROUND  ? MPS_MPM_GEOMETRY_AXISYMMETRIC
+                 : kind == BLOCK ? MPS_MPM_GEOMETRY_SPACE
                                  : MPS_MPM_GEOMETRY_PLANE_STRAIN;
-  def.spline = what == UNDRAINED ? 2 : 3;
-  def.cell = what == BLOCK ? 0.08 : 0.04;
+  def.spline = kind == UNDRAINED ? 2 : 3;
+  def.cell = kind == BLOCK ? 0.08 : 0.04;
   def.gravity[1] = -9.81;
-  for (int c = 0; c < dim_here(what); c++) def.lower[c] = 0.0;
+  for (int c = 0; c < dim_here(kind); c++) def.lower[c] = 0.0;
   return def;
 }
 
-static mps_status make_ground(mps_context *own, int what, mps_particles **out) {
+static mps_status make_ground(mps_context *own, int kind, mps_particles **out) {
   mps_particles_def def = mps_particles_defaults();
-  const double lo[3] = {what == AROUND ? 0.0 : 0.03, 0.01, 0.03};
-  const double hi[3] = {what == BLOCK ? 0.83 : 1.13, 0.57, 0.75};
+  const double lo[3] = {kind == AROUND ? 0.0 : 0.03, 0.01, 0.03};
+  const double hi[3] = {kind == BLOCK ? 0.83 : 1.13, 0.57, 0.75};
   mps_view x;
   mps_edit v, k_of;
-  def.dim = dim_here(what);
-  def.spacing = what == BLOCK ? 0.04 : 0.02;
+  def.dim = dim_here(kind);
+  def.spacing = kind == BLOCK ? 0.04 : 0.02;
   mps_status status = mps_particles_create(own, &def, out);
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   TRY(mps_particles_set(*out, "density", 0, 1900.0));
   TRY(mps_particles_set(*out, "velocity", 0, 0.0));
-  if (what != UNDRAINED) TRY(mps_particles_add_field(*out, "permeability", 0));
+  if (kind != UNDRAINED) TRY(mps_particles_add_field(*out, "permeability", 0));
   TRY(mps_particles_view(*out, "position", &x));
   TRY(mps_particles_edit(*out, "velocity", &v));
   for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++) {
@@ -46,7 +47,7 @@ static mps_status make_ground(mps_context *own, int what, mps_particles **out) {
     *mps_edit_f64(&v, k, 1) = -2.0 + sin(4.0 * *mps_view_f64(&x, k, 0));
   }
   TRY(mps_particles_commit(*out, &v));
-  if (what == UNDRAINED) return status;
+  if (kind == UNDRAINED) return status;
   TRY(mps_particles_edit(*out, "permeability", &k_of));
   for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
     *mps_edit_f64(&k_of, k, 0) = *mps_view_f64(&x, k, 1) < 0.3 ? 1e-3 : 1e-5;
@@ -54,12 +55,13 @@ static mps_status make_ground(mps_context *own, int what, mps_particles **out) {
   return status;
 }
 
-static mps_status add_water(mps_mpm *mpm, int what) {
+static mps_status add_water(mps_mpm *mpm, int kind, bool implicit) {
   mps_pore_water_def def = mps_pore_water_defaults();
   mps_pore_face_def face = mps_pore_face_defaults();
   const double level[3] = {0.0, 0.4, 0.0};
   def.porosity = 0.4;
-  if (what != UNDRAINED) def.exponent = 2.0, def.ratio_slope = 0.5;
+  if (implicit) def.scheme = MPS_PORE_SCHEME_IMPLICIT;
+  if (kind != UNDRAINED) def.exponent = 2.0, def.ratio_slope = 0.5;
   face.kind = MPS_PORE_FACE_DRAINED;
   face.sides = 1u << MPS_MPM_SIDE_Y_LOWER;
   face.pressure = 3e3, face.at_rest = 1;
@@ -85,13 +87,14 @@ static mps_status add_disc(mps_context *own, mps_domain *domain, scene *s) {
 }
 
 static mps_status make_wet(mps_context *own, mps_domain *domain, int what, scene *s) {
-  const mps_mpm_def def = ground_def(domain, what);
-  mps_status status = make_ground(own, what, &s->set);
+  const int kind = what % IMPLICIT;
+  const mps_mpm_def def = ground_def(domain, kind);
+  mps_status status = make_ground(own, kind, &s->set);
   TRY(mps_material_create_linear_elastic(own, 2e5, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
-  TRY(add_water(s->mpm, what));
-  if (status == MPS_OK && what == SETTLED) status = add_disc(own, domain, s);
+  TRY(add_water(s->mpm, kind, what >= IMPLICIT));
+  if (status == MPS_OK && kind == SETTLED) status = add_disc(own, domain, s);
   return status;
 }
 
@@ -123,7 +126,7 @@ static mps_status compute_wet(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_mpm_step(s.mpm, steps - steps / 2));
   mps_snapshot_destroy(&then);
   TRY(keep_wet(domain, &s, r));
-  if (status == MPS_OK && what != UNDRAINED && (r->other[11] == 0.0 || r->other[13] == 0.0))
+  if (status == MPS_OK && what % IMPLICIT != UNDRAINED && (r->other[11] == 0.0 || r->other[13] == 0.0))
     status = MPS_ERROR_INTERNAL; /* water goes through both */
   end_scene(&s);
   return status;
@@ -139,6 +142,22 @@ static void test_around(void **state) { (void)state, compare_teams(compute_wet, 
 static void test_block(void **state) { (void)state, compare_teams(compute_wet, BLOCK, 40, true); }
 static void test_undrained(void **state) {
   (void)state, compare_teams(compute_wet, UNDRAINED, 60, true);
+}
+
+static void test_implicit_layers(void **state) {
+  (void)state, compare_teams(compute_wet, IMPLICIT + LAYERS, 24, false);
+}
+static void test_implicit_settled(void **state) {
+  (void)state, compare_teams(compute_wet, IMPLICIT + SETTLED, 16, true);
+}
+static void test_implicit_around(void **state) {
+  (void)state, compare_teams(compute_wet, IMPLICIT + AROUND, 16, true);
+}
+static void test_implicit_block(void **state) {
+  (void)state, compare_teams(compute_wet, IMPLICIT + BLOCK, 8, true);
+}
+static void test_implicit_undrained(void **state) {
+  (void)state, compare_teams(compute_wet, IMPLICIT + UNDRAINED, 16, true);
 }
 
 /* ---- cut in two ------------------------------------------------------------------------------ */
@@ -167,19 +186,16 @@ static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t 
 
 /* Written on 4 ranks, a run continues with the bits of one that was not cut, on 3 and without a
  * domain; written without a domain, on 3. */
-static void test_cut(void **state) {
-  (void)state;
-  if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
-  const int64_t steps = 40;
+static void cut(int what, int64_t steps) {
   result half = {0}, whole = {0}, on = {0};
   mps_context *own = test_context(MPS_CONTEXT_EXECUTOR_SERIAL, 1);
-  mps_assert_ok(own, halve(own, NULL, LAYERS, 2 * steps, NULL, NULL, &whole));
-  mps_assert_ok(own, begin(own, NULL, LAYERS, steps, &half));
-  compare_part(go_on, 3, LAYERS, steps, &whole, false);
+  mps_assert_ok(own, halve(own, NULL, what, 2 * steps, NULL, NULL, &whole));
+  mps_assert_ok(own, begin(own, NULL, what, steps, &half));
+  compare_part(go_on, 3, what, steps, &whole, false);
   remove(CHECKPOINT);
-  compare_part(begin, 4, LAYERS, steps, &half, false);
-  compare_part(go_on, 3, LAYERS, steps, &whole, false);
-  mps_assert_ok(own, go_on(own, NULL, LAYERS, steps, &on));
+  compare_part(begin, 4, what, steps, &half, false);
+  compare_part(go_on, 3, what, steps, &whole, false);
+  mps_assert_ok(own, go_on(own, NULL, what, steps, &on));
   int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
   compare(&whole, &on, seen);
   free(seen);
@@ -188,20 +204,29 @@ static void test_cut(void **state) {
   remove(CHECKPOINT);
 }
 
+static void test_cut(void **state) {
+  (void)state;
+  if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
+  cut(LAYERS, 40);
+  cut(IMPLICIT + LAYERS, 8);
+}
+
 /* ---- what goes wrong on one rank ------------------------------------------------------------- */
 
 static void test_refused_memory(void **state) {
   (void)state, refuse_memory(compute_wet, LAYERS, 8, 9);
+  refuse_memory(compute_wet, IMPLICIT + LAYERS, 6, 9);
 }
 
-enum { OTHER_BULK, BAD_POROSITY, OTHER_FACE, OTHER_LEVEL, OTHER_NUMBER, IMPLICIT, TROUBLES };
+enum { OTHER_BULK, BAD_POROSITY, OTHER_FACE, OTHER_LEVEL, OTHER_NUMBER, OTHER_SCHEME, NO_SOLUTION, TROUBLES };
 
 static const trouble_case trouble[TROUBLES] = {
     [OTHER_BULK] = {MPS_ERROR_ARGUMENT, "bulk is "},
     [BAD_POROSITY] = {MPS_ERROR_ARGUMENT, "rank 1: porosity is -1"},
     [OTHER_FACE] = {MPS_ERROR_ARGUMENT, "pressure is "},
     [OTHER_LEVEL] = {MPS_ERROR_ARGUMENT, "point is "},
-    [IMPLICIT] = {MPS_ERROR_UNSUPPORTED, "scheme is 1"},
+    [OTHER_SCHEME] = {MPS_ERROR_ARGUMENT, "scheme is "},
+    [NO_SOLUTION] = {MPS_ERROR_NUMERIC, "pressures of the pore water have a residual of "},
     [OTHER_NUMBER] = {MPS_ERROR_ARGUMENT, "number is "},
 };
 
@@ -218,12 +243,15 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_mpm_create(own, s.set, s.material[0], &solver, &s.mpm));
   TRY(mps_particles_set(s.set, "permeability", 0, 1e-4));
   def.porosity = what == BAD_POROSITY && rank == 1 ? -1.0 : 0.4;
-  if (what == IMPLICIT) def.scheme = MPS_PORE_SCHEME_IMPLICIT;
+  if (what == NO_SOLUTION || (what == OTHER_SCHEME && rank == 1))
+    def.scheme = MPS_PORE_SCHEME_IMPLICIT;
+  if (what == NO_SOLUTION) def.porosity = 1e-305, def.bulk = 1e15; /* S is 0 in doubles */
   if (what == OTHER_BULK) def.bulk = 1e7 * (1 + rank);
   face.pressure = what == OTHER_FACE ? rank : 0.0;
   TRY(mps_mpm_add_pore_water(s.mpm, &def));
   TRY(mps_mpm_add_pore_face(s.mpm, &face, NULL));
   TRY(mps_mpm_set_pore_level(s.mpm, level));
+  if (what == NO_SOLUTION) TRY(mps_mpm_step(s.mpm, 1));
   TRY(mps_mpm_get_pore_flow(s.mpm, what == OTHER_NUMBER && rank == 2 ? 0 : -1, NULL, &mass));
   end_scene(&s);
   return status;
@@ -237,7 +265,13 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_layers),         cmocka_unit_test(test_settled),
       cmocka_unit_test(test_around),         cmocka_unit_test(test_block),
-      cmocka_unit_test(test_undrained),      cmocka_unit_test(test_cut),
+      cmocka_unit_test(test_undrained),
+      cmocka_unit_test(test_implicit_layers),
+      cmocka_unit_test(test_implicit_settled),
+      cmocka_unit_test(test_implicit_around),
+      cmocka_unit_test(test_implicit_block),
+      cmocka_unit_test(test_implicit_undrained),
+      cmocka_unit_test(test_cut),
       cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_trouble)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,13 +42,10 @@ static mps_status refuse(mps_context *context, const char *name, double value, d
                    mpsi_outside(value, low, high).text, allowed);
 }
 
-static mps_status check_definition(mps_context *context, const mps_pore_water_def *d, bool ranks) {
+static mps_status check_definition(mps_context *context, const mps_pore_water_def *d) {
   if (d->scheme != MPS_PORE_SCHEME_EXPLICIT && d->scheme != MPS_PORE_SCHEME_IMPLICIT)
     return mpsi_fail(context, add, MPS_ERROR_ARGUMENT,
                      "scheme is %d, allowed are 0 (explicit) and 1 (implicit)", d->scheme);
-  if (ranks && d->scheme == MPS_PORE_SCHEME_IMPLICIT)
-    return mpsi_fail(context, add, MPS_ERROR_UNSUPPORTED,
-                     "scheme is 1: on several ranks pressures are explicit, must be 0");
   if (!isnan(d->porosity) && !(d->porosity > 0.0 && d->porosity < 1.0))
     return refuse(context, "porosity", d->porosity, 0.0, 1.0,
                   "in (0, 1), or NaN for the field 'porosity'");
@@ -223,7 +220,7 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   mps_status status = check_solver(mpm);
   if (status == MPS_OK && user_def)
     status = MPSI_DEF_READ(mpm->context, __func__, mps_pore_water_def, user_def, &def);
-  if (status == MPS_OK) status = check_definition(mpm->context, &def, mpm->partition != NULL);
+  if (status == MPS_OK) status = check_definition(mpm->context, &def);
   status = agree_on_water(mpm, status, &def);
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   if (status != MPS_OK) return status;

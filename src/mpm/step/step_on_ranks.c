@@ -107,8 +107,10 @@ static mps_status step_on_ranks(mps_mpm *mpm, const char *function, double dt) {
   if (refused)
     return mpsi_domain_agree(mpm->partition->domain, function, mpsi_step_refuse(mpm, function));
   mpsi_step_complete(mpm);
-  if (mpm->water && !mpsi_any_failed(&mpm->grid, mpm->partition))
-    status = mpsi_pore_update(mpm, function); /* explicit, without errors of its own */
+  if (mpm->water && !mpsi_any_failed(&mpm->grid, mpm->partition)) {
+    status = mpsi_pore_update(mpm, function);
+    if (status != MPS_OK) mpm->run.broken = true;
+  }
   return status != MPS_OK ? status : mpsi_mpm_collect_block_results(mpm, function);
 }
 

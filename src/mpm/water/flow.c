@@ -409,9 +409,10 @@ static void find_equations(void *data, int64_t g, int32_t worker) {
   const mpsi_pore_cell *cell = water->cell + first;
   (void)worker;
   memset(water->outflow[g], 0, sizeof water->outflow[g]);
+  if (!mpsi_mpm_counts_node_block(&mpm->grid, g)) return; /* another rank has its equations */
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     water->system->scale[first + k] = 0.0; /* no unknown */
-    water->system->direction[first + k] = 0.0;
+    water->system->direction[first + k] = water->system->change[first + k] = 0.0;
     if (mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin)
       find_equation(mpm, g, k, &cell[k]);
   }

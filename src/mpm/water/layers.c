@@ -1,7 +1,7 @@
 /* layers.c - see layers.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "layers.h"
 
-#include "mpm/ranks/block_range.h"
+#include "notices.h"
 
 #include <string.h>
 
@@ -9,81 +9,14 @@ static const char step[] = "mps_mpm_step";
 
 /* ---- which layers ---------------------------------------------------------------------------- */
 
-/* A block of nodes as the rank that counts it announces it. */
-typedef struct notice {
-  int32_t number, at[3];
-} notice;
-
 /* Search for layers. */
 typedef struct search {
   const mps_mpm *mpm;
   const char *function;
-  int64_t *range; /* of the blocks that each rank computes (block_range.h) */
-  notice *sent;
-  mps_domain_message *message;
-  mpsi_mailbox box;
+  mpsi_pore_notices notices;
   int32_t *rank; /* of each guest */
   int64_t *index;
 } search;
-
-static mps_status find_ranges(search *s) {
-  const mpsi_grid *grid = &s->mpm->grid;
-  mps_domain *domain = s->mpm->partition->domain;
-  const int64_t ranks = mps_domain_size(domain);
-  s->range = mpsi_alloc(s->mpm->context, MPSI_BLOCK_RANGE * ranks, sizeof *s->range);
-  mps_status status = MPS_OK;
-  if (!s->range)
-    status = mpsi_fail_memory(s->mpm->context, s->function,
-                              (size_t)(MPSI_BLOCK_RANGE * ranks) * sizeof *s->range);
-  status = mpsi_domain_agree(domain, s->function, status);
-  if (status != MPS_OK) return status;
-  memset(s->range, 0, (size_t)(MPSI_BLOCK_RANGE * ranks) * sizeof *s->range);
-  int64_t *mine = s->range + MPSI_BLOCK_RANGE * mps_domain_rank(domain);
-  for (int64_t g = 0; g < grid->node_count; g++) {
-    if (grid->nodes[g].foreign) continue;
-    mpsi_block_range_add(mine, grid->nodes[g].at);
-  }
-  return mpsi_domain_sum(domain, s->function, (int32_t)(MPSI_BLOCK_RANGE * ranks), s->range);
-}
-
-static bool announces(const search *s, int32_t rank, int64_t g) {
-  return rank != mps_domain_rank(s->mpm->partition->domain) && !s->mpm->grid.nodes[g].foreign &&
-         mpsi_mpm_counts_node_block(&s->mpm->grid, g) &&
-         mpsi_block_range_near(s->range + MPSI_BLOCK_RANGE * rank, s->mpm->grid.nodes[g].at);
-}
-
-static mps_status announce(search *s) {
-  const mpsi_grid *grid = &s->mpm->grid;
-  mps_context *context = s->mpm->context;
-  mps_domain *domain = s->mpm->partition->domain;
-  const int32_t ranks = mps_domain_size(domain);
-  int64_t notices = 0;
-  int32_t messages = 0;
-  for (int32_t r = 0; r < ranks; r++)
-    for (int64_t g = 0; g < grid->node_count; g++) notices += announces(s, r, g);
-  s->sent = mpsi_alloc(context, notices, sizeof *s->sent);
-  s->message = mpsi_alloc(context, ranks, sizeof *s->message);
-  mps_status status = MPS_OK;
-  if (!s->sent || !s->message)
-    status = mpsi_fail_memory(context, s->function, (size_t)notices * sizeof *s->sent);
-  notices = 0;
-  for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
-    const int64_t first = notices;
-    for (int64_t g = 0; g < grid->node_count; g++) {
-      if (!announces(s, r, g)) continue;
-      s->sent[notices].number = (int32_t)g;
-      memcpy(s->sent[notices++].at, grid->nodes[g].at, sizeof grid->nodes[g].at);
-    }
-    if (notices > first)
-      s->message[messages++] =
-          (mps_domain_message){.rank = r,
-                               .bytes = (notices - first) * (int64_t)sizeof *s->sent,
-                               .data = s->sent + first};
-  }
-  status = mpsi_domain_agree(domain, s->function, status);
-  if (status != MPS_OK) return status;
-  return mpsi_domain_exchange(domain, s->function, messages, s->message, &s->box);
-}
 
 /* Whether the rank computes the cells on the other side of the block's face `direction`. */
 static bool is_at_face(const mpsi_grid *grid, const int32_t *at, int direction) {
@@ -94,8 +27,7 @@ static bool is_at_face(const mpsi_grid *grid, const int32_t *at, int direction) 
 
 static bool make_room(search *s, mpsi_pore_layers *layers) {
   mps_context *context = s->mpm->context;
-  int64_t most = 0;
-  for (int32_t m = 0; m < s->box.count; m++) most += s->box.mail[m].bytes / (int64_t)sizeof(notice);
+  const int64_t most = mpsi_pore_count_notices(&s->notices);
   s->rank = mpsi_alloc(context, 6 * most, sizeof *s->rank);
   s->index = mpsi_alloc(context, 6 * most, sizeof *s->index);
   const bool good =
@@ -112,14 +44,15 @@ static bool make_room(search *s, mpsi_pore_layers *layers) {
 static mps_status choose(search *s, mpsi_pore_layers *layers) {
   const mpsi_grid *grid = &s->mpm->grid;
   if (!make_room(s, layers)) return mpsi_fail_memory(s->mpm->context, s->function, 24);
-  for (int32_t m = 0; m < s->box.count; m++) {
-    const notice *from = s->box.mail[m].data;
-    for (int64_t k = 0; k < s->box.mail[m].bytes / (int64_t)sizeof *from; k++) {
+  const mpsi_mailbox *box = &s->notices.box;
+  for (int32_t m = 0; m < box->count; m++) {
+    const mpsi_pore_notice *from = box->mail[m].data;
+    for (int64_t k = 0; k < box->mail[m].bytes / (int64_t)sizeof *from; k++) {
       const int64_t before = layers->guests;
       if (mpsi_pore_own_block(grid, from[k].at) >= 0) continue;
       for (int d = 0; d < 2 * grid->dim; d++) {
         if (!is_at_face(grid, from[k].at, d)) continue;
-        s->rank[layers->guests] = s->box.mail[m].rank;
+        s->rank[layers->guests] = box->mail[m].rank;
         s->index[layers->guests] = 6 * (int64_t)from[k].number + d;
         layers->block[layers->guests] = (int32_t)(grid->node_count + layers->blocks);
         layers->direction[layers->guests++] = (int8_t)d;
@@ -195,8 +128,7 @@ static double widest(const mps_mpm *mpm) {
 static mps_status find(search *s, mpsi_pore_layers *layers) {
   mps_domain *domain = s->mpm->partition->domain;
   double most = widest(s->mpm);
-  mps_status status = find_ranges(s);
-  if (status == MPS_OK) status = announce(s);
+  mps_status status = mpsi_pore_find_notices(s->mpm, s->function, &s->notices);
   if (status != MPS_OK) return status;
   layers->guests = layers->blocks = 0;
   status = mpsi_domain_agree_max(domain, s->function, choose(s, layers), 1, &most);
@@ -209,14 +141,14 @@ static mps_status find(search *s, mpsi_pore_layers *layers) {
 
 mps_status mpsi_pore_find_layers(mps_mpm *mpm, const char *function) {
   mpsi_pore_layers *layers = mpm->water->layers;
-  search s = {.mpm = mpm, .function = function, .box.context = mpm->context};
+  search s = {.mpm = mpm, .function = function};
   mpsi_halo_destroy(mpm->context, &layers->halo);
   const mps_status status = find(&s, layers);
   if (status != MPS_OK) layers->guests = layers->blocks = 0;
   layers->searches = status == MPS_OK ? mpm->partition->searches : -1;
-  mpsi_domain_free_mail(&s.box);
-  void *parts[] = {s.range, s.sent, s.message, s.rank, s.index};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+  mpsi_pore_free_notices(mpm->context, &s.notices);
+  mpsi_free(mpm->context, s.rank);
+  mpsi_free(mpm->context, s.index);
   return status;
 }
 

@@ -1,8 +1,8 @@
 /* update.c - the water's part of a step: what comes before the scatter, and what comes after the
  * particles have moved. SPDX-License-Identifier: BSD-3-Clause */
-#include "implicit.h"
 #include "layers.h"
 #include "mpm/base/kernels.h"
+#include "system.h"
 #include "water.h"
 
 #include <string.h>
@@ -88,8 +88,8 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   if (!mpm->water) return status;
   status = renew_layers(mpm, function, status);
   if (status == MPS_OK) status = make_room(mpm->context, &mpm->grid, &mpm->p, mpm->water, function);
-  if (status == MPS_OK && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
-    status = mpsi_pore_make_system(mpm, function);
+  if (mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
+    status = mpsi_pore_make_system(mpm, function, status);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =

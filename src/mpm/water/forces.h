@@ -1,0 +1,12 @@
+/* forces.h - forces of the cells on their nodes, for pressures that are implicit (forces.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_WATER_FORCES_H
+#define MPSI_MPM_WATER_FORCES_H
+
+#include "system.h"
+
+/* Forces of the cells, masses of their nodes and which components are prescribed, also in the rim.
+ * Collective. MPS_ERROR_MEMORY. */
+mps_status mpsi_pore_find_forces(mps_mpm *mpm, const char *function);
+
+#endif

@@ -1,0 +1,193 @@
+/* system.c - see system.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "rim.h"
+
+#include <string.h>
+
+/* Below so many terms of G a loop is over before a second thread has begun it. */
+enum { FEWEST_TERMS = 32 * MPSI_SIDE * MPSI_SIDE * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
+
+typedef struct mpsi_pore_system system_of;
+
+/* ---- room ------------------------------------------------------------------------------------ */
+
+static bool ensure(mps_mpm *mpm, mpsi_room *room, int64_t count, size_t size) {
+  return mpsi_room_ensure(mpm->context, room, count, size);
+}
+
+/* Number of the block at `at` of those that the system has, or -1. */
+static int32_t find_block(const mpsi_grid *grid, const system_of *s, const int32_t *at) {
+  const int32_t own = mpsi_pore_own_block(grid, at);
+  if (own >= 0 && mpsi_mpm_counts_node_block(grid, own)) return own;
+  const int32_t rim = mpsi_pore_rim_block_at(s->rim, at);
+  return rim < 0 ? -1 : (int32_t)grid->node_count + rim;
+}
+
+static void find_around_block(const mpsi_grid *grid, system_of *s, int64_t g, const int32_t *of) {
+  for (int k = 0; k < MPSI_PORE_AROUND; k++) {
+    int32_t at[3], step[3];
+    mpsi_unravel(k, 3, step);
+    for (int c = 0; c < 3; c++) at[c] = of[c] + step[c] - 1;
+    s->around[g][k] = grid->dim == 2 && step[2] != 1 ? -1 : find_block(grid, s, at);
+  }
+}
+
+static void find_around(const mpsi_grid *grid, system_of *s) {
+  for (int64_t g = 0; g < grid->node_count; g++)
+    find_around_block(grid, s, g, grid->nodes[g].at);
+  for (int64_t k = 0; s->rim && k < s->rim->blocks; k++)
+    find_around_block(grid, s, grid->node_count + s->rim->block[k].number, s->rim->block[k].at);
+}
+
+static mps_status make_room(mps_mpm *mpm, const char *function) {
+  enum { VECTORS = 7 };
+  system_of *s = mpm->water->system;
+  const int64_t blocks = mpm->grid.node_count, all = blocks + (s->rim ? s->rim->blocks : 0);
+  const int64_t nodes = blocks * mpm->grid.block_nodes + (s->rim ? s->rim->cells : 0);
+  const int places = mpsi_pore_box_places(&mpm->grid);
+  const bool good = ensure(mpm, &s->around_room, all, sizeof *s->around) &&
+                    ensure(mpm, &s->mass_room, nodes, sizeof *s->mass) &&
+                    ensure(mpm, &s->velocity_room, nodes, sizeof *s->velocity) &&
+                    ensure(mpm, &s->held_room, nodes, sizeof *s->held) &&
+                    ensure(mpm, &s->row_room, nodes, sizeof *s->row) &&
+                    ensure(mpm, &s->conductance_room, nodes, sizeof *s->conductance) &&
+                    ensure(mpm, &s->vector_room, VECTORS * nodes, sizeof(double)) &&
+                    ensure(mpm, &s->tile_room, all * places, sizeof *s->tile) &&
+                    ensure(mpm, &s->part_room, blocks, sizeof *s->part);
+  if (!good)
+    return mpsi_fail_memory(mpm->context, function, (size_t)(VECTORS * nodes) * sizeof(double));
+  s->around = s->around_room.item;
+  s->mass = s->mass_room.item;
+  s->velocity = s->velocity_room.item;
+  s->held = s->held_room.item;
+  s->row = s->row_room.item;
+  s->conductance = s->conductance_room.item;
+  s->tile = s->tile_room.item;
+  s->part = s->part_room.item;
+  double **const vector[VECTORS] = {&s->diagonal,  &s->scale,   &s->change, &s->residual,
+                                    &s->direction, &s->product, &s->inverse};
+  for (int k = 0; k < VECTORS; k++) *vector[k] = (double *)s->vector_room.item + k * nodes;
+  return MPS_OK;
+}
+
+static mps_status make_first(mps_mpm *mpm, const char *function) {
+  system_of *s = mpm->water->system;
+  if (s) return MPS_OK;
+  s = mpm->water->system = mpsi_alloc(mpm->context, 1, sizeof *s);
+  if (!s) return mpsi_fail_memory(mpm->context, function, sizeof *s);
+  memset(s, 0, sizeof *s);
+  return MPS_OK;
+}
+
+/* On several ranks, with another rim than in the last step: all agree on their room. */
+static mps_status renew(mps_mpm *mpm, const char *function, mps_status status) {
+  mps_domain *domain = mpm->partition->domain;
+  status = mpsi_domain_agree(domain, function, status);
+  if (status == MPS_OK) status = mpsi_pore_find_rim(mpm, function);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_agree(domain, function, make_room(mpm, function));
+  if (status != MPS_OK) mpm->water->system->rim->searches = -1;
+  return status;
+}
+
+mps_status mpsi_pore_make_system(mps_mpm *mpm, const char *function, mps_status status) {
+  if (status == MPS_OK) status = make_first(mpm, function);
+  const system_of *s = mpm->water->system;
+  if (!mpm->partition) {
+    if (status == MPS_OK) status = make_room(mpm, function);
+  } else if (!s || !s->rim || s->rim->searches != mpm->partition->searches) {
+    status = renew(mpm, function, status);
+  }
+  if (status == MPS_OK) find_around(&mpm->grid, mpm->water->system);
+  return status;
+}
+
+void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
+  system_of *s = *pointer;
+  *pointer = NULL;
+  if (!s) return;
+  mpsi_pore_free_rim(context, &s->rim);
+  const mpsi_room room[] = {s->around_room, s->mass_room,  s->velocity_room, s->held_room,
+                            s->row_room,    s->force_room, s->vector_room,   s->conductance_room,
+                            s->tile_room,   s->part_room};
+  for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
+  mpsi_free(context, s);
+}
+
+/* ---- loops over blocks ----------------------------------------------------------------------- */
+
+int64_t mpsi_pore_number(const mpsi_grid *grid, const system_of *s, int64_t g, int local) {
+  if (g < grid->node_count) return mpsi_first_node(grid, g) + local;
+  const int32_t cell = s->rim->cell[(g - grid->node_count) * grid->block_nodes + local];
+  return cell < 0 ? -1 : grid->node_count * grid->block_nodes + cell;
+}
+
+/* The node or cell at `offset` from the first of block g, or -1. */
+static int64_t find_at(const mpsi_grid *grid, const system_of *s, int64_t g, const int *offset) {
+  int block = 0, local = 0;
+  for (int c = 2; c >= 0; c--) {
+    const int place = c < grid->dim ? offset[c] : 0;
+    block = 3 * block + (place < 0 ? 0 : place < MPSI_SIDE ? 1 : 2);
+    local = MPSI_SIDE * local + (place & (MPSI_SIDE - 1));
+  }
+  const int64_t to = s->around[g][block];
+  return to < 0 ? -1 : mpsi_pore_number(grid, s, to, local);
+}
+
+typedef struct block_loop {
+  mps_mpm *mpm;
+  mpsi_pore_blocks which;
+  mpsi_pore_task task;
+  double factor;
+} block_loop;
+
+static void run_block(void *data, int64_t g, int32_t worker) {
+  const block_loop *loop = data;
+  const mpsi_grid *grid = &loop->mpm->grid;
+  (void)worker;
+  if (g < grid->node_count && loop->which != MPSI_PORE_ALL)
+    if (loop->which == MPSI_PORE_COMPUTED ? grid->nodes[g].foreign
+                                          : !mpsi_mpm_counts_node_block(grid, g))
+      return;
+  loop->task(loop->mpm, loop->mpm->water->system, g, loop->factor);
+}
+
+void mpsi_pore_for_blocks(mps_mpm *mpm, mpsi_pore_blocks which, mpsi_pore_task task,
+                          double factor) {
+  block_loop loop = {mpm, which, task, factor};
+  const bool rim = mpm->water->system->rim && (which == MPSI_PORE_ALL || which == MPSI_PORE_NEAR);
+  const int64_t blocks = mpm->grid.node_count + (rim ? mpm->water->system->rim->blocks : 0);
+  if (blocks * mpm->grid.block_nodes * mpsi_pore_span_nodes(&mpm->grid) >= FEWEST_TERMS) {
+    mpsi_parallel_for(mpm->context, blocks, run_block, &loop);
+    return;
+  }
+  for (int64_t g = 0; g < blocks; g++) run_block(&loop, g, 0);
+}
+
+mps_status mpsi_pore_sum_blocks(mps_mpm *mpm, const char *function, mpsi_pore_task task,
+                                double factor, double *out) {
+  const mpsi_grid *grid = &mpm->grid;
+  mpsi_exact sum = {{0}};
+  mps_status status = MPS_OK;
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, task, factor);
+  for (int64_t g = 0; g < grid->node_count; g++)
+    if (mpsi_mpm_counts_node_block(grid, g)) mpsi_exact_add(&sum, mpm->water->system->part[g]);
+  if (mpm->partition) status = mpsi_domain_sum_exact(mpm->partition->domain, function, 1, &sum);
+  *out = mpsi_exact_value(&sum);
+  return status;
+}
+
+static void find_tile(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+  const mpsi_grid *grid = &mpm->grid;
+  int32_t *tile = s->tile + g * mpsi_pore_box_places(grid);
+  (void)factor;
+  for (int t = 0; t < mpsi_pore_box_places(grid); t++) {
+    int offset[3];
+    mpsi_unravel(t, MPSI_PORE_BOX, offset);
+    for (int c = 0; c < 3; c++) offset[c] -= MPSI_PORE_BEFORE;
+    tile[t] = (int32_t)find_at(grid, s, g, offset);
+  }
+}
+
+void mpsi_pore_find_tiles(mps_mpm *mpm) {
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_ALL, find_tile, 0.0);
+}

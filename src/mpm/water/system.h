@@ -1,0 +1,114 @@
+/* system.h - the system of pressures that are implicit in time (implicit.c): its memory, which
+ * nodes and cells are in reach of which, and loops and sums over its blocks. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_WATER_SYSTEM_H
+#define MPSI_MPM_WATER_SYSTEM_H
+
+#include "water.h"
+
+typedef struct mpsi_pore_rim mpsi_pore_rim; /* rim.h */
+
+enum { MPSI_PORE_AROUND = 27, MPSI_PORE_SPAN = 4 }; /* blocks; nodes of a cell along each axis */
+enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
+
+/* The box of nodes or cells in reach of a block's own: from BEFORE places before it on. */
+enum {
+  MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2,
+  MPSI_PORE_BOX = MPSI_SIDE + 2 * MPSI_PORE_BEFORE
+};
+
+/* What forces and masses need of a particle. */
+typedef struct mpsi_pore_grain {
+  double x[3], V, m;
+  int64_t place; /* as in mpsi_water */
+} mpsi_pore_grain;
+
+/* Arrays by nodes of the grid are vectors of the system: values of cells. On several ranks those
+ * of the rim follow (rim.h), and its blocks those of the grid. */
+struct mpsi_pore_system {
+  int32_t (*around)[MPSI_PORE_AROUND]; /* by blocks: those around it, itself in the middle, or -1 */
+  int32_t *tile; /* by blocks: numbers of the nodes (and cells) in reach of its own, or -1 */
+  double *mass;  /* kg, by nodes */
+  double (*velocity)[3];    /* by nodes */
+  uint8_t *held;            /* by nodes: bit c, component c is prescribed */
+  int32_t *row;             /* by cells: where its forces are */
+  double *force;            /* of each filled cell [dim][span^dim]: sum V grad phi, m3/m */
+  double (*conductance)[6]; /* m3/(s Pa), by cells: to those beside */
+  double *diagonal, *scale; /* m3/Pa of storage and drained faces; root of space/V */
+  double *change, *residual, *direction, *product; /* Pa; m3 */
+  double *inverse;                                 /* of the matrix's diagonal */
+  double *part;                                    /* of sums, by blocks */
+  int64_t iterations;                              /* of the last step */
+  mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
+  mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
+  mpsi_room conductance_room, vector_room, tile_room, part_room;
+};
+
+static inline int mpsi_pore_box_places(const mpsi_grid *grid) {
+  return grid->dim == 3 ? MPSI_PORE_BOX * MPSI_PORE_BOX * MPSI_PORE_BOX
+                        : MPSI_PORE_BOX * MPSI_PORE_BOX;
+}
+
+static inline int mpsi_pore_span_nodes(const mpsi_grid *grid) {
+  return grid->dim == 3 ? MPSI_PORE_MOST_SPAN : MPSI_PORE_SPAN * MPSI_PORE_SPAN;
+}
+
+/* The place in a tile of what is `before` places before place k of the block along each axis. */
+static inline int mpsi_pore_place(const mpsi_grid *grid, int k, int before) {
+  int at[3];
+  mpsi_unravel(k, MPSI_SIDE, at);
+  for (int c = 0; c < grid->dim; c++) at[c] += MPSI_PORE_BEFORE - before;
+  return (at[2] * MPSI_PORE_BOX + at[1]) * MPSI_PORE_BOX + at[0];
+}
+
+/* Numbers of a cell's forces, and where they begin. */
+static inline int64_t mpsi_pore_row_numbers(const mpsi_grid *grid) {
+  return (int64_t)grid->dim * mpsi_pore_span_nodes(grid);
+}
+static inline double *mpsi_pore_row(const mpsi_grid *grid, const mpsi_pore_system *s,
+                                    int64_t cell) {
+  return s->force + s->row[cell] * mpsi_pore_row_numbers(grid);
+}
+
+/* Whether the cell has an unknown of its own. */
+static inline bool mpsi_pore_is_unknown(const mpsi_water *water, int64_t g, int k,
+                                        const mpsi_pore_cell *cell) {
+  return mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin;
+}
+
+/* Particle k. */
+static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  return (mpsi_pore_grain){.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
+                           .V = p->V[k],
+                           .m = p->m[k],
+                           .place = mpm->water->place[k]};
+}
+
+/* Room for the present blocks. `status`: of the step so far on this rank; on several ranks
+ * collective where the blocks are others than in the last step. MPS_ERROR_MEMORY. */
+mps_status mpsi_pore_make_system(mps_mpm *mpm, const char *function, mps_status status);
+void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **system);
+
+/* Node or cell `local` of block g of the grid or, behind those, of the rim; -1 where the rim has
+ * none. */
+int64_t mpsi_pore_number(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g, int local);
+/* What is in reach of each block, once a step: iterations look nothing up. */
+void mpsi_pore_find_tiles(mps_mpm *mpm);
+
+/* Blocks that a loop works on. */
+typedef enum mpsi_pore_blocks {
+  MPSI_PORE_COUNTED,  /* those that this rank counts */
+  MPSI_PORE_NEAR,     /* and those of the rim */
+  MPSI_PORE_COMPUTED, /* those whose cells this rank computes */
+  MPSI_PORE_ALL       /* all of the grid, and those of the rim */
+} mpsi_pore_blocks;
+
+/* Work on blocks, each by itself. */
+typedef void (*mpsi_pore_task)(mps_mpm *mpm, mpsi_pore_system *s, int64_t g, double factor);
+void mpsi_pore_for_blocks(mps_mpm *mpm, mpsi_pore_blocks which, mpsi_pore_task task, double factor);
+/* Work on the blocks that this rank counts, and the sum over all ranks of what it leaves in `part`:
+ * exact, so that it does not depend on their number. Collective. */
+mps_status mpsi_pore_sum_blocks(mps_mpm *mpm, const char *function, mpsi_pore_task task,
+                                double factor, double *out);
+
+#endif
