@@ -1,5 +1,6 @@
 /* element.h - the parts of mps-element: options (options.c), the law (law.c), the path of stress
- * and strain (path.c), results (results.c).
+ * and strain (path.c), cycles and what
+ * they are drawn and counted by (cycles.c), results (results.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_ELEMENT_H
 #define EXAMPLES_ELEMENT_H
@@ -19,12 +20,14 @@ enum {
   NEWTONIAN,
   CAM_CLAY,
   SMALL_STRAIN,
+  CYCLIC_SAND,
   LAWS
 };
 #define ELEMENT_LAWS                                                                               \
-  "elastic|neohookean|vonmises|tresca|druckerprager|mohrcoulomb|newtonian|mcc|smallstrain"
-enum { ISO, OEDOMETER, CU, CD, PS_UNDRAINED, EXTENSION, SHEAR, CYCLIC, FROM_FILE };
-#define ELEMENT_PATHS "iso|oedometer|cu|cd|ps-undrained|extension|shear|cyclic"
+  "elastic|neohookean|vonmises|tresca|druckerprager|mohrcoulomb|newtonian|mcc|smallstrain|"        \
+  "cyclicsand"
+enum { ISO, OEDOMETER, CU, CD, PS_UNDRAINED, EXTENSION, SHEAR, CYCLIC, CYCLIC_TRIAXIAL, FROM_FILE };
+#define ELEMENT_PATHS "iso|oedometer|cu|cd|ps-undrained|extension|shear|cyclic|cyclic-triaxial"
 
 typedef struct settings {
   int law, path;
@@ -43,6 +46,10 @@ typedef struct settings {
   double M, lambda, kappa, e0, ocr, shear_modulus;  /* e0: NaN, there is none */
   bool lode;
   double reference_strain, curvature, strength; /* small strain: 1, 1, Pa */
+  double csr;                                   /* cyclic stress ratio; NaN: by strain */
+  bool drained;                                 /* cyclic: stresses across are held */
+  double relative_density, blow_count, c[4];    /* cyclic sand; NaN: not given */
+  double threshold, strain_limit;               /* amplitudes, 1 */
   const char *out;
 } settings;
 
@@ -52,6 +59,7 @@ typedef struct stage {
   double strain[9];
   uint32_t controlled; /* MPS_MATERIAL_POINT_... */
   double stress[6];    /* Pa, change */
+  double deviator;     /* Pa, change of q at constant volume; 0: the above */
   int64_t steps;
 } stage;
 
@@ -60,6 +68,7 @@ enum { STAGES = 1000 };
 /* A row of path.csv. */
 typedef struct row {
   double strain, stress[6], p, q, u, void_ratio, pc, e[4], volume_ratio, plastic;
+  double contraction, cycles; /* NaN: the law, the path has none */
 } row;
 
 typedef struct element {
@@ -72,10 +81,11 @@ typedef struct element {
   int64_t rows, room;
   row *table;
   double e[4]; /* logarithmic strain xx, yy, zz, and engineering shear xy, so far */
-  int pc_at, void_at, plastic_at; /* columns of history; -1: the law has none */
+  int pc_at, void_at, plastic_at, contraction_at; /* columns of history; -1: the law has none */
+  bool stopped; /* stresses of a cyclic path are beyond the strength: it has ended before its end */
 } element;
 
-enum { ELEMENT_OPTIONS = 64 }; /* rows of the table at most, with the empty one */
+enum { ELEMENT_OPTIONS = 80 }; /* rows of the table at most, with the empty one */
 settings element_defaults(void);
 /* Writes the table, whose values are those of `s`. */
 void element_options(settings *s, option *table);
@@ -93,6 +103,22 @@ bool element_drive(element *x);
 
 /* path.csv, summary.json, pictures. `done`: the path has come to its end. */
 bool element_results(element *x, bool done);
+/* cycles.c: whether the path is cyclic, and whether its stresses are given. */
+bool element_is_cyclic(const settings *s);
+bool element_has_ratio(const settings *s);
+/* The stages of a cyclic path; returns how many. */
+int element_cyclic_path(const settings *s, stage *g);
+/* One step of an undrained triaxial test to q = sigma_xx - sigma_zz, at constant volume, in dt;
+ * `found`: its velocity gradient. */
+mps_status element_drive_deviator(element *x, double q, double dt, double found[9]);
+/* The effective stress that pore pressures are compared with: vertical, or p of a triaxial test. */
+double element_reference(const element *x);
+/* Cycles after which u is 0.95 of that stress or the stresses of the path are beyond the strength;
+ * NaN: never. */
+double element_liquefied(const element *x);
+/* cycles.csv, and the picture of u or volume strain over the cycles. */
+bool element_write_cycles(element *x);
+bool element_draw_cycles(element *x);
 /* Shear modulus and damping ratio of the last loop of a cyclic path; false: there is none. */
 bool element_loop(const element *x, double *modulus, double *damping);
 /* q at which the path ends under shear, by theory; NaN: none. */

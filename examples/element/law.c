@@ -12,43 +12,51 @@
 /* Options that only some laws read, each with a letter for every law, in their order. */
 static const struct {
   const char *option, *laws;
-} uses[] = {{"young", "ENVTDM  S"},
-            {"poisson", "ENVTDM CS"},
-            {"nu", "ENVTDM CS"},
-            {"cohesion", "  VTDM   "},
-            {"phi", "    DM   "},
-            {"psi", "    DM   "},
-            {"tension", "   TDM   "},
-            {"cone", "    D    "},
-            {"yield", "  V      "},
-            {"hardening", "  V      "},
-            {"residual", "  VT     "},
-            {"residual-phi", "     M   "},
-            {"residual-cohesion", "     M   "},
-            {"slip", "  VT M   "},
-            {"band", "  VT M   "},
-            {"linear", "   T M   "},
-            {"rate-factor", "  VT M   "},
-            {"rate-reference", "  VT M   "},
-            {"bulk", "      N  "},
-            {"viscosity", "      N  "},
-            {"M", "       C "},
-            {"lambda", "       C "},
-            {"kappa", "       C "},
-            {"ocr", "       C "},
-            {"shear-modulus", "       CS"},
-            {"lode", "       C "},
-            {"reference-strain", "        S"},
-            {"curvature", "        S"},
-            {"strength", "        S"},
-            {"p0", "E VTDM CS"},
-            {"k0", "E VTDM CS"}};
+} uses[] = {{"young", "ENVTDM  SQ"},
+            {"poisson", "ENVTDM CSQ"},
+            {"nu", "ENVTDM CSQ"},
+            {"cohesion", "  VTDM   Q"},
+            {"phi", "    DM   Q"},
+            {"psi", "    DM   Q"},
+            {"tension", "   TDM    "},
+            {"cone", "    D     "},
+            {"yield", "  V       "},
+            {"hardening", "  V       "},
+            {"residual", "  VT      "},
+            {"residual-phi", "     M    "},
+            {"residual-cohesion", "     M    "},
+            {"slip", "  VT M    "},
+            {"band", "  VT M    "},
+            {"linear", "   T M    "},
+            {"rate-factor", "  VT M    "},
+            {"rate-reference", "  VT M    "},
+            {"bulk", "      N   "},
+            {"viscosity", "      N   "},
+            {"M", "       C  "},
+            {"lambda", "       C  "},
+            {"kappa", "       C  "},
+            {"ocr", "       C  "},
+            {"shear-modulus", "       CS "},
+            {"lode", "       C  "},
+            {"reference-strain", "        S "},
+            {"curvature", "        S "},
+            {"strength", "        S "},
+            {"relative-density", "         Q"},
+            {"blow-count", "         Q"},
+            {"c1", "         Q"},
+            {"c2", "         Q"},
+            {"c3", "         Q"},
+            {"c4", "         Q"},
+            {"threshold", "         Q"},
+            {"strain-limit", "         Q"},
+            {"p0", "E VTDM CSQ"},
+            {"k0", "E VTDM CSQ"}};
 
 static const char *check_uses(const settings *s, const option *table) {
   static char text[160];
-  static const char *const names[] = {"elastic",   "neohookean",    "vonmises",
-                                      "tresca",    "druckerprager", "mohrcoulomb",
-                                      "newtonian", "mcc",           "smallstrain"};
+  static const char *const names[] = {"elastic",       "neohookean",  "vonmises",  "tresca",
+                                      "druckerprager", "mohrcoulomb", "newtonian", "mcc",
+                                      "smallstrain",   "cyclicsand"};
   for (size_t k = 0; k < sizeof uses / sizeof *uses; k++) {
     if (!options_given(table, uses[k].option) || uses[k].laws[s->law] != ' ') continue;
     char list[100] = "";
@@ -79,7 +87,16 @@ const char *element_settle(settings *s, const option *table) {
   if (s->law == TRESCA) s->phi = s->psi = 0.0;
   if (isnan(s->yield)) s->yield = ROOT3 * s->cohesion;
   if (s->psi > s->phi) return "--psi must be at most --phi";
-  if (s->cycles > 1 && s->path != CYCLIC) return "--cycles is for --path cyclic";
+  const bool cyclic = element_is_cyclic(s);
+  if (s->cycles > 1 && !cyclic) return "--cycles is for --path cyclic, cyclic-triaxial";
+  if (s->drained && !cyclic) return "--drained is for --path cyclic, cyclic-triaxial";
+  if (!isnan(s->csr) && !cyclic) return "--csr is for --path cyclic, cyclic-triaxial";
+  if (!isnan(s->csr) && options_given(table, "strain"))
+    return "--csr and --strain exclude each other";
+  if (!isnan(s->csr) && !(s->p0 > 0.0)) return "--csr needs --p0 above 0";
+  const int densities = !isnan(s->relative_density) + !isnan(s->blow_count) + !isnan(s->c[0]);
+  if (densities > 1) return "--relative-density, --blow-count and --c1 exclude one another";
+  if (s->law == CYCLIC_SAND && densities == 0) s->relative_density = 0.5;
   if (s->law == CAM_CLAY && !(s->kappa < s->lambda)) return "--kappa must be below --lambda";
   if (s->law == CAM_CLAY && s->p0 <= 0.0) return "--p0 must be above 0 for --law mcc";
   const bool softens = s->residual < 1.0 || !isnan(s->residual_phi) || !isnan(s->residual_cohesion);
@@ -151,6 +168,17 @@ static bool make_drucker_prager(element *x) {
   return app_check(&x->a, mps_material_create_drucker_prager(x->a.context, &d, &x->material));
 }
 
+static bool make_cyclic_sand(element *x) {
+  const settings *s = &x->s;
+  mps_material_cyclic_sand_def d = mps_material_cyclic_sand_defaults();
+  d.young = s->young, d.poisson = s->poisson;
+  d.friction = s->phi * RADIANS, d.dilation = s->psi * RADIANS, d.cohesion = s->cohesion;
+  d.relative_density = s->relative_density, d.blow_count = s->blow_count;
+  d.c1 = s->c[0], d.c2 = s->c[1], d.c3 = s->c[2], d.c4 = s->c[3];
+  d.threshold = s->threshold, d.strain_limit = s->strain_limit;
+  return app_check(&x->a, mps_material_create_cyclic_sand(x->a.context, &d, &x->material));
+}
+
 bool element_make_law(element *x) {
   const settings *s = &x->s;
   mps_context *c = x->a.context;
@@ -172,6 +200,8 @@ bool element_make_law(element *x) {
     return make_cam_clay(x);
   case SMALL_STRAIN:
     return make_small_strain(x);
+  case CYCLIC_SAND:
+    return make_cyclic_sand(x);
   default:
     return make_mohr_coulomb(x);
   }
@@ -192,6 +222,7 @@ bool element_start(element *x) {
   x->pc_at = column_of(x, "preconsolidation");
   x->void_at = column_of(x, "void_ratio");
   x->plastic_at = column_of(x, "plastic_strain");
+  x->contraction_at = column_of(x, "contraction");
   const double vertical = 3.0 * s->p0 / (1.0 + 2.0 * s->k0);
   /* the axis of compression: y in plane strain and shear, else z */
   const int up = s->path == PS_UNDRAINED || s->path == SHEAR || s->path == CYCLIC ? 1 : 2;

@@ -38,6 +38,12 @@ settings element_defaults(void) {
                     .reference_strain = 1e-3,
                     .curvature = 1.0,
                     .strength = NAN,
+                    .csr = NAN,
+                    .relative_density = NAN,
+                    .blow_count = NAN,
+                    .c = {NAN, NAN, NAN, NAN},
+                    .threshold = 1e-4,
+                    .strain_limit = 0.01,
                     .out = "out/element"};
 }
 
@@ -55,7 +61,8 @@ static size_t path_options(settings *s, option *out) {
       OPTION_HEADING("Path"),
       OPTION_CHOICE("path", ELEMENT_PATHS, &s->path,
                     "isotropic, oedometer, triaxial undrained and drained, plane strain, triaxial "
-                    "extension (both undrained), simple shear, and that to and fro"),
+                    "extension (both undrained), simple shear, and that to and fro; triaxial "
+                    "compression and extension in turns"),
       OPTION_TEXT("path-file", "FILE", &s->path_file,
                   "CSV of stages instead: increments of strain exx, eyy, ezz, gxy, gzx, gyz or of "
                   "stress sxx, syy, szz, sxy, szx, syz (Pa), tension positive, and steps; an empty "
@@ -67,6 +74,11 @@ static size_t path_options(settings *s, option *out) {
       OPTION_INTEGER("steps", "N", OPTION_FROM_TO(1.0, 1e6), &s->steps,
                      "steps of the path, or of a loop of the cyclic one"),
       OPTION_INTEGER("cycles", "N", OPTION_FROM_TO(1.0, 400.0), &s->cycles, "cyclic: loops"),
+      OPTION_NUMBER("csr", "1", OPTION_ABOVE_TO(0.0, 10.0), &s->csr,
+                    "cyclic: stress in place of --strain, shear over first vertical effective "
+                    "stress (triaxial: q over twice p0)"),
+      OPTION_FLAG("drained", &s->drained,
+                  "cyclic: vertical (triaxial: lateral) stress stays, not the volume"),
       OPTION_NUMBER("strain-rate", "1/s", OPTION_FROM_TO(1e-12, 1e6), &s->rate,
                     "rate of the largest strain, for laws that know time"),
       OPTION_NUMBER("p0", "Pa", OPTION_FROM_TO(0.0, 1e11), &s->p0,
@@ -81,7 +93,8 @@ static size_t clay_options(settings *s, option *out) {
   const option rows[] = {
       OPTION_HEADING("Law"),
       OPTION_CHOICE("law", ELEMENT_LAWS, &s->law,
-                    "law; mcc: modified Cam-Clay; smallstrain: Hardin and Drnevich"),
+                    "law; mcc: modified Cam-Clay; smallstrain: Hardin and Drnevich; cyclicsand: "
+                    "Mohr-Coulomb that contracts in cycles, Martin, Finn and Seed, Byrne"),
       OPTION_NUMBER("M", "1", OPTION_FROM_TO(0.05, 2.9), &s->M, "mcc: critical q/p in compression"),
       OPTION_NUMBER("lambda", "1", OPTION_FROM_TO(1e-4, 5.0), &s->lambda,
                     "mcc: slope of virgin compression in e - ln p"),
@@ -129,6 +142,24 @@ static size_t elastic_options(settings *s, option *out) {
   return put(out, rows, sizeof rows / sizeof *rows);
 }
 
+static size_t sand_options(settings *s, option *out) {
+  const option rows[] = {
+      OPTION_HEADING("Contraction in cycles (cyclicsand)"),
+      OPTION_NUMBER("relative-density", "1", OPTION_FROM_TO(0.1, 1.0), &s->relative_density,
+                    "Dr; default 0.5 where neither (N1)60 nor C1 is given"),
+      OPTION_NUMBER("blow-count", "1", OPTION_FROM_TO(1.0, 60.0), &s->blow_count, "(N1)60"),
+      OPTION_NUMBER("c1", "1", OPTION_FROM_TO(1e-4, 100.0), &s->c[0], "C1"),
+      OPTION_NUMBER("c2", "1", OPTION_FROM_TO(0.0, 100.0), &s->c[1], "C2; default 0.4/C1"),
+      OPTION_NUMBER("c3", "1", OPTION_FROM_TO(1e-4, 100.0), &s->c[2],
+                    "C3 and C4: the equation of Martin, Finn and Seed, not that of Byrne"),
+      OPTION_NUMBER("c4", "1", OPTION_FROM_TO(1e-4, 100.0), &s->c[3], "C4"),
+      OPTION_NUMBER("threshold", "1", OPTION_FROM_TO(0.0, 0.01), &s->threshold,
+                    "amplitude of shear strain without contraction"),
+      OPTION_NUMBER("strain-limit", "1", OPTION_ABOVE_TO(0.0, 1.0), &s->strain_limit,
+                    "amplitude beyond which larger ones contract no more")};
+  return put(out, rows, sizeof rows / sizeof *rows);
+}
+
 static size_t softening_options(settings *s, option *out) {
   const option rows[] = {
       OPTION_HEADING("Softening and rate"),
@@ -161,6 +192,7 @@ void element_options(settings *s, option *table) {
   size_t rows = path_options(s, table);
   rows += clay_options(s, table + rows);
   rows += elastic_options(s, table + rows);
+  rows += sand_options(s, table + rows);
   rows += softening_options(s, table + rows);
   rows += results_options(s, table + rows);
   table[rows] = (option){0};

@@ -10,19 +10,6 @@
 
 /* ---- by name --------------------------------------------------------------------------------- */
 
-/* To one side, then loops to the other and back, a quarter of the steps each way from the middle.
- */
-static int cyclic_path(const settings *s, stage *g) {
-  const int64_t quarter = (s->steps + 3) / 4;
-  int n = 0;
-  g[n++] = (stage){.strain = {0.0, s->strain}, .steps = quarter};
-  for (int64_t k = 0; k < s->cycles; k++) {
-    g[n++] = (stage){.strain = {0.0, -2.0 * s->strain}, .steps = 2 * quarter};
-    g[n++] = (stage){.strain = {0.0, 2.0 * s->strain}, .steps = 2 * quarter};
-  }
-  return n;
-}
-
 /* Returns the number of stages. */
 static int named_path(const settings *s, stage *g) {
   const double e = s->strain;
@@ -48,7 +35,8 @@ static int named_path(const settings *s, stage *g) {
     g->strain[4] = -e;
     break;
   case CYCLIC:
-    return cyclic_path(s, g);
+  case CYCLIC_TRIAXIAL:
+    return element_cyclic_path(s, g);
   default:
     g->strain[1] = e;
   }
@@ -207,6 +195,8 @@ static double measure(const element *x) {
   case SHEAR:
   case CYCLIC:
     return e[3];
+  case CYCLIC_TRIAXIAL:
+    return 0.0 - e[2];
   default:
     return 0.0 - e[2];
   }
@@ -216,7 +206,9 @@ static double measure(const element *x) {
  * one. */
 static double pore_pressure(const element *x) {
   const double *s = x->point.stress;
-  if (x->s.path_file || x->s.path == ISO || x->s.path == OEDOMETER || x->s.path == CD) return 0.0;
+  if (x->s.path_file || x->s.path == ISO || x->s.path == OEDOMETER || x->s.path == CD ||
+      x->s.drained)
+    return 0.0;
   const int held = x->s.path == SHEAR || x->s.path == CYCLIC ? 1 : 0;
   return s[held] - (x->rows == 0 ? s[held] : x->table[0].stress[held]);
 }
@@ -232,10 +224,22 @@ static void take_row(element *x) {
       .void_ratio = x->void_at >= 0 ? h[x->void_at] : (1.0 + x->s.e0) * x->point.volume_ratio - 1.0,
       .pc = x->pc_at >= 0 ? h[x->pc_at] : NAN,
       .plastic = x->plastic_at >= 0 ? h[x->plastic_at] : NAN,
-      .volume_ratio = x->point.volume_ratio};
+      .volume_ratio = x->point.volume_ratio,
+      .contraction = x->contraction_at >= 0 ? h[x->contraction_at] : NAN,
+      .cycles = NAN};
+  /* a cyclic path has its first quarter in the first stage */
+  if (element_is_cyclic(&x->s)) r.cycles = (double)x->rows / (4.0 * (double)x->stages[0].steps);
   memcpy(r.stress, s, sizeof r.stress);
   memcpy(r.e, x->e, sizeof r.e);
   x->table[x->rows++] = r;
+}
+
+/* One step; `target`: the controlled stresses at its end. */
+static mps_status drive_step(element *x, const stage *g, const double *gradient,
+                             const double *target, double dt, double *found) {
+  if (g->deviator != 0.0) return element_drive_deviator(x, target[2], dt, found);
+  return mps_material_point_control(x->a.context, x->material, &x->point, gradient, g->controlled,
+                                    target, dt, 1, found);
 }
 
 static bool drive_stage(element *x, const stage *g) {
@@ -245,12 +249,16 @@ static bool drive_stage(element *x, const stage *g) {
   const double dt = (largest > 0.0 ? largest : 0.01) / x->s.rate / (double)g->steps;
   for (int c = 0; c < 9; c++) gradient[c] = g->strain[c] / (dt * (double)g->steps);
   memcpy(first, x->point.stress, sizeof first);
+  if (g->deviator != 0.0) first[2] = first[0] - first[2];
   for (int64_t k = 1; k <= g->steps; k++) {
     double target[6];
-    for (int c = 0; c < 6; c++) target[c] = first[c] + g->stress[c] * (double)k / (double)g->steps;
-    if (!app_check(&x->a, mps_material_point_control(x->a.context, x->material, &x->point, gradient,
-                                                     g->controlled, target, dt, 1, found)))
-      return false;
+    const double share = (double)k / (double)g->steps;
+    for (int c = 0; c < 6; c++) target[c] = first[c] + g->stress[c] * share;
+    if (g->deviator != 0.0) target[2] = first[2] + g->deviator * share;
+    const mps_status status = drive_step(x, g, gradient, target, dt, found);
+    x->stopped = status == MPS_ERROR_NUMERIC && element_has_ratio(&x->s);
+    if (x->stopped) return true;
+    if (!app_check(&x->a, status)) return false;
     for (int c = 0; c < 3; c++) x->e[c] += dt * found[4 * c];
     x->e[3] += dt * (found[1] + found[3]);
     take_row(x);
@@ -260,7 +268,7 @@ static bool drive_stage(element *x, const stage *g) {
 
 bool element_drive(element *x) {
   take_row(x);
-  for (int k = 0; k < x->stage_count; k++)
+  for (int k = 0; k < x->stage_count && !x->stopped; k++)
     if (!drive_stage(x, &x->stages[k])) return false;
   return true;
 }

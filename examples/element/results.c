@@ -7,9 +7,9 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char *const law_names[] = {"linear elastic", "neo-Hookean",       "von Mises",
-                                        "Tresca",         "Drucker-Prager",    "Mohr-Coulomb",
-                                        "Newtonian",      "modified Cam-Clay", "small strain"};
+static const char *const law_names[] = {
+    "linear elastic", "neo-Hookean", "von Mises",         "Tresca",       "Drucker-Prager",
+    "Mohr-Coulomb",   "Newtonian",   "modified Cam-Clay", "small strain", "cyclic sand"};
 static const char *const path_names[] = {"isotropic compression",
                                          "oedometer",
                                          "undrained triaxial compression",
@@ -18,6 +18,7 @@ static const char *const path_names[] = {"isotropic compression",
                                          "undrained triaxial extension",
                                          "simple shear",
                                          "cyclic simple shear",
+                                         "cyclic triaxial test",
                                          "path of a file"};
 
 static const char *path_name(const settings *s) {
@@ -28,20 +29,20 @@ static bool write_path(element *x) {
   output f;
   if (!output_open(&f, &x->a, x->s.out, "path.csv")) return false;
   csv_header(&f, "strain,sxx,syy,szz,sxy,p,q,u,void_ratio?,pc?,exx,eyy,ezz,gxy,volume_ratio,"
-                 "plastic_strain?");
+                 "plastic_strain?,contraction?,cycles?");
   for (int64_t k = 0; k < x->rows; k++) {
     const row *r = &x->table[k];
-    const double cells[] = {r->strain, r->stress[0], r->stress[1], r->stress[2],  r->stress[3],
-                            r->p,      r->q,         r->u,         r->void_ratio, r->pc,
-                            r->e[0],   r->e[1],      r->e[2],      r->e[3],       r->volume_ratio,
-                            r->plastic};
-    csv_row(&f, 16, cells);
+    const double cells[] = {
+        r->strain, r->stress[0], r->stress[1],    r->stress[2], r->stress[3],   r->p,
+        r->q,      r->u,         r->void_ratio,   r->pc,        r->e[0],        r->e[1],
+        r->e[2],   r->e[3],      r->volume_ratio, r->plastic,   r->contraction, r->cycles};
+    csv_row(&f, 18, cells);
   }
   return output_close(&f);
 }
 
 bool element_loop(const element *x, double *modulus, double *damping) {
-  if (x->s.path_file || x->s.path != CYCLIC) return false;
+  if (x->s.path_file || x->s.path != CYCLIC || x->stopped) return false;
   const int64_t length = x->stages[x->stage_count - 1].steps, first = x->rows - 1 - 2 * length;
   if (first < 0) return false; /* the path has not come to its end */
   double area = 0.0;
@@ -83,6 +84,10 @@ static bool write_summary(element *x) {
   (void)element_loop(x, &modulus, &damping);
   json_number(&f, "secant_modulus", modulus);
   json_number(&f, "damping_ratio", damping);
+  json_number(&f, "contraction", last->contraction);
+  json_number(&f, "cycles", last->cycles);
+  json_number(&f, "ru", element_is_cyclic(&x->s) ? last->u / element_reference(x) : NAN);
+  json_number(&f, "cycles_to_liquefaction", element_liquefied(x));
   json_end(&f);
   return output_close(&f);
 }
@@ -128,7 +133,8 @@ static bool draw_q_p(element *x) {
 static bool draw_q_strain(element *x) {
   static const char *const axes[] = {"volume strain (%)", "axial strain (%)", "axial strain (%)",
                                      "axial strain (%)",  "axial strain (%)", "axial extension (%)",
-                                     "shear strain (%)",  "shear strain (%)", "axial strain (%)"};
+                                     "shear strain (%)",  "shear strain (%)", "axial strain (%)",
+                                     "axial strain (%)"};
   const double limit = element_limit(x);
   output f;
   if (!open_picture(x, &f, "q_strain", "Deviator stress and pore pressure")) return false;
@@ -149,15 +155,19 @@ static bool draw_q_strain(element *x) {
 /* Shear stress against shear strain, and of the small-strain law its backbone. */
 static bool draw_loop(element *x) {
   const settings *s = &x->s;
-  if (s->path_file || s->path != CYCLIC) return true;
+  const bool triaxial = s->path == CYCLIC_TRIAXIAL;
+  if (!element_is_cyclic(s)) return true;
+  double widest = 0.0;
+  for (int64_t k = 0; k < x->rows; k++) widest = fmax(widest, fabs(x->table[k].strain));
   output f;
-  if (!open_picture(x, &f, "loop", "Loops of shear stress and strain")) return false;
+  if (!open_picture(x, &f, "loop", "Loops of stress and strain")) return false;
   output_text(&f,
-              "set xlabel 'shear strain (%%)'\nset ylabel 'shear stress (kPa)'\n"
+              "set xlabel '%s strain (%%)'\nset ylabel '%s stress (kPa)'\n"
               "set key right bottom opaque\nset zeroaxis\nset samples 400\n"
               "set xrange [%.9g:%.9g]\nset offsets 0, 0, graph 0.05, graph 0.05\nplot ",
-              -105.0 * s->strain, 105.0 * s->strain);
-  if (s->law == SMALL_STRAIN) {
+              triaxial ? "axial" : "shear", triaxial ? "deviator" : "shear", -105.0 * widest,
+              105.0 * widest);
+  if (s->law == SMALL_STRAIN && !triaxial) {
     const double g0 =
         isnan(s->shear_modulus) ? s->young / (2.0 * (1.0 + s->poisson)) : s->shear_modulus;
     output_text(&f,
@@ -165,8 +175,10 @@ static bool draw_loop(element *x) {
                 "title 'backbone', ",
                 1e-5 * g0, 100.0 * s->reference_strain, s->curvature);
   }
-  output_text(&f, "'path.csv' every ::1 using (100*$1):($5/1000) with lines linewidth 2 linecolor "
-                  "rgb '#1f4e8c' title 'path'\n");
+  output_text(&f,
+              "'path.csv' every ::1 using (100*$1):(%s/1000) with lines linewidth 1.5 linecolor "
+              "rgb '#1f4e8c' title 'path'\n",
+              triaxial ? "($2 - $4)" : "$5");
   return plot_close(&f, s->out, "loop");
 }
 
@@ -223,7 +235,7 @@ bool element_results(element *x, bool done) {
   app *a = &x->a;
   if (!done) a->outcome = "failed";
   if (!write_path(x) || !write_summary(x) || !draw_q_p(x) || !draw_q_strain(x) || !draw_e_p(x) ||
-      !draw_loop(x))
+      !draw_loop(x) || !element_write_cycles(x) || !element_draw_cycles(x))
     return false;
   app_tell_results(a, x->s.out);
   const row *last = &x->table[x->rows - 1];
@@ -235,6 +247,9 @@ bool element_results(element *x, bool done) {
   double modulus, damping;
   if (element_loop(x, &modulus, &damping))
     printf("; last loop: G %.6g MPa, damping ratio %.4f", 1e-6 * modulus, damping);
+  const double liquefied = element_liquefied(x);
+  if (last->contraction > 0.0) printf("; contraction %.4g %%", 100.0 * last->contraction);
+  if (!isnan(liquefied)) printf("; liquefied after %.2f cycles", liquefied);
   if (!isnan(element_limit(x))) printf("; limit of q by theory %.6g kPa", 1e-3 * element_limit(x));
   printf("\n");
   return true;

@@ -51,9 +51,10 @@ typedef enum mps_mpm_side {
  *               temperatures that these particles have in each step; it does not feel boxes, lists
  *               of particles or bodies. For a law it lies at the x of the side. Set it again where
  *               ground, laws or `volume` have been changed. Each particle of the column has its own
- *               change of volume (MPS_MPM_VOLUMETRIC_POINT). Displacements across the side must
- *               stay below half a spacing. Not on several ranks, with pore water or the standard
- *               method, nor in mps_mpm_settle
+ *               change of volume (MPS_MPM_VOLUMETRIC_POINT). The column has the pore pressures of
+ *               the particles that it was made of. Displacements across the side must stay below
+ *               half a spacing. Not on several ranks or with the standard method, nor in
+ *               mps_mpm_settle
  *   FREE        an edge of the grid without constraint
  *   OPEN        the same; particles that pass it are removed at the end of the step. The reaction's
  *               `removed` and `removed_mass` count them, its `count` those of the last step; its

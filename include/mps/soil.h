@@ -1,5 +1,6 @@
-/* mps/soil.h - ground: modified Cam-Clay and its state at rest, stiffness at small strain, and any
- * law at one point along paths of stress and strain, as in a triaxial test.
+/* mps/soil.h - ground: modified Cam-Clay and its state at rest, stiffness at small strain, sand
+ * that contracts under cyclic shear, and any law at one point along paths of stress and strain, as
+ * in a triaxial test.
  *
  * p = -I1/3 is the mean effective pressure, q = sqrt(3 J2), e the void ratio, v = 1 + e; tension is
  * positive in tensors. The equations are in docs/materials.md.
@@ -93,6 +94,58 @@ static inline mps_material_small_strain_def mps_material_small_strain_defaults(v
 MPS_API MPS_NODISCARD mps_status mps_material_create_small_strain(
     mps_context *context, const mps_material_small_strain_def *def, mps_material **out);
 
+/* ---- sand that contracts under cyclic shear ---------------------------------------------------
+ */
+
+/** Mohr-Coulomb sand (without softening) that contracts in every half cycle of shear of the
+ *  amplitude g, engineering strain, by 1/2 C1 g exp(-C2 e/g), e the contraction before it (Byrne
+ *  1991), or with `c3` and `c4` by 1/2 (C1 (g - C2 e) + C3 e^2/(g + C4 e)) (Martin, Finn and Seed
+ *  1975). Dry or drained sand settles; with pore water (mps/pore_water.h) effective stresses fall,
+ *  without cohesion all in proportion, and the pressure of the water rises, to liquefaction, and
+ *  falls as water leaves.
+ *  Half cycles end where the deviatoric strain turns back by a tenth of its way from the last
+ *  reversal and by two thresholds; g is half of that way, gamma = 2 sqrt(J2), in any direction.
+ *  Grains without effective stress do not contract. Of `relative_density`, `blow_count` and `c1`
+ *  one must be given. Its history is that of Mohr-Coulomb, `contraction` (e), `contraction_before`
+ *  (at the last reversal), `half_cycles` and two tensors of strain, 15 columns. */
+typedef struct mps_material_cyclic_sand_def {
+  uint32_t struct_size;
+  uint32_t reserved;
+  double young;            /* Pa, > 0, at the amplitudes of the shaking; no default */
+  double poisson;          /* default 0.3 */
+  double friction;         /* rad, angle phi, 0 <= phi < pi/2; no default */
+  double dilation;         /* rad, angle psi, 0 <= psi <= phi; default 0 */
+  double cohesion;         /* Pa, c >= 0, not 0 when phi is; default 0 */
+  double relative_density; /* Dr, 0.1 to 1: C1 = 7600 (100 Dr)^-2.5, C2 = 0.4/C1; NaN (default) */
+  double blow_count;       /* (N1)60, 1 to 60: C1 = 8.7 (N1)60^-1.25, C2 = 0.4/C1; NaN (default) */
+  double c1; /* C1 of a full cycle, 1e-4 to 100; NaN (default): by one of the former two */
+  double c2; /* C2, 0 to 100; NaN (default): 0.4/C1 */
+  double c3; /* C3 and */
+  double c4; /* C4, 1e-4 to 100, of Martin, Finn and Seed, with c1 and c2; NaN (default): Byrne */
+  double threshold;    /* amplitude, 0 to 0.01, up to which nothing contracts, and from twice which
+                          all does; default 1e-4 */
+  double strain_limit; /* amplitude, above the threshold and at most 1, beyond which larger ones
+                          contract no more; default 0.01 */
+} mps_material_cyclic_sand_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
+MPS_API mps_status mps_material_cyclic_sand_def_init(mps_material_cyclic_sand_def *def,
+                                                     size_t size);
+static inline mps_material_cyclic_sand_def mps_material_cyclic_sand_defaults(void) {
+  mps_material_cyclic_sand_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_material_cyclic_sand_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Cyclic sand. Constants are copied. MPS_MATERIAL_FLAG_PLASTIC is also set where a particle has
+ *  contracted. MPS_ERROR_ARGUMENT: a constant out of range, none or several of `relative_density`,
+ *  `blow_count` and `c1`, `c2` without `c1`, one of `c3` and `c4`; the message names it;
+ *  MPS_ERROR_MEMORY. */
+MPS_API MPS_NODISCARD mps_status mps_material_create_cyclic_sand(
+    mps_context *context, const mps_material_cyclic_sand_def *def, mps_material **out);
+
 /* ---- ground of Cam-Clay at rest -------------------------------------------------------------- */
 
 typedef struct mps_consolidation_def {
@@ -147,8 +200,8 @@ MPS_API double mps_material_normal_k0(const mps_material *material);
  *  depth; 0, as in particles that have none, is 1. Constants are copied. Its history has the two as
  *  last columns; mps_material_wave_modulus and mps_material_get_moduli are those of factor 1, and
  *  the step of a solver follows the factors. MPS_ERROR_ARGUMENT: NULL, or a law of another context;
- *  MPS_ERROR_UNSUPPORTED: another law than linear elastic, von Mises, Drucker-Prager, Mohr-Coulomb
- *  and small strain, or one made by this function; MPS_ERROR_MEMORY. */
+ *  MPS_ERROR_UNSUPPORTED: another law than linear elastic, von Mises, Drucker-Prager,
+ *  Mohr-Coulomb, small strain and cyclic sand, or one made by this function; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_material_create_by_field(mps_context *context,
                                                               const mps_material *law,
                                                               mps_material **out);

@@ -52,6 +52,18 @@ static const mps_material_small_strain_def small_strain_defaults = {.shear_modul
                                                                     .curvature = 1.0,
                                                                     .strength = NAN};
 
+static const mps_material_cyclic_sand_def cyclic_sand_defaults = {.young = NAN,
+                                                                  .poisson = 0.3,
+                                                                  .friction = NAN,
+                                                                  .relative_density = NAN,
+                                                                  .blow_count = NAN,
+                                                                  .c1 = NAN,
+                                                                  .c2 = NAN,
+                                                                  .c3 = NAN,
+                                                                  .c4 = NAN,
+                                                                  .threshold = 1e-4,
+                                                                  .strain_limit = 0.01};
+
 #define DEF_INIT(name)                                                                             \
   mps_status mps_material_##name##_def_init(mps_material_##name##_def *def, size_t size) {         \
     return MPSI_DEF_INIT(mps_material_##name##_def, def, size, &name##_defaults);                  \
@@ -63,6 +75,7 @@ DEF_INIT(newtonian)
 DEF_INIT(user)
 DEF_INIT(cam_clay)
 DEF_INIT(small_strain)
+DEF_INIT(cyclic_sand)
 
 /* A material of the library's own. A column of its history that is a field of the library is that
  * field, one for all laws; others lie under the law's name. */
@@ -128,6 +141,7 @@ CREATE(mohr_coulomb, MPSI_LAW_MOHR_COULOMB)
 CREATE(newtonian, MPSI_LAW_NEWTONIAN)
 CREATE(cam_clay, MPSI_LAW_CAM_CLAY)
 CREATE(small_strain, MPSI_LAW_SMALL_STRAIN)
+CREATE(cyclic_sand, MPSI_LAW_CYCLIC_SAND)
 
 /* ---- factors of each particle ------------------------------------------------------------------
  */
@@ -144,7 +158,7 @@ mps_status mps_material_create_by_field(mps_context *context, const mps_material
   if (law->by_field || !(law->type->traits & MPSI_LAW_BY_FIELD))
     return mpsi_fail(context, __func__, MPS_ERROR_UNSUPPORTED,
                      "law: it is %s%s, must be linear_elastic, von_mises, drucker_prager, "
-                     "mohr_coulomb or small_strain",
+                     "mohr_coulomb, small_strain or cyclic_sand",
                      law->name, law->by_field ? " by field already" : "");
   const int32_t columns = law->history_count;
   mps_material *m =

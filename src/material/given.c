@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-enum { CONSTANTS = 37 }; /* doubles of mpsi_law before its layers, all of them listed below */
+enum { CONSTANTS = 43 }; /* doubles of mpsi_law before its layers, all of them listed below */
 _Static_assert(offsetof(mpsi_law, layer_shear) - offsetof(mpsi_law, shear) ==
                    CONSTANTS * sizeof(double),
                "a constant that is new in mpsi_law is to be listed in mpsi_material_give");
@@ -55,6 +55,12 @@ void mpsi_material_give(mpsi_given *list, const mps_material *material) {
                    {"pc of the material", law->first_pc},
                    {"the void ratio of the material", law->first_void},
                    {"the material's having moduli by the state", law->moduli != NULL},
+                   {"C1 of the material", law->contract[0]},
+                   {"C2 of the material", law->contract[1]},
+                   {"C3 of the material", law->contract[2]},
+                   {"C4 of the material", law->contract[3]},
+                   {"the threshold of the material's contraction", law->threshold},
+                   {"the strain limit of the material's contraction", law->strain_limit},
                    {"the viscosity of the material", law->viscosity},
                    {"the equation of state of the material", law->tait},
                    {"the material's having no tension", law->no_tension},

@@ -16,6 +16,14 @@ const char *const mpsi_small_columns[] = {
 _Static_assert(sizeof mpsi_small_columns / sizeof *mpsi_small_columns == MPSI_SMALL_COLUMNS + 1,
                "a name for each column of the small-strain law");
 
+const char *const mpsi_cyclic_columns[] = {
+    "plastic_strain", "opening",  "contraction", "contraction_before",
+    "half_cycles",    "since_xx", "since_yy",    "since_xy",
+    "since_zx",       "since_yz", "far_xx",      "far_yy",
+    "far_xy",         "far_zx",   "far_yz",      NULL};
+_Static_assert(sizeof mpsi_cyclic_columns / sizeof *mpsi_cyclic_columns == MPSI_CYCLIC_COLUMNS + 1,
+               "a name for each column of cyclic sand");
+
 const mpsi_law_type mpsi_law_types[] = {
 #define ROW(kind, loop, name, columns, kept, traits, define, moduli)                               \
   {MPSI_LAW_##kind, name, columns, kept, traits, define, moduli},

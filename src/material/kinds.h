@@ -38,7 +38,9 @@
   X(CAM_CLAY,       cam_clay_loop,       "cam_clay",       mpsi_clay_columns, MPSI_KEPT_ALL,        \
     MPSI_LAW_HAS_START,                           mpsi_define_cam_clay,       mpsi_cam_clay_moduli)  \
   X(SMALL_STRAIN,   small_strain_loop,   "small_strain",   mpsi_small_columns, MPSI_KEPT_UNDISSIPATED, \
-    MPSI_LAW_ISOCHORIC | MPSI_LAW_BY_FIELD,       mpsi_define_small_strain,   NULL)
+    MPSI_LAW_ISOCHORIC | MPSI_LAW_BY_FIELD,       mpsi_define_small_strain,   NULL)                \
+  X(CYCLIC_SAND,    cyclic_sand_loop,    "cyclic_sand",    mpsi_cyclic_columns, MPSI_KEPT_ELASTIC, \
+    MPSI_LAW_OPENS | MPSI_LAW_BY_FIELD,           mpsi_define_cyclic_sand,    NULL)
 /* clang-format on */
 
 typedef enum mpsi_law_kind {
@@ -80,7 +82,7 @@ typedef struct mpsi_law_type {
 extern const mpsi_law_type mpsi_law_types[]; /* by kind */
 extern const char *const mpsi_no_columns[],
     *const mpsi_metal_columns[], *const mpsi_sand_columns[], *const mpsi_clay_columns[],
-                                                                 *const mpsi_small_columns[];
+    *const mpsi_small_columns[], *const mpsi_cyclic_columns[];
 /* Columns of Cam-Clay. */
 enum { MPSI_CLAY_STRAIN, MPSI_CLAY_PC, MPSI_CLAY_VOID, MPSI_CLAY_GAP, MPSI_CLAY_COLUMNS };
 /* Columns of the small-strain law: two, and the deviators of its layers (xx, yy, xy, zx, yz). */
@@ -92,13 +94,23 @@ enum {
   MPSI_LAYER_PARTS = 5,
   MPSI_SMALL_COLUMNS = MPSI_SMALL_FIRST + MPSI_LAYERS * MPSI_LAYER_PARTS
 };
+/* Columns of cyclic sand behind those of sand: contraction now and at the last reversal, half
+ * cycles, and two deviators of strain (xx, yy, xy, zx, yz): since the reversal, and its farthest. */
+enum {
+  MPSI_CYCLIC_CONTRACTION = 2,
+  MPSI_CYCLIC_BEFORE,
+  MPSI_CYCLIC_HALVES,
+  MPSI_CYCLIC_SINCE,
+  MPSI_CYCLIC_FAR = MPSI_CYCLIC_SINCE + 5,
+  MPSI_CYCLIC_COLUMNS = MPSI_CYCLIC_FAR + 5
+};
 
 /* The definitions of the laws that are given by two numbers. */
 typedef struct mpsi_elastic_def {
   double young, poisson;
 } mpsi_elastic_def;
 
-/* parameters.c; user.c; cam_clay/start.c; small_strain/backbone.c; moduli.c */
+/* parameters.c; user.c; cam_clay/start.c; small_strain/backbone.c; sand/definition.c; moduli.c */
 mps_status mpsi_define_elastic(mps_context *context, const char *function, const void *def,
                                struct mpsi_law *law);
 mps_status mpsi_define_von_mises(mps_context *context, const char *function, const void *def,
@@ -117,6 +129,8 @@ mps_status mpsi_define_cam_clay(mps_context *context, const char *function, cons
                                 struct mpsi_law *law);
 mps_status mpsi_define_small_strain(mps_context *context, const char *function, const void *def,
                                     struct mpsi_law *law);
+mps_status mpsi_define_cyclic_sand(mps_context *context, const char *function, const void *def,
+                                   struct mpsi_law *law);
 void mpsi_user_moduli(const struct mpsi_law *law, const mps_material_block *block, double *moduli);
 void mpsi_cam_clay_moduli(const struct mpsi_law *law, const mps_material_block *block,
                           double *moduli);

@@ -9,6 +9,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cam_clay/clay_loop.h"
 #include "core/base/symmetric.h"
+#include "sand/contract_loop.h"
 #include "small_strain/layers.h"
 #include "tensor.h"
 
@@ -237,6 +238,13 @@ MPSI_INLINE mps_status mohr_coulomb_loop(const int geometry, const mpsi_law *law
     volume_loop(geometry, block, begin, end, opened);
   }
   return MPS_OK;
+}
+
+MPSI_INLINE mps_status cyclic_sand_loop(const int geometry, const mpsi_law *law,
+                                        const mps_material_block *block) {
+  const mps_status status = mohr_coulomb_loop(geometry, law, block);
+  contract_loop(geometry, law, block);
+  return status;
 }
 
 /* ---- laws of the deformation gradient -------------------------------------------------------- */

@@ -38,6 +38,8 @@ typedef struct mpsi_law {
    * pc and e of the definition, p below which grains part and its logarithm. */
   double slope, compression, swelling, shear_ratio, lode, first_pc, first_void, least_pressure,
       log_least;
+  /* Cyclic sand: C1 to C4 (C3 0: Byrne's form), least and largest amplitude that counts. */
+  double contract[4], threshold, strain_limit;
   double viscosity;                     /* Pa s */
   /* Small strain: shear modulus and strength (sqrt(J2)) of each layer, Pa. */
   double layer_shear[MPSI_LAYERS], layer_strength[MPSI_LAYERS];

@@ -41,6 +41,7 @@ API_INIT(material_mohr_coulomb_def)
 API_INIT(material_newtonian_def)
 API_INIT(material_cam_clay_def)
 API_INIT(material_small_strain_def)
+API_INIT(material_cyclic_sand_def)
 API_INIT(material_user_def)
 API_INIT(material_umat_def)
 API_INIT(material_block)
@@ -127,6 +128,23 @@ static void material_small_strain(api *a) {
   api_loosen(a);
   (void)made_material(
       a, mps_material_create_small_strain(context, &def, api_null(a, "out") ? NULL : &made), &made);
+}
+
+static void material_cyclic_sand(api *a) {
+  api_begin(a, "mps_material_create_cyclic_sand");
+  mps_material *made = NULL;
+  mps_context *context = api_context(a);
+  mps_material_cyclic_sand_def def = mps_material_cyclic_sand_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.young = api_real(a, "young", YOUNG);
+  def.poisson = api_real(a, "poisson", POISSON);
+  def.friction = api_real(a, "friction", 0.01, 1.57, 0.6);
+  def.relative_density = api_real(a, "relative_density", 0.1, 1.0, 0.5);
+  def.threshold = api_real(a, "threshold", 0.0, 0.01, 1e-4);
+  def.strain_limit = api_real(a, "strain_limit", 0.011, 1.0, 0.02);
+  api_loosen(a);
+  (void)made_material(
+      a, mps_material_create_cyclic_sand(context, &def, api_null(a, "out") ? NULL : &made), &made);
 }
 
 static void material_by_field(api *a) {
@@ -406,6 +424,8 @@ static const api_call calls[] = {
     {"mps_material_create_cam_clay", 2, API_CONTEXT, material_cam_clay},
     {"mps_material_small_strain_def_init", 1, API_NOTHING, init_material_small_strain_def},
     {"mps_material_create_small_strain", 2, API_CONTEXT, material_small_strain},
+    {"mps_material_cyclic_sand_def_init", 1, API_NOTHING, init_material_cyclic_sand_def},
+    {"mps_material_create_cyclic_sand", 2, API_CONTEXT, material_cyclic_sand},
     {"mps_material_create_by_field", 1, API_MATERIAL, material_by_field},
     {"mps_material_normal_k0", 1, API_MATERIAL, normal_k0},
     {"mps_material_create_newtonian", 2, API_CONTEXT, material_newtonian},

@@ -40,6 +40,22 @@ in_range "$work/wide/summary.json" secant_modulus 8.23e6 8.43e6
 in_range "$work/wide/summary.json" damping_ratio 0.335 0.353
 for name in loop q_strain; do picture "$work/loop/$name.png" 900x640 1f4e8c; done
 
+# Cyclic sand, Dr 45 %: ten cycles of 0.2 % under constant stresses contract by the sum of Byrne's
+# recursion (an awk of its own); the volume by as much where the vertical stress alone is held at K0.
+sand="--law cyclicsand --young 80MPa --phi 35 --relative-density 0.45 --threshold 0 --path cyclic"
+wanted=$(awk 'BEGIN { c = 7600*45^-2.5; e = 0; for (n = 0; n < 21; n++) { g = n ? 2e-3 : 1e-3
+  e += 0.5*c*g*exp(-0.4/c*e/g) } printf "%.8f", e }')
+run settles $sand --p0 300kPa --k0 0.428571 --strain 2e-3 --cycles 10 --drained --steps 400
+is "$work/settles/path.csv" contraction -1 "$wanted" 2e-5
+is "$work/settles/path.csv" volume_ratio -1 "$(awk "BEGIN { print exp(-$wanted) }")" 5e-5
+run liquefies $sand --p0 100kPa --csr 0.15 --cycles 40
+in_range "$work/liquefies/summary.json" cycles_to_liquefaction 2 20
+has "$work/liquefies/summary.json" '"outcome": "finished"'
+run cell --law cyclicsand --path cyclic-triaxial --csr 0.2 --cycles 40 --relative-density 0.45 --young 80MPa --phi 35
+in_range "$work/cell/summary.json" cycles_to_liquefaction 2 20
+is "$work/cell/cycles.csv" stress_amplitude -1 40000 1
+for name in loop cycles; do picture "$work/liquefies/$name.png" 900x640 1f4e8c; done
+
 # A file's stages: the drained test by its lateral stress, then what cannot be.
 printf 'ezz,sxx,syy,steps\n-0.1,0,0,1000\n' >"$work/cd.csv"
 run file $soft --path-file "$work/cd.csv"

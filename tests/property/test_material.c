@@ -10,7 +10,7 @@
 #include <mps/soil.h>
 
 #define COUNT 157 /* not a multiple of a vector's length */
-#define LAWS 13
+#define LAWS 14
 #define MORE 50 /* columns of history that only the small-strain law has */
 
 static mps_status creep(void *user, const mps_material_block *block) {
@@ -58,6 +58,9 @@ static mps_material *make_law(int which) {
   mps_material_small_strain_def small = mps_material_small_strain_defaults();
   small.shear_modulus = 4e6, small.reference_strain = 1e-4;
   if (which == 10) status = mps_material_create_small_strain(context, &small, &material);
+  mps_material_cyclic_sand_def sand = mps_material_cyclic_sand_defaults();
+  sand.young = 1e7, sand.friction = 0.6, sand.cohesion = 5e3, sand.relative_density = 0.4;
+  if (which == 13) status = mps_material_create_cyclic_sand(context, &sand, &material);
   if (which == 8) status = mps_material_create_user(context, &user, &material);
   mps_assert_ok(context, status);
   return material;

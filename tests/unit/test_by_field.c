@@ -8,7 +8,7 @@
 #include <mps/geostatic.h>
 #include <mps/soil.h>
 
-enum { N = 40 };
+enum { N = 40, COLUMNS = 20 };
 
 static mps_material *make(int law, double stiff, double strength) {
   mps_material *m = NULL;
@@ -23,7 +23,11 @@ static mps_material *make(int law, double stiff, double strength) {
     mps_assert_ok(context, mps_material_create_linear_elastic(context, v.young, 0.3, &m));
   if (law == 1) mps_assert_ok(context, mps_material_create_von_mises(context, &v, &m));
   if (law == 2) mps_assert_ok(context, mps_material_create_drucker_prager(context, &d, &m));
-  if (law >= 3) {
+  mps_material_cyclic_sand_def y = mps_material_cyclic_sand_defaults();
+  y.young = c.young, y.friction = c.friction, y.dilation = c.dilation, y.cohesion = c.cohesion;
+  y.relative_density = 0.3;
+  if (law == 5) mps_assert_ok(context, mps_material_create_cyclic_sand(context, &y, &m));
+  if (law == 3 || law == 4) {
     if (law == 4) c.residual_cohesion = 0.5 * c.cohesion, c.slip = c.band = 0.5;
     mps_assert_ok(context, mps_material_create_mohr_coulomb(context, &c, &m));
   }
@@ -36,7 +40,7 @@ static double strength_of(int k) { return k == 0 ? 1.0 : 2.0 - 0.04 * k; }
 /* Every particle against a block of its own with a law of its constants. */
 static void factors_are_those_of_the_constants(void **state) {
   (void)state;
-  for (int law = 0; law < 5; law++) {
+  for (int law = 0; law < 6; law++) {
     mps_material *base = make(law, 1.0, 1.0), *m = NULL;
     mps_assert_ok(context, mps_material_create_by_field(context, base, &m));
     const int columns = mps_material_history_count(base);
@@ -44,10 +48,10 @@ static void factors_are_those_of_the_constants(void **state) {
     assert_string_equal(mps_material_history_field(m, columns), "stiffness_factor");
     assert_string_equal(mps_material_history_field(m, columns + 1), "strength_factor");
     assert_string_equal(mps_material_name(m), mps_material_name(base));
-    static double L[9][N], s[6][N], h[8][N], V[N];
+    static double L[9][N], s[6][N], h[COLUMNS][N], V[N];
     static int64_t flags[N];
     uint64_t seed = 5;
-    double *history[8];
+    double *history[COLUMNS];
     for (int k = 0; k < N; k++) {
       for (int c = 0; c < 9; c++) L[c][k] = 4e-3 * random_number(&seed);
       for (int c = 0; c < 6; c++) s[c][k] = c < 3 ? -500.0 : 0.0;
@@ -59,7 +63,7 @@ static void factors_are_those_of_the_constants(void **state) {
     mps_material_block b = mps_material_block_defaults();
     for (int c = 0; c < 9; c++) b.gradient[c] = L[c];
     for (int c = 0; c < 6; c++) b.stress[c] = s[c];
-    for (int c = 0; c < 8; c++) history[c] = h[c];
+    for (int c = 0; c < COLUMNS; c++) history[c] = h[c];
     b.dim = 3, b.count = N, b.dt = 1.0, b.history = history, b.history_count = columns + 2;
     b.volume_ratio = V, b.flags = flags;
     mps_assert_ok(context, mps_material_update(context, m, &b));

@@ -106,6 +106,12 @@ static void need_small_strain(void *def) {
   d->shear_modulus = 1e7;
   d->reference_strain = 1e-3;
 }
+static void need_cyclic_sand(void *def) {
+  mps_material_cyclic_sand_def *d = def;
+  d->young = 1e7;
+  d->friction = 0.5;
+  d->relative_density = 0.5;
+}
 static void need_newtonian(void *def) { ((mps_material_newtonian_def *)def)->bulk_modulus = 1e6; }
 
 #define USE_MATERIAL(name)                                                                         \
@@ -121,6 +127,7 @@ USE_MATERIAL(mohr_coulomb)
 USE_MATERIAL(newtonian)
 USE_MATERIAL(cam_clay)
 USE_MATERIAL(small_strain)
+USE_MATERIAL(cyclic_sand)
 
 static mps_status use_consolidation(const void *def) {
   mps_particles *set = square();
@@ -695,6 +702,7 @@ static const user users[] = {
     {"mps_domain_def", need_domain, use_domain},
     {"mps_material_cam_clay_def", need_cam_clay, use_cam_clay},
     {"mps_material_small_strain_def", need_small_strain, use_small_strain},
+    {"mps_material_cyclic_sand_def", need_cyclic_sand, use_cyclic_sand},
     {"mps_material_drucker_prager_def", need_drucker_prager, use_drucker_prager},
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},

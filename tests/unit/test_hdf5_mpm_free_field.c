@@ -346,8 +346,6 @@ static void refuses_by_name(void **state) {
   REFUSES("boundary 0 is of kind 5", mps_experimental_mpm_standard(s.mpm, 0.9));
   REFUSES("transfer is 1 (weight)",
           mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT));
-  mps_assert_fails(context, mps_mpm_add_pore_water(s.mpm, NULL), MPS_ERROR_STATE,
-                   "kind 5 (FREE_FIELD)");
   mps_assert_ok(context, mps_mpm_step(s.mpm, 3)); /* it still works */
   mps_assert_ok(context, mps_mpm_remove_boundary(s.mpm, 0));
   mps_assert_ok(context, set(&s, MPS_MPM_SIDE_Y_LOWER, MPS_BOUNDARY_FRICTIONAL));

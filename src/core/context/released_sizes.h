@@ -38,6 +38,7 @@
   X(mps_goda_def, mps_goda_def_init, "0.3", 128) \
   X(mps_material_block, mps_material_block_init, "0.3", 312) \
   X(mps_material_cam_clay_def, mps_material_cam_clay_def_init, "0.3", 72) \
+  X(mps_material_cyclic_sand_def, mps_material_cyclic_sand_def_init, "0.3", 112) \
   X(mps_material_drucker_prager_def, mps_material_drucker_prager_def_init, "0.3", 56) \
   X(mps_material_mohr_coulomb_def, mps_material_mohr_coulomb_def_init, "0.3", 112) \
   X(mps_material_newtonian_def, mps_material_newtonian_def_init, "0.3", 32) \

@@ -87,7 +87,6 @@ static inline mpsi_boundary_setup mpsi_boundary_setup_of(mps_mpm *mpm) {
                                .partition = mpm->partition,
                                .run = &mpm->run,
                                .def = &mpm->def,
-                               .has_water = mpm->water != NULL,
                                .has_relaxation = mpm->settling.cut};
 }
 

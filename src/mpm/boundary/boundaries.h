@@ -113,7 +113,6 @@ struct mpsi_boundary_setup {
   mpsi_partition *partition; /* NULL: one rank */
   mpsi_run *run;
   const mps_mpm_def *def;
-  bool has_water;      /* pore water */
   bool has_relaxation; /* mps_mpm_settle was cancelled: particles have velocities of relaxation */
 };
 

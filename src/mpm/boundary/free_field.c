@@ -48,9 +48,6 @@ mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const cha
                      "%s on several ranks, allowed in one process: the column needs all particles "
                      "at the side",
                      kind);
-  if (setup->has_water)
-    return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
-                     "%s with pore water, which a free-field column does not have", kind);
   if (grid->high[0] - grid->low[0] < MPSI_FIELD_CELLS)
     return mpsi_fail(setup->context, function, MPS_ERROR_ARGUMENT,
                      "%s of a domain %lld cells wide, must be at least %d", kind,
@@ -71,14 +68,14 @@ mps_status mpsi_mpm_check_free_field(const mpsi_boundary_setup *setup, const cha
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-enum { FIXED = 20, RESTS = 6 }; /* columns besides histories; numbers of the sides across y */
+enum { FIXED = 21, RESTS = 6 }; /* columns besides histories; numbers of the sides across y */
 
 static void lay_out(mpsi_free_field *f) {
   double *at = f->state;
-  double **columns[FIXED] = {&f->y,    &f->v[0], &f->v[1], &f->slope[0], &f->slope[1],
-                             &f->s[0], &f->s[1], &f->s[2], &f->s[3],     &f->V,
-                             &f->m,    &f->J,    &f->F[0], &f->F[1],     &f->F[2],
-                             &f->F[3], &f->F[4], &f->cp,   &f->cs,       &f->temperature};
+  double **columns[FIXED] = {
+      &f->y,    &f->v[0], &f->v[1], &f->slope[0], &f->slope[1], &f->s[0],        &f->s[1],
+      &f->s[2], &f->s[3], &f->V,    &f->m,        &f->J,        &f->F[0],        &f->F[1],
+      &f->F[2], &f->F[3], &f->F[4], &f->cp,       &f->cs,       &f->temperature, &f->u};
   for (int c = 0; c < FIXED; c++, at += f->count) *columns[c] = at;
   f->history = at;
   f->rest = at + f->histories * f->count;
@@ -163,6 +160,7 @@ static void copy_particle(const mpsi_columns *p, int64_t k, int64_t to, mpsi_fre
   mpsi_mpm_elastic(p, k, &wave, &shear);
   f->cp[to] = sqrt(wave * p->V[k] / p->m[k]);
   f->cs[to] = sqrt(shear * p->V[k] / p->m[k]);
+  f->u[to] = p->u ? p->u[k] : 0.0;
   f->temperature[to] = p->laws.temperature ? p->laws.temperature[k] : 0.0;
   for (int32_t h = 0; h < law->columns; h++) f->history[h * f->count + to] = law->history[h][k];
   f->law[to] = p->law ? p->law[k] : 0;

@@ -12,6 +12,10 @@
  *   that of dashpots (Lysmer and Kuhlemeyer 1969) rho c_p and rho c_s times the difference between
  *   the velocities of column and node, across and along, by which other waves leave.
  *
+ * Water in the pores: the column has in each step the pressures (and the masses, which water that
+ * leaves lowers) of the particles that were copied. Level ground has the same pressures at every x;
+ * so the column has no cells of its own.
+ *
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_FREE_FIELD_H
 #define MPSI_MPM_FREE_FIELD_H
@@ -39,6 +43,7 @@ typedef struct mpsi_free_field {
   double *y, *v[2], *slope[2];     /* m, m/s, 1/s: dv/dy */
   double *s[4], *V, *m, *J, *F[5]; /* as in mpsi_columns */
   double *cp, *cs, *temperature;   /* m/s, elastic waves; K */
+  double *u;                       /* Pa, pressure of pore water */
   double *history;                 /* one column after the other */
   double *rest; /* N: force at rest of absorbing sides across y, [side][component]; and 1 where it
                    is still to be found */

@@ -72,6 +72,18 @@ static mps_status refuse_place(mps_context *context, const mpsi_run *run, const 
                    (long long)run->steps, y, number);
 }
 
+/* ---- water ----------------------------------------------------------------------------------- */
+
+/* Pressures and masses of the particles that were copied, while they are there. */
+static void take_water(const mpsi_columns *p, mpsi_free_field *f) {
+  for (int64_t k = 0; p->u && k < f->count; k++) {
+    const int64_t from = mps_particles_index(p->set, f->id[k]);
+    if (from < 0) continue;
+    f->u[k] = p->u[from] + p->g[Y][from] * (f->y[k] - p->x[Y][from]);
+    f->m[k] = p->m[from];
+  }
+}
+
 /* ---- traction of the column's stresses ------------------------------------------------------- */
 
 static void find_row_stresses(mpsi_free_field *f) {
@@ -79,7 +91,7 @@ static void find_row_stresses(mpsi_free_field *f) {
   for (int64_t k = 0; k < f->count; k++) {
     double *row = f->row[f->row_of[k]];
     row[0] += f->V[k] * f->y[k];
-    row[1] += f->V[k] * f->s[0][k];
+    row[1] += f->V[k] * (f->s[0][k] - f->u[k]);
     row[2] += f->V[k] * f->s[3][k];
     row[3] += f->V[k];
   }
@@ -87,7 +99,8 @@ static void find_row_stresses(mpsi_free_field *f) {
     for (int c = 0; c < 3; c++) f->row[r][c] /= f->row[r][3];
 }
 
-/* (sigma_xx, sigma_xy) of the column at the height y; beyond its ends those of its last row. */
+/* (sigma_xx, sigma_xy), total stresses, of the column at the height y; beyond its ends those of its
+ * last row. */
 static void stress_at(const mpsi_free_field *f, double y, double *out) {
   int64_t low = 0, high = f->rows - 1;
   while (high - low > 1) {
@@ -166,7 +179,7 @@ static void scatter_particle(const mpsi_boundary_setup *setup, mpsi_free_field *
     node->across += per_area * f->cp[k] * w->value[i];
     node->along += per_area * f->cs[k] * w->value[i];
     for (int c = 0; c < 2; c++) {
-      const double stress = c == Y ? f->s[1][k] : f->s[3][k];
+      const double stress = c == Y ? f->s[1][k] - f->u[k] : f->s[3][k];
       const double load =
           f->m[k] * setup->def->gravity[c] + (from >= 0 ? setup->p->f[c][from] : 0.0);
       node->v[c] += f->m[k] * w->value[i] * (f->v[c][k] + f->slope[c][k] * grid->cell * w->s[i]);
@@ -412,6 +425,7 @@ static mps_status step(const mpsi_boundary_setup *setup, const char *function, i
   int64_t wall[2];
   unsigned fixed[2];
   memset(f->node, 0, (size_t)f->nodes * sizeof *f->node);
+  take_water(setup->p, f);
   mps_status status = find_traction(setup, function, number, f);
   if (status == MPS_OK) status = scatter(setup, function, number, f);
   if (status != MPS_OK) return status;

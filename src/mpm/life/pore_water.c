@@ -2,7 +2,6 @@
  * faces, budget. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
 #include "mpm/base/mpm_solver.h"
-#include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/water/water.h"
 
@@ -72,9 +71,6 @@ static mps_status check_solver(mps_mpm *mpm) {
                      "budget is 1: the energy budget has no terms for pore water, must be 0");
   if (mpm->water)
     return mpsi_fail(mpm->context, add, MPS_ERROR_STATE, "the solver has pore water already");
-  if (mpsi_mpm_has_free_field(&mpm->boundaries))
-    return mpsi_fail(mpm->context, add, MPS_ERROR_STATE,
-                     "a side is of kind 5 (FREE_FIELD), whose column has no pore water");
   if (mpm->run.steps > 0)
     return mpsi_fail(mpm->context, add, MPS_ERROR_STATE,
                      "the solver has taken %lld steps: water is added before the first",

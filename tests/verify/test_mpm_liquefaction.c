@@ -1,0 +1,277 @@
+/* test_mpm_liquefaction.c - level saturated ground of cyclic sand between free-field sides, shaken
+ * from below: contraction and excess pressures by depth against the sum over half cycles of the
+ * shear strain of an elastic column, settlement against the water that has left and the
+ * contraction; the same ground dry. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_free_field.h"
+#include "test_fixture.h"
+
+#include <mps/pore_water.h>
+#include <mps/soil.h>
+
+#define HEIGHT 3.0
+#define SPACING 0.125
+#define WIDTH 1.0 /* four cells, the least between free-field sides */
+#define VS 100.0
+#define GRAVITY 9.81
+#define WATER 1000.0 /* kg/m3 */
+#define DENSITY 0.5  /* relative */
+#define FREQUENCY 2.0
+#define THRESHOLD 1e-4
+#define C1 (7600.0 * pow(100.0 * DENSITY, -2.5))
+
+enum { ROWS = 24, ONE = 15, TWO = 7 }; /* at depths of 1.06 and 2.06 m */
+
+typedef struct shaken {
+  mpm_scene s;
+  mps_signal *motion;
+  double volume; /* m3, at the start */
+} shaken;
+
+/* Velocity amplitude of the base at its full acceleration (m/s2). */
+static double velocity_of(double acceleration) { return acceleration / (2.0 * PI * FREQUENCY); }
+
+/* permeability 0: undrained; NaN: dry. */
+static shaken begin(double acceleration, double permeability, double end) {
+  const bool dry = isnan(permeability);
+  shaken x = {.s = mpm_scene_begin(context, SPACING, 0.0, 0.0, field_young(VS))};
+  mps_material *sand = NULL;
+  mps_material_cyclic_sand_def law = mps_material_cyclic_sand_defaults();
+  law.young = field_young(VS), law.poisson = FIELD_NU, law.friction = 0.61;
+  law.relative_density = DENSITY;
+  mps_assert_ok(context, mps_material_create_cyclic_sand(context, &law, &sand));
+  mpm_scene_box(&x.s, 0.0, 0.0, WIDTH, HEIGHT);
+  mps_assert_ok(context, mps_particles_set(x.s.particles, "density", 0, FIELD_RHO));
+  mpm_scene_weigh(&x.s, (dry ? FIELD_RHO : FIELD_RHO - WATER) * GRAVITY, FIELD_K0, HEIGHT);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 2.0 * SPACING;
+  def.lower[0] = 0.0, def.upper[0] = WIDTH, def.lower[1] = 0.0;
+  def.gravity[1] = -GRAVITY;
+  mps_assert_ok(context, mps_mpm_create(context, x.s.particles, sand, &def, &x.s.mpm));
+  mps_material_destroy(&sand);
+  x.motion = field_shaking(context, FREQUENCY, velocity_of(acceleration), end);
+  mps_mpm_boundary_def base = mps_mpm_boundary_defaults();
+  base.kind = MPS_BOUNDARY_DRIVEN, base.signal[0] = x.motion;
+  mps_assert_ok(context, mps_mpm_set_boundary(x.s.mpm, MPS_MPM_SIDE_Y_LOWER, &base));
+  mpm_scene_side(&x.s, MPS_MPM_SIDE_X_LOWER, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  if (!dry) {
+    const double level[2] = {0.0, HEIGHT};
+    mps_pore_water_def water = mps_pore_water_defaults();
+    water.porosity = 0.4;
+    if (permeability > 0.0) water.permeability = permeability;
+    water.bulk = 0.4 * 20.0 * 3.5 * FIELD_RHO * VS * VS; /* K_w/n is 20 times K + 4G/3 */
+    mps_assert_ok(context, mps_mpm_add_pore_water(x.s.mpm, &water));
+    mps_assert_ok(context, mps_mpm_set_pore_level(x.s.mpm, level));
+  }
+  mpm_scene_side(&x.s, MPS_MPM_SIDE_X_UPPER, MPS_BOUNDARY_FREE_FIELD, 0.0);
+  x.volume = mpm_scene_totals(&x.s).volume;
+  return x;
+}
+
+static void finish(shaken *x) {
+  mps_signal_destroy(&x->motion);
+  mpm_scene_end(&x->s);
+}
+
+/* Means over the rows of particles, from below; their ids begin with rows in x. */
+static void rows_of(shaken *x, const char *field, int c, double *mean, double *spread) {
+  const mps_view v = mpm_scene_view(&x->s, field), ids = mpm_scene_view(&x->s, "id");
+  const int across = (int)(WIDTH / SPACING);
+  double low[ROWS], high[ROWS];
+  for (int r = 0; r < ROWS; r++) mean[r] = 0.0, low[r] = INFINITY, high[r] = -INFINITY;
+  for (int64_t k = 0; k < v.shape[0]; k++) {
+    const int r = (int)(*mps_view_i64(&ids, k, 0) / across);
+    const double value = *mps_view_f64(&v, k, c);
+    mean[r] += value / across;
+    low[r] = fmin(low[r], value), high[r] = fmax(high[r], value);
+  }
+  *spread = 0.0;
+  for (int r = 0; r < ROWS; r++) *spread = fmax(*spread, high[r] - low[r]);
+}
+
+static double depth_of(int row) { return HEIGHT - (row + 0.5) * SPACING; }
+
+/* Excess pressure of a row over the first vertical effective stress. */
+static double excess_ratio(const double *u, int row) {
+  return (u[row] / (GRAVITY * depth_of(row)) - WATER) / (FIELD_RHO - WATER);
+}
+
+/* ---- an elastic column ----------------------------------------------------------------------- */
+
+enum { CELLS = 2 * ROWS };
+
+/* Half cycles of a strain: from the last reversal `from` to the farthest since, `far`. */
+typedef struct counter {
+  double from, far, sum;
+} counter;
+
+static double byrne(double range, double before) {
+  const double g = 0.5 * range, counts = fmin(1.0, fmax(0.0, g / THRESHOLD - 1.0));
+  return counts > 0.0 ? counts * 0.5 * C1 * g * exp(-0.4 / C1 * before / g) : 0.0;
+}
+
+static void count(counter *c, double strain) {
+  const double range = fabs(c->far - c->from);
+  if (fabs(strain - c->from) >= range) {
+    c->far = strain;
+  } else if (fabs(strain - c->far) > fmax(0.1 * range, 2.0 * THRESHOLD)) {
+    c->sum += byrne(range, c->sum);
+    c->from = c->far, c->far = strain;
+  }
+}
+
+/* The contraction of each row of particles up to `end` by the strains of a linear elastic column of
+ * shear that the base drives, in one dimension by differences of second order. */
+static void elastic_column(const shaken *x, double end, double *contraction) {
+  const double h = HEIGHT / CELLS, dt = 0.4 * h / VS, share = VS * VS * dt / h;
+  double u[CELLS + 1] = {0.0}, v[CELLS + 1] = {0.0}, g[CELLS] = {0.0};
+  counter rows[CELLS] = {{0.0, 0.0, 0.0}};
+  for (double t = 0.0; t < end; t += dt) {
+    for (int n = 1; n <= CELLS; n++) {
+      const double pull = n < CELLS ? g[n] - g[n - 1] : -2.0 * g[n - 1];
+      v[n] += share * pull;
+      u[n] += dt * v[n];
+    }
+    u[0] += dt * mps_signal_velocity(x->motion, t + 0.5 * dt);
+    for (int n = 0; n < CELLS; n++) g[n] = (u[n + 1] - u[n]) / h, count(&rows[n], g[n]);
+  }
+  for (int r = 0; r < ROWS; r++) { /* a row is in the middle of two cells */
+    double sum = 0.0;
+    for (int n = 2 * r; n < 2 * r + 2; n++)
+      sum += rows[n].sum + byrne(fabs(rows[n].far - rows[n].from), rows[n].sum);
+    contraction[r] = 0.5 * sum;
+  }
+}
+
+/* ---- undrained ------------------------------------------------------------------------------- */
+
+static void pressures_rise_by_depth(void **state) {
+  (void)state;
+  const double end = 2.0, rebound = 3.5 * FIELD_RHO * VS * VS;
+  shaken x = begin(0.75, 0.0, end);
+  mps_assert_ok(context, mps_mpm_run(x.s.mpm, end, 10000000, NULL, NULL));
+  double u[ROWS], vertical[ROWS], contraction[ROWS], spread, apart, ignored;
+  rows_of(&x, "pore_pressure", 0, u, &spread);
+  rows_of(&x, "stress", 1, vertical, &apart);
+  rows_of(&x, "cyclic_sand.contraction", 0, contraction, &ignored);
+  double elastic[ROWS];
+  elastic_column(&x, end, elastic);
+  print_message("depth (m)  ru     M e/u'  e/elastic  (sigma' + u)/total\n");
+  for (int r = 1; r < ROWS; r += 2) {
+    const double z = depth_of(r), first = (FIELD_RHO - WATER) * GRAVITY * z;
+    const double excess = u[r] - WATER * GRAVITY * z;
+    print_message("%9.3f  %5.3f  %6.3f  %9.3f  %10.4f\n", z, excess / first,
+                  rebound * contraction[r] / excess, contraction[r] / elastic[r],
+                  (u[r] - vertical[r]) / (FIELD_RHO * GRAVITY * z));
+  }
+  print_message("spread over x: u %.3g Pa, vertical stress %.3g Pa\n", spread, apart);
+  int risen = 0;
+  double both = 0.0;
+  for (int r = 0; r < ROWS - 1; r++) {
+    const double z = depth_of(r), first = (FIELD_RHO - WATER) * GRAVITY * z;
+    const double excess = u[r] - WATER * GRAVITY * z;
+    mps_assert_near((u[r] - vertical[r]) / (FIELD_RHO * GRAVITY * z), 1.0, 0.015);
+    if (excess < 0.1 * first) continue;
+    /* pressures are means over cells, contraction is not */
+    mps_assert_near(rebound * contraction[r] / excess, 1.0, 0.15);
+    /* the stress that contraction takes makes the strains larger than those of an elastic column */
+    mps_assert_near(contraction[r] / elastic[r], 1.15, 0.15);
+    both += rebound * contraction[r] / excess;
+    risen++;
+  }
+  print_message("M times contraction over excess pressure, mean of %d rows: %.4f\n", risen,
+                both / risen);
+  assert_in_range(risen, ROWS / 3, ROWS);
+  assert_true(spread < 0.02 * (FIELD_RHO - WATER) * GRAVITY * HEIGHT);
+  assert_true(apart < 0.02 * (FIELD_RHO - WATER) * GRAVITY * HEIGHT);
+  finish(&x);
+}
+
+/* ---- with flow ------------------------------------------------------------------------------- */
+
+static void ground_settles_by_the_water_that_leaves(void **state) {
+  (void)state;
+  const double end = 3.0, rest = 4.0;
+  shaken x = begin(1.0, 4e-4, end);
+  double most = 0.0, base = 0.0, settled = 0.0, water = 0.0;
+  for (double t = 1.0; t <= end + rest; t += 1.0) {
+    mps_assert_ok(context, mps_mpm_run(x.s.mpm, t, 10000000, NULL, NULL));
+    double u[ROWS], spread;
+    mps_pore_budget budget;
+    rows_of(&x, "pore_pressure", 0, u, &spread);
+    mps_assert_ok(context, mps_mpm_get_pore_budget(x.s.mpm, &budget));
+    settled = (x.volume - mpm_scene_totals(&x.s).volume) / WIDTH;
+    water = budget.drained / WATER / WIDTH;
+    base = excess_ratio(u, 0), most = fmax(most, excess_ratio(u, TWO));
+    print_message("%4.1f s: ru %.3f at 1 m, %.3f at 2 m, %.3f at the base; settlement %.3f mm, "
+                  "water %.3f mm\n",
+                  t, excess_ratio(u, ONE), excess_ratio(u, TWO), base, 1e3 * settled, 1e3 * water);
+  }
+  double contraction[ROWS], ignored, sum = 0.0;
+  rows_of(&x, "cyclic_sand.contraction", 0, contraction, &ignored);
+  for (int r = 0; r < ROWS; r++) sum += contraction[r] * SPACING;
+  print_message("contraction %.3f mm\n", 1e3 * sum);
+  print_message("settlement over water %.4f, over contraction %.4f\n", settled / water,
+                settled / sum);
+  assert_true(most > 0.8 && most < 1.1 && base < 0.15);
+  mps_assert_near(settled / water, 1.0, 0.01);
+  mps_assert_near(settled / sum, 1.0, 0.06); /* some pressure is left */
+  finish(&x);
+}
+
+/* ---- a run that is cut ----------------------------------------------------------------------- */
+
+/* With water, free-field sides and half cycles under way a rollback continues bit for bit. */
+static void continues_from_a_snapshot(void **state) {
+  (void)state;
+  static const char *const fields[] = {"stress", "pore_pressure", "cyclic_sand.contraction",
+                                       "cyclic_sand.far_xy", "mass"};
+  enum { FIELDS = sizeof fields / sizeof *fields };
+  shaken x = begin(1.6, 4e-4, 3.0);
+  mps_snapshot *kept = NULL;
+  double once[FIELDS][ROWS], again[FIELDS][ROWS], spread;
+  mps_assert_ok(context, mps_mpm_run(x.s.mpm, 0.6, 10000000, NULL, NULL));
+  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &kept));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 2000));
+  for (int f = 0; f < FIELDS; f++) rows_of(&x, fields[f], 0, once[f], &spread);
+  mps_assert_ok(context, mps_mpm_rollback(x.s.mpm, kept));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 2000));
+  for (int f = 0; f < FIELDS; f++) rows_of(&x, fields[f], 0, again[f], &spread);
+  assert_memory_equal(once, again, sizeof once);
+  assert_true(once[2][1] > 0.0);
+  mps_snapshot_destroy(&kept);
+  finish(&x);
+}
+
+/* ---- dry ------------------------------------------------------------------------------------- */
+
+static void dry_ground_settles_at_once(void **state) {
+  (void)state;
+  const double end = 3.0;
+  shaken x = begin(1.6, NAN, end);
+  mps_assert_ok(context, mps_mpm_run(x.s.mpm, end + 1.0, 10000000, NULL, NULL));
+  double contraction[ROWS], ignored, sum = 0.0, reference = 0.0;
+  rows_of(&x, "cyclic_sand.contraction", 0, contraction, &ignored);
+  for (int r = 0; r < ROWS; r++) sum += contraction[r] * SPACING;
+  double elastic[ROWS];
+  elastic_column(&x, end + 1.0, elastic);
+  for (int r = 0; r < ROWS; r++) reference += SPACING * elastic[r];
+  const double settled = (x.volume - mpm_scene_totals(&x.s).volume) / WIDTH;
+  print_message("dry: settlement %.4f mm, contraction %.4f mm, of an elastic column %.4f mm\n",
+                1e3 * settled, 1e3 * sum, 1e3 * reference);
+  print_message("dry: settlement over contraction %.4f, contraction over that of an elastic column "
+                "%.4f\n",
+                settled / sum, sum / reference);
+  mps_assert_near(settled / sum, 1.0, 0.08);
+  mps_assert_near(sum / reference, 1.0, 0.08);
+  finish(&x);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(pressures_rise_by_depth),
+      cmocka_unit_test(ground_settles_by_the_water_that_leaves),
+      cmocka_unit_test(continues_from_a_snapshot),
+      cmocka_unit_test(dry_ground_settles_at_once),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
