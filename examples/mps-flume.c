@@ -6,10 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Heights of waves in spacings. Heads of less than some .7 spacings do not pass a crest. */
-#define LEAST_OF_WAVES 3.0
-#define LEAST_OF_DISCHARGE 4.0
-
 /* ---- the program ----------------------------------------------------------------------------- */
 
 static mps_status prepare(app *a, flume *m) {
@@ -34,19 +30,6 @@ static void describe(const flume *m) {
   fflush(stdout);
 }
 
-static void warn_of_spacing(app *a, const flume *m) {
-  const flume_settings *s = &m->s;
-  if (s->waves == FLUME_FILE) return;
-  if (s->height < LEAST_OF_WAVES * s->spacing)
-    app_warn(a, "the waves, %.3g m high, are lower than %g spacings of %g m: they will lose height",
-             s->height, LEAST_OF_WAVES, s->spacing);
-  if (flume_is_open(m) && s->height < LEAST_OF_DISCHARGE * s->spacing)
-    app_warn(a,
-             "the waves, %.3g m high, are lower than %g spacings of %g m: of the water that passes "
-             "the crest small events will be lost, so that q is uncertain",
-             s->height, LEAST_OF_DISCHARGE, s->spacing);
-}
-
 static int run(app *a, flume *m) {
   if (!app_agree(a, resume_places(a, m->s.restart, &m->s.checkpoint, &m->s.out) &&
                         (a->rank > 0 || output_directory(a, m->s.out))))
@@ -61,7 +44,7 @@ static int run(app *a, flume *m) {
   app_leave_at_once(a, false);
   if (status != MPS_OK && m->why[0]) return app_error(a, "%s", m->why), APP_FAILED;
   if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
-  warn_of_spacing(a, m);
+  flume_warn(a, m);
   describe(m);
   status = app_settle(a, flume_run(a, m));
   const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);

@@ -10,11 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LOWEST 0.5 /* band of the separation, over the frequency of the peak */
-#define HIGHEST 2.2
-#define REGULAR_LOWEST 0.8 /* without what is bound to a regular wave */
-#define REGULAR_HIGHEST 1.2
-
 static bool in_window(const flume_figures *f, double t) {
   return t >= f->from - 1e-9 && t <= f->to + 1e-9;
 }
@@ -42,74 +37,11 @@ static bool find_window(const flume *m, flume_figures *f) {
 
 /* ---- waves ----------------------------------------------------------------------------------- */
 
-/* Levels of the gauges, of the run (where there is no surface the last one before) or of the linear
- * target. */
-static mps_status fill_levels(const flume *m, bool target, const double *t, double *one,
-                              double *level) {
-  for (int g = 0; g < m->gauges; g++) {
-    mps_status status = MPS_OK;
-    double last = 0.0;
-    if (target) status = mps_waves_get_levels(m->waves, m->s.gauge[g], m->samples, t, one, NULL);
-    if (status != MPS_OK) return status;
-    for (int64_t k = 0; k < m->samples; k++) {
-      const double now = target ? one[k] : m->sample[k].level[g];
-      if (isfinite(now)) last = now;
-      level[k * m->gauges + g] = last;
-    }
-  }
-  return MPS_OK;
-}
-
-static mps_separation_def band_of(const flume *m, const flume_figures *f) {
-  const bool regular = m->s.waves == FLUME_REGULAR;
-  mps_separation_def def = mps_separation_defaults();
-  def.gauges = m->gauges, def.position = m->s.gauge;
-  def.depth = m->s.depth, def.gravity = WAVES_G;
-  def.from = f->from, def.to = f->to;
-  def.lower = (regular ? REGULAR_LOWEST : LOWEST) / m->s.period;
-  def.upper = (regular ? REGULAR_HIGHEST : HIGHEST) / m->s.period;
-  def.samples = m->samples;
-  return def;
-}
-
-/* False without memory. A separation that is not possible, as with too few samples a wave, is a
- * warning. */
-static bool separate(app *a, flume *m, flume_figures *f) {
-  const size_t n = (size_t)m->samples;
-  double *room = malloc(n * (size_t)(m->gauges + 2) * sizeof *room);
-  mps_separation target;
-  mps_separation_def def = band_of(m, f);
-  const int64_t most = (int64_t)(def.upper * (f->to - f->from)) + 2;
-  f->frequency = calloc(4 * (size_t)most, sizeof(double));
-  if (!room || !f->frequency) {
-    free(room);
-    return app_no_memory(a);
-  }
-  double *t = room, *one = room + n, *level = one + n;
-  f->incident = f->frequency + most, f->reflected = f->incident + most;
-  f->target = f->reflected + most;
-  for (int64_t k = 0; k < m->samples; k++) t[k] = m->sample[k].t;
-  def.times = t, def.levels = level;
-  mps_status status = fill_levels(m, true, t, one, level);
-  if (status == MPS_OK)
-    status = mps_separation_find(a->context, &def, most, &f->bands, NULL, f->target, NULL, &target);
-  if (status == MPS_OK) status = fill_levels(m, false, t, one, level);
-  if (status == MPS_OK)
-    status = mps_separation_find(a->context, &def, most, &f->bands, f->frequency, f->incident,
-                                 f->reflected, &f->split);
-  free(room);
-  f->separated = status == MPS_OK;
-  if (f->separated)
-    f->target_height = target.incident_height;
-  else
-    app_warn(a, "no incident and reflected waves: %s", mps_context_error(a->context)->message);
-  return true;
-}
-
 /* Slope of the logarithm of the levels' deviations over gauges that span a wave length at least. */
 static void find_loss(const flume *m, flume_figures *f) {
   double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, least = INFINITY, most = -INFINITY;
-  for (int g = 0; g < m->gauges; g++) {
+  for (int j = 0; j < m->fronts; j++) {
+    const int g = m->front[j];
     double sum = 0.0, square = 0.0, n = 0.0;
     for (int64_t k = 0; k < m->samples; k++) {
       const double level = m->sample[k].level[g];
@@ -121,7 +53,7 @@ static void find_loss(const flume *m, flume_figures *f) {
     const double y = 0.5 * log(variance);
     sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
-  const double n = m->gauges, spread = sxx - sx * sx / n;
+  const double n = m->fronts, spread = sxx - sx * sx / n;
   if (most - least >= m->wave_length) f->loss = -(sxy - sx * sy / n) / spread;
 }
 
@@ -196,7 +128,8 @@ static void find_goda(app *a, const flume *m, flume_figures *f) {
   if (s->wall != FLUME_VERTICAL && !caisson) return;
   def.height = f->split.incident_height * (regular ? sqrt(0.5) : 1.8);
   def.period = regular ? s->period : f->split.peak_period;
-  def.depth = s->depth;
+  const double front = flume_has_body(m) ? f->front : m->toe;
+  def.depth = s->depth - flume_ground_at(m, front - 0.5 * s->spacing);
   def.crest = s->wall == FLUME_CAISSON ? s->crest : 10.0 * s->depth;
   def.width = caisson ? base_width(m) : s->depth;
   if (caisson) def.weight = m->rest.weight, def.arm = m->rest.arm;
@@ -210,6 +143,22 @@ static void find_goda(app *a, const flume *m, flume_figures *f) {
   f->front = m->heel[0] - def.width, f->crest = def.crest;
   def.friction = s->friction, def.density = WAVES_DENSITY, def.gravity = WAVES_G;
   f->has_goda = mps_goda_evaluate(a->context, &def, &f->goda) == MPS_OK;
+  if (!f->has_goda) app_warn(a, "no force by Goda: %s", mps_context_error(a->context)->message);
+}
+
+/* Of regular waves at an upright wall on a level bed. */
+static void find_sainflou(app *a, const flume *m, flume_figures *f) {
+  const flume_settings *s = &m->s;
+  const bool upright = s->wall == FLUME_VERTICAL || s->wall == FLUME_CAISSON;
+  mps_sainflou_def def = mps_sainflou_defaults();
+  mps_sainflou answer;
+  if (s->waves != FLUME_REGULAR || !upright || m->ground[m->grounds - 1][1] != 0.0) return;
+  def.height = f->split.incident_height * sqrt(0.5), def.period = s->period, def.depth = s->depth;
+  def.density = WAVES_DENSITY, def.gravity = WAVES_G;
+  if (mps_sainflou_evaluate(a->context, &def, &answer) == MPS_OK)
+    f->force_sainflou = answer.crest_force - 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth;
+  else
+    app_warn(a, "no force by Sainflou: %s", mps_context_error(a->context)->message);
 }
 
 static double passed_at(const flume *m, double t) {
@@ -219,15 +168,18 @@ static double passed_at(const flume *m, double t) {
   return volume;
 }
 
-/* Means over the window of the level at all gauges, and of the water before the crest. */
+/* Means over the window of the level at the gauges before structure, rock or zone, and of the water
+ * before the crest. */
 static void find_means(const flume *m, flume_figures *f) {
   double level = 0.0, levels = 0.0, water = 0.0, samples = 0.0;
   const double filled = (double)m->filled * m->s.spacing * m->s.spacing;
   for (int64_t k = 0; k < m->samples; k++) {
     if (!in_window(f, m->sample[k].t)) continue;
     water += m->sample[k].water / filled, samples += 1.0;
-    for (int g = 0; g < m->gauges; g++)
-      if (!isnan(m->sample[k].level[g])) level += m->sample[k].level[g], levels += 1.0;
+    for (int j = 0; j < m->fronts; j++) {
+      const double here = m->sample[k].level[m->front[j]];
+      if (!isnan(here)) level += here, levels += 1.0;
+    }
   }
   f->mean_level = level / levels;
   if (m->filled > 0) f->water = water / samples;
@@ -254,7 +206,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   memset(f, 0, sizeof *f);
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
   f->mean_level = f->water = NAN;
-  f->force_mean = f->force_harmonic = f->force_linear = NAN;
+  f->force_mean = f->force_harmonic = f->force_linear = f->force_sainflou = NAN;
   f->bound = f->bound_stokes = f->unbound = f->back = f->length = NAN;
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
   f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
@@ -268,13 +220,14 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
           f->from);
     return true;
   }
-  if (m->gauges >= 2 && !separate(a, m, f)) return false;
+  if (m->gauges >= 2 && !flume_separate(a, m, f)) return false;
   find_means(m, f);
   if (flume_is_loaded(m)) find_forces(m, f);
-  if (!flume_is_loaded(m) && m->gauges >= 3) find_loss(m, f);
+  if (!flume_is_loaded(m) && m->shape.rocks == 0 && m->fronts >= 3) find_loss(m, f);
   flume_find_regular_forces(m, f);
   flume_find_harmonics(m, f);
   if (f->separated) find_goda(a, m, f);
+  if (f->separated) find_sainflou(a, m, f);
   if (f->separated) find_discharge(a, m, f);
   return true;
 }

@@ -101,15 +101,18 @@ typedef struct flume_cells {
 typedef struct flume {
   flume_settings s;
   const option *table;
-  int gauges;
-  double wave_length, toe, outlet; /* m; x of the far end */
-  double heel[2];                  /* m: rear foot of the structure */
+  int gauges, fronts, rears;
+  int front[FLUME_GAUGES], rear[FLUME_GAUGES]; /* gauges before and behind structure and rock */
+  double wave_length, toe, outlet;             /* m; x of the far end */
+  double heel[2];                              /* m: rear foot of the structure */
   flume_shapes shape;
   double ground[2 * FLUME_POINTS + 4][2]; /* m: bed, structure and the bed behind as one polyline */
+  bool bedded;                            /* rock is below the middle of the body's base */
   int grounds, first, last; /* corners; segments of the structure, from the first to before last */
   flume_cells cells;
   flume_rest rest;
   int32_t probe_wall[FLUME_PROBES]; /* FLUME_BED, FLUME_END or FLUME_BODY */
+  double record_height;             /* m: 4 standard deviations of the record of a file */
   document *text;                   /* the model file; NULL: none */
   mps_waves *waves;
   mps_absorber *maker, *end;
@@ -139,9 +142,9 @@ static inline bool flume_is_loaded(const flume *m) {
 }
 /* Water leaves behind the structure. */
 static inline bool flume_is_open(const flume *m) { return flume_has_structure(m) && !m->s.closed; }
-/* It stands by its weight: it has safeties. */
+/* It stands by its weight: it has safeties. A body without rock below is held where it is. */
 static inline bool flume_is_caisson(const flume *m) {
-  return flume_has_body(m) || m->s.wall == FLUME_CAISSON;
+  return m->bedded || m->s.wall == FLUME_CAISSON;
 }
 
 /* options.c: the model of the command line and its file; *code: -1 to continue, or the exit code.
@@ -157,12 +160,26 @@ int flume_read_file(const options_program *program, flume *m);
 bool flume_read_points(const char *text, int most, double (*point)[2], int32_t *count);
 /* check.c: completes the settings and checks them; likewise. */
 int flume_check(const options_program *program, flume *m);
+/* sides.c: sides of shapes that are too short or cross one another, bodies and rock that lie where
+ * they must not; likewise. flume_refuse_at adds the line of the model file of the point `at`. */
+int flume_refuse_at(const options_program *program, const flume *m, const char *key,
+                    const double *at, const char *why);
+int flume_check_sides(const options_program *program, const flume *m, const char *what, int count,
+                      bool closed, const double (*at)[2]);
+int flume_check_body(const options_program *program, const flume *m);
+int flume_check_rock(const options_program *program, const flume *m);
 /* unused.c: refuses options that the rest of the model makes no use of; likewise. */
 int flume_check_unused(const options_program *program, const flume *m);
 
 /* shapes.c: the ground as one polyline, solids, rock, water at rest. */
 void flume_make_ground(flume *m);
 bool flume_is_solid(const flume *m, double x, double y);
+/* Height (m) of the ground over a station, the highest where it hangs over; -INFINITY: none. */
+double flume_ground_at(const flume *m, double x);
+/* Whether segments p-q and r-s cross inside both, and their distance (m). */
+bool flume_cross(const double *p, const double *q, const double *r, const double *s);
+double flume_distance(const double *p, const double *q, const double *r, const double *s);
+bool flume_in_rock(const flume_rock *r, double x, double y);
 /* Number of the first rock at a point, -1: none. */
 int flume_rock_at(const flume *m, double x, double y);
 /* Distance (m) of a point from bed, structure and body. */
@@ -171,6 +188,8 @@ double flume_face_distance(const flume *m, const double *x);
 double flume_nearest_face(const flume *m, const double *x, double *on, int32_t *wall);
 bool flume_fill_cells(flume *m);
 bool flume_is_wet(const flume *m, double x, double y);
+/* gauges.c: the default ones, and which lie before and behind structure, rock and zone. */
+void flume_place_gauges(flume *m);
 /* fill.c: particles of the water at rest, appended. */
 mps_status flume_fill(const flume *m, mps_particles *water);
 
@@ -180,7 +199,9 @@ mps_status flume_make_pistons(app *a, flume *m);
 /* model.c: water, walls, structure. */
 mps_status flume_build(app *a, flume *m);
 void flume_free(flume *m);
-/* loads.c: forces, moments, uplift and pressures of the present water; of water at rest. */
+/* loads.c: weight (N) of a caisson in still water. */
+double flume_weight(flume *m);
+/* Forces, moments, uplift and pressures of the present water; of water at rest. */
 mps_status flume_measure_loads(flume *m, flume_sample *sample);
 mps_status flume_look_at(flume *m, flume_look *look, bool faces);
 /* Room for that many particles; false without memory. */
@@ -189,6 +210,8 @@ void flume_find_rest(flume *m);
 /* refill.c: water that has passed the crest, returned after a step of `dt` (s). */
 int64_t flume_count_water(const flume *m);
 mps_status flume_refill(flume *m, double dt);
+/* warnings.c: of waves, gauges and shapes that a run makes little of. */
+void flume_warn(app *a, const flume *m);
 /* run.c: displacement (m) of the maker; steps to the end, or until Ctrl-C, which leaves a
  * checkpoint. */
 double flume_maker_place(const flume *m);
@@ -203,16 +226,19 @@ typedef struct flume_figures {
   double from, to; /* s, as used */
   bool separated;  /* there are incident and reflected waves */
   mps_separation split;
+  bool passed; /* there are waves behind structure or rock */
+  mps_separation behind;
   int64_t bands;
   double *frequency, *incident, *reflected, *target; /* Hz, m: amplitudes */
   double target_height; /* m, Hm0 of the linear target at the gauges in the same window */
   double force_still, force_peak, force_least, peak_at, foot_peak; /* N, N, N, s, Pa above rest */
   double force_mean, force_harmonic, force_linear; /* N: of regular waves, see regular.c */
+  double force_sainflou;                           /* N: under the crest, above rest */
   double sliding, overturning; /* least safeties of the caisson: uplift a triangle */
   double sliding_bedding, overturning_bedding; /* uplift as computed in the rock below it */
   double uplift_peak, uplift_triangle;         /* N, above rest, at the largest force */
   double discharge;                            /* m2/s */
-  double mean_level;                           /* m above that at rest, of all gauges */
+  double mean_level;                           /* m above that at rest, of the gauges before */
   double water; /* mean of the water before the crest, over that at the start */
   double loss;  /* of the height, a wave length */
   double bound, bound_stokes, unbound, back, length; /* of regular waves, m the last: harmonics.c */
@@ -231,6 +257,8 @@ typedef struct flume_statistics {
   double period, skewness;      /* s, mean; of the levels */
 } flume_statistics;
 
+/* separate.c: split to target_height, passed, behind. False after an error line. */
+bool flume_separate(app *a, const flume *m, flume_figures *f);
 /* statistics.c. False without memory. */
 bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s);
 /* regular.c: force_mean and those after it, of an upright wall. */

@@ -82,14 +82,14 @@ static double fit(const flume *m, double complex (*amplitude)[2], int harmonic, 
   system s = {.unknowns = count};
   double complex row[3];
   double sum = 0.0;
-  for (int g = 0; g < m->gauges; g++) {
-    level_of(k, count, m->s.gauge[g], row);
+  for (int g = 0; g < m->fronts; g++) {
+    level_of(k, count, m->s.gauge[m->front[g]], row);
     add(&s, row, amplitude[g][harmonic]);
   }
   if (!solve(&s, wave)) return INFINITY;
-  for (int g = 0; g < m->gauges; g++) {
+  for (int g = 0; g < m->fronts; g++) {
     double complex left = amplitude[g][harmonic];
-    level_of(k, count, m->s.gauge[g], row);
+    level_of(k, count, m->s.gauge[m->front[g]], row);
     for (int n = 0; n < count; n++) left -= row[n] * wave[n];
     sum += creal(left * conj(left));
   }
@@ -126,10 +126,12 @@ static double linear_number(double omega, double depth) {
 void flume_find_harmonics(const flume *m, flume_figures *f) {
   double complex amplitude[FLUME_GAUGES][2], first[2] = {0.0}, second[3];
   double least = INFINITY, most = -INFINITY;
-  if (m->s.waves != FLUME_REGULAR || flume_is_loaded(m) || m->gauges < LEAST_GAUGES) return;
-  for (int g = 0; g < m->gauges; g++) {
-    if (!find_amplitudes(m, f, g, amplitude[g])) return;
-    least = fmin(least, m->s.gauge[g]), most = fmax(most, m->s.gauge[g]);
+  if (m->s.waves != FLUME_REGULAR || flume_is_loaded(m) || m->shape.rocks > 0 ||
+      m->fronts < LEAST_GAUGES)
+    return;
+  for (int g = 0; g < m->fronts; g++) {
+    if (!find_amplitudes(m, f, m->front[g], amplitude[g])) return;
+    least = fmin(least, m->s.gauge[m->front[g]]), most = fmax(most, m->s.gauge[m->front[g]]);
   }
   const double k2 = linear_number(4.0 * WAVES_PI / m->s.period, m->s.depth);
   const double k = find_number(m, amplitude, first);

@@ -69,7 +69,7 @@ static void find_foot(const flume *m, double foot[3], int32_t *wall) {
     at = p->body_point[lowest], from = p->body_point[(lowest + 1) % p->body];
     *wall = FLUME_BODY;
   } else if (!flume_has_structure(m)) {
-    foot[0] = m->outlet - 0.5 * m->s.spacing, foot[1] = 0.0;
+    foot[0] = m->outlet - 0.5 * m->s.spacing, foot[1] = m->ground[m->grounds - 1][1];
     return;
   }
   const double way = 0.5 * m->s.spacing / hypot(from[0] - at[0], from[1] - at[1]);
@@ -103,7 +103,8 @@ mps_status flume_measure_loads(flume *m, flume_sample *sample) {
   if (status != MPS_OK || m->s.wall != FLUME_VERTICAL) return status;
   status = mps_fluid_get_reaction(m->fluid, FLUME_END, &r);
   if (status == MPS_OK) /* opposite forces on wall and water */
-    sample->force = -r.force[0], sample->moment = r.moment[2];
+    sample->force = -r.force[0],
+    sample->moment = r.moment[2] + r.force[0] * m->ground[m->grounds - 1][1];
   return status;
 }
 
@@ -213,6 +214,11 @@ static void find_weight(flume *m) {
   m->rest.arm = m->heel[0] - moment / m->rest.weight;
 }
 
+double flume_weight(flume *m) {
+  find_weight(m);
+  return m->rest.weight;
+}
+
 void flume_find_rest(flume *m) {
   const flume_shapes *p = &m->shape;
   load sum = {.moment = 0.0}, below = {.moment = 0.0};
@@ -223,7 +229,8 @@ void flume_find_rest(flume *m) {
   find_foot(m, foot, &wall);
   m->rest.foot = WAVES_DENSITY * WAVES_G * (m->s.depth - foot[1]);
   if (m->s.wall == FLUME_VERTICAL) {
-    sum.force[0] = 0.5 * m->rest.foot * m->s.depth, sum.moment = sum.force[0] * m->s.depth / 3.0;
+    const double depth = m->s.depth - foot[1];
+    sum.force[0] = 0.5 * m->rest.foot * depth, sum.moment = sum.force[0] * depth / 3.0;
   } else if (flume_has_body(m)) {
     for (int k = 0; k < p->body; k++) {
       const double *a = p->body_point[k], *b = p->body_point[(k + 1) % p->body];

@@ -99,7 +99,8 @@ static bool draw_discharge(app *a, const flume *m, const flume_figures *g) {
 
 /* Goda's trapezoids: from the base over the still level to eta*, or the crest. */
 static void plot_goda(output *f, const flume *m, const flume_figures *g) {
-  const double d = m->s.depth, base = flume_has_body(m) ? m->heel[1] : 0.0;
+  const double bed = m->s.wall == FLUME_VERTICAL ? m->ground[m->grounds - 1][1] : 0.0;
+  const double d = m->s.depth, base = flume_has_body(m) ? m->heel[1] : bed;
   const double reach = g->goda.reach, crest = m->s.wall == FLUME_VERTICAL ? INFINITY : g->crest;
   const double top = fmin(reach, crest), p4 = top < reach ? g->goda.p4 : 0.0;
   output_text(f, "$goda << EOD\n%.6g,%.6g\n%.6g,%.6g\n%.6g,%.6g\nEOD\n", 1e-3 * g->goda.p3, base,
@@ -150,8 +151,8 @@ static bool draw_pressures(app *a, const flume *m, const flume_figures *g) {
       "$stated using 1:2 with lines dashtype '--' linecolor rgb '#888888' title 'triangle "
       "from the foot', 'faces.csv' every ::1 using (abs($2 - %.9g) < 1e-6 && $1 > %.9g ? $1 "
       ": NaN):(1e-3*$4) with points pointtype 7 pointsize 0.7 linecolor rgb '#1f4e8c' title "
-      "'MPS, in the rock'\nunset multiplot\n",
-      base, g->front - half);
+      "'MPS, %s'\nunset multiplot\n",
+      base, g->front - half, m->bedded ? "in the rock" : "below it");
   return plot_close(&f, m->s.out, "pressures");
 }
 

@@ -39,7 +39,8 @@ static double find_mean_peak(const flume *m, double from, double to) {
 
 void flume_find_regular_forces(const flume *m, flume_figures *f) {
   const bool upright = m->s.wall == FLUME_VERTICAL || m->s.wall == FLUME_CAISSON;
-  if (m->s.waves != FLUME_REGULAR || !upright || !f->separated) return;
+  const bool level = m->ground[m->grounds - 1][1] == 0.0;
+  if (m->s.waves != FLUME_REGULAR || !upright || !level || !f->separated) return;
   const double k = 2.0 * WAVES_PI / m->wave_length, H = sqrt(0.5) * f->split.incident_height;
   f->force_mean = find_mean_peak(m, f->from, f->to);
   f->force_harmonic = find_harmonic(m, f->from, f->to);

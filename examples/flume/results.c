@@ -176,6 +176,10 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, there, "Tm_10", g->split.energy_period);
   json_number_if(f, there, "reflection", g->split.reflection);
   json_number_if(f, there, "residual", g->split.residual);
+  json_number_if(f, g->passed, "Hm0_transmitted", g->behind.incident_height);
+  json_number_if(f, g->passed, "transmission",
+                 g->behind.incident_height / g->split.incident_height);
+  json_number_if(f, g->passed, "reflection_behind", g->behind.reflection);
   json_number_if(f, there, "mean_level", g->mean_level);
   json_number(f, "loss_per_wavelength", g->loss);
   json_number_if(f, !isnan(g->bound), "harmonic_bound", g->bound);
@@ -187,6 +191,10 @@ static void summarise_waves(output *f, const flume *m, const flume_figures *g) {
     printf("incident Hm0 %.4f m, linear target in the same window %.4f m; Tp %.3f s; reflection "
            "%.3f\n",
            g->split.incident_height, g->target_height, g->split.peak_period, g->split.reflection);
+  if (g->passed)
+    printf("behind structure or rock Hm0 %.4f m, transmission %.3f, reflection there %.3f\n",
+           g->behind.incident_height, g->behind.incident_height / g->split.incident_height,
+           g->behind.reflection);
   if (!isnan(g->bound))
     printf("second harmonic over the first: bound %.4f (Stokes %.4f), free %.4f, sent back %.4f; "
            "wave length %.4f m\n",
@@ -215,14 +223,15 @@ static void summarise_force(output *f, const flume *m, const flume_figures *g) {
   json_number_if(f, regular, "force_harmonic_linear", g->force_linear);
   json_number_if(f, wall, "foot_peak", g->foot_peak);
   json_number_if(f, g->has_goda, "force_goda", g->goda.force);
+  json_number_if(f, !isnan(g->force_sainflou), "force_sainflou", g->force_sainflou);
   json_number_if(f, g->has_goda, "foot_goda", g->goda.p3);
   json_number_if(f, body, "uplift_peak", g->uplift_peak);
   json_number_if(f, caisson, "uplift_triangle", g->uplift_triangle);
   json_number_if(f, g->has_goda, "uplift_goda", g->goda.uplift);
   json_number_if(f, caisson, "safety_sliding", g->sliding);
   json_number_if(f, caisson, "safety_overturning", g->overturning);
-  json_number_if(f, body, "safety_sliding_bedding", g->sliding_bedding);
-  json_number_if(f, body, "safety_overturning_bedding", g->overturning_bedding);
+  json_number_if(f, m->bedded, "safety_sliding_bedding", g->sliding_bedding);
+  json_number_if(f, m->bedded, "safety_overturning_bedding", g->overturning_bedding);
   json_number_if(f, g->has_goda, "safety_sliding_goda", g->goda.sliding);
   json_number_if(f, g->has_goda, "safety_overturning_goda", g->goda.overturning);
   if (body && g->has_goda && !isnan(g->uplift_peak))

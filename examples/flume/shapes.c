@@ -31,6 +31,16 @@ static void make_face(flume *m) {
     p->structure_point[k][0] += s->length;
 }
 
+/* Rock half a spacing below the middle of the body's base, from its heel to the front. */
+static void find_bedding(flume *m) {
+  double front = m->heel[0];
+  for (int k = 0; k < m->shape.body; k++)
+    if (fabs(m->shape.body_point[k][1] - m->heel[1]) < 1e-9)
+      front = fmin(front, m->shape.body_point[k][0]);
+  m->bedded = flume_has_body(m) &&
+              flume_rock_at(m, 0.5 * (front + m->heel[0]), m->heel[1] - 0.5 * m->s.spacing) >= 0;
+}
+
 /* Behind its rear edge a structure stands upright, to the height 0 of the bed there. */
 void flume_make_ground(flume *m) {
   flume_shapes *p = &m->shape;
@@ -57,6 +67,7 @@ void flume_make_ground(flume *m) {
       memcpy(m->heel, at, sizeof m->heel); /* the rear one of the lowest corners */
   }
   add_point(m, m->outlet, m->ground[m->grounds - 1][1]);
+  find_bedding(m);
 }
 
 /* ---- points ---------------------------------------------------------------------------------- */
@@ -82,9 +93,23 @@ bool flume_is_solid(const flume *m, double x, double y) {
   return below || in_polygon(m->shape.body, m->shape.body_point, x, y);
 }
 
+double flume_ground_at(const flume *m, double x) {
+  double y = -INFINITY;
+  for (int k = 0; k + 1 < m->grounds; k++) {
+    const double *p = m->ground[k], *q = m->ground[k + 1];
+    if (x < p[0] || x > q[0] || p[0] == q[0]) continue;
+    y = fmax(y, p[1] + (q[1] - p[1]) * (x - p[0]) / (q[0] - p[0]));
+  }
+  return y;
+}
+
+bool flume_in_rock(const flume_rock *r, double x, double y) {
+  return in_polygon(r->corners, r->corner, x, y);
+}
+
 int flume_rock_at(const flume *m, double x, double y) {
   for (int k = 0; k < m->shape.rocks; k++)
-    if (in_polygon(m->shape.rock[k].corners, m->shape.rock[k].corner, x, y)) return k;
+    if (flume_in_rock(&m->shape.rock[k], x, y)) return k;
   return -1;
 }
 
@@ -94,6 +119,21 @@ static double to_segment(const double *p, const double *q, const double *x, doub
   const double s = fmin(fmax(along, 0.0), 1.0);
   on[0] = p[0] + s * e[0], on[1] = p[1] + s * e[1];
   return hypot(x[0] - on[0], x[1] - on[1]);
+}
+
+static double turn(const double *p, const double *q, const double *r) {
+  return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+bool flume_cross(const double *p, const double *q, const double *r, const double *s) {
+  return turn(p, q, r) * turn(p, q, s) < 0.0 && turn(r, s, p) * turn(r, s, q) < 0.0;
+}
+
+double flume_distance(const double *p, const double *q, const double *r, const double *s) {
+  double on[2];
+  if (flume_cross(p, q, r, s)) return 0.0;
+  return fmin(fmin(to_segment(p, q, r, on), to_segment(p, q, s, on)),
+              fmin(to_segment(r, s, p, on), to_segment(r, s, q, on)));
 }
 
 /* Keeps the nearer of two faces. */

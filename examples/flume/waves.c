@@ -31,9 +31,16 @@ static mps_waves_def definition(const flume_settings *s) {
   return def;
 }
 
+static double height_of(int64_t count, const double *level) {
+  double sum = 0.0, square = 0.0;
+  for (int64_t k = 0; k < count; k++) sum += level[k], square += level[k] * level[k];
+  return 4.0 * sqrt(fmax(square - sum * sum / (double)count, 0.0) / (double)count);
+}
+
 /* The record of the file at even intervals: a table of displacements between whose samples is a
  * spline. */
-static mps_status read_file(app *a, const flume_settings *s, mps_waves_def *def, double **room) {
+static mps_status read_file(app *a, flume *m, mps_waves_def *def, double **room) {
+  const flume_settings *s = &m->s;
   mps_signal_record_def record = mps_signal_record_defaults();
   mps_signal *signal = NULL;
   double start, end;
@@ -50,6 +57,7 @@ static mps_status read_file(app *a, const flume_settings *s, mps_waves_def *def,
       level[k] = mps_signal_displacement(signal, t[k]);
     }
     def->times = t, def->levels = level;
+    m->record_height = height_of(def->samples, level);
   }
   mps_signal_destroy(&signal);
   return *room ? MPS_OK : MPS_ERROR_MEMORY;
@@ -71,7 +79,7 @@ mps_status flume_make_waves(app *a, flume *m) {
   double *room = NULL;
   mps_waves_report report;
   mps_status status = MPS_OK;
-  if (m->s.waves == FLUME_FILE) status = read_file(a, &m->s, &def, &room);
+  if (m->s.waves == FLUME_FILE) status = read_file(a, m, &def, &room);
   if (status == MPS_OK) status = mps_waves_create(a->context, &def, &m->waves);
   free(room);
   if (status == MPS_ERROR_ARGUMENT) find_line(a, m);

@@ -10,7 +10,7 @@
 /* Identification of a checkpoint of this program. */
 static mps_checkpoint own_checkpoint(void) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  snprintf(info.user_key, sizeof info.user_key, "mps-wave 1");
+  snprintf(info.user_key, sizeof info.user_key, "mps-wave 2");
   return info;
 }
 

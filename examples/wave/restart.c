@@ -1,15 +1,17 @@
-/* restart.c - options and results in a checkpoint of mps-wave: a text of one option a line, then
- * numbers.
+/* restart.c - options and results in a checkpoint of mps-wave: the options as mps-info lists them,
+ * the model that they make as a text of one value a line, then numbers.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "restart.h"
+
+#include "common/options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TEXT = 16384, HEAD = 8 };
+enum { OPTIONS = 4096, TEXT = 16384, HEAD = 8 }; /* bytes, bytes, numbers */
 
-/* ---- options --------------------------------------------------------------------------------- */
+/* ---- the model ------------------------------------------------------------------------------- */
 
 static void add(char *text, const char *name, double value) {
   const size_t at = strlen(text);
@@ -79,11 +81,12 @@ static bool same_options(app *a, const char *here, const char *there) {
 void *restart_pack(const results_so_far *r, int64_t *size) {
   const receivers *q = r->record;
   const int64_t width = q->count + 1;
-  *size = TEXT + (HEAD + q->rows * width + r->peaks->count) * (int64_t)sizeof(double);
+  *size = OPTIONS + TEXT + (HEAD + q->rows * width + r->peaks->count) * (int64_t)sizeof(double);
   char *block = calloc(1, (size_t)*size);
   if (!block) return NULL;
-  describe(r->s, block);
-  double *number = (double *)(void *)(block + TEXT);
+  if (!options_record(options_read(), block, OPTIONS)) memset(block, 0, OPTIONS); /* too long */
+  describe(r->s, block + OPTIONS);
+  double *number = (double *)(void *)(block + OPTIONS + TEXT);
   const double head[HEAD] = {(double)q->rows,  (double)width,       (double)r->peaks->count,
                              (double)r->every, (double)q->energies, q->energy_least,
                              q->energy_most,   q->energy_sum};
@@ -102,16 +105,18 @@ bool restart_unpack(app *a, results_so_far *r, const void *block, int64_t size) 
   double head[HEAD];
   if (!here) return app_no_memory(a);
   describe(r->s, here);
-  const bool whole = size >= TEXT + (int64_t)sizeof head && memchr(block, '\0', TEXT);
-  const bool same = whole && same_options(a, here, block);
+  const char *model = (const char *)block + OPTIONS;
+  const bool whole =
+      size >= OPTIONS + TEXT + (int64_t)sizeof head && memchr(model, '\0', TEXT) != NULL;
+  const bool same = whole && same_options(a, here, model);
   free(here);
   if (!whole) return app_error(a, "--restart: the checkpoint is not one of mps-wave");
   if (!same) return false;
-  const char *numbers = (const char *)block + TEXT;
+  const char *numbers = model + TEXT;
   memcpy(head, numbers, sizeof head);
   const int64_t rows = (int64_t)head[0], peaks = (int64_t)head[2];
   if (!(head[0] >= 0.0 && head[0] < 1e9) || head[1] != (double)width || peaks != r->peaks->count ||
-      size != TEXT + (HEAD + rows * width + peaks) * (int64_t)sizeof(double))
+      size != OPTIONS + TEXT + (HEAD + rows * width + peaks) * (int64_t)sizeof(double))
     return app_error(a, "--restart: the results in the checkpoint are damaged");
   double *row = malloc((size_t)(rows * width + 1) * sizeof *row);
   if (!row) return app_no_memory(a);

@@ -65,8 +65,33 @@ has "$work/log" "second harmonic over the first"
 "$1/mps-flume" $coarse --waves focused --focus 2,6 --height 0.15 --length 4 --duration 2 --frames 0 \
   --out "$work/focus" >"$work/log" 2>&1
 awk 'BEGIN { for (k = 0; k <= 400; k++) printf "%g,%g\n", 0.05 * k, 0.04 * cos(4.5 * 0.05 * k) }' >"$work/record.csv"
-"$1/mps-flume" $coarse --waves file --file "$work/record.csv" --length 3 --duration 2 --frames 0 \
+"$1/mps-flume" $coarse --waves file --file "$work/record.csv" --period 1.4 --length 3 --duration 2 --frames 0 \
   --out "$work/file" >"$work/log" 2>&1
+
+! grep -q "the record" "$work/log" || fail "a warning of a record that the maker makes"
+"$1/mps-flume" $coarse --waves file --file "$work/record.csv" --period 0.5 --length 0.5 --duration 0.1 --frames 0 \
+  --out "$work/file" >"$work/log" 2>&1
+has "$work/log" "the record has Hm0 0.11"
+
+# A sea of long waves, and one whose highest waves break; a focus that comes too early.
+short="--spacing 0.05 --threads 1 --length 5 --duration 0.05 --sample 0.05 --frames 0 --out $work/short"
+"$1/mps-flume" $short --waves jonswap --height 0.06 --period 3 --depth 0.25 >"$work/log" 2>&1
+has "$work/log" "from 26.3 on second order does not hold"
+"$1/mps-flume" $short --waves pm --height 0.2 >"$work/log" 2>&1
+has "$work/log" "0.36 m (1.8 Hm0), are above the breaking height 0.27 m"
+"$1/mps-flume" $short --waves focused --height 0.1 --focus 3,4 >"$work/log" 2>&1
+has "$work/log" "the focus at 4 s is too early: the waves of the peak need 5"
+
+# Waves through a block of rock: the gauges before and behind it are analysed apart. Energy is lost.
+"$1/mps-flume" $coarse --height 0.05 --period 1.5 --length 6 --rock 3,0,3.4,0,3.4,0.8,3,0.8 --stone 2cm --beta 0 \
+  --gauge 1,1.25,1.75,2.25,3.2,4,4.25,4.75 --duration 16 --frames 0 --out "$work/block" >"$work/log" 2>&1
+s=$work/block/summary.json
+in_range "$s" reflection 0.40 0.65
+in_range "$s" transmission 0.40 0.65
+in_range "$s" reflection_behind 0 0.08
+has "$work/log" "the gauge at 3.2 m lies between the ends of structure, rock or zone"
+has "$s" '"loss_per_wavelength": null'
+has "$s" '"harmonic_bound": null'
 
 # On from a checkpoint: the results of the run that never stopped.
 run="$sea --crest 0.05 --duration 12 --frames 0"

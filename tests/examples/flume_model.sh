@@ -54,6 +54,17 @@ if [ -f "$work/waves/checkpoint.h5" ]; then
   has "$work/log" "other probes than those of $work/here.yaml"
 fi
 
+# A wall on a bed that has risen to .1 m: rho g .3^2/2, moment .1 m of it about its foot. No rock below a caisson.
+printf 'spacing: 0.05\nbed: [[0,0],[2,0],[4,0.1]]\nlength: 6\nwall: vertical\nheight: 1e-5\n' >"$work/risen.yaml"
+"$flume" --model "$work/risen.yaml" $run --duration 0.1 --sample 0.1 --out "$work/risen" >"$work/log" 2>&1
+in_range "$work/risen/summary.json" force_still 441.44 441.46
+is "$work/risen/force.csv" force_N -1 441.45 5
+is "$work/risen/force.csv" moment_N_m -1 44.1 1.5
+printf 'length: 6\nspacing: 0.05\nend: closed\ncaisson: [[3,0.2],[3,0.6],[3.4,0.6],[3.4,0.2]]\n' >"$work/held.yaml"
+"$flume" --model "$work/held.yaml" $run --duration 0.1 --sample 0.1 --out "$work/held" >"$work/log" 2>&1
+has "$work/log" "no rock below the caisson: it is held where it is, and has no safeties"
+has "$work/held/summary.json" '"safety_sliding": null'
+
 # Rock by options: the file's and these agree in the water at rest.
 "$flume" $run --wall slope --spacing 0.04 --length 2 --duration 0.1 --rock 1.8,0,2,0.08,2.16,0.08,2,0 --stone 2cm \
   --out "$work/rock" >"$work/log" 2>&1
@@ -97,6 +108,22 @@ refuse "--wall must be none" 'structure: [[4, 0], [5, 0.6], [5.2, 0.6]]\nwall: s
 refuse "caisson 4,0 must be 3.7 times --spacing above the bed" \
   'caisson: [[4, 0], [4, 0.6], [4.3, 0.6], [4.3, 0]]\nlength: 8\n'
 refuse "probe 4,0.2 is more than half a --spacing from all faces" 'probe: [[4, 0.2]]\nlength: 8\n'
+refuse "line 3: caisson 3,0.2 must be 3.7 times --spacing above the bed, and as far from a structure" \
+  'spacing: 0.05\nlength: 6\ncaisson: [[3,0.2],[3,0.6],[3.4,0.6],[3.4,0.2]]\nend: closed\nstructure: [[3,0],[3.2,0.3],[3.4,0]]\n'
+refuse "line 3: caisson 3,0.1 must be 3.7 times" \
+  'spacing: 0.05\nlength: 6\ncaisson: [[3,0.1],[3,0.6],[3.4,0.6],[3.4,0.1]]\nend: closed\n'
+refuse "line 1: --wall-density is too low: the caisson floats, its weight in still water would be -294.3 N" \
+  'wall-density: 500\nwall: caisson\nspacing: 0.05\n'
+refuse "line 1: rock 9,0 lies outside the flume" 'rock: [{corners: [[9,0],[9.5,0],[9,0.4]], stone: 3cm}]\nlength: 8\n'
+refuse "line 1: rock 1,-1 lies outside the flume" 'rock: [{corners: [[1,-1],[2,-1],[2,0],[1,0]], stone: 3cm}]\n'
+refuse "line 1: rock 1,0 has sides that cross" 'rock: [{corners: [[1,0],[2,0],[1,1],[2,1]], stone: 3cm}]\n'
+refuse "line 1: bed 4,0.1 must be at height 0, where the structures of --wall stand" \
+  'bed: [[0,0],[2,0],[4,0.1]]\nlength: 6\nwall: slope\n'
+refuse "line 1: bed 4,0.1 is the end of a slope at the far end" 'bed: [[0,0],[2,0],[4,0.1]]\nlength: 4\nwall: vertical\n'
+refuse "line 1: --length is less than that of the bed" 'length: 3\nbed: [[0,0],[2,0],[4,0]]\nwall: slope\n'
+refuse "line 2: --zone is longer than --length" 'absorb: zone\nzone: 4\nlength: 6\n'
+refuse "line 2: --focus must be in the flume" 'waves: focused\nfocus: [7, 20]\nlength: 6\n'
+refuse "--waves file needs --period" 'waves: file\nfile: x.csv\n'
 refuse "--length is that to the toe" 'structure: [[4, 0], [5, 0.6], [6, 0.6]]\nlength: 8\n'
 
 code=0

@@ -59,6 +59,10 @@ head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slop
 whole="--radius 1 --height 20 --damping 0.02 --courant 0.5"
 if "$wave" $whole --duration 0.6 --frames 6 --out "$work/cut" >"$work/log" 2>&1; then
   [ -s "$work/cut/wave.vtkhdf" ] || fail "wave.vtkhdf"
+  "$1/mps-info" "$work/cut/checkpoint.h5" | tr -s '[:space:]' ' ' >"$work/info" || fail "mps-info"
+  has "$work/info" "options radius 1 width 10 height 20"
+  has "$work/info" "input ricker ricker-frequency 4"
+  has "$work/info" "dt not given courant 0.5 duration 0.6"
   cp "$work/cut/summary.json" "$work/first.json"
   cp "$work/cut/wave.vtkhdf" "$work/first.vtkhdf"
   "$wave" $whole --duration 0.9 --out "$work/whole" >/dev/null
