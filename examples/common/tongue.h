@@ -15,8 +15,9 @@ typedef struct tongue_slope {
 
 typedef struct tongue {
   double resolved; /* m along the slope: as far as the tongue is a spacing thick without a gap */
-  double end; /* m along the slope: where its thickness is continued to 0; -INFINITY, both: there
-                 is none, as it is too short or not thinner upwards */
+  double end;   /* m along the slope: where its thickness is continued to 0; -INFINITY, both: there
+                   is none, as it is too short or not thinner upwards */
+  double layer; /* m along the slope: end of the particles on it, without a gap */
 } tongue;
 
 /* The tongue of the particles of `spacing` (m). Its thickness is that of the particles in bins of

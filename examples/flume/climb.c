@@ -70,9 +70,9 @@ mps_status flume_measure_climb(flume *m, flume_sample *sample) {
   }
   if (!find_slope(m, &slope)) return MPS_OK;
   if (!tongue_find(m->water, &slope, m->s.spacing, &t)) return MPS_ERROR_MEMORY;
-  if (!isfinite(t.end)) return MPS_OK;
-  sample->run_up = slope.foot[1] + t.end * sin(slope.angle) - m->s.depth;
-  sample->resolved = slope.foot[1] + t.resolved * sin(slope.angle) - m->s.depth;
+  const double low = slope.foot[1] - m->s.depth, rise = sin(slope.angle);
+  sample->run_up = low + fmax(t.end, t.layer) * rise;
+  if (isfinite(t.resolved)) sample->resolved = low + t.resolved * rise;
   return MPS_OK;
 }
 

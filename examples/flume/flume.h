@@ -75,8 +75,8 @@ typedef struct flume_sample {
   double volume, returned;      /* m2: has passed the crest so far, and returned to the flume */
   double water;                 /* m2: before the rear edge of the crest */
   double head; /* m: level before an upright face, above its crest; NaN: there is none */
-  double run_up, resolved;    /* m above the water at rest: end of the tongue on a slope, and of its
-                                 part that is a spacing thick; NaN: there is none */
+  double run_up, resolved;    /* m above the water at rest: end of the water on a slope, and of its
+                                 part    that is a spacing thick; NaN: there is none */
   double probe[FLUME_PROBES]; /* Pa */
 } flume_sample;
 

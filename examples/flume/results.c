@@ -110,7 +110,7 @@ static bool write_discharge(app *a, const flume *m, const flume_figures *g) {
 static bool write_run_up(app *a, const flume *m) {
   output f;
   if (!output_open(&f, a, m->s.out, "runup.csv")) return false;
-  csv_header(&f, "t_s,run_up_m?,resolved_m?");
+  csv_header(&f, "t_s,run_up_m,resolved_m?");
   for (int64_t k = 0; k < m->samples; k++) {
     const double row[] = {m->sample[k].t, m->sample[k].run_up, m->sample[k].resolved};
     csv_row(&f, 3, row);
