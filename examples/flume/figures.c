@@ -206,11 +206,13 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   memset(f, 0, sizeof *f);
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
   f->mean_level = f->water = NAN;
+  f->run_up = f->run_up_mean = f->run_up_highest = NAN;
   f->force_mean = f->force_harmonic = f->force_linear = f->force_sainflou = NAN;
   f->bound = f->bound_stokes = f->unbound = f->back = f->length = NAN;
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;
   f->uplift_peak = f->uplift_triangle = f->sliding_bedding = f->overturning_bedding = NAN;
   f->force_still = m->rest.force;
+  if (!flume_find_thin(a, m, f)) return false;
   if (!find_window(m, f)) {
     if (!progress_interrupted()) /* else its own line says enough */
       app_warn(
@@ -229,10 +231,11 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   if (f->separated) find_goda(a, m, f);
   if (f->separated) find_sainflou(a, m, f);
   if (f->separated) find_discharge(a, m, f);
-  return true;
+  return flume_find_run_up(a, m, f);
 }
 
 void flume_free_figures(flume_figures *f) {
   free(f->frequency);
+  free(f->thin);
   memset(f, 0, sizeof *f);
 }

@@ -74,7 +74,10 @@ typedef struct flume_sample {
   double foot;                  /* Pa, before it */
   double volume, returned;      /* m2: has passed the crest so far, and returned to the flume */
   double water;                 /* m2: before the rear edge of the crest */
-  double probe[FLUME_PROBES];   /* Pa */
+  double head; /* m: level before an upright face, above its crest; NaN: there is none */
+  double run_up, resolved;    /* m above the water at rest: end of the water on a slope, and of its
+                                 part    that is a spacing thick; NaN: there is none */
+  double probe[FLUME_PROBES]; /* Pa */
 } flume_sample;
 
 /* x, y (m), pressure (Pa) of each particle, and of points along the faces. */
@@ -207,6 +210,11 @@ mps_status flume_look_at(flume *m, flume_look *look, bool faces);
 /* Room for that many particles; false without memory. */
 bool flume_look_room(flume_look *look, int64_t count);
 void flume_find_rest(flume *m);
+/* climb.c: whether the structure has a crest over an upright face, a slope where it leaves the
+ * water; head and tongue of the present water. */
+bool flume_has_head(const flume *m);
+bool flume_has_slope(const flume *m);
+mps_status flume_measure_climb(flume *m, flume_sample *sample);
 /* refill.c: water that has passed the crest, returned after a step of `dt` (s). */
 int64_t flume_count_water(const flume *m);
 mps_status flume_refill(flume *m, double dt);
@@ -238,6 +246,13 @@ typedef struct flume_figures {
   double sliding_bedding, overturning_bedding; /* uplift as computed in the rock below it */
   double uplift_peak, uplift_triangle;         /* N, above rest, at the largest force */
   double discharge;                            /* m2/s */
+  double *thin;        /* m2: of events too low for particles, so far at each sample; NULL: none */
+  int64_t thin_events; /* of all times */
+  int64_t climbs;      /* of the window, up a slope */
+  double run_up, run_up_mean, run_up_highest; /* m above the water at rest: what 2 % exceed; of the
+                                                 highest reading of each climb */
+  mps_eurotop_run_up formula;
+  bool has_formula;
   double mean_level;                           /* m above that at rest, of the gauges before */
   double water; /* mean of the water before the crest, over that at the start */
   double loss;  /* of the height, a wave length */
@@ -263,6 +278,11 @@ bool flume_separate(app *a, const flume *m, flume_figures *f);
 bool flume_find_statistics(const flume *m, int gauge, double from, double to, flume_statistics *s);
 /* regular.c: force_mean and those after it, of an upright wall. */
 void flume_find_regular_forces(const flume *m, flume_figures *f);
+/* climb.c. False after an error line. Mean discharge (m2/s) of `thin` between two times, NAN where
+ * there is none. */
+bool flume_find_thin(app *a, const flume *m, flume_figures *f);
+bool flume_find_run_up(app *a, const flume *m, flume_figures *f);
+double flume_thin_between(const flume *m, const flume_figures *f, double from, double to);
 /* harmonics.c: bound and those after it, NAN where the gauges are too near. */
 void flume_find_harmonics(const flume *m, flume_figures *f);
 /* figures.c. False after an error line. */

@@ -91,7 +91,11 @@ static bool draw_discharge(app *a, const flume *m, const flume_figures *g) {
         g->from, g->eurotop.discharge, g->from);
   output_text(&f,
               "'discharge.csv' every ::1 using 1:(1e3*$2) with lines linewidth 1.4 linecolor rgb "
-              "'#1f4e8c' title 'MPS'\n");
+              "'#1f4e8c' title 'MPS'");
+  if (g->thin)
+    output_text(&f, ", '' every ::1 using 1:(1e3*($2+$6)) with lines linewidth 1.4 dashtype '-' "
+                    "linecolor rgb '#1f4e8c' title 'with events too low for particles'");
+  output_text(&f, "\n");
   return plot_close(&f, m->s.out, "discharge");
 }
 

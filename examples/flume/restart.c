@@ -82,7 +82,7 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(flume *m) {
-  return resume_of_fluid("mps-flume 3", m->table, pass, m, m->fluid, m->a);
+  return resume_of_fluid("mps-flume 4", m->table, pass, m, m->fluid, m->a);
 }
 
 mps_status flume_save(void *user) {

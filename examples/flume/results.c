@@ -93,14 +93,27 @@ static bool write_faces(app *a, const flume *m) {
   return output_close(&f);
 }
 
-static bool write_discharge(app *a, const flume *m) {
+static bool write_discharge(app *a, const flume *m, const flume_figures *g) {
   output f;
   if (!output_open(&f, a, m->s.out, "discharge.csv")) return false;
-  csv_header(&f, "t_s,volume_m2,returned_m2,water_m2");
+  csv_header(&f, g->thin ? "t_s,volume_m2,returned_m2,water_m2,head_m?,thin_m2"
+                         : "t_s,volume_m2,returned_m2,water_m2");
   for (int64_t k = 0; k < m->samples; k++) {
     const flume_sample *p = &m->sample[k];
-    const double row[] = {p->t, p->volume, p->returned, p->water};
-    csv_row(&f, 4, row);
+    const double row[] = {p->t,     p->volume, p->returned,
+                          p->water, p->head,   g->thin ? g->thin[k] : NAN};
+    csv_row(&f, g->thin ? 6 : 4, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_run_up(app *a, const flume *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "runup.csv")) return false;
+  csv_header(&f, "t_s,run_up_m,resolved_m?");
+  for (int64_t k = 0; k < m->samples; k++) {
+    const double row[] = {m->sample[k].t, m->sample[k].run_up, m->sample[k].resolved};
+    csv_row(&f, 3, row);
   }
   return output_close(&f);
 }
@@ -253,6 +266,10 @@ static void summarise_discharge(app *a, output *f, const flume *m, const flume_f
                                 int64_t events) {
   const bool body = flume_is_open(m);
   json_number_if(f, body, "q", g->discharge);
+  const double thin = isnan(g->discharge) ? NAN : flume_thin_between(m, g, g->from, g->to);
+  json_number_if(f, !isnan(thin), "q_thin", thin);
+  json_number_if(f, !isnan(thin), "q_with_thin", g->discharge + thin);
+  json_integer_if(f, g->thin, "thin_events", g->thin_events);
   json_number_if(f, body && m->samples > 0, "volume",
                  m->samples ? m->sample[m->samples - 1].volume : NAN);
   json_integer_if(f, body, "events", events);
@@ -268,7 +285,28 @@ static void summarise_discharge(app *a, output *f, const flume *m, const flume_f
     printf(", EurOtop %.3g m2/s (%.3g to %.3g), ratio %.2f", g->eurotop.discharge, g->eurotop.low,
            g->eurotop.high, g->discharge / g->eurotop.discharge);
   if (body && !isnan(g->discharge)) printf("\n");
+  if (!isnan(thin)) {
+    printf("with events too low for particles %.3g m2/s", g->discharge + thin);
+    if (g->has_eurotop) printf(", ratio %.2f", (g->discharge + thin) / g->eurotop.discharge);
+    printf("\n");
+  }
   if (g->why[0]) app_warn(a, "no discharge by EurOtop: %s", g->why);
+}
+
+static void summarise_run_up(output *f, const flume *m, const flume_figures *g) {
+  const bool slope = flume_has_slope(m), many = !isnan(g->run_up), formula = g->has_formula;
+  json_integer_if(f, slope, "climbs", g->climbs);
+  json_number_if(f, slope && g->climbs > 0, "run_up_mean", g->run_up_mean);
+  json_number_if(f, slope && g->climbs > 0, "run_up_highest", g->run_up_highest);
+  json_number_if(f, many, "Ru2", g->run_up);
+  json_number_if(f, formula, "Ru2_eurotop", g->formula.height);
+  json_number_if(f, formula, "Ru2_eurotop_low", g->formula.low);
+  json_number_if(f, formula, "Ru2_eurotop_high", g->formula.high);
+  if (many) printf("run-up that 2 %% of the waves exceed %.4f m", g->run_up);
+  if (many && formula)
+    printf(", EurOtop %.4f m (%.4f to %.4f), ratio %.2f", g->formula.height, g->formula.low,
+           g->formula.high, g->run_up / g->formula.height);
+  if (many) printf("\n");
 }
 
 static bool write_summary(app *a, const flume *m, const flume_figures *g, int64_t events) {
@@ -281,6 +319,7 @@ static bool write_summary(app *a, const flume *m, const flume_figures *g, int64_
   summarise_absorption(&f, m);
   summarise_force(&f, m, g);
   summarise_discharge(a, &f, m, g, events);
+  summarise_run_up(&f, m, g);
   json_integer(&f, "collisions", m->report.collisions);
   json_integer(&f, "limited", m->report.limited);
   json_integer(&f, "pushed", m->report.pushed);
@@ -294,7 +333,8 @@ bool flume_write(app *a, flume *m) {
   bool good = flume_find_figures(a, m, &g) && write_gauges(a, m) && write_force(a, m);
   if (good && m->shape.probes > 0) good = write_probes(a, m);
   if (good && flume_is_loaded(m)) good = write_faces(a, m);
-  if (good && flume_is_open(m)) good = write_discharge(a, m) && write_events(a, m, &events);
+  if (good && flume_is_open(m)) good = write_discharge(a, m, &g) && write_events(a, m, &events);
+  if (good && flume_has_slope(m)) good = write_run_up(a, m);
   if (good && g.separated) good = write_waves(a, m, &g) && write_spectrum(a, m, &g);
   if (good && m->series) good = app_check(a, mps_recorder_close(&m->series));
   good = good && write_summary(a, m, &g, events) && flume_draw(a, m, &g);

@@ -139,6 +139,7 @@ static mps_status take_sample(flume *m) {
   mps_status status = mps_fluid_get_levels(m->fluid, m->gauges, m->s.gauge, sample.level);
   for (int k = 0; k < m->gauges; k++) sample.level[k] -= m->s.depth;
   if (status == MPS_OK) status = flume_measure_loads(m, &sample);
+  if (status == MPS_OK) status = flume_measure_climb(m, &sample);
   if (status == MPS_OK && flume_is_open(m)) status = measure_passed(m, &sample);
   if (status == MPS_OK) status = mps_fluid_get_report(m->fluid, &m->report);
   if (status != MPS_OK) return status;

@@ -1,7 +1,8 @@
 /* mps/wave_loads.h - design values of waves at a wall: pressures and forces by Sainflou and by
- * Goda with the impulsive part of Takahashi, mean overtopping discharge by EurOtop (2018). Closed
- * formulas, each with its range of validity, which is refused outside; docs/waves.md has them,
- * docs/references.md the sources. Forces are per metre of wall.
+ * Goda with the impulsive part of Takahashi, mean overtopping discharge and run-up by EurOtop
+ * (2018). Closed formulas, each with its range of validity, which is refused outside; docs/waves.md
+ * has them, docs/references.md the sources. Forces are per metre of wall. Beside them the
+ * overtopping by heads too low for a count of what passes a crest, from the level at the wall.
  *
  * Thread rule: one thread at a time per context.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -168,6 +169,81 @@ MPS_API MPS_NODISCARD mps_status mps_eurotop_evaluate_sized(mps_context *context
 static inline mps_status mps_eurotop_evaluate(mps_context *context_, const mps_eurotop_def *def,
                                               mps_eurotop *out) {
   return mps_eurotop_evaluate_sized(context_, def, out, sizeof *out);
+}
+
+typedef struct mps_eurotop_run_up {
+  double height;    /* m above the water at rest: Ru2%, which 2 % of the incident waves exceed */
+  double low, high; /* m: with the coefficient one standard deviation off the mean */
+  double breaker;   /* xi(m-1,0) */
+  int32_t breaking; /* 1: (5.1), 0: its limit, (5.2) */
+  int32_t reserved;
+} mps_eurotop_run_up;
+/** Run-up on a slope, the lesser of EurOtop (2018) (5.1), 1.65 gb gf gB xi Hm0, and (5.2), gf gB (4
+ *  - 1.5/(gb xi)^1/2) Hm0. Of `def` wall (SLOPE), design, height, period, depth, cotangent, berm,
+ *  roughness, obliquity and gravity are read. MPS_ERROR_ARGUMENT: one of them out of range;
+ *  xi(m-1,0) of 5 or more. */
+MPS_API MPS_NODISCARD mps_status mps_eurotop_find_run_up_sized(mps_context *context,
+                                                               const mps_eurotop_def *def,
+                                                               mps_eurotop_run_up *out,
+                                                               size_t size);
+static inline mps_status mps_eurotop_find_run_up(mps_context *context_, const mps_eurotop_def *def,
+                                                 mps_eurotop_run_up *out) {
+  return mps_eurotop_find_run_up_sized(context_, def, out, sizeof *out);
+}
+
+/* ---- overtopping by low heads ---------------------------------------------------------------- */
+
+/** What a run or a test has recorded at a wall with an upright face that waves pass. */
+typedef struct mps_overtopping_def {
+  uint32_t struct_size;
+  int32_t reserved;
+  int64_t samples;     /* 2 to 2^28 */
+  const double *times; /* s, strictly increasing, `samples` values */
+  const double *heads; /* m: level at the wall above its crest, `samples` values; NaN as below 0 */
+  const double
+      *volumes;    /* m2: counted so far behind the crest, finite, `samples` values; NULL: none
+                    */
+  double resolved; /* m, > 0: the count resolves events of a higher head; no default */
+  double pause;    /* s, >= 0: heads above 0 that are at most that apart are one event; default 0 */
+  double depth;    /* m, of the water before the wall, > 0: see below; NaN (default): infinite */
+  double gravity;  /* m/s2, > 0; default 9.81 */
+} mps_overtopping_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
+ *  this library. */
+MPS_API mps_status mps_overtopping_def_init(mps_overtopping_def *def, size_t size);
+static inline mps_overtopping_def mps_overtopping_defaults(void) {
+  mps_overtopping_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_overtopping_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+typedef struct mps_overtopping {
+  double counted;      /* m2: volumes[samples - 1] - volumes[0] */
+  double thin;         /* m2: of thin events, beyond what is counted in them */
+  double highest;      /* m: head; 0 without an event */
+  int64_t events;      /* with a head above 0 */
+  int64_t thin_events; /* of them, those whose highest head is `resolved` or less */
+} mps_overtopping;
+/** Overtopping where the heads are too low for a count, as of particles or drops, which lacks it. A
+ *  thin event is one whose highest head is at most `resolved`; its flow is that of a free overfall
+ *  over a broad crest, q = (2/3)^(3/2) g^(1/2) h^(3/2), of the head h = head - q/(g depth)^(1/2): a
+ *  flow that the record lacks would have lowered the level at the wall by the long wave that it
+ *  sends back. Of other events nothing is added, so that a film which stays on the crest after one
+ *  is no flow. `thin` (m2; may be NULL) receives the volume so far at the first `capacity` (>= 0)
+ *  samples at most, which grows with the last sample of each event; what is counted from the
+ *  beginning of a thin event to that of the next event is taken off it. The sum of `counted` and
+ *  `thin` is an estimate of all that passes. MPS_ERROR_ARGUMENT: a member of `def` out of range,
+ *  `capacity` below 0. */
+MPS_API MPS_NODISCARD mps_status mps_overtopping_find_sized(mps_context *context,
+                                                            const mps_overtopping_def *def,
+                                                            int64_t capacity, double *thin,
+                                                            mps_overtopping *out, size_t size);
+static inline mps_status mps_overtopping_find(mps_context *context_, const mps_overtopping_def *def,
+                                              int64_t capacity, double *thin,
+                                              mps_overtopping *out) {
+  return mps_overtopping_find_sized(context_, def, capacity, thin, out, sizeof *out);
 }
 
 MPS_EXTERN_C_END

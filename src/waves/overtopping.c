@@ -1,5 +1,5 @@
-/* overtopping.c - mean overtopping discharge by the formulas of EurOtop (2018), the mean of the
- * tests or with coefficients a standard deviation off, Q = q/(g Hm0^3)^1/2, R = Rc/Hm0:
+/* overtopping.c - mean overtopping discharge and run-up by the formulas of EurOtop (2018), the mean
+ * of the tests or with coefficients a standard deviation off, Q = q/(g Hm0^3)^1/2, R = Rc/Hm0:
  *
  *   (7.1)  .047 exp(-(2.35 R)^1.3)               .007, .23  vertical, no influencing foreshore
  *   (7.5)  .05 exp(-2.78 R)                      .012, .17  foreshore, depth^2/(Hm0 L) > .23
@@ -7,6 +7,8 @@
  *   (7.8)  .0014 (Hm0/(h s))^1/2 R^-3            .0006      impulsive, R >= 1.35
  *   (5.10) .023/tan(a)^1/2 gb xi exp(-(2.7 R/(xi gb gf gB gv))^1.3)  .003, .20, at most
  *   (5.11) .09 exp(-(1.5 R/(gf gB g*))^1.3)      .0135, .15
+ *   (5.1)  Ru2/Hm0 = 1.65 gb gf gB xi            .10
+ *   (5.2)  gf gB (4 - 1.5/(gb xi)^1/2)           .07
  *
  * L and s = Hm0/L of deep water for T(m-1,0). SPDX-License-Identifier: BSD-3-Clause */
 #include "core/base/digits.h"
@@ -44,6 +46,15 @@ static double breaker(const mps_eurotop_def *d) {
   return 1.0 / d->cotangent / sqrt(d->height / L);
 }
 
+static mps_status check_breaker(mps_context *context, const char *function,
+                                const mps_eurotop_def *d) {
+  if (breaker(d) < BREAKER_MOST) return MPS_OK;
+  return mpsi_fail(
+      context, function, MPS_ERROR_ARGUMENT,
+      "period %g s, height %g m and cotangent %g have a breaker parameter of %g, must be below 5",
+      d->period, d->height, d->cotangent, breaker(d));
+}
+
 static mps_status check_def(mps_context *context, const mps_eurotop_def *d) {
   const bool slope = d->wall == MPS_EUROTOP_WALL_SLOPE;
   const mpsi_member checks[] = {
@@ -71,13 +82,7 @@ static mps_status check_def(mps_context *context, const mps_eurotop_def *d) {
                      "crest of the wall is %s m, must be at most %g m, 3.5 times height",
                      mpsi_outside(d->crest, 0.0, CREST_MOST * d->height).text,
                      CREST_MOST * d->height);
-  if (slope && !(breaker(d) < BREAKER_MOST))
-    return mpsi_fail(
-        context, "mps_eurotop_evaluate_sized", MPS_ERROR_ARGUMENT,
-        "period %g s, height %g m and cotangent %g have a breaker parameter of %g, must "
-        "be below 5",
-        d->period, d->height, d->cotangent, breaker(d));
-  return MPS_OK;
+  return slope ? check_breaker(context, "mps_eurotop_evaluate_sized", d) : MPS_OK;
 }
 
 static int32_t choose_vertical(const mps_eurotop_def *d) {
@@ -138,5 +143,50 @@ mps_status mps_eurotop_evaluate_sized(mps_context *context, const mps_eurotop_de
   r.low = wall_discharge(&d, -1.0, &ignored);
   r.high = wall_discharge(&d, 1.0, &ignored);
   r.discharge = wall_discharge(&d, d.design, &r.formula);
+  return mpsi_out_write(context, __func__, out, size, &r, sizeof r);
+}
+
+/* ---- run-up ---------------------------------------------------------------------------------- */
+
+static mps_status check_run_up(mps_context *context, const char *function,
+                               const mps_eurotop_def *d) {
+  const mpsi_member checks[] = {
+      {"wall", "1, a slope", d->wall, d->wall == MPS_EUROTOP_WALL_SLOPE},
+      {"design", "0 or 1", d->design, d->design == 0 || d->design == 1},
+      {"height", "in (0, 1e12] m", d->height, mpsi_waves_positive(d->height)},
+      {"period", "in (0, 1e12] s", d->period, mpsi_waves_positive(d->period)},
+      {"depth", "in (0, 1e12] m", d->depth, mpsi_waves_positive(d->depth)},
+      {"gravity", "in (0, 1e12] m/s2", d->gravity, mpsi_waves_positive(d->gravity)},
+      {"cotangent", "in 2 to 8", d->cotangent, d->cotangent >= 2.0 && d->cotangent <= 8.0},
+      {"berm", "in (0, 1]", d->berm, factor(d->berm)},
+      {"roughness", "in (0, 1]", d->roughness, factor(d->roughness)},
+      {"obliquity", "in (0, 1]", d->obliquity, factor(d->obliquity)},
+  };
+  const mps_status status = MPSI_CHECK_MEMBERS(context, function, "the slope", checks);
+  return status == MPS_OK ? check_breaker(context, function, d) : status;
+}
+
+/* Ru2% (m) with the coefficient `n` standard deviations to the side of more water. */
+static double run_up(const mps_eurotop_def *d, double n, int32_t *breaking) {
+  const double xi = breaker(d), rough = d->roughness * d->obliquity * d->height;
+  const double first = (1.65 + 0.1 * n) * d->berm * rough * xi;
+  const double most = (1.0 + 0.07 * n) * rough * (4.0 - 1.5 / sqrt(d->berm * xi));
+  *breaking = first < most || most < 0.0; /* the limit is none of long slopes, xi below .14 */
+  return *breaking ? first : most;
+}
+
+mps_status mps_eurotop_find_run_up_sized(mps_context *context, const mps_eurotop_def *user_def,
+                                         mps_eurotop_run_up *out, size_t size) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  mps_eurotop_def d = defaults;
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_eurotop_def, user_def, &d);
+  if (status == MPS_OK) status = mpsi_out_check(context, __func__, out, size);
+  if (status == MPS_OK) status = check_run_up(context, __func__, &d);
+  if (status != MPS_OK) return status;
+  int32_t ignored;
+  mps_eurotop_run_up r = {.breaker = breaker(&d)};
+  r.low = run_up(&d, -1.0, &ignored);
+  r.high = run_up(&d, 1.0, &ignored);
+  r.height = run_up(&d, d.design, &r.breaking);
   return mpsi_out_write(context, __func__, out, size, &r, sizeof r);
 }

@@ -14,6 +14,7 @@ API_INIT(separation_def)
 API_INIT(sainflou_def)
 API_INIT(goda_def)
 API_INIT(eurotop_def)
+API_INIT(overtopping_def)
 
 /* ---- linear theory --------------------------------------------------------------------------- */
 
@@ -272,6 +273,45 @@ static void eurotop_evaluate(api *a) {
   API_SIZED_END(a, status, size, out, true);
 }
 
+static void run_up_find(api *a) {
+  api_begin(a, "mps_eurotop_find_run_up_sized");
+  mps_context *context = api_context(a);
+  mps_eurotop_def def = mps_eurotop_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.wall = MPS_EUROTOP_WALL_SLOPE;
+  def.design = api_choice(a, "design", 2);
+  def.height = api_real(a, "height", 5e-324, 1e12, 1.0);
+  def.period = api_real(a, "period", 5e-324, 1e12, 5.0);
+  def.depth = api_real(a, "depth", 5e-324, 1e12, 5.0);
+  def.roughness = api_real(a, "roughness", 5e-324, 1.0, 0.7);
+  def.cotangent = 3.0;
+  API_SIZED(a, mps_eurotop_run_up, size, out);
+  const bool none = api_null(a, "def");
+  const mps_status status = mps_eurotop_find_run_up_sized(context, none ? NULL : &def,
+                                                          api_null(a, "out") ? NULL : out, size);
+  API_SIZED_END(a, status, size, out, true);
+}
+
+static void overtopping_find(api *a) {
+  api_begin(a, "mps_overtopping_find_sized");
+  enum { N = 24 };
+  double t[N], heads[N], volumes[N], thin[N];
+  mps_context *context = api_context(a);
+  mps_overtopping_def def = mps_overtopping_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  for (int k = 0; k < N; k++) t[k] = 0.1 * k, heads[k] = 0.02 * cos(t[k]), volumes[k] = 1e-4 * k;
+  volumes[3] = api_near(a, "volumes", 0.0, 0.01);
+  def.samples = N, def.times = t, def.heads = heads, def.volumes = volumes;
+  def.resolved = api_real(a, "resolved", 5e-324, 1e12, 0.025);
+  def.pause = api_real(a, "pause", 0.0, 1e12, 0.3);
+  def.depth = api_optional(a, "depth", 5e-324, 1e12, 0.5);
+  API_SIZED(a, mps_overtopping, size, out);
+  const bool none = api_null(a, "def");
+  const mps_status status = mps_overtopping_find_sized(context, none ? NULL : &def, N, thin,
+                                                       api_null(a, "out") ? NULL : out, size);
+  API_SIZED_END(a, status, size, out, true);
+}
+
 static const api_call calls[] = {
     {"mps_waves_find_number", 1, API_CONTEXT, find_number},
     {"mps_waves_find_piston", 1, API_CONTEXT, find_piston},
@@ -299,5 +339,8 @@ static const api_call calls[] = {
     {"mps_goda_evaluate_sized", 1, API_CONTEXT, goda_evaluate},
     {"mps_eurotop_def_init", 1, API_NOTHING, init_eurotop_def},
     {"mps_eurotop_evaluate_sized", 1, API_CONTEXT, eurotop_evaluate},
+    {"mps_eurotop_find_run_up_sized", 1, API_CONTEXT, run_up_find},
+    {"mps_overtopping_def_init", 1, API_NOTHING, init_overtopping_def},
+    {"mps_overtopping_find_sized", 1, API_CONTEXT, overtopping_find},
 };
 const api_table api_waves_calls = API_TABLE(calls);

@@ -34,7 +34,16 @@ in_range "$s" q 1e-6 0.01
 in_range "$s" q_eurotop 1e-6 0.01
 in_range "$s" force_goda 100 1000
 in_range "$s" force_peak 100 1500
-has "$work/b/discharge.csv" "t_s,volume_m2,returned_m2,water_m2"
+has "$work/b/discharge.csv" "t_s,volume_m2,returned_m2,water_m2,head_m,thin_m2"
+# Events too low for particles are beside what is counted, never in it.
+awk -F, 'NR > 1 { if ($6 < last) exit bad = 1; last = $6; if ($5 > 0.052) high = 1 }
+  END { print "thin " last " m2"; exit bad || !(last > 2e-4 && last < 0.01) || !high }' "$work/b/discharge.csv" ||
+  fail "the flow of low heads falls, or there is none, or no head is above 1.3 spacings"
+in_range "$s" q_thin 1e-6 0.001
+in_range "$s" thin_events 1 9
+awk -F: '/"q"/ { q = $2 + 0 } /"q_thin"/ { t = $2 + 0 } /"q_with_thin"/ { s = $2 + 0 }
+  END { exit (s - q - t) ^ 2 > 1e-18 }' "$s" || fail "q_with_thin is not q + q_thin"
+has "$work/log" "with events too low for particles"
 books() { # TABLE: the water of the start is in the flume, or has passed and not returned, at all times
   awk -F, 'NR > 1 { off = $2 - $3 + $4 - 1.2; n++; if (off ^ 2 > 1e-12) exit bad = 1; if ($3 > most) most = $3 }
     END { print n " rows, returned " most " m2"; exit bad || n < 100 }' "$1" || fail "water is lost in $1"
@@ -51,6 +60,8 @@ for name in levels spectrum force discharge water; do picture "$work/b/$name.png
 "$1/mps-flume" --spacing 0.025 --threads 1 --height 1e-5 --wall slope --length 1.5 --duration 1.5 --frames 0 \
   --out "$work/still" >"$work/log" 2>&1
 is "$work/still/force.csv" force_N -1 784.8 16
+is "$work/still/runup.csv" run_up_m -1 0 0.0125 # half a spacing
+! grep -q thin_m2 "$work/still/discharge.csv" || fail "a flow of low heads over a dike"
 has "$work/log" "lower than 4 spacings of 0.025 m: of the water that passes the crest small events will be lost"
 
 # A zone before the far end; a focused group; a record.

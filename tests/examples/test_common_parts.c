@@ -1,4 +1,4 @@
-/* test_common_parts.c - what the example programs share: options, numbers, layers, heaps.
+/* test_common_parts.c - what the example programs share: options, numbers, layers, heaps, tongues.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
@@ -10,6 +10,7 @@
 #include "common/output.h"
 #include "common/plot.h"
 #include "common/series.h"
+#include "common/tongue.h"
 #include "common/units.h"
 
 #include <unistd.h>
@@ -470,8 +471,58 @@ static void colour_scales_mark_their_saturated_ends(void **state) {
   }
 }
 
+/* ---- tongues --------------------------------------------------------------------------------- */
+
+static void add_at(mps_context *context, mps_particles *water, const tongue_slope *s, double along,
+                   double off) {
+  const double x[2] = {s->foot[0] + along * cos(s->angle) - off * sin(s->angle),
+                       s->foot[1] + along * sin(s->angle) + off * cos(s->angle)};
+  mps_assert_ok(context, mps_particles_append(water, 1, x));
+}
+
+/* Rows of particles on a slope: a wedge from .3 m at its foot to 0 at 3 m, cut off at `end`. */
+static mps_particles *make_wedge(mps_context *context, const tongue_slope *s, double l0,
+                                 double end) {
+  mps_particles *water = NULL;
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = l0;
+  mps_assert_ok(context, mps_particles_create(context, &def, &water));
+  for (double along = 0.5 * l0; along < end; along += l0)
+    for (double off = 0.5 * l0; off < 0.3 - 0.1 * along; off += l0)
+      add_at(context, water, s, along, off);
+  return water;
+}
+
+static void a_tongue_is_continued_to_its_end(void **state) {
+  (void)state;
+  const double l0 = 0.02;
+  const tongue_slope s = {{1.0, -0.2}, 0.35, 8.0};
+  mps_context *context = NULL;
+  tongue t;
+  assert_int_equal(mps_context_create(NULL, &context, NULL, 0), MPS_OK);
+  mps_particles *water = make_wedge(context, &s, l0, 3.0);
+  assert_true(tongue_find(water, &s, l0, &t));
+  mps_assert_near(t.end, 3.0, 3.0 * l0);
+  mps_assert_near(t.resolved, 2.9, 3.0 * l0); /* the lowest row ends where half a spacing is left */
+  mps_assert_near(t.layer, 2.9, 1.01 * l0);
+  for (double along = 2.9; along < 3.5; along += 2.0 * l0)
+    add_at(context, water, &s, along, 0.5 * l0);
+  add_at(context, water, &s, 3.8, 0.5 * l0); /* a drop on the slope, behind a gap */
+  add_at(context, water, &s, 3.3, 2.5 * l0); /* and one above it */
+  assert_true(tongue_find(water, &s, l0, &t));
+  mps_assert_near(t.layer, 3.5, 2.0 * l0);
+  mps_particles_destroy(&water);
+  water = make_wedge(context, &s, l0, 1.0); /* a front .2 m high */
+  assert_true(tongue_find(water, &s, l0, &t));
+  assert_true(isinf(t.end) && isinf(t.resolved));
+  mps_assert_near(t.layer, 1.0, l0);
+  mps_particles_destroy(&water);
+  mps_context_destroy(&context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_tongue_is_continued_to_its_end),
       cmocka_unit_test(a_number_of_another_unit_is_doubted),
       cmocka_unit_test(options_are_read_in_both_spellings),
       cmocka_unit_test(only_finite_decimal_numbers_are_numbers),

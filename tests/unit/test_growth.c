@@ -312,6 +312,16 @@ static mps_status use_eurotop(const void *def) {
   return mps_eurotop_evaluate(context, def, &result);
 }
 
+static void need_overtopping(void *def) {
+  static const double t[3] = {0.0, 1.0, 2.0}, heads[3] = {-0.1, 0.01, -0.1};
+  mps_overtopping_def *d = def;
+  d->samples = 3, d->times = t, d->heads = heads, d->resolved = 0.02;
+}
+static mps_status use_overtopping(const void *def) {
+  mps_overtopping result;
+  return mps_overtopping_find(context, def, 0, NULL, &result);
+}
+
 static mps_status use_body_motion(const void *def) {
   mps_body *body = NULL;
   mps_assert_ok(context, mps_body_create_disc(context, NULL, 1.0, &body));
@@ -699,6 +709,7 @@ static const user users[] = {
     {"mps_sainflou_def", need_sainflou, use_sainflou},
     {"mps_goda_def", need_goda, use_goda},
     {"mps_eurotop_def", need_eurotop, use_eurotop},
+    {"mps_overtopping_def", need_overtopping, use_overtopping},
     {"mps_domain_def", need_domain, use_domain},
     {"mps_material_cam_clay_def", need_cam_clay, use_cam_clay},
     {"mps_material_small_strain_def", need_small_strain, use_small_strain},

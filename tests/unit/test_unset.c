@@ -121,6 +121,8 @@ static const number unset[] = {
     NUMBER(mps_eurotop_def, depth),
     NUMBER(mps_eurotop_def, crest),
     NUMBER(mps_eurotop_def, cotangent),
+    NUMBER(mps_overtopping_def, resolved),
+    NUMBER(mps_overtopping_def, depth),
     NUMBER(mps_goda_def, height),
     NUMBER(mps_goda_def, period),
     NUMBER(mps_goda_def, depth),

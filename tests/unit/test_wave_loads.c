@@ -198,6 +198,171 @@ static void vertical_walls_follow_the_chart(void **state) {
   assert_int_equal(formula, MPS_EUROTOP_FORMULA_IMPULSIVE_HIGH);
 }
 
+/* EurOtop (2018): the limit begins at xi of some 1.8; 1.65 +- .10 and 1.00 +- .07 are its
+ * coefficients; design values are one standard deviation higher. */
+static void run_up_follows_the_chart(void **state) {
+  (void)state;
+  static const double xi[4] = {1.0, 1.7, 1.9, 3.0};
+  mps_eurotop_def def = mps_eurotop_defaults();
+  mps_eurotop_run_up r, design;
+  def.wall = MPS_EUROTOP_WALL_SLOPE, def.height = 2.0, def.depth = 8.0, def.cotangent = 4.0;
+  for (int n = 0; n < 4; n++) {
+    const double limit = 4.0 - 1.5 / sqrt(xi[n]), line = 1.65 * xi[n];
+    def.period = sqrt(2.0 * PI * 2.0 / 9.81) * 4.0 * xi[n], def.design = 0;
+    mps_assert_ok(context, mps_eurotop_find_run_up(context, &def, &r));
+    mps_assert_near(r.breaker, xi[n], 1e-12);
+    assert_int_equal(r.breaking, xi[n] < 1.8);
+    mps_assert_near(r.height, 2.0 * fmin(line, limit), 1e-12);
+    mps_assert_near(r.low, 2.0 * fmin(1.55 * xi[n], 0.93 * limit), 1e-12);
+    mps_assert_near(r.high, 2.0 * fmin(1.75 * xi[n], 1.07 * limit), 1e-12);
+    def.design = 1;
+    mps_assert_ok(context, mps_eurotop_find_run_up(context, &def, &design));
+    mps_assert_near(design.height, r.high, 1e-12);
+  }
+  def.roughness = 0.6, def.obliquity = 0.9, def.design = 0;
+  mps_assert_ok(context, mps_eurotop_find_run_up(context, &def, &design));
+  mps_assert_near(design.height, 0.54 * r.height, 1e-12);
+#define REFUSED(change, word)                                                                      \
+  do {                                                                                             \
+    mps_eurotop_def d = def;                                                                       \
+    change;                                                                                        \
+    mps_assert_fails(context, mps_eurotop_find_run_up(context, &d, &r), MPS_ERROR_ARGUMENT, word); \
+  } while (0)
+  REFUSED(d.wall = MPS_EUROTOP_WALL_VERTICAL, "wall");
+  REFUSED(d.height = 0.0, "height");
+  REFUSED(d.cotangent = 1.0, "cotangent");
+  REFUSED(d.berm = NAN, "berm");
+  REFUSED(d.period = 40.0, "breaker");
+#undef REFUSED
+}
+
+/* ---- overtopping by low heads ---------------------------------------------------------------- */
+
+enum { RECORD = 400 };
+
+typedef struct level_record {
+  double t[RECORD], head[RECORD], volume[RECORD];
+} level_record;
+
+/* Half sine waves of the heads given, of .5 s each, from 1, 3 and 5 s on; `passed` (m2) in the
+ * middle of each. */
+static mps_overtopping_def record_of(level_record *r, const double *heads, const double *passed) {
+  mps_overtopping_def def = mps_overtopping_defaults();
+  for (int k = 0; k < RECORD; k++) {
+    const double t = r->t[k] = 0.02 * k;
+    r->head[k] = -0.05, r->volume[k] = k ? r->volume[k - 1] : 0.0;
+    for (int n = 0; n < 3; n++) {
+      const double since = t - 1.0 - 2.0 * n;
+      if (since > 1e-9 && since < 0.5 - 1e-9) r->head[k] = heads[n] * sin(2.0 * PI * since);
+      if (fabs(since - 0.26) < 1e-9) r->volume[k] += passed[n];
+    }
+  }
+  def.samples = RECORD, def.times = r->t, def.heads = r->head, def.volumes = r->volume;
+  def.resolved = 0.025;
+  return def;
+}
+
+/* The integral over a half sine of 1/2 s: (2/3)^1.5 g^.5 h^1.5 B(5/4, 1/2)/(2 pi), B the complete
+ * beta function, 1.7480384. */
+static double half_sine(double head) {
+  return pow(2.0 / 3.0, 1.5) * sqrt(9.81) * pow(head, 1.5) * 1.7480384 / (2.0 * PI);
+}
+
+static void low_heads_pass_by_the_law_of_the_weir(void **state) {
+  (void)state;
+  static level_record r;
+  static double thin[RECORD];
+  mps_overtopping out;
+  const double some[3] = {0.02, 0.03, 0.01}, passed[3] = {0.0, 2e-3, 0.0};
+  mps_overtopping_def def = record_of(&r, some, passed);
+  mps_assert_ok(context, mps_overtopping_find(context, &def, RECORD, thin, &out));
+  assert_int_equal(out.events, 3);
+  assert_int_equal(out.thin_events, 2); /* the second one is resolved */
+  mps_assert_near(out.highest, 0.03, 1e-4);
+  mps_assert_near(out.counted, 2e-3, 1e-15);
+  mps_assert_near(out.thin, half_sine(0.02) + half_sine(0.01), 2e-3 * out.thin);
+  mps_assert_near(thin[49], 0.0, 0.0); /* before the first */
+  mps_assert_near(thin[200], half_sine(0.02), 2e-3 * out.thin);
+  mps_assert_near(thin[RECORD - 1], out.thin, 0.0);
+  for (int k = 1; k < RECORD; k++) assert_true(thin[k] >= thin[k - 1]);
+  thin[0] = 7.0; /* without a capacity nothing is written */
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, thin, &out));
+  mps_assert_near(thin[0], 7.0, 0.0);
+  def.pause = 1.6; /* all are one event, of which nothing is thin */
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &out));
+  assert_int_equal(out.events, 1);
+  assert_int_equal(out.thin_events, 0);
+  mps_assert_near(out.thin, 0.0, 0.0);
+}
+
+/* What is counted in a thin event is no second time in its flow; what stays on the crest is none.
+ */
+static void nothing_passes_twice(void **state) {
+  (void)state;
+  static level_record r;
+  mps_overtopping out;
+  const double some[3] = {0.02, 0.01, 0.01};
+  const double passed[3] = {0.4 * half_sine(0.02), 0.0, 2.0 * half_sine(0.01)};
+  mps_overtopping_def def = record_of(&r, some, passed);
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &out));
+  mps_assert_near(out.thin, 0.6 * half_sine(0.02) + half_sine(0.01), 2e-3 * out.thin);
+  mps_assert_near(out.counted, passed[0] + passed[2], 1e-15);
+  def.volumes = NULL;
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &out));
+  mps_assert_near(out.counted, 0.0, 0.0);
+  mps_assert_near(out.thin, half_sine(0.02) + 2.0 * half_sine(0.01), 2e-3 * out.thin);
+  for (int k = 0; k < RECORD; k++) r.head[k] = k < 20 ? 0.03 : 0.01; /* a film after an event */
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &out));
+  assert_int_equal(out.events, 1);
+  mps_assert_near(out.thin, 0.0, 0.0);
+  for (int k = 0; k < RECORD; k++) r.head[k] = NAN; /* no surface */
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &out));
+  assert_int_equal(out.events, 0);
+}
+
+/* The flow lowers the level by q/(g d)^1/2, of a steady head exactly. */
+static void a_flow_lowers_the_level(void **state) {
+  (void)state;
+  const double t[2] = {0.0, 10.0}, head[2] = {0.02, 0.02};
+  mps_overtopping_def def = mps_overtopping_defaults();
+  mps_overtopping out;
+  def.samples = 2, def.times = t, def.heads = head, def.resolved = 0.025, def.depth = 0.2;
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &out));
+  const double q = 0.1 * out.thin, h = 0.02 - q / sqrt(9.81 * 0.2);
+  mps_assert_near(q, pow(2.0 / 3.0, 1.5) * sqrt(9.81) * pow(h, 1.5), 1e-12);
+  assert_true(h < 0.018);
+}
+
+static void records_out_of_range_are_refused(void **state) {
+  (void)state;
+  static level_record r;
+  const double some[3] = {0.02, 0.01, 0.01}, none[3] = {0.0};
+  mps_overtopping out;
+  const mps_overtopping_def def = record_of(&r, some, none);
+#define REFUSED(change, word)                                                                      \
+  do {                                                                                             \
+    mps_overtopping_def d = def;                                                                   \
+    change;                                                                                        \
+    mps_assert_fails(context, mps_overtopping_find(context, &d, 0, NULL, &out),                    \
+                     MPS_ERROR_ARGUMENT, word);                                                    \
+  } while (0)
+  REFUSED(d.samples = 1, "samples");
+  REFUSED(d.resolved = NAN, "resolved");
+  REFUSED(d.pause = -1.0, "pause");
+  REFUSED(d.depth = 0.0, "depth");
+  REFUSED(d.gravity = -9.81, "gravity");
+  REFUSED(d.times = NULL, "times");
+  REFUSED(d.heads = NULL, "heads");
+  REFUSED(r.t[3] = r.t[2], "times[3]");
+  r.t[3] = 0.06;
+  REFUSED(r.head[4] = INFINITY, "heads[4]");
+  r.head[4] = -0.05;
+  REFUSED(r.volume[5] = NAN, "volumes[5]");
+#undef REFUSED
+  mps_assert_fails(context, mps_overtopping_find(context, &def, -1, NULL, &out), MPS_ERROR_ARGUMENT,
+                   "capacity");
+}
+
 static void walls_out_of_range_are_refused(void **state) {
   (void)state;
   mps_eurotop r;
@@ -226,6 +391,11 @@ int main(void) {
       cmocka_unit_test(slopes_have_published_discharges),
       cmocka_unit_test(vertical_walls_follow_the_chart),
       cmocka_unit_test(walls_out_of_range_are_refused),
+      cmocka_unit_test(run_up_follows_the_chart),
+      cmocka_unit_test(low_heads_pass_by_the_law_of_the_weir),
+      cmocka_unit_test(nothing_passes_twice),
+      cmocka_unit_test(a_flow_lowers_the_level),
+      cmocka_unit_test(records_out_of_range_are_refused),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -13,6 +13,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
+#include "common/tongue.h"
 #include "goring.h"
 
 #define DEPTH 0.3  /* m */
@@ -81,45 +82,14 @@ static tank before_a_slope(const slope *s, double l0, mps_signal *piston_motion)
   return t;
 }
 
-enum { BINS = 2000, THICKEST = 6, LEAST_POINTS = 4 };
-
-/* Thickness (m) of the water on the slope, in steps of 2 l0 along it from its foot. A particle is a
- * length l0 of a layer of thickness l0. */
-static void find_thickness(const tank *t, const slope *s, double l0, double *thickness) {
-  mps_view x;
-  mps_assert_ok(context, mps_particles_view(t->water, "position", &x));
-  for (int k = 0; k < BINS; k++) thickness[k] = 0.0;
-  for (int64_t i = 0; i < x.shape[0]; i++) {
-    const double at[2] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1)};
-    const double along = (at[0] - s->foot) * cos(s->angle) + at[1] * sin(s->angle);
-    const double from = 0.5 * (along / l0 - 0.5), to = 0.5 * (along / l0 + 0.5);
-    assert_true(to < BINS);
-    for (int k = (int)fmax(floor(from), 0.0); k < to; k++)
-      thickness[k] += l0 * (fmin(to, k + 1) - fmax(from, k));
-  }
-}
-
-/* Height above rest, in depths, of the end of the water on the slope. The tongue is resolved as far
- * as it is a spacing thick, from the foot without a gap; the line of least squares through its
- * thickness from six spacings to one is continued to zero. *resolved: where the resolved part ends.
- * Minus infinity, both: there are less than LEAST_POINTS of it, or it is not thinner upwards. */
+/* Height above rest, in depths, of the end of the water on the slope (common/tongue.h); *resolved:
+ * where the part that is a spacing thick ends. Minus infinity, both: there is none. */
 static double continued(const tank *t, const slope *s, double l0, double *resolved) {
-  static double thickness[BINS];
-  int end = 0, begin;
-  double sum[2] = {0.0, 0.0}, xx = 0.0, xy = 0.0;
-  find_thickness(t, s, l0, thickness);
-  while (end < BINS && thickness[end] >= l0) end++;
-  for (begin = end; begin > 0 && thickness[begin - 1] <= THICKEST * l0;) begin--;
-  const double n = end - begin;
-  *resolved = -INFINITY;
-  for (int k = begin; k < end; k++) sum[0] += (2 * k + 1) * l0 / n, sum[1] += thickness[k] / n;
-  for (int k = begin; k < end; k++) {
-    const double x = (2 * k + 1) * l0 - sum[0];
-    xx += x * x, xy += x * thickness[k];
-  }
-  if (end - begin < LEAST_POINTS || !(xy < 0.0)) return -INFINITY;
-  *resolved = 2.0 * end * l0 * sin(s->angle) / DEPTH - 1.0;
-  return (sum[0] - sum[1] * xx / xy) * sin(s->angle) / DEPTH - 1.0;
+  const tongue_slope plane = {{s->foot, 0.0}, s->angle, 4000.0 * l0};
+  tongue found;
+  assert_true(tongue_find(t->water, &plane, l0, &found));
+  *resolved = found.resolved * sin(s->angle) / DEPTH - 1.0;
+  return found.end * sin(s->angle) / DEPTH - 1.0;
 }
 
 /* Highest levels above rest, in depths, on a slope. */

@@ -2,10 +2,16 @@
  * critical flow on the crest has it, q = (2/3)^1.5 g^.5 h^1.5 of the head h, dh/dt = -q/L, until
  * the head is less than a spacing: a layer of one particle stays. Of water that stands 1.5 spacings
  * above a crest and is released at once as much passes as on a grid twice as fine: neither crest
- * nor surface lies off its place by a part of a spacing. SPDX-License-Identifier: BSD-3-Clause */
+ * nor surface lies off its place by a part of a spacing. Of lower heads particles pass too little
+ * or nothing: their flow is that of mps_overtopping_find, from the level before the weir, beside
+ * what passes on the finer grid.
+ *
+ * test-verify-fluid_weir HEAD [L0]: the last, of a head (m) and what is counted with a spacing (m),
+ * by hand. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
 #include <mps/fluid.h>
+#include <mps/wave_loads.h>
 
 #define L0 0.025   /* m */
 #define LENGTH 2.0 /* m, of the basin */
@@ -103,8 +109,70 @@ static void a_small_head_passes_as_on_a_finer_grid(void **state) {
   mps_assert_near(coarse / fine, 1.0, 0.2);
 }
 
-int main(void) {
+/* ---- heads too low for particles ------------------------------------------------------------- */
+
+enum { SAMPLES = 40 };
+#define SPAN 0.5 /* s */
+
+/* Counted past the front edge (m2) in SPAN, and by the level two spacings before it, `thin`, with
+ * all heads up to `resolved` (m). */
+static double overflow(double l0, double head, double resolved, double *thin) {
+  const double depth = 0.2, length = 1.0, station = length - 2.0 * l0;
+  double t[SAMPLES], heads[SAMPLES];
+  mps_particles *water = NULL;
+  mps_fluid *fluid = make_basin(l0, length, depth - head, head, 0.05, &water);
+  mps_overtopping_def def = mps_overtopping_defaults();
+  mps_overtopping found;
+  mps_view x;
+  int64_t inside = 0;
+  for (int k = 0; k < SAMPLES; k++) {
+    t[k] = SPAN * k / (SAMPLES - 1.0);
+    if (k > 0) mps_assert_ok(context, mps_fluid_run(fluid, t[k], 100000, NULL, NULL));
+    mps_assert_ok(context, mps_fluid_get_levels(fluid, 1, &station, &heads[k]));
+    heads[k] -= depth - head;
+  }
+  def.samples = SAMPLES, def.times = t, def.heads = heads;
+  def.resolved = resolved, def.depth = depth;
+  mps_assert_ok(context, mps_overtopping_find(context, &def, 0, NULL, &found));
+  mps_assert_ok(context, mps_particles_view(water, "position", &x));
+  for (int64_t i = 0; i < x.shape[0]; i++) inside += *mps_view_f64(&x, i, 0) < length;
+  mps_fluid_destroy(&fluid);
+  mps_particles_destroy(&water);
+  *thin = found.thin;
+  return length * depth - (double)inside * l0 * l0;
+}
+
+static void a_low_head_passes_by_the_level_before_the_weir(void **state) {
+  (void)state;
+  double thin, none;
+  const double counted = overflow(L0, 0.7 * L0, 1.3 * L0, &thin);
+  const double fine = overflow(0.5 * L0, 0.7 * L0, 0.5 * L0, &none);
+  printf("weir: head .7 spacings: counted %.2e m2 in .5 s; by the level %.2e (%+.1f %%), beside "
+         "%.2e counted on a grid twice as fine\n",
+         counted, thin, 100.0 * (thin / fine - 1.0), fine);
+  mps_assert_near(counted, 0.0, 0.5 * L0 * L0); /* not a particle */
+  mps_assert_near(thin / fine, 1.0, 0.25);
+  mps_assert_near(none, 0.0, 0.0); /* higher than what is continued there: counted alone */
+}
+
+static double asked[2];
+
+static void a_row(void **state) {
+  (void)state;
+  double thin;
+  const double counted = overflow(asked[1], asked[0], 1.0, &thin);
+  printf("weir: head %g m, l0 %g m: counted %.3e m2 in .5 s, by the level %.3e\n", asked[0],
+         asked[1], counted, thin);
+}
+
+int main(int count, char **values) {
+  if (count > 1) {
+    const struct CMUnitTest row[] = {cmocka_unit_test(a_row)};
+    asked[0] = strtod(values[1], NULL), asked[1] = count > 2 ? strtod(values[2], NULL) : L0;
+    return cmocka_run_group_tests(row, make_context, drop_context);
+  }
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_low_head_passes_by_the_level_before_the_weir),
       cmocka_unit_test(a_basin_runs_out_by_the_law_of_the_weir),
       cmocka_unit_test(a_small_head_passes_as_on_a_finer_grid),
   };

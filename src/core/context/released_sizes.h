@@ -51,6 +51,7 @@
   X(mps_mpm_load_def, mps_mpm_load_def_init, "0.3", 104) \
   X(mps_mpm_settle_def, mps_mpm_settle_def_init, "0.3", 24) \
   X(mps_neighbours_def, mps_neighbours_def_init, "0.3", 24) \
+  X(mps_overtopping_def, mps_overtopping_def_init, "0.3", 72) \
   X(mps_particles_def, mps_particles_def_init, "0.3", 40) \
   X(mps_pore_face_def, mps_pore_face_def_init, "0.3", 72) \
   X(mps_pore_water_def, mps_pore_water_def_init, "0.3", 56) \
