@@ -24,6 +24,11 @@ static const char *settle(settings *s, const option *table) {
   if (isnan(s->slip)) s->slip = 0.01 * s->height;
   if (softens && !s->runout)
     return "--residual-phi, --residual-cohesion and --slip are for --runout";
+  if (options_given(table, "tolerance") && (s->runout || !isnan(s->factor)))
+    return "--tolerance is for a factor that is sought, without --runout and --factor";
+  if (options_given(table, "slip") && !options_given(table, "residual-phi") &&
+      !options_given(table, "residual-cohesion"))
+    return "--slip is for a strength that falls, to --residual-phi or --residual-cohesion";
   if (s->runout && isnan(s->factor)) s->factor = 1.0;
   if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
   if (s->psi > s->phi) return "--psi must be at most --phi";
@@ -31,6 +36,8 @@ static const char *settle(settings *s, const option *table) {
     return "--residual-phi and --residual-cohesion must be at most --phi and --cohesion";
   if (s->residual_phi == 0.0 && s->residual_cohesion == 0.0)
     return "--residual-phi and --residual-cohesion must not both be 0";
+  if (s->base > 0.0 && s->base < 2.0 * s->h * (1.0 - 1e-9))
+    return "--base must be 0 or at least 2 cells of --h";
   if (s->base == 0.0 && options_given(table, "toe")) return "--toe is for a --base above 0";
   if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
   if (s->crest < 0.5 * s->height) return "--crest must be at least half of --height";
