@@ -219,7 +219,7 @@ static bool draw_e_p(element *x) {
   return plot_close(&f, s->out, "e_p");
 }
 
-/* The e-ln p line goes on where there are no pores left, and means nothing there. */
+/* The e-ln p line has no end where no pores are left, and means nothing there. */
 static void warn_of_no_pores(element *x) {
   double least = INFINITY; /* NaN: no void ratio is known */
   for (int64_t k = 0; k < x->rows; k++) least = fmin(least, x->table[k].void_ratio);
