@@ -11,6 +11,7 @@
 static const char *settle(settings *s, const option *table) {
   const bool softens = options_given(table, "residual-phi") ||
                        options_given(table, "residual-cohesion") || options_given(table, "slip");
+  if (s->gradient > 0.0 && !options_given(table, "cohesion")) s->cohesion = 0.0;
   if (isnan(s->crest)) s->crest = 1.2 * (s->height + s->base);
   if (isnan(s->toe)) s->toe = s->base > 0.0 ? 1.5 * s->height : 0.0;
   if (isnan(s->h)) s->h = s->height / 20.0;
@@ -24,13 +25,22 @@ static const char *settle(settings *s, const option *table) {
   if (isnan(s->slip)) s->slip = 0.01 * s->height;
   if (softens && !s->runout)
     return "--residual-phi, --residual-cohesion and --slip are for --runout";
+  if (options_given(table, "tolerance") && (s->runout || !isnan(s->factor)))
+    return "--tolerance is for a factor that is sought, without --runout and --factor";
+  if (options_given(table, "slip") && !options_given(table, "residual-phi") &&
+      !options_given(table, "residual-cohesion"))
+    return "--slip is for a strength that falls, to --residual-phi or --residual-cohesion";
   if (s->runout && isnan(s->factor)) s->factor = 1.0;
-  if (s->phi == 0.0 && s->cohesion == 0.0) return "--phi and --cohesion must not both be 0";
+  if (s->gradient > 0.0 && s->runout) return "--strength-gradient and --runout exclude each other";
+  if (s->phi == 0.0 && s->cohesion == 0.0 && s->gradient == 0.0)
+    return "--phi and --cohesion must not both be 0";
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (s->residual_phi > s->phi || s->residual_cohesion > s->cohesion)
     return "--residual-phi and --residual-cohesion must be at most --phi and --cohesion";
-  if (s->residual_phi == 0.0 && s->residual_cohesion == 0.0)
+  if (s->runout && s->residual_phi == 0.0 && s->residual_cohesion == 0.0)
     return "--residual-phi and --residual-cohesion must not both be 0";
+  if (s->base > 0.0 && s->base < 2.0 * s->h * (1.0 - 1e-9))
+    return "--base must be 0 or at least 2 cells of --h";
   if (s->base == 0.0 && options_given(table, "toe")) return "--toe is for a --base above 0";
   if (s->height < 5.0 * s->h * (1.0 - 1e-9)) return "--height must be at least 5 cells of --h";
   if (s->crest < 0.5 * s->height) return "--crest must be at least half of --height";
@@ -80,7 +90,9 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Ground (Mohr-Coulomb)"),
       COMMON_NUMBER_IN("phi", OPTION_FROM_TO(0.0, 50.0), &s->phi, NULL),
       COMMON_NUMBER_IN("psi", OPTION_FROM_TO(0.0, 50.0), &s->psi, "at most phi"),
-      COMMON_NUMBER("cohesion", &s->cohesion, NULL),
+      COMMON_NUMBER("cohesion", &s->cohesion, "with --strength-gradient at the crest, default 0"),
+      OPTION_NUMBER("strength-gradient", "Pa/m", OPTION_FROM_TO(0.0, 1e9), &s->gradient,
+                    "growth of the cohesion with the depth below the crest's level"),
       COMMON_NUMBER("young", &s->young, NULL),
       COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.49), &s->poisson, NULL),
       COMMON_NUMBER("density", &s->density, NULL),

@@ -29,7 +29,8 @@ static const char *read_times(simulation *sim, const option *table) {
   const char *text = sim->s.times;
   char number[64];
   if (sim->s.kase == STRIP) {
-    if (options_given(table, "times")) return "--times is not for --case strip, which is undrained";
+    if (options_given(table, "times") || options_given(table, "duration"))
+      return "--times and --duration are not for --case strip, which is undrained";
     sim->time[0] = 0.0;
     sim->times = 1;
     return NULL;

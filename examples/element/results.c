@@ -231,9 +231,21 @@ static bool draw_e_p(element *x) {
   return plot_close(&f, s->out, "e_p");
 }
 
+/* The e-ln p line has no end where no pores are left, and means nothing there. */
+static void warn_of_no_pores(element *x) {
+  double least = INFINITY; /* NaN: no void ratio is known */
+  for (int64_t k = 0; k < x->rows; k++) least = fmin(least, x->table[k].void_ratio);
+  if (least < 0.0)
+    app_warn(&x->a,
+             "the void ratio falls to %.3g: below 0 there are no pores left, take a smaller "
+             "--strain or a larger --e0",
+             least);
+}
+
 bool element_results(element *x, bool done) {
   app *a = &x->a;
   if (!done) a->outcome = "failed";
+  warn_of_no_pores(x); /* before the summary, which lists it */
   if (!write_path(x) || !write_summary(x) || !draw_q_p(x) || !draw_q_strain(x) || !draw_e_p(x) ||
       !draw_loop(x) || !element_write_cycles(x) || !element_draw_cycles(x))
     return false;

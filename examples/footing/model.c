@@ -17,6 +17,20 @@
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
+static double unit_of(const settings *s) { return s->top > 0.0 ? s->top_cohesion : s->cohesion; }
+
+/* Clay yields all around after some 25 c/E of the half width. */
+static double clay_settlement(const settings *s) {
+  return fmin(0.5 * s->half_width, fmax(0.6e-3, 120.0 * s->half_width * unit_of(s) / s->young));
+}
+
+/* Up to which the force of inertia, rate (rho E)^1/2, is the same part of the cohesion: a longer path
+ * in as many steps. */
+static double faster(const settings *s) {
+  const double times = unit_of(s) / 10e3 * sqrt(1e9 / s->young);
+  return fmin(60.0, fmax(1.0, times));
+}
+
 const char *footing_settle(settings *s, const option *table) {
   const bool cone = s->model == DRUCKER_PRAGER;
   double *const sides[] = {&s->width, &s->depth};
@@ -47,10 +61,10 @@ const char *footing_settle(settings *s, const option *table) {
     return "--top and --surcharge are for one process";
   if (s->top > s->depth - s->h)
     return "--top must leave at least a cell of --h of the ground below";
-  if (isnan(s->rate)) s->rate = s->settled ? 1.5e-3 : 0.5e-3;
+  if (isnan(s->rate)) s->rate = (s->settled ? 1.5e-3 : 0.5e-3) * (cone ? 1.0 : faster(s));
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
-  if (isnan(s->settlement)) s->settlement = cone ? 4e-3 : 0.6e-3;
+  if (isnan(s->settlement)) s->settlement = cone ? 4e-3 : clay_settlement(s);
   if (s->settlement > 0.5 * s->half_width)
     return "--settlement must be at most half of --half-width";
   if (isnan(s->gravity)) s->gravity = cone ? 9.81 : 0.0;
@@ -60,7 +74,7 @@ const char *footing_settle(settings *s, const option *table) {
 bool footing_is_thin(const settings *s) { return s->depth < 1.5 * s->half_width * (1.0 - 1e-9); }
 
 footing_unit footing_unit_of(const settings *s) {
-  const double cohesion = s->top > 0.0 ? s->top_cohesion : s->cohesion;
+  const double cohesion = unit_of(s);
   const double weight = s->density * s->gravity * s->half_width;
   if (s->surcharge > 0.0) return (footing_unit){s->surcharge, "surcharge"};
   if (s->model == DRUCKER_PRAGER && weight > 100.0 * cohesion)

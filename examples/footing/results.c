@@ -309,11 +309,11 @@ static void print(const settings *s, const capacity *c) {
            100.0 * (c->undeformed / c->exact - 1.0));
 }
 
-/* Sand whose pressure still grows has not reached its bearing capacity, and the line through it
+/* Ground whose pressure still grows has not reached its bearing capacity, and the line through it
  * means nothing. */
 static void warn_of_growth(app *a, const simulation *sim, const capacity *c) {
   const double growth = c->slope * (sim->path[sim->rows - 1] - sim->path[sim->rows / 2]) * 1e3;
-  if (sim->s.model != VON_MISES && growth > GROWTH * c->last)
+  if (growth > GROWTH * c->last)
     app_warn(a,
              "the pressure grows by %.0f %% over the second half of the path: the ground has not "
              "reached its bearing capacity, take a longer --settlement",
@@ -324,11 +324,11 @@ bool footing_finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   const capacity c = measure(sim);
+  if (!isnan(c.last)) warn_of_growth(a, sim, &c); /* before the summary, which lists it */
   if (!write_pressure(a, s, sim, &c) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
       !draw_pressure(a, s, &c) || !draw_bands(a, s, sim))
     return false;
   app_tell_results(a, s->out);
   print(s, &c);
-  if (!isnan(c.last)) warn_of_growth(a, sim, &c);
   return true;
 }

@@ -34,6 +34,8 @@ static const char *check_uses(const pen_settings *s, const option *table) {
       return "--cohesion, --young, --alpha, --k0 and --gravity are not for --law mcc, whose "
              "strength "
              "and stiffness follow --surcharge and --ocr in ground without weight";
+  if (s->law != PEN_SAND && (options_given(table, "phi") || options_given(table, "psi")))
+    return "--phi and --psi are for --law sand";
   if (!isnan(s->ir) && (s->law == PEN_SAND || s->law == PEN_ELASTIC))
     return "--ir is for --law clay, tresca and mcc, which have an undrained strength";
   if (!isnan(s->ir) && options_given(table, "young")) return "--ir and --young exclude each other";

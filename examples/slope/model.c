@@ -7,6 +7,7 @@
 #include "slope.h"
 
 #include <mps/geostatic.h>
+#include <mps/soil.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,21 +43,40 @@ static mps_status set_stress(const settings *s, mps_particles *set) {
   return mps_particles_set_geostatic(set, &def);
 }
 
+/* The cohesion that grows with the depth below the crest, `law` having the largest, at the base. */
+static mps_status let_grow(const settings *s, double largest, mps_particles *set,
+                           mps_context *context, mps_material **law) {
+  const double deep = s->base + s->height, depth[] = {0.0, deep};
+  const double factor[] = {s->cohesion / largest, 1.0};
+  mps_geostatic_def ground = mps_geostatic_defaults();
+  mps_material *even = *law;
+  ground.surface = deep;
+  *law = NULL;
+  mps_status status = mps_particles_set_profile(set, "strength_factor", 2, depth, factor, &ground);
+  if (status == MPS_OK) status = mps_material_create_by_field(context, even, law);
+  mps_material_destroy(&even);
+  return status;
+}
+
 static mps_status make_law(simulation *sim) {
   const settings *s = &sim->s;
+  const double largest = s->cohesion + s->gradient * (s->base + s->height);
   const double factor = sim->trial[sim->now].factor;
   mps_material_mohr_coulomb_def law = mps_material_mohr_coulomb_defaults();
   law.young = s->young, law.poisson = s->poisson;
   law.friction = atan(tan(s->phi * DEGREE) / factor);
   law.dilation = fmin(s->psi * DEGREE, law.friction);
-  law.cohesion = s->cohesion / factor;
+  law.cohesion = largest / factor;
   if (s->runout) {
     law.residual_friction = atan(tan(s->residual_phi * DEGREE) / factor);
     law.residual_cohesion = s->residual_cohesion / factor;
     law.slip = s->slip;
     law.band = (s->spline ? 2.4 : 2.0) * s->h;
   }
-  return mps_material_create_mohr_coulomb(sim->context, &law, &sim->m.material);
+  mps_status status = mps_material_create_mohr_coulomb(sim->context, &law, &sim->m.material);
+  if (status == MPS_OK && s->gradient > 0.0)
+    status = let_grow(s, largest, sim->m.particles, sim->context, &sim->m.material);
+  return status;
 }
 
 /* Where each particle is before the first step. */

@@ -12,6 +12,7 @@ enum { SLOPE_SAMPLES = 40, SLOPE_TRIALS = 24 };
 typedef struct settings {
   double height, slope, base, crest, toe;    /* m; slope: horizontal per vertical */
   double phi, psi, cohesion;                 /* degrees, degrees, Pa */
+  double gradient;                           /* Pa/m, growth of the cohesion below the crest */
   double residual_phi, residual_cohesion;    /* NaN: as phi and cohesion */
   double slip;                               /* m */
   double young, poisson, density, gravity;   /* Pa, -, kg/m3, m/s2 */

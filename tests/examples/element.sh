@@ -29,6 +29,11 @@ is "$work/iso/path.csv" p -1 126089 126
 run plane $soft --path ps-undrained --strain 0.5
 in_range "$work/plane/summary.json" q 53325 53432 # sqrt(3) times su 30.818 kPa
 
+# Beyond the strain at which no pores are left the e-ln p line goes on: a warning says so.
+"$element" $soft --path oedometer --strain 1 --out "$work/closed" >"$work/log" 2>&1
+has "$work/log" "there are no pores left"
+has "$work/closed/summary.json" "there are no pores left"
+
 # Loops of the small-strain law: half of G0 is left at the reference strain, the damping of Masing's
 # hyperbola there is 0.1448; a sixth of G0 and 0.3437 at five times it.
 small="--law smallstrain --shear-modulus 50MPa --nu 0.25 --reference-strain 1e-3 --path cyclic --steps 4000"

@@ -28,6 +28,13 @@ grep -q "was made with other options" "$work/log" || fail "which option differs"
 has "$work/log" "characteristics"
 in_range "$work/grows/summary.json" q_exact 7.818 7.82
 in_range "$work/grows/summary.json" q_over_c 7.4 8.4
+# Ten times the cohesion is borne after ten times the path, by default; a path too short for it is warned of.
+"$1/mps-footing" --cohesion 100kPa --quasi-static --h 0.125 --domain 2x1.25 --threads 1 --out "$work/strong" >"$work/log" 2>&1
+in_range "$work/strong/summary.json" q_over_c 5.0 5.5
+grep -q warning: "$work/log" && fail "a warning of ground at its capacity"
+"$1/mps-footing" --cohesion 100kPa --quasi-static --h 0.125 --domain 2x1.25 --settlement 0.6mm --threads 1 --out "$work/short" >"$work/log" 2>&1
+has "$work/log" "has not reached its bearing capacity"
+has "$work/short/summary.json" "has not reached its bearing capacity"
 # Ctrl-C while the ground settles.
 timeout -s INT 0.6 "$1/mps-footing" --quasi-static --domain 2x1.2 --threads 1 \
   --checkpoint "$work/cut.h5" --out "$work/cut" >/dev/null 2>&1 || true

@@ -17,6 +17,12 @@ picture "$work/slope/motion.png" 1000x640
 has "$work/log" "the slope stands"
 "$1/mps-slope" --h 1 --phi 36.0524 --cohesion 19620 --factor 3.0 --threads 1 --out "$work/twice" >"$work/log"
 has "$work/log" "the slope fails"
+# Clay whose strength grows from nothing at the crest: slip circles have 4.106 k/gamma = 1.256, an upper bound.
+grows="--h 1 --slope 1 --phi 0 --strength-gradient 6kPa/m --young 1GPa --threads 1"
+"$1/mps-slope" $grows --factor 1.19 --out "$work/grows" >"$work/log"
+has "$work/log" "the slope stands"
+"$1/mps-slope" $grows --factor 1.33 --out "$work/grows" >"$work/log"
+has "$work/log" "the slope fails"
 for kind in 15kPa 4kPa; do
   "$1/mps-slope" --runout --phi 0 --cohesion 15kPa --residual-cohesion "$kind" --h 1 --falls 12 --threads 1 \
     --out "$work/$kind" >"$work/log" || exit 1

@@ -59,7 +59,7 @@ enum {
 
 struct mpsi_water {
   mps_pore_water_def def;
-  bool flows;
+  bool flows, warned; /* warned: of steps of undrained ground with implicit pressures */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
