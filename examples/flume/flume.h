@@ -253,9 +253,9 @@ typedef struct flume_figures {
                                                  highest reading of each climb */
   mps_eurotop_run_up formula;
   bool has_formula;
-  double mean_level;                           /* m above that at rest, of the gauges before */
-  double water; /* mean of the water before the crest, over that at the start */
-  double loss;  /* of the height, a wave length */
+  double mean_level; /* m above that at rest, of the gauges before */
+  double water;      /* mean of the water before the crest, over that at the start */
+  double loss;       /* of the height, a wave length */
   double bound, bound_stokes, unbound, back, length; /* of regular waves, m the last: harmonics.c */
   mps_goda goda;
   mps_eurotop eurotop;
