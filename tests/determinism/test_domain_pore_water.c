@@ -126,7 +126,8 @@ static mps_status compute_wet(mps_context *own, mps_domain *domain, int what, in
   TRY(mps_mpm_step(s.mpm, steps - steps / 2));
   mps_snapshot_destroy(&then);
   TRY(keep_wet(domain, &s, r));
-  if (status == MPS_OK && what % IMPLICIT != UNDRAINED && (r->other[11] == 0.0 || r->other[13] == 0.0))
+  if (status == MPS_OK && what % IMPLICIT != UNDRAINED &&
+      (r->other[11] == 0.0 || r->other[13] == 0.0))
     status = MPS_ERROR_INTERNAL; /* water goes through both */
   end_scene(&s);
   return status;
@@ -218,7 +219,16 @@ static void test_refused_memory(void **state) {
   refuse_memory(compute_wet, IMPLICIT + LAYERS, 6, 9);
 }
 
-enum { OTHER_BULK, BAD_POROSITY, OTHER_FACE, OTHER_LEVEL, OTHER_NUMBER, OTHER_SCHEME, NO_SOLUTION, TROUBLES };
+enum {
+  OTHER_BULK,
+  BAD_POROSITY,
+  OTHER_FACE,
+  OTHER_LEVEL,
+  OTHER_NUMBER,
+  OTHER_SCHEME,
+  NO_SOLUTION,
+  TROUBLES
+};
 
 static const trouble_case trouble[TROUBLES] = {
     [OTHER_BULK] = {MPS_ERROR_ARGUMENT, "bulk is "},
@@ -262,16 +272,18 @@ static void test_trouble(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_layers),         cmocka_unit_test(test_settled),
-      cmocka_unit_test(test_around),         cmocka_unit_test(test_block),
-      cmocka_unit_test(test_undrained),
-      cmocka_unit_test(test_implicit_layers),
-      cmocka_unit_test(test_implicit_settled),
-      cmocka_unit_test(test_implicit_around),
-      cmocka_unit_test(test_implicit_block),
-      cmocka_unit_test(test_implicit_undrained),
-      cmocka_unit_test(test_cut),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_trouble)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_layers),
+                                     cmocka_unit_test(test_settled),
+                                     cmocka_unit_test(test_around),
+                                     cmocka_unit_test(test_block),
+                                     cmocka_unit_test(test_undrained),
+                                     cmocka_unit_test(test_implicit_layers),
+                                     cmocka_unit_test(test_implicit_settled),
+                                     cmocka_unit_test(test_implicit_around),
+                                     cmocka_unit_test(test_implicit_block),
+                                     cmocka_unit_test(test_implicit_undrained),
+                                     cmocka_unit_test(test_cut),
+                                     cmocka_unit_test(test_refused_memory),
+                                     cmocka_unit_test(test_trouble)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,7 +32,7 @@ same box mps-sliding-box --h 0.02
 same free_disc mps-rolling-disc --h 0.02 --body disc --duration 0.1
 same footing mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
 same cone mps-penetrometer --h 0.05 --diameter 0.2 --soil 4x4x2 --depth 0.1 --rate 2 --ppc 1
-# Water in the pores: explicit pressures, and implicit ones with a checkpoint.
+# Water in the pores: explicit pressures, and implicit ones.
 same layer mps-consolidation --cells 8 --times 0.01
 same mandel mps-consolidation --case mandel --cells 16 --scheme implicit --times 0.002,0.01
 pile="--soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"

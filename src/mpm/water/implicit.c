@@ -10,9 +10,10 @@
  *
  * G is that of full supports, mirrored at sides of the domain, with the particles where they are at
  * the end of the step: what it lacks beside bodies delays pressures, and changes no steady state.
- * Vectors are by cells, loops by blocks; a block's part of a sum is added in the order of its cells,
- * and the parts exactly, so that no bit depends on the number of threads or ranks. On several ranks
- * each solves for the cells that it counts, with those of its rim (rim.h) beside them. SPDX-License-Identifier: BSD-3-Clause */
+ * Vectors are by cells, loops by blocks; a block's part of a sum is added in the order of its
+ * cells, and the parts exactly, so that no bit depends on the number of threads or ranks. On
+ * several ranks each solves for the cells that it counts, with those of its rim (rim.h) beside
+ * them. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit.h"
 
 #include "forces.h"
@@ -58,8 +59,7 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
       const double *force = mpsi_pore_row(grid, s, cell), d = s->scale[cell] * s->direction[cell];
       for (int c = 0; c < grid->dim; c++) v[c] += force[c * nodes + q] * d;
     }
-    for (int c = 0; c < grid->dim; c++)
-      v[c] = s->held[node] >> c & 1 ? 0.0 : v[c] / s->mass[node];
+    for (int c = 0; c < grid->dim; c++) v[c] = s->held[node] >> c & 1 ? 0.0 : v[c] / s->mass[node];
   }
 }
 
@@ -164,7 +164,8 @@ static void take(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   mpsi_pore_cell *cell = mpm->water->cell + first;
   (void)factor;
   for (int k = 0; k < mpm->grid.block_nodes; k++)
-    if (mpsi_pore_is_unknown(mpm->water, g, k, cell)) cell[k].now = cell[k].p + s->change[first + k];
+    if (mpsi_pore_is_unknown(mpm->water, g, k, cell))
+      cell[k].now = cell[k].p + s->change[first + k];
 }
 
 static mps_status refuse(mps_mpm *mpm, const char *function, double rest, double least) {
@@ -172,8 +173,8 @@ static mps_status refuse(mps_mpm *mpm, const char *function, double rest, double
       mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
                 "step %lld: pressures of the pore water have a residual of %g after %lld "
                 "iterations, must come to %g: choose a smaller dt or K_w",
-                (long long)mpm->run.steps, sqrt(rest),
-                (long long)mpm->water->system->iterations, sqrt(least));
+                (long long)mpm->run.steps, sqrt(rest), (long long)mpm->water->system->iterations,
+                sqrt(least));
   /* all ranks have the same sums, and fail alike */
   return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
 }
@@ -196,8 +197,7 @@ static mps_status find_changes(mps_mpm *mpm, const char *function) {
   double rest;
   mps_status status = mpsi_pore_sum_blocks(mpm, function, start, 0.0, &rest);
   const double least = TOLERANCE * TOLERANCE * rest;
-  for (s->iterations = 0; status == MPS_OK && (rest > least || !isfinite(rest));
-       s->iterations++) {
+  for (s->iterations = 0; status == MPS_OK && (rest > least || !isfinite(rest)); s->iterations++) {
     if (s->iterations == MOST_ITERATIONS || !isfinite(rest))
       return refuse(mpm, function, rest, least);
     status = iterate(mpm, function, &rest);

@@ -262,8 +262,7 @@ static void pack_grains(void *data, int64_t k, int32_t number) {
   mpsi_pore_grain *out = (void *)((char *)rim->out_room.item + k * grain_bytes(rim));
   (void)number;
   *out = (mpsi_pore_grain){.place = cells->end - cells->begin};
-  for (int64_t i = cells->begin; i < cells->end; i++)
-    *++out = mpsi_pore_grain_of(mpm, i);
+  for (int64_t i = cells->begin; i < cells->end; i++) *++out = mpsi_pore_grain_of(mpm, i);
 }
 
 void mpsi_pore_send_grains(mps_mpm *mpm) {
@@ -284,8 +283,8 @@ void mpsi_pore_receive_grains(void *solver) {
 
 const mpsi_pore_grain *mpsi_pore_grains_of(const mps_mpm *mpm, int64_t b, int64_t *count) {
   const mpsi_pore_rim *rim = mpm->water->system->rim;
-  const mpsi_pore_grain *in =
-      (const void *)((const char *)rim->in_room.item + mpm->grid.cells[b].parcel * grain_bytes(rim));
+  const mpsi_pore_grain *in = (const void *)((const char *)rim->in_room.item +
+                                             mpm->grid.cells[b].parcel * grain_bytes(rim));
   *count = mpm->partition->lost == MPS_OK ? in->place : 0; /* else the step has failed */
   return in + 1;
 }
@@ -314,8 +313,7 @@ static void unpack_cell(const mps_mpm *mpm, int64_t number, const double *in) {
   s->mass[cell] = s->rim->reached[number] ? in[MASS] : 0.0;
   s->held[cell] = (uint8_t)in[HELD];
   s->scale[cell] = in[SCALE];
-  memcpy(mpsi_pore_row(grid, s, cell), in + HEAD,
-         (size_t)mpsi_pore_row_numbers(grid) * sizeof *in);
+  memcpy(mpsi_pore_row(grid, s, cell), in + HEAD, (size_t)mpsi_pore_row_numbers(grid) * sizeof *in);
 }
 
 mps_status mpsi_pore_send_forces(mps_mpm *mpm, const char *function) {

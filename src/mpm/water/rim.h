@@ -23,16 +23,16 @@ typedef struct mpsi_pore_rim_block {
 } mpsi_pore_rim_block;
 
 struct mpsi_pore_rim {
-  mpsi_halo *halo;        /* of cells; NULL: none yet */
-  mpsi_halo *whole;       /* of blocks that this rank computes but does not count */
-  int64_t searches;       /* of the partition, for which the rim is that of its ghosts */
-  int64_t blocks, cells;  /* in the rim */
-  int64_t wholes;         /* blocks that come whole */
-  int64_t particles;      /* most of a border block, on all ranks */
+  mpsi_halo *halo;       /* of cells; NULL: none yet */
+  mpsi_halo *whole;      /* of blocks that this rank computes but does not count */
+  int64_t searches;      /* of the partition, for which the rim is that of its ghosts */
+  int64_t blocks, cells; /* in the rim */
+  int64_t wholes;        /* blocks that come whole */
+  int64_t particles;     /* most of a border block, on all ranks */
   mpsi_pore_rim_block *block;
-  int32_t *cell;          /* [blocks][nodes of a block]: number of the cell in the rim, or -1 */
-  uint8_t *reached;       /* by cells: the node is one of those of a cell that this rank counts */
-  int32_t *whole_block;   /* numbers of these blocks in the grid */
+  int32_t *cell;        /* [blocks][nodes of a block]: number of the cell in the rim, or -1 */
+  uint8_t *reached;     /* by cells: the node is one of those of a cell that this rank counts */
+  int32_t *whole_block; /* numbers of these blocks in the grid */
   mpsi_room block_room, cell_room, reached_room, whole_room, out_room, in_room;
 };
 

@@ -1,4 +1,6 @@
 /* system.c - see system.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "system.h"
+
 #include "rim.h"
 
 #include <string.h>
@@ -32,8 +34,7 @@ static void find_around_block(const mpsi_grid *grid, system_of *s, int64_t g, co
 }
 
 static void find_around(const mpsi_grid *grid, system_of *s) {
-  for (int64_t g = 0; g < grid->node_count; g++)
-    find_around_block(grid, s, g, grid->nodes[g].at);
+  for (int64_t g = 0; g < grid->node_count; g++) find_around_block(grid, s, g, grid->nodes[g].at);
   for (int64_t k = 0; s->rim && k < s->rim->blocks; k++)
     find_around_block(grid, s, grid->node_count + s->rim->block[k].number, s->rim->block[k].at);
 }

@@ -1,5 +1,6 @@
 /* system.h - the system of pressures that are implicit in time (implicit.c): its memory, which
- * nodes and cells are in reach of which, and loops and sums over its blocks. SPDX-License-Identifier: BSD-3-Clause */
+ * nodes and cells are in reach of which, and loops and sums over its blocks.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_WATER_SYSTEM_H
 #define MPSI_MPM_WATER_SYSTEM_H
 
@@ -11,10 +12,7 @@ enum { MPSI_PORE_AROUND = 27, MPSI_PORE_SPAN = 4 }; /* blocks; nodes of a cell a
 enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
 
 /* The box of nodes or cells in reach of a block's own: from BEFORE places before it on. */
-enum {
-  MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2,
-  MPSI_PORE_BOX = MPSI_SIDE + 2 * MPSI_PORE_BEFORE
-};
+enum { MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2, MPSI_PORE_BOX = MPSI_SIDE + 2 * MPSI_PORE_BEFORE };
 
 /* What forces and masses need of a particle. */
 typedef struct mpsi_pore_grain {
