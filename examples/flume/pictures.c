@@ -44,7 +44,7 @@ static bool draw_spectrum(app *a, const flume *m, const flume_figures *g) {
   if (!plot_open(&f, a, m->s.out, "spectrum", 900, 520)) return false;
   output_text(
       &f,
-      "set title 'Spectra, %.1f to %.1f s: incident H_{m0} %.4f m, target %.4f m, reflection "
+      "set title '%.1f to %.1f s: H_{m0} incident %.3g m, target %.3g m, reflection "
       "%.2f'\nset xlabel 'frequency (Hz)'\nset ylabel 'density (mm^2 s)'\nset yrange [0:*]\n",
       g->from, g->to, g->split.incident_height, g->target_height, g->split.reflection);
   plot_key_below(&f);

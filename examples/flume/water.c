@@ -21,6 +21,7 @@ typedef struct section {
 static bool in_solid(const void *user, double x, double y) {
   const flume *m = user;
   if (m->s.wall == FLUME_VERTICAL && x > m->outlet) return true;
+  if (x > m->outlet && y < m->ground[m->grounds - 1][1]) return true; /* the bed continues */
   return flume_is_solid(m, x, y);
 }
 
