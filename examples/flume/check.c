@@ -106,7 +106,7 @@ static int check_wall(const options_program *program, const flume *m) {
 }
 
 /* The structures of --wall have their toe at --length and height 0; the far end is an upright
- * plane, which the bed meets at a right angle. */
+ * plane, to which the bed is at a right angle. */
 static int check_end_of_bed(const options_program *program, const flume *m) {
   const flume_shapes *p = &m->shape;
   const double *last = p->bed_point[p->bed - 1], *before = p->bed_point[p->bed - 2];

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LEAST_OF_STORM 100.0 /* periods, of a mean discharge */
+
 static bool in_window(const flume_figures *f, double t) {
   return t >= f->from - 1e-9 && t <= f->to + 1e-9;
 }
@@ -196,6 +198,9 @@ static void find_discharge(app *a, const flume *m, flume_figures *f) {
   def.depth = s->depth, def.crest = s->crest, def.cotangent = s->cotangent;
   def.gravity = WAVES_G;
   f->has_eurotop = mps_eurotop_evaluate(a->context, &def, &f->eurotop) == MPS_OK;
+  if (f->has_eurotop && f->to - f->from < LEAST_OF_STORM * s->period)
+    app_warn(a, "the window has some %.0f waves: the formula's mean discharge is that of hundreds",
+             (f->to - f->from) / s->period);
   if (!f->has_eurotop)
     snprintf(f->why, sizeof f->why, "%s", mps_context_error(a->context)->message);
 }

@@ -6,28 +6,33 @@
 
 #include <math.h>
 
-enum { SHOWN = 3 }; /* gauges */
+enum { SHOWN = 3 };   /* gauges */
+#define IN_METRES 0.5 /* m: waves from this height on have levels in m, of prototypes */
 
 /* First, middle and last gauge, the last 12 periods. */
 static bool draw_levels(app *a, const flume *m) {
   const double last = m->samples ? m->sample[m->samples - 1].t : 1.0;
   const int shown = m->gauges < SHOWN ? m->gauges : SHOWN;
+  const bool metres = m->s.height >= IN_METRES;
+  const double unit = metres ? 1.0 : 1e3;
   output f;
   if (shown == 0) return true;
   if (!plot_open(&f, a, m->s.out, "levels", 1000, 120 + 230 * shown)) return false;
   output_text(
       &f,
-      "set multiplot layout %d,1\nset xrange [%.6g:%.6g]\nset ylabel 'level (mm)'\nset lmargin "
+      "set multiplot layout %d,1\nset xrange [%.6g:%.6g]\nset ylabel 'level (%s)'\nset lmargin "
       "10\nset ytics %.6g\nset key outside top center horizontal\n",
-      shown, fmax(last - 12.0 * m->s.period, 0.0), last, plot_tics(2e3 * m->s.height, 6.0));
+      shown, fmax(last - 12.0 * m->s.period, 0.0), last, metres ? "m" : "mm",
+      plot_tics(2.0 * unit * m->s.height, 6.0));
   for (int k = 0; k < shown; k++) {
     const int g = shown == 1 ? 0 : k * (m->gauges - 1) / (shown - 1);
     output_text(
         &f,
-        "%splot 'gauges.csv' every ::1 using 1:(1e3*$%d) with lines linewidth 3 linecolor rgb "
+        "%splot 'gauges.csv' every ::1 using 1:(%g*$%d) with lines linewidth 3 linecolor rgb "
         "'#f0b27a' title 'target without reflection, x = %g m', '' every ::1 "
-        "using 1:(1e3*$%d) with lines linewidth 1.4 linecolor rgb '#1f4e8c' title 'MPS'\n",
-        k == shown - 1 ? "set xlabel 't (s)'\n" : "", 2 * g + 3, m->s.gauge[g], 2 * g + 2);
+        "using 1:(%g*$%d) with lines linewidth 1.4 linecolor rgb '#1f4e8c' title 'MPS'\n",
+        k == shown - 1 ? "set xlabel 't (s)'\n" : "", unit, 2 * g + 3, m->s.gauge[g], unit,
+        2 * g + 2);
   }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, m->s.out, "levels");
@@ -39,7 +44,7 @@ static bool draw_spectrum(app *a, const flume *m, const flume_figures *g) {
   if (!plot_open(&f, a, m->s.out, "spectrum", 900, 520)) return false;
   output_text(
       &f,
-      "set title 'Spectra, %.1f to %.1f s: incident H_{m0} %.4f m, target %.4f m, reflection "
+      "set title '%.1f to %.1f s: H_{m0} incident %.3g m, target %.3g m, reflection "
       "%.2f'\nset xlabel 'frequency (Hz)'\nset ylabel 'density (mm^2 s)'\nset yrange [0:*]\n",
       g->from, g->to, g->split.incident_height, g->target_height, g->split.reflection);
   plot_key_below(&f);
@@ -123,7 +128,7 @@ static bool draw_pressures(app *a, const flume *m, const flume_figures *g) {
   plot_key_below(&f);
   output_text(&f,
               "set title 'Pressure above that of water at rest, t = %.2f s'\nset xlabel "
-              "'pressure (kPa)'\nset ylabel 'y (m)'\nplot ",
+              "'pressure (kPa)'\nset ylabel 'y (m)'\nset xrange [*<0:*]\nplot ",
               m->look.t);
   if (g->has_goda)
     output_text(&f, "$goda using 1:2 with linespoints linewidth 2 linecolor rgb '#c0392b' title "
@@ -141,7 +146,7 @@ static bool draw_pressures(app *a, const flume *m, const flume_figures *g) {
                     "linecolor rgb '#1f4e8c' title 'MPS'\n");
   if (!body) return output_text(&f, "unset multiplot\n"), plot_close(&f, m->s.out, "pressures");
   output_text(&f, "set title 'Uplift below the caisson'\nset xlabel 'x (m)'\nset ylabel 'pressure "
-                  "(kPa)'\nset yrange [*:*]\n");
+                  "(kPa)'\nset xrange [*:*]\nset yrange [*<0:*]\n");
   output_text(&f, "$stated << EOD\n%.9g,%.9g\n%.9g,0\nEOD\n", g->front, 1e-3 * g->foot_peak,
               m->heel[0]);
   if (g->has_goda)

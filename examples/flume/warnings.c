@@ -55,7 +55,7 @@ static void warn_of_breaking(app *a, const flume *m) {
              s->height, most);
 }
 
-/* The slowest of the peak's waves must have been sent before they meet. */
+/* The slowest of the peak's waves must have been sent before the focus. */
 static void warn_of_focus(app *a, const flume *m) {
   const flume_settings *s = &m->s;
   const double kd = 2.0 * WAVES_PI / m->wave_length * s->depth;

@@ -9,8 +9,9 @@
 #include <stdlib.h>
 
 enum {
-  MOVING_SIDE = 800, /* pixels of a frame of the animation, at most */
-  ROOM_OF_TIC = 26   /* pixels */
+  MOVING_SIDE = 800,           /* pixels of a frame of the animation, at most */
+  FIRST_END = 3 + FLUME_ROCKS, /* number of an object of gnuplot */
+  ROOM_OF_TIC = 26             /* pixels */
 };
 
 typedef struct section {
@@ -20,6 +21,7 @@ typedef struct section {
 static bool in_solid(const void *user, double x, double y) {
   const flume *m = user;
   if (m->s.wall == FLUME_VERTICAL && x > m->outlet) return true;
+  if (x > m->outlet && y < m->ground[m->grounds - 1][1]) return true; /* the bed continues */
   return flume_is_solid(m, x, y);
 }
 
@@ -65,11 +67,16 @@ static void polygon(output *f, int number, int count, const double *point, const
 static void draw_solids(output *f, const flume *m, const section *v) {
   static const char solid[] = "fillstyle solid 1.0 border linecolor rgb '#444444' fillcolor rgb "
                               "'#8a8f98' behind";
-  double ground[2 * FLUME_POINTS + 8][2];
-  int n = 0;
-  for (int k = 0; k < m->grounds; k++, n++) {
-    ground[n][0] = fmin(fmax(m->ground[k][0], v->lower[0]), v->upper[0]);
-    ground[n][1] = m->ground[k][1];
+  double ground[2 * FLUME_POINTS + 8][2] = {{v->lower[0], m->ground[0][1]}};
+  int n = 1; /* left of x = 0 the bed continues */
+  for (int k = 0; k < m->grounds; k++) {
+    const double *p = m->ground[k], *q = m->ground[k + 1 < m->grounds ? k + 1 : k];
+    if (p[0] < v->lower[0]) { /* the section begins on this segment, or behind it */
+      if (q[0] > v->lower[0])
+        ground[0][1] = p[1] + (q[1] - p[1]) * (v->lower[0] - p[0]) / (q[0] - p[0]);
+      continue;
+    }
+    ground[n][0] = fmin(p[0], v->upper[0]), ground[n++][1] = p[1];
   }
   ground[n][0] = v->upper[0], ground[n++][1] = m->ground[m->grounds - 1][1];
   ground[n][0] = v->upper[0], ground[n++][1] = v->lower[1];
@@ -80,6 +87,22 @@ static void draw_solids(output *f, const flume *m, const section *v) {
     polygon(f, 3 + k, m->shape.rock[k].corners, m->shape.rock[k].corner[0],
             "fillstyle transparent solid 0.35 border linecolor rgb '#5d4a33' fillcolor rgb "
             "'#8b6f47' front");
+}
+
+/* Maker and far end where they are at a time. */
+static void draw_ends(output *f, const flume *m, const section *v, double t) {
+  static const char style[] = "fillstyle solid 1.0 border linecolor rgb '#444444' fillcolor rgb "
+                              "'#c9cdd3' behind";
+  int64_t k = 0;
+  while (k + 1 < m->samples && m->sample[k].t < t - 1e-9) k++;
+  if (m->samples == 0) return;
+  const double maker = m->sample[k].maker, end = m->outlet - m->sample[k].end;
+  if (maker > v->lower[0])
+    output_text(f, "set object %d rectangle from %.6g,%.6g to %.6g,%.6g %s\n", FIRST_END,
+                v->lower[0], m->ground[0][1], maker, v->upper[1], style);
+  if (!flume_is_open(m) && end < v->upper[0])
+    output_text(f, "set object %d rectangle from %.6g,%.6g to %.6g,%.6g %s\n", FIRST_END + 1, end,
+                m->ground[m->grounds - 1][1], v->upper[0], v->upper[1], style);
 }
 
 /* Tics that a picture of `high` pixels has room for: a long flume is a narrow band. */
@@ -113,6 +136,7 @@ static bool draw_still(app *a, const flume *m, const section *v) {
   output_text(&f, "set title 't = %.2f s%s'\n", m->look.t,
               flume_is_loaded(m) ? ", at the largest force" : "");
   begin(&f, m, v, (int)(990.0 * shape), least, most);
+  draw_ends(&f, m, v, m->look.t);
   output_text(&f, "plot ");
   area_plot(&f, "water.bin", &picture, 1.0, 1e-3);
   output_text(&f, "\n");
@@ -131,6 +155,7 @@ static bool draw_frames(app *a, const flume *m, const section *v, const area *pi
     return false;
   begin(&f, m, v, (int)(730.0 * shape), least, most);
   for (int64_t k = 0; k < m->frames; k++) {
+    draw_ends(&f, m, v, m->frame[k].t);
     output_text(&f, "set title 't = %.2f s'\nplot ", m->frame[k].t);
     area_plot(&f, "frames.bin", &picture[k], 1.0, 1e-3);
     output_text(&f, "\n");

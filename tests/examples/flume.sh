@@ -32,6 +32,7 @@ s=$work/b/summary.json
 in_range "$s" Hm0_incident 0.08 0.2
 in_range "$s" q 1e-6 0.01
 in_range "$s" q_eurotop 1e-6 0.01
+has "$s" "waves: the formula's mean discharge is that of hundreds"
 in_range "$s" force_goda 100 1000
 in_range "$s" force_peak 100 1500
 has "$work/b/discharge.csv" "t_s,volume_m2,returned_m2,water_m2,head_m,thin_m2"
