@@ -61,7 +61,7 @@ mps_status flume_measure_climb(flume *m, flume_sample *sample) {
   double edge[2], level;
   tongue_slope slope;
   tongue t;
-  sample->head = sample->run_up = sample->resolved = NAN;
+  sample->head = sample->run_up = sample->resolved = sample->layer = NAN;
   if (find_crest(m, edge)) {
     const double station = edge[0] - STATION * m->s.spacing;
     const mps_status status = mps_fluid_get_levels(m->fluid, 1, &station, &level);
@@ -71,8 +71,9 @@ mps_status flume_measure_climb(flume *m, flume_sample *sample) {
   if (!find_slope(m, &slope)) return MPS_OK;
   if (!tongue_find(m->water, &slope, m->s.spacing, &t)) return MPS_ERROR_MEMORY;
   const double low = slope.foot[1] - m->s.depth, rise = sin(slope.angle);
-  sample->run_up = low + fmax(t.end, t.layer) * rise;
-  if (isfinite(t.resolved)) sample->resolved = low + t.resolved * rise;
+  sample->layer = low + t.layer * rise;
+  if (isfinite(t.end))
+    sample->run_up = low + t.end * rise, sample->resolved = low + t.resolved * rise;
   return MPS_OK;
 }
 
@@ -119,25 +120,29 @@ static int compare_heights(const void *a, const void *b) {
   return p < q ? 1 : p > q ? -1 : 0;
 }
 
-/* The highest reading of each climb, from one crossing of the mean upwards to the next. */
-static int64_t find_climbs(const flume *m, const flume_figures *f, double *height) {
+static double reading(const flume_sample *p, bool layer) { return layer ? p->layer : p->run_up; }
+
+/* The highest reading of each climb, from one crossing of the mean upwards to the next, in falling
+ * order. */
+static int64_t find_climbs(const flume *m, const flume_figures *f, bool layer, double *height) {
   double sum = 0.0, n = 0.0, before = NAN, top = NAN;
   int64_t count = 0;
   for (int pass = 0; pass < 2; pass++)
     for (int64_t k = 0; k < m->samples; k++) {
-      const flume_sample *p = &m->sample[k];
-      if (p->t < f->from || p->t > f->to || isnan(p->run_up)) continue;
+      const double t = m->sample[k].t, now = reading(&m->sample[k], layer);
+      if (t < f->from || t > f->to || isnan(now)) continue;
       if (pass == 0) {
-        sum += p->run_up, n += 1.0;
+        sum += now, n += 1.0;
         continue;
       }
-      if (before < sum / n && p->run_up >= sum / n) {
+      if (before < sum / n && now >= sum / n) {
         if (!isnan(top)) height[count++] = top;
-        top = p->run_up;
+        top = now;
       }
-      if (!isnan(top)) top = fmax(top, p->run_up);
-      before = p->run_up;
+      if (!isnan(top)) top = fmax(top, now);
+      before = now;
     }
+  qsort(height, (size_t)count, sizeof *height, compare_heights);
   return count;
 }
 
@@ -178,12 +183,17 @@ bool flume_find_run_up(app *a, const flume *m, flume_figures *f) {
     free(height);
     return app_no_memory(a);
   }
-  const int64_t count = find_climbs(m, f, height);
-  qsort(height, (size_t)count, sizeof *height, compare_heights);
+  /* a layer that has reached the end of the face has passed it */
+  const double *top = m->shape.structure_point[1];
+  const bool many = waves >= LEAST_WAVES;
+  int64_t count = find_climbs(m, f, true, height);
+  if (many) f->run_up_layer = exceeded(height, count, 0.02 * waves);
+  if (f->run_up_layer > top[1] - m->s.depth - 2.0 * m->s.spacing) f->run_up_layer = NAN;
+  count = find_climbs(m, f, false, height);
   for (int64_t k = 0; k < count; k++) sum += height[k];
   f->climbs = count;
   if (count > 0) f->run_up_highest = height[0], f->run_up_mean = sum / (double)count;
-  if (waves >= LEAST_WAVES) f->run_up = exceeded(height, count, 0.02 * waves);
+  if (many) f->run_up = exceeded(height, count, 0.02 * waves);
   find_formula(a, m, f);
   free(height);
   return true;

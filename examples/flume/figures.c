@@ -211,7 +211,7 @@ bool flume_find_figures(app *a, flume *m, flume_figures *f) {
   memset(f, 0, sizeof *f);
   f->target_height = f->sliding = f->overturning = f->discharge = f->loss = NAN;
   f->mean_level = f->water = NAN;
-  f->run_up = f->run_up_mean = f->run_up_highest = NAN;
+  f->run_up = f->run_up_layer = f->run_up_mean = f->run_up_highest = NAN;
   f->force_mean = f->force_harmonic = f->force_linear = f->force_sainflou = NAN;
   f->bound = f->bound_stokes = f->unbound = f->back = f->length = NAN;
   f->force_peak = f->force_least = f->foot_peak = f->peak_at = NAN;

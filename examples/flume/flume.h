@@ -75,8 +75,9 @@ typedef struct flume_sample {
   double volume, returned;      /* m2: has passed the crest so far, and returned to the flume */
   double water;                 /* m2: before the rear edge of the crest */
   double head; /* m: level before an upright face, above its crest; NaN: there is none */
-  double run_up, resolved;    /* m above the water at rest: end of the water on a slope, and of its
-                                 part    that is a spacing thick; NaN: there is none */
+  double run_up, resolved; /* m above the water at rest: end of the tongue on a slope, and of its
+                              part that is a spacing thick; NaN: there is none */
+  double layer; /* m above the water at rest: farthest particle of the layer on the slope */
   double probe[FLUME_PROBES]; /* Pa */
 } flume_sample;
 
@@ -249,6 +250,7 @@ typedef struct flume_figures {
   double *thin;        /* m2: of events too low for particles, so far at each sample; NULL: none */
   int64_t thin_events; /* of all times */
   int64_t climbs;      /* of the window, up a slope */
+  double run_up_layer; /* m: what 2 % exceed by the layer on the slope */
   double run_up, run_up_mean, run_up_highest; /* m above the water at rest: what 2 % exceed; of the
                                                  highest reading of each climb */
   mps_eurotop_run_up formula;

@@ -110,10 +110,11 @@ static bool write_discharge(app *a, const flume *m, const flume_figures *g) {
 static bool write_run_up(app *a, const flume *m) {
   output f;
   if (!output_open(&f, a, m->s.out, "runup.csv")) return false;
-  csv_header(&f, "t_s,run_up_m,resolved_m?");
+  csv_header(&f, "t_s,run_up_m?,resolved_m?,layer_m");
   for (int64_t k = 0; k < m->samples; k++) {
-    const double row[] = {m->sample[k].t, m->sample[k].run_up, m->sample[k].resolved};
-    csv_row(&f, 3, row);
+    const flume_sample *p = &m->sample[k];
+    const double row[] = {p->t, p->run_up, p->resolved, p->layer};
+    csv_row(&f, 4, row);
   }
   return output_close(&f);
 }
@@ -299,10 +300,12 @@ static void summarise_run_up(output *f, const flume *m, const flume_figures *g) 
   json_number_if(f, slope && g->climbs > 0, "run_up_mean", g->run_up_mean);
   json_number_if(f, slope && g->climbs > 0, "run_up_highest", g->run_up_highest);
   json_number_if(f, many, "Ru2", g->run_up);
+  json_number_if(f, many, "Ru2_layer", g->run_up_layer);
   json_number_if(f, formula, "Ru2_eurotop", g->formula.height);
   json_number_if(f, formula, "Ru2_eurotop_low", g->formula.low);
   json_number_if(f, formula, "Ru2_eurotop_high", g->formula.high);
-  if (many) printf("run-up that 2 %% of the waves exceed %.4f m", g->run_up);
+  if (many) printf("run-up that 2 %% of the waves exceed %.4f m by the tongue", g->run_up);
+  if (many && !isnan(g->run_up_layer)) printf(", %.4f m by the layer", g->run_up_layer);
   if (many && formula)
     printf(", EurOtop %.4f m (%.4f to %.4f), ratio %.2f", g->formula.height, g->formula.low,
            g->formula.high, g->run_up / g->formula.height);

@@ -4,7 +4,9 @@
  * of a wall of 1:3.95, crest .056 m above the water at rest. Places and times are theirs, from the
  * wave's crest at the first gauge on; their origin lies 3 m behind that of the flume.
  *
- * test-verify-fluid_seawall L0: with the spacing L0 (m) in place of .02 m.
+ * test-verify-fluid_seawall L0 [FILE [product]]: with the spacing L0 (m) in place of .02 m; FILE
+ * receives the readings in time, as CSV. `product`: particles start at products of L0 in place of
+ * sums, which differ by roundings (scripts/draw-seawall).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
@@ -48,15 +50,20 @@ static double bed_at(double x) {
 }
 
 /* Water up to DEPTH from the piston to the wall. */
-static void fill(mps_particles *water, double l0) {
-  for (double x = PISTON + 0.5 * l0; x < SHORE; x += l0)
-    for (double y = 0.5 * l0; y < DEPTH; y += l0) {
+static void fill(mps_particles *water, double l0, bool product) {
+  double x = PISTON + 0.5 * l0;
+  for (int i = 0; x < SHORE; i++) {
+    double y = 0.5 * l0;
+    for (int j = 0; y < DEPTH; j++) {
       const double at[2] = {x, y};
       if (y > bed_at(x) + 0.45 * l0) mps_assert_ok(context, mps_particles_append(water, 1, at));
+      y = product ? (j + 1.5) * l0 : y + l0;
     }
+    x = product ? PISTON + (i + 1.5) * l0 : x + l0;
+  }
 }
 
-static tank make_flume(double l0, mps_signal *piston) {
+static tank make_flume(double l0, bool product, mps_signal *piston) {
   tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
@@ -64,7 +71,7 @@ static tank make_flume(double l0, mps_signal *piston) {
   set.spacing = l0;
   def.level = DEPTH;
   mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
-  fill(t.water, l0);
+  fill(t.water, l0, product);
   mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
   line.kind = MPS_BOUNDARY_ROLLER;
   line.corners = corner[0], line.corner_count = CORNERS;
@@ -123,16 +130,32 @@ static double passed(const tank *t, double l0) {
   return (double)count * l0 * l0;
 }
 
-/* Errors of the highest readings, in % of the test's, and of the arrivals, s. */
-static void compare(double l0, double *height, double *time) {
+/* Time after the crest at the first gauge, and the readings, m. */
+static void write_record(const char *path, const record *r, double start) {
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  fprintf(file, "t_s");
+  for (int g = 0; g < GAUGES; g++) fprintf(file, ",gauge_%s_m", gauges[g].name);
+  for (int k = 0; k < r->count; k++) {
+    fprintf(file, "\n%.3f", r->t[k] - start);
+    for (int g = 0; g < GAUGES; g++) fprintf(file, ",%.6f", r->level[k][g]);
+  }
+  fprintf(file, "\n");
+  assert_int_equal(fclose(file), 0);
+}
+
+/* Errors of the highest readings, in % of the test's, and of the arrivals, s. `path`: see the head
+ * of this file, or NULL. */
+static void compare(double l0, bool product, const char *path, double *height, double *time) {
   static record r;
   const solitary w = solitary_of(DEPTH, HEIGHT);
   mps_signal *signal = goring_piston(context, &w);
-  tank t = make_flume(l0, signal);
+  tank t = make_flume(l0, product, signal);
   const double way = gauges[0].x - PISTON - w.stroke;
   double start = 0.0, at;
   run(&t, -GORING_START / (w.number * w.speed) + way / w.speed, &r);
   highest(&r, 0, 0.0, &start);
+  if (path) write_record(path, &r, start);
   for (int g = 0; g < GAUGES; g++) {
     const double test = gauges[g].highest - gauges[g].before, most = highest(&r, g, start, &at);
     height[g] = 100.0 * (most / test - 1.0);
@@ -151,7 +174,7 @@ static void compare(double l0, double *height, double *time) {
 static void a_wave_breaks_and_passes_the_wall(void **state) {
   (void)state;
   double height[GAUGES], time[GAUGES];
-  compare(0.02, height, time);
+  compare(0.02, false, NULL, height, time);
   for (int g = 1; g < GAUGES - 2; g++) mps_assert_near(time[g], 0.0, 0.15);
   mps_assert_near(height[1], 0.0, 15.0);
   mps_assert_near(height[2], 0.0,
@@ -162,17 +185,21 @@ static void a_wave_breaks_and_passes_the_wall(void **state) {
 /* ---- finer, by hand -------------------------------------------------------------------------- */
 
 static double spacing;
+static const char *results;
+static bool by_product;
 
 static void a_row(void **state) {
   (void)state;
   double height[GAUGES], time[GAUGES];
-  compare(spacing, height, time);
+  compare(spacing, by_product, results, height, time);
 }
 
 int main(int count, char **values) {
   if (count > 1) {
     const struct CMUnitTest row[] = {cmocka_unit_test(a_row)};
     spacing = strtod(values[1], NULL);
+    results = count > 2 ? values[2] : NULL;
+    by_product = count > 3 && strcmp(values[3], "product") == 0;
     return cmocka_run_group_tests(row, make_context, drop_context);
   }
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_wave_breaks_and_passes_the_wall)};
