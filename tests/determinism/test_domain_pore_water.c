@@ -220,6 +220,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   def.porosity = what == BAD_POROSITY && rank == 1 ? -1.0 : 0.4;
   if (what == IMPLICIT) def.scheme = MPS_PORE_SCHEME_IMPLICIT;
   if (what == OTHER_BULK) def.bulk = 1e7 * (1 + rank);
+  face.kind = MPS_PORE_FACE_DRAINED;
   face.pressure = what == OTHER_FACE ? rank : 0.0;
   TRY(mps_mpm_add_pore_water(s.mpm, &def));
   TRY(mps_mpm_add_pore_face(s.mpm, &face, NULL));
