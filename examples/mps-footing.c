@@ -61,8 +61,9 @@ int main(int argc, char **argv) {
       COMMON_NUMBER("corner", &s->corner, NULL),
       COMMON_NUMBER_IN("rate", OPTION_FROM_TO(1e-6, 0.1), &s->rate,
                        "default 0.5 mm/s, quasi-static 1.5 mm/s, more in strong or soft clay"),
-      OPTION_NUMBER("settlement", "m", OPTION_LENGTH, &s->settlement,
-                    "where the run ends; default 0.6 mm or 120 c/E half widths, Drucker-Prager 4 mm"),
+      OPTION_NUMBER(
+          "settlement", "m", OPTION_LENGTH, &s->settlement,
+          "where the run ends; default 0.6 mm or 120 c/E half widths, Drucker-Prager 4 mm"),
       MPM_MODEL_CONTACT(&s->contact),
       COMMON_NUMBER("k", &s->k, NULL),
       OPTION_HEADING("Grid"),

@@ -24,8 +24,8 @@ static double clay_settlement(const settings *s) {
   return fmin(0.5 * s->half_width, fmax(0.6e-3, 120.0 * s->half_width * unit_of(s) / s->young));
 }
 
-/* Up to which the force of inertia, rate (rho E)^1/2, is the same part of the cohesion: a longer path
- * in as many steps. */
+/* Up to which the force of inertia, rate (rho E)^1/2, is the same part of the cohesion: a longer
+ * path in as many steps. */
 static double faster(const settings *s) {
   const double times = unit_of(s) / 10e3 * sqrt(1e9 / s->young);
   return fmin(60.0, fmax(1.0, times));

@@ -435,7 +435,7 @@ class _Arguments:
         else:
             made = None if constant else _output(kind)
             if made is None:
-                self.refuse(f"lacks {word!r}")
+                self.refuse(f"takes {word!r} by its place, not by its name" if word in members else f"lacks {word!r}")
             self.output(made)
 
     def output(self, made):

@@ -257,6 +257,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
     def.scheme = MPS_PORE_SCHEME_IMPLICIT;
   if (what == NO_SOLUTION) def.porosity = 1e-305, def.bulk = 1e15; /* S is 0 in doubles */
   if (what == OTHER_BULK) def.bulk = 1e7 * (1 + rank);
+  face.kind = MPS_PORE_FACE_DRAINED;
   face.pressure = what == OTHER_FACE ? rank : 0.0;
   TRY(mps_mpm_add_pore_water(s.mpm, &def));
   TRY(mps_mpm_add_pore_face(s.mpm, &face, NULL));

@@ -183,6 +183,8 @@ class Errors(unittest.TestCase):
         refused(call + " has no keyword 'cel' (is it 'cell'?): it has geometry, ", falling, context, sand, cel=0.2)
         refused(call + " lacks 'material': mpm_create(particles: Particles | None, material: Material | None, **definition)",
                 context.mpm_create, sand)
+        refused("Particles.set_profile() takes 'count' by its place, not by its name: set_profile(field: ",
+                sand.set_profile, "strength_factor", count=1, depth=[0], value=[1])
         refused(call + ": 'material' is [1]: [1] is no Material", context.mpm_create, sand, [1], cell=0.2)
         refused("Particles.set() has too many arguments, 2.0 is one: set(name: ", sand.set, "density", 0, 1.0, 2.0)
         refused("Particles.fill_box() has too many arguments, 3 is one: fill_box(lo: ArrayLike, hi: ArrayLike)",

@@ -101,6 +101,11 @@ static void faces_are_checked(void **state) {
   assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
   face = mps_pore_face_defaults(), face.at_rest = 2;
   assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  face = mps_pore_face_defaults(), face.pressure = 1000.0; /* without a kind it is impervious */
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(mps_context_error(context)->message, "impervious"));
+  face = mps_pore_face_defaults(), face.at_rest = 1;
+  assert_int_equal(mps_mpm_add_pore_face(c.s.mpm, &face, NULL), MPS_ERROR_ARGUMENT);
   face = mps_pore_face_defaults();
   for (int32_t k = 0; k < MPS_PORE_MAX_FACES; k++)
     mps_assert_ok(context, mps_mpm_add_pore_face(c.s.mpm, &face, NULL));

@@ -381,6 +381,10 @@ static mps_status read_face(mps_context *context, const mpsi_grid *grid, mpsi_wa
   if (!(fabs(def->pressure) <= LARGE))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "pressure is %g Pa, must be within +-1e15", def->pressure);
+  if (def->kind == MPS_PORE_FACE_IMPERVIOUS && (def->pressure != 0.0 || def->at_rest))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "%s, but kind is 0 (impervious): only a drained face has a pressure",
+                     def->at_rest ? "at_rest is 1" : "pressure is not 0");
   for (int c = 0; c < grid->dim; c++)
     if (!(def->lower[c] < def->upper[c]))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,

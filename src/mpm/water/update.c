@@ -86,8 +86,8 @@ void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
 
-/* Each step takes dt^2 G^T m^-1 G d of the changes of volume for a motion to come (implicit.c). Flow
- * makes up for it; without any it is missing for good. */
+/* Each step takes dt^2 G^T m^-1 G d of the changes of volume for a motion to come (implicit.c).
+ * Flow makes up for it; without any it is missing for good. */
 static void warn_of_implicit(mps_mpm *mpm) {
   mpsi_water *water = mpm->water;
   if (water->warned || water->flows || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return;
