@@ -101,8 +101,8 @@ static inline int64_t mpsi_node_under(const mpsi_grid *grid, const mpsi_cell_blo
   return mpsi_first_node(grid, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
 }
 
-/* Number in grid->side of what a split node, or that across thin bodies, under the node (i, j, k) of
- * a tile had before the forces. */
+/* Number in grid->side of what a split node, or that across thin bodies, under the node (i, j, k)
+ * of a tile had before the forces. */
 static inline int64_t mpsi_side_under(const mpsi_grid *grid, const mpsi_cell_block *cells,
                                       bool across, int i, int j, int k) {
   const int32_t own = mpsi_block_under(cells, i, j, k);

@@ -8,8 +8,8 @@
 MPSI_INLINE mpsi_node *find_node(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
                                  bool before, int i, int j, int k) {
   if (before) return grid->side + mpsi_side_under(grid, cells, across, i, j, k);
-  return grid->node + (across ? mpsi_node_across(grid, cells, i, j, k)
-                              : mpsi_node_under(grid, cells, i, j, k));
+  return grid->node +
+         (across ? mpsi_node_across(grid, cells, i, j, k) : mpsi_node_under(grid, cells, i, j, k));
 }
 
 /* Copies the nodes under a tile; `across`: their values across thin bodies, for the second tile;
