@@ -1,6 +1,6 @@
-/* test_mpm_flip.c - `flip_time`: what a transfer takes from a wave no longer goes with the number of
- * steps, is what two fractions say, and vanishes for a long time; momentum is conserved; refusals.
- * docs/theory/transfers.md has the equations. SPDX-License-Identifier: BSD-3-Clause */
+/* test_mpm_flip.c - `flip_time`: what a transfer takes from a wave no longer goes with the number
+ * of steps, is what two fractions say, and vanishes for a long time; momentum is conserved;
+ * refusals. docs/theory/transfers.md has the equations. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
@@ -36,8 +36,8 @@ static double energy_left(double flip_time, double dt, int64_t steps) {
 }
 
 /* Without it twice the steps lose twice as much; with it as much in the same time: (1 - k)/(1 - b)
- * of that in each step, k = exp(-dt/flip_time), where b is the part of the nodes' velocity that comes
- * from the slopes: 1 - sinc^8(pi/12) = 0.087 for cubic weights, up to the loss itself. */
+ * of that in each step, k = exp(-dt/flip_time), where b is the part of the nodes' velocity that
+ * comes from the slopes: 1 - sinc^8(pi/12) = 0.087 for cubic weights, up to the loss itself. */
 static void loss_is_by_time(void **state) {
   (void)state;
   const double dt = 1e-3, time = 20e-3;
@@ -119,17 +119,15 @@ static void times_are_checked(void **state) {
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
   mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_ARGUMENT,
                    "flip_time of the definition is 0.01 s");
-  mps_assert_fails(context,
-                   mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT),
+  mps_assert_fails(context, mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT),
                    MPS_ERROR_ARGUMENT, "flip_time of the definition is 0.01 s");
   mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
   mpm_scene_end(&s);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(loss_is_by_time),
-                                     cmocka_unit_test(a_long_time_loses_nothing),
-                                     cmocka_unit_test(momentum_is_kept),
-                                     cmocka_unit_test(times_are_checked)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(loss_is_by_time), cmocka_unit_test(a_long_time_loses_nothing),
+      cmocka_unit_test(momentum_is_kept), cmocka_unit_test(times_are_checked)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
