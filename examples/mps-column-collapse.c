@@ -19,6 +19,7 @@ enum { CASES_MAX = 6, SAMPLES = 400, FRAMES = 4 };
 
 typedef struct settings {
   double aspect, width, h, phi, psi, cohesion, bed_friction, young, poisson, density, falls;
+  double flip_time; /* s */
   int64_t ppc, threads;
   int cone;
   int spline; /* degree of the weights less 2 */
@@ -36,7 +37,7 @@ typedef struct column_case {
   double peak;         /* J/m: largest kinetic energy so far */
   int shots;           /* taken so far, but for the last one */
   double time_at_rest; /* s; NaN: it still moved at the end */
-  double reach;        /* m, at the end */
+  double reach, edge;  /* m, at the end */
   double volume_ratio, detached, mass, mass_start;
   mpm_snapshot shot[FRAMES];
 } column_case;
@@ -89,6 +90,13 @@ static double runout_98(const settings *s, const column_case *c) {
   return has_ended(c) ? c->reach / s->width - 1.0 : NAN;
 }
 
+/* Where the heap is two hundredths of L0 thick. */
+#define THICKNESS 0.02
+#define WINDOW 0.05 /* L0: width of the mean thickness */
+static double runout_thick(const settings *s, const column_case *c) {
+  return has_ended(c) ? c->edge / s->width - 1.0 : NAN;
+}
+
 static double final_height(const settings *s, const column_case *c) {
   return has_ended(c) ? c->height[c->rows - 1] / s->width : NAN;
 }
@@ -135,6 +143,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   def.lower[0] = def.lower[1] = 0.0;
   if (!isnan(s->bed_friction)) def.lower[1] = -4.0 * s->h; /* room below the rigid bed */
   def.gravity[1] = -G;
+  def.flip_time = s->flip_time;
   mps_status status = fill(sim->context, s, c, m);
   if (status == MPS_OK)
     status = mps_material_create_drucker_prager(sim->context, &law, &m->material);
@@ -167,8 +176,8 @@ static void pass_case(resume_bytes *b, column_case *c) {
   resume_pass(b, c->front, bytes);
   resume_pass(b, c->height, bytes);
   resume_pass(b, c->kinetic, bytes);
-  double *const values[] = {&c->peak,     &c->time_at_rest, &c->reach,     &c->volume_ratio,
-                            &c->detached, &c->mass,         &c->mass_start};
+  double *const values[] = {&c->peak,     &c->time_at_rest, &c->reach,      &c->volume_ratio,
+                            &c->detached, &c->mass,         &c->mass_start, &c->edge};
   for (size_t k = 0; k < sizeof values / sizeof *values; k++)
     resume_pass(b, values[k], sizeof *values[k]);
   for (int k = 0; k < FRAMES; k++) resume_pass_snapshot(b, &c->shot[k]);
@@ -201,7 +210,7 @@ static void name_course(simulation *sim) {
                              .directory = sim->s.out,
                              .what = what,
                              .duration = case_end(&sim->s, c),
-                             .key = "mps-column-collapse 1",
+                             .key = "mps-column-collapse 2",
                              .table = options_read(),
                              .pass = pass,
                              .user = sim};
@@ -226,8 +235,12 @@ static mps_status sample(simulation *sim, column_case *c) {
   mpm_heap heap;
   const int k = c->rows;
   const settings *s = &sim->s;
-  const mpm_heap_def def = {G, fmax((s->axisymmetric ? 0.2 : 0.1) * s->width, 2.0 * s->h),
-                            s->axisymmetric, s->density};
+  const mpm_heap_def def = {G,
+                            fmax((s->axisymmetric ? 0.2 : 0.1) * s->width, 2.0 * s->h),
+                            s->axisymmetric,
+                            s->density,
+                            THICKNESS * s->width,
+                            WINDOW * s->width};
   const mps_status status = mpm_heap_measure(&sim->m, &def, &heap);
   if (status != MPS_OK) return status;
   c->t[k] = mps_mpm_time(sim->m.mpm);
@@ -236,6 +249,7 @@ static mps_status sample(simulation *sim, column_case *c) {
   c->kinetic[k] = heap.kinetic;
   c->volume_ratio = fmax(c->volume_ratio, heap.volume_ratio);
   c->reach = heap.reach;
+  c->edge = heap.edge;
   c->detached = heap.detached;
   c->mass = heap.mass;
   if (k == 0) c->mass_start = s->density * c->aspect * s->width * s->width;
@@ -297,7 +311,7 @@ static bool write_cases(app *a, const simulation *sim) {
   output f;
   if (!output_open(&f, a, s->out, "cases.csv")) return false;
   csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout?,runout_law,height?,height_law,"
-                 "time_at_rest_s?,volume_ratio_max,runout_98?");
+                 "time_at_rest_s?,volume_ratio_max,runout_98?,runout_thick?");
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
     const double row[] = {c->aspect,
@@ -309,8 +323,9 @@ static bool write_cases(app *a, const simulation *sim) {
                           law_height(s, c->aspect),
                           c->time_at_rest,
                           c->volume_ratio,
-                          runout_98(s, c)};
-    csv_named_row(&f, c->name, 10, row);
+                          runout_98(s, c),
+                          runout_thick(s, c)};
+    csv_named_row(&f, c->name, 11, row);
   }
   return output_close(&f);
 }
@@ -446,6 +461,8 @@ static void summarise(output *f, const simulation *sim) {
   json_number(f, "runout_error", runout(s, c) / law_runout(s, c->aspect) - 1.0);
   json_number(f, "runout_error_worst", worst);
   json_number(f, "runout_98", runout_98(s, c));
+  json_number(f, "runout_thick", runout_thick(s, c));
+  json_number(f, "flip_time", s->flip_time);
   json_number(f, "height", final_height(s, c));
   json_number(f, "height_law", law_height(s, c->aspect));
   json_number(f, "time_at_rest", c->time_at_rest);
@@ -561,6 +578,10 @@ int main(int argc, char **argv) {
       COMMON_NUMBER("h", &s->h, "default width/20"),
       COMMON_INTEGER("ppc", &s->ppc, NULL),
       COMMON_CHOICE("spline", &s->spline, NULL),
+      OPTION_NUMBER("flip-time", "s", OPTION_FROM_TO(0.0, 1e6), &s->flip_time,
+                    "time in which a particle loses what the nodes do not represent of its "
+                    "velocity; 0: at each step, which takes energy out of the flow; try "
+                    "(H0/g)^1/2/10"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("falls", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->falls,
                     "where the run ends, if the column does not come to rest before"),

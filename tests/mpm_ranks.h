@@ -128,6 +128,7 @@ static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   if (what == SLIDE) def.dt = 1e-4;
   if (what == SPREAD) def.walls = MPS_MPM_WALLS_FIT, def.viscous_damping = 0.5;
   if (what == RING) def.local_damping = 0.1;
+  if (what == RING || what == PLATES) def.flip_time = 2e-3;
   def.budget = what == RING || what == PRESS || what == PLATES;
   if (what == PRESS || what == ROOM || what == RING) def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
   if (what == PLATES) def.volumetric = MPS_MPM_VOLUMETRIC_NODES;

@@ -25,6 +25,32 @@ static double end_of_heap(int64_t count, double *x, double gap) {
   return x[last];
 }
 
+/* A particle's place and volume. */
+typedef struct piece {
+  double x, volume;
+} piece;
+
+static int inwards(const void *a, const void *b) {
+  const double x = ((const piece *)a)->x, y = ((const piece *)b)->x;
+  return (x < y) - (x > y);
+}
+
+/* The middle of the outermost window whose volume over its area is `thickness`: a front that does
+ * not depend on how finely a foot that thins out is divided into particles. */
+static double find_edge(int64_t count, piece *pieces, const mpm_heap_def *def) {
+  double volume = 0.0;
+  if (!(def->thickness > 0.0 && def->window > 0.0)) return 0.0;
+  qsort(pieces, (size_t)count, sizeof *pieces, inwards);
+  for (int64_t k = 0, first = 0; k < count; k++) {
+    volume += pieces[k].volume;
+    while (pieces[first].x - pieces[k].x > def->window) volume -= pieces[first++].volume;
+    const double middle = pieces[k].x + 0.5 * def->window;
+    const double around = def->axisymmetric ? 2.0 * 3.14159265358979323846 * middle : 1.0;
+    if (volume >= def->thickness * around * def->window) return middle;
+  }
+  return 0.0;
+}
+
 /* ---- the heap -------------------------------------------------------------------------------- */
 
 static mps_status measure(mps_particles *particles, const mpm_heap_def *def, mpm_heap *out) {
@@ -37,9 +63,11 @@ static mps_status measure(mps_particles *particles, const mpm_heap_def *def, mpm
   const int64_t count = x.shape[0];
   const double spacing = mps_particles_spacing(particles);
   double *place = malloc((size_t)count * sizeof *place);
+  piece *pieces = malloc((size_t)count * sizeof *pieces);
   int64_t *rows = mpm_rows_by_id(particles);
-  if (!place || !rows) {
+  if (!place || !pieces || !rows) {
     free(place);
+    free(pieces);
     free(rows);
     return MPS_ERROR_MEMORY;
   }
@@ -55,6 +83,7 @@ static mps_status measure(mps_particles *particles, const mpm_heap_def *def, mpm
     out->potential += mass * def->g * *mps_view_f64(&x, k, 1);
     out->kinetic += 0.5 * mass * (vx * vx + vy * vy);
     out->volume += V;
+    pieces[i] = (piece){*mps_view_f64(&x, k, 0), V};
     const double start = def->axisymmetric ? mass / def->density : spacing * spacing;
     out->volume_ratio = fmax(out->volume_ratio, V / start);
     if (*mps_view_f64(&x, k, 0) >= def->band) continue;
@@ -69,7 +98,9 @@ static mps_status measure(mps_particles *particles, const mpm_heap_def *def, mpm
   for (int64_t i = 0; i < count; i++)
     if (*mps_view_f64(&x, rows[i], 0) > last)
       out->detached += *mps_view_f64(&m, rows[i], 0) / out->mass;
+  out->edge = find_edge(count, pieces, def);
   free(place);
+  free(pieces);
   free(rows);
   return MPS_OK;
 }

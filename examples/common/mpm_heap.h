@@ -19,6 +19,7 @@ typedef struct mpm_heap {
   double volume;       /* m3 */
   double volume_ratio; /* largest V/V0 of a particle */
   double detached;     /* share of the mass ahead of the front */
+  double edge;         /* m: farthest x at which the heap is `thickness` thick; 0: nowhere */
 } mpm_heap;
 
 typedef struct mpm_heap_def {
@@ -26,6 +27,8 @@ typedef struct mpm_heap_def {
   double band;       /* m: beside the wall is x < band */
   bool axisymmetric; /* x = 0 is the axis of a cylinder */
   double density;    /* kg/m3, of particles at the start; axisymmetry */
+  double thickness;  /* m: that of the heap at its `edge`, a mean over the width `window` (m) */
+  double window;
 } mpm_heap_def;
 
 /* Drops are left out: particles ahead of a gap of 2 spacings (for `top`: above it) that are less

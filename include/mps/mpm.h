@@ -118,6 +118,12 @@ typedef struct mps_mpm_def {
   int32_t walls;      /* mps_mpm_walls, default MIRROR */
   int32_t reserved;
   mps_domain *domain; /* ranks that share the body; NULL (default): none. Kept alive */
+  double flip_time; /* s, >= 0: in each step a particle keeps exp(-dt/flip_time) of the part of its
+                       velocity that the nodes do not represent (its velocity less that of the nodes
+                       before the forces), beside the slopes of the fit. 0 (default): nothing, and
+                       each transfer damps waves of a few cells. Not while mps_mpm_settle runs. A
+                       step takes longer, and angular momentum is conserved to the error of the
+                       transfers, not to round-off */
 } mps_mpm_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to

@@ -36,6 +36,7 @@ static void draw_choices(api *a, mps_mpm_def *def) {
   def->walls = api_choice(a, "walls", 2);
   if (api_chance(a, 20)) def->local_damping = api_real(a, "local_damping", 0.0, 0.999, 0.1);
   if (api_chance(a, 20)) def->viscous_damping = api_real(a, "viscous_damping", 0.0, 1e300, 1.0);
+  if (api_chance(a, 20)) def->flip_time = api_real(a, "flip_time", 0.0, 1e9, 1e-3);
 }
 
 static void mpm_create(api *a) {

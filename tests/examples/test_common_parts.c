@@ -281,7 +281,7 @@ static void the_front_leaves_drops_behind(void **state) {
   mps_context *context = NULL;
   mps_particles *set = NULL;
   mps_particles_def def = mps_particles_defaults();
-  const mpm_heap_def measure = {.g = 10.0, .band = 0.2};
+  const mpm_heap_def measure = {.g = 10.0, .band = 0.2, .thickness = 1.0, .window = 0.5};
   mpm_heap heap;
   app a = {0};
   mpm_model m = {.a = &a};
@@ -303,6 +303,7 @@ static void the_front_leaves_drops_behind(void **state) {
   mps_assert_near(heap.kinetic, 0.5 * 606.0 * 4.0, 1e-9);
   mps_assert_near(heap.potential, 3.0 * 10.0 * (200 * 0.5 + 0.05 + 4.0), 1e-9);
   mps_assert_near(heap.volume_ratio, 2.0, 1e-12);
+  mps_assert_near(heap.edge, 2.0, 1e-12); /* 2.5 columns of 0.2 m3 are 1 m thick over 0.5 m */
   assert_int_equal(mps_particles_fill_box(set, lump[0], lump[1], NULL), MPS_OK);
   assert_int_equal(mpm_heap_measure(&m, &measure, &heap), MPS_OK);
   mps_assert_near(heap.front, 6.0, 1e-12);

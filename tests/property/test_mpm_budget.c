@@ -52,6 +52,7 @@ static void closes_with_boundaries(void **state) {
       def.budget = 1;
       def.spline = choice == 1 ? 2 : 3;
       def.volumetric = choice == 2 ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_POINT;
+      def.flip_time = choice == 2 ? 0.01 : 0.0;
       mpm_scene s = held_begin_with(context, &def, &box, loads);
       const double start = mpm_scene_totals(&s).kinetic;
       mps_assert_ok(context, mps_mpm_step(s.mpm, test_steps(60)));

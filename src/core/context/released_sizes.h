@@ -47,7 +47,7 @@
   X(mps_material_user_def, mps_material_user_def_init, "0.3", 104) \
   X(mps_material_von_mises_def, mps_material_von_mises_def_init, "0.3", 80) \
   X(mps_mpm_boundary_def, mps_mpm_boundary_def_init, "0.3", 144) \
-  X(mps_mpm_def, mps_mpm_def_init, "0.3", 192) \
+  X(mps_mpm_def, mps_mpm_def_init, "0.3", 200) \
   X(mps_mpm_load_def, mps_mpm_load_def_init, "0.3", 104) \
   X(mps_mpm_settle_def, mps_mpm_settle_def_init, "0.3", 24) \
   X(mps_neighbours_def, mps_neighbours_def_init, "0.3", 24) \

@@ -21,7 +21,7 @@
 /* Whether each node needs its velocity before the forces, so that all blocks are split. */
 static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settling *settling,
                                      const mps_mpm_def *def) {
-  return energy->counts || settling->on || def->local_damping > 0.0;
+  return energy->counts || settling->on || def->local_damping > 0.0 || def->flip_time > 0.0;
 }
 
 static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t particle) {
@@ -99,6 +99,15 @@ static inline int mpsi_local_under(int i, int j, int k) {
 static inline int64_t mpsi_node_under(const mpsi_grid *grid, const mpsi_cell_block *cells, int i,
                                       int j, int k) {
   return mpsi_first_node(grid, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
+}
+
+/* Number in grid->side of what a split node, or that across thin bodies, under the node (i, j, k)
+ * of a tile had before the forces. */
+static inline int64_t mpsi_side_under(const mpsi_grid *grid, const mpsi_cell_block *cells,
+                                      bool across, int i, int j, int k) {
+  const int32_t own = mpsi_block_under(cells, i, j, k);
+  const mpsi_node_block *nodes = &grid->nodes[across ? grid->nodes[own].across : own];
+  return mpsi_first_node(grid, nodes->side) + mpsi_local_under(i, j, k);
 }
 
 /* Node of the grid with the values across thin bodies under the node (i, j, k) of a tile. */

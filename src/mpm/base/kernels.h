@@ -19,6 +19,10 @@ typedef struct mpsi_transfer {
   const mps_mpm_def *def;
   mpsi_cell_block *cells;
   mpsi_worker *worker;
+  double keep; /* in [0, 1): fraction that particles keep, in this step, of the part of their
+                  velocity that the nodes before the forces do not represent (flip_time of
+                  mps_mpm_def) */
+  bool before; /* gathers the velocities of the nodes before the forces (g2p.c) */
 } mpsi_transfer;
 
 typedef void (*mpsi_transfer_fn)(const mpsi_transfer *work);

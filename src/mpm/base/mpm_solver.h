@@ -34,6 +34,12 @@ struct mps_mpm {
   mpsi_partition *partition; /* parts on several ranks; NULL: one rank */
 };
 
+/* While the ground settles nothing is kept: how it moves until it rests has no meaning. */
+static inline double mpsi_kept_velocity(const mps_mpm *mpm) {
+  if (!(mpm->def.flip_time > 0.0) || mpm->settling.on) return 0.0;
+  return exp(-mpm->run.dt / mpm->def.flip_time);
+}
+
 /* The transfer of a solver, of no block of cells yet. */
 static inline mpsi_transfer mpsi_transfer_begin(mps_mpm *mpm) {
   return (mpsi_transfer){.grid = &mpm->grid,
@@ -44,7 +50,8 @@ static inline mpsi_transfer mpsi_transfer_begin(mps_mpm *mpm) {
                          .water = mpm->water,
                          .energy = &mpm->energy,
                          .run = &mpm->run,
-                         .def = &mpm->def};
+                         .def = &mpm->def,
+                         .keep = mpsi_kept_velocity(mpm)};
 }
 
 /* The transfer of block of cells b by a worker. */

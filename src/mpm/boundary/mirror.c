@@ -161,7 +161,8 @@ static void add_change(mpsi_mirror *to, const double *x_after, const double *aft
 typedef struct tiles {
   mpsi_node *tile, *force;
   bool across;
-  double dt; /* s */
+  double dt;   /* s */
+  bool silent; /* mirroring back leaves the impulses of the walls as they are */
 } tiles;
 
 /* ---- folding --------------------------------------------------------------------------------- */
@@ -201,8 +202,8 @@ static void fold_tiles(const mpsi_transfer *work, tiles *of) {
 
 void mpsi_mpm_fold(const mpsi_transfer *work) {
   const mpsi_worker *worker = work->worker;
-  tiles own = {worker->tile, worker->force, false, work->run->dt};
-  tiles across = {worker->across_tile, worker->across_force, true, work->run->dt};
+  tiles own = {worker->tile, worker->force, false, work->run->dt, false};
+  tiles across = {worker->across_tile, worker->across_force, true, work->run->dt, false};
   fold_tiles(work, &own);
   if (work->cells->thin) fold_tiles(work, &across);
 }
@@ -220,7 +221,7 @@ static void mirror_node(const side *s, const couple *at, int layer, void *data) 
     before[c] = m * partner[MPSI_VECTOR + c];
     after[c] = m * ghost[MPSI_VECTOR + c];
   }
-  if (m != 0.0) add_change(s->mirror, at->x_ghost, after, at->x_partner, before);
+  if (m != 0.0 && !of->silent) add_change(s->mirror, at->x_ghost, after, at->x_partner, before);
 }
 
 static void unfold_tiles(const mpsi_transfer *work, tiles *of) {
@@ -233,7 +234,8 @@ static void unfold_tiles(const mpsi_transfer *work, tiles *of) {
 
 void mpsi_mpm_unfold(const mpsi_transfer *work) {
   const mpsi_worker *worker = work->worker;
-  tiles own = {.tile = worker->tile}, across = {.tile = worker->across_tile, .across = true};
+  tiles own = {.tile = worker->tile, .silent = work->before}, across = own;
+  across.tile = worker->across_tile, across.across = true;
   unfold_tiles(work, &own);
   if (work->cells->thin) unfold_tiles(work, &across);
 }

@@ -87,6 +87,9 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
         "local_damping is %s and viscous_damping %s 1/s, must be in [0, 1) and 0 to %g",
         mpsi_outside(d->local_damping, 0.0, 1.0).text,
         mpsi_outside(d->viscous_damping, 0.0, FAR).text, FAR);
+  if (!(d->flip_time >= 0.0 && d->flip_time <= FAR))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "flip_time is %s s, must be 0 to %g",
+                     mpsi_outside(d->flip_time, 0.0, FAR).text, FAR);
   for (int c = 0; c < dim_of(d); c++)
     if (!(fabs(d->origin[c]) <= FAR) || !(fabs(d->gravity[c]) <= FAR))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -644,6 +647,10 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
+  if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT && mpm->def.flip_time > 0.0)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "transfer is 1 (weight), but flip_time of the definition is %g s: must be 0",
+                     mpm->def.flip_time);
   if (transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT && mpsi_mpm_has_free_field(&mpm->boundaries))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is 1 (weight), which a side of kind 5 (FREE_FIELD) does not allow");
@@ -671,6 +678,10 @@ mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   if (!(flip >= 0.0 && flip <= 1.0))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %s, must be in [0, 1]",
                      mpsi_outside(flip, 0.0, 1.0).text);
+  if (mpm->def.flip_time > 0.0)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "flip is given, but flip_time of the definition is %g s: must be 0",
+                     mpm->def.flip_time);
   mpm->grid.standard = true;
   mpm->grid.flip = flip;
   const mps_status widened =

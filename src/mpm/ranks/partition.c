@@ -340,6 +340,7 @@ static mps_status compare_ranks(const mpsi_grid *grid, const mpsi_columns *p, co
   MPSI_GIVE(&given, d, measure);
   MPSI_GIVE(&given, d, local_damping);
   MPSI_GIVE(&given, d, viscous_damping);
+  MPSI_GIVE(&given, d, flip_time);
   MPSI_GIVE(&given, d, cell);
   MPSI_GIVE(&given, d, dt);
   MPSI_GIVE(&given, d, courant);

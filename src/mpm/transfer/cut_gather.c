@@ -133,18 +133,21 @@ MPSI_INLINE void find_strain(const mpsi_transfer *work, int dim, int spline, boo
 
 /* Momentum (kg m/s) that a node retains: its velocity follows from a mass m of at least
  * MPSI_LEAST_MASS times its mass by weights, `weight`, but its own mass M, which its particles
- * represent, is smaller. What they do not represent is (m - M) times the velocity. */
+ * represent, is smaller. What they do not represent is (m - M) times the velocity; `before` the
+ * forces, times the velocity then. */
 static void find_retained(const mpsi_grid *grid, const mpsi_node_block *nodes, int32_t g, int local,
-                          double *weight, double *retained) {
+                          bool before, double *weight, double *retained) {
   const double *node = grid->node[mpsi_first_node(grid, g) + local];
   const double *side = grid->side[mpsi_first_node(grid, nodes->side) + local];
   const double m = node[MPSI_MASS], own = mpsi_own_mass(m, side[MPSI_EXCESS]);
   *weight = own + side[MPSI_EXCESS];
   /* then the momentum before the forces was divided by M itself, and nothing of it is missing */
   const bool moves = nodes->split && mpsi_carried_mass(own, *weight) < 0.0;
+  const double *velocity = before ? side : node;
   for (int c = 0; c < 3; c++)
     retained[c] =
-        own < m ? (m - own) * (node[MPSI_VECTOR + c] - (moves ? side[MPSI_VECTOR + c] : 0.0)) : 0.0;
+        own < m ? (m - own) * (velocity[MPSI_VECTOR + c] - (moves ? side[MPSI_VECTOR + c] : 0.0))
+                : 0.0;
 }
 
 /* Adds the retained momentum of the nodes to the velocity v of the particle in a lane, by the
@@ -161,10 +164,11 @@ static void return_momentum(const mpsi_transfer *work, int dim, int spline, cons
     const mpsi_node_block *nodes = &work->grid->nodes[g];
     double weight, retained[3];
     if (!nodes->light) continue;
-    find_retained(work->grid, nodes, g, mpsi_support_local(&at, i, j, k), &weight, retained);
+    find_retained(work->grid, nodes, g, mpsi_support_local(&at, i, j, k), work->before, &weight,
+                  retained);
     for (int c = 0; c < 3 && weight > 0.0; c++) retained[c] *= w / weight;
     if (mpsi_is_folded(&at, i, j, k))
-      mpsi_reflect_at(work, b, i, j, k, retained, work->p->m[b->first + lane]);
+      mpsi_reflect_at(work, b, i, j, k, retained, work->before ? 0.0 : work->p->m[b->first + lane]);
     for (int c = 0; c < dim && weight > 0.0; c++) v[c] += retained[c];
   }
 }
@@ -180,7 +184,7 @@ MPSI_APART void return_momenta(const mpsi_transfer *work, int dim, int spline, c
       out->v[c][at + lane] = v[c];
       before[c] = v[c] - before[c];
     }
-    if (work->energy->counts)
+    if (work->energy->counts && !work->before)
       mpsi_mpm_energy_returned(work->grid, work->p, work->energy, work->def, work->run->dt,
                                work->cells, b->first + lane, before);
   }
@@ -263,6 +267,7 @@ MPSI_INLINE void gather_cut(const mpsi_transfer *work, int dim, int spline, bool
     if (b->held == 0) find_strain(work, dim, spline, thin, b, out, at);
     if (work->cells->light) return_momenta(work, dim, spline, b, out, at);
   }
+  if (work->before) return;
   if (work->grid->standard || b->held & MPSI_PENALTY) gather_each(work, dim, spline, b, out, at);
 }
 

@@ -7,20 +7,23 @@
 
 #include "mpm/water/water.h"
 
-MPSI_INLINE int64_t find_node(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
-                              int i, int j, int k) {
-  return across ? mpsi_node_across(grid, cells, i, j, k) : mpsi_node_under(grid, cells, i, j, k);
+MPSI_INLINE mpsi_node *find_node(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
+                                 bool before, int i, int j, int k) {
+  if (before) return grid->side + mpsi_side_under(grid, cells, across, i, j, k);
+  return grid->node +
+         (across ? mpsi_node_across(grid, cells, i, j, k) : mpsi_node_under(grid, cells, i, j, k));
 }
 
-/* Copies the nodes under a tile; `across`: their values across thin bodies, for the second tile. */
+/* Copies the nodes under a tile; `across`: their values across thin bodies, for the second tile;
+ * `before`: their velocities before the forces. */
 MPSI_INLINE void gather_tile(const mpsi_grid *grid, const mpsi_cell_block *cells, bool across,
-                             mpsi_node *tile) {
+                             bool before, mpsi_node *tile) {
   const int low = cells->low[0], high = cells->high[0];
   const int middle = high < MPSI_SIDE ? high : low > MPSI_SIDE ? low : MPSI_SIDE;
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++) {
-      mpsi_node *own = grid->node + find_node(grid, cells, across, 0, j, k);
-      mpsi_node *next = grid->node + find_node(grid, cells, across, MPSI_SIDE, j, k);
+      mpsi_node *own = find_node(grid, cells, across, before, 0, j, k);
+      mpsi_node *next = find_node(grid, cells, across, before, MPSI_SIDE, j, k);
       mpsi_node *to = tile + mpsi_tile_index(0, j, k);
       for (int i = low; i < middle; i++) mpsi_put(to[i], mpsi_get(own[i]));
       for (int i = middle; i < high; i++) mpsi_put(to[i], mpsi_get(next[i - MPSI_SIDE]));
@@ -310,7 +313,7 @@ MPSI_INLINE moved move(const mpsi_transfer *work, int geometry, int spline, int6
                  (m.left[0] | m.left[1] | m.left[2] | m.left[3]) != 0};
 }
 
-/* Adds the FLIP part of the velocities. */
+/* Adds the FLIP part of the velocities; positions follow the nodes alone. */
 static void add_flip_part(const mpsi_grid *grid, const mpsi_columns *p, int64_t begin, int n,
                           const mpsi_gathered *from) {
   for (int c = 0; c < grid->dim; c++)
@@ -447,12 +450,39 @@ MPSI_INLINE void gather_chunk(const mpsi_transfer *work, int dim, int spline, in
   if (work->grid->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }
 
+/* The work with the tiles of forces, of which the scatter has made use, in place of those of
+ * velocities, to gather the velocities before the forces. */
+static mpsi_transfer before_forces(const mpsi_transfer *work, mpsi_worker *worker) {
+  mpsi_transfer before = *work;
+  *worker = *work->worker;
+  worker->tile = work->worker->force;
+  worker->across_tile = work->worker->across_force;
+  before.worker = worker;
+  before.before = true;
+  return before;
+}
+
+/* FLIP part of the velocities of particles [begin, begin + n): what the nodes before the forces do
+ * not give back of them, of which a step keeps the same fraction for all, so that momentum is
+ * conserved. */
+MPSI_INLINE void find_flip_part(const mpsi_transfer *work, int dim, int spline, int64_t begin,
+                                int n, mpsi_gathered *out) {
+  mpsi_worker worker;
+  mpsi_gathered old;
+  const mpsi_transfer before = before_forces(work, &worker);
+  gather_chunk(&before, dim, spline, begin, n, &old);
+  for (int c = 0; c < dim; c++)
+    for (int k = 0; k < n; k++)
+      out->own[c][k] = work->keep * (work->p->v[c][begin + k] - old.v[c][k]);
+}
+
 MPSI_INLINE void g2p_chunk(const mpsi_transfer *work, int geometry, int spline, int64_t begin,
                            int n, const mpsi_law_block *laws) {
   const int dim = mpsi_dim_of(geometry);
   mpsi_gathered from;
   double *D[9];
   gather_chunk(work, dim, spline, begin, n, &from);
+  if (work->keep > 0.0) find_flip_part(work, dim, spline, begin, n, &from);
   for (int a = 0; a < dim * dim; a++) {
     D[a] = from.derivative[a];
     if (work->p->D[a]) memcpy(work->p->D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
@@ -463,7 +493,8 @@ MPSI_INLINE void g2p_chunk(const mpsi_transfer *work, int geometry, int spline, 
   if (work->energy->counts)
     mpsi_mpm_energy_moved(work->grid, work->p, work->energy, work->def, work->run->dt, work->cells,
                           begin, begin + n);
-  if (work->grid->flip > 0.0) add_flip_part(work->grid, work->p, begin, n, &from);
+  if (work->grid->flip > 0.0 || work->keep > 0.0)
+    add_flip_part(work->grid, work->p, begin, n, &from);
   if (m.left) work->cells->left = true;
   if (m.outside) {
     const int64_t bad =
@@ -492,6 +523,16 @@ static bool is_light(const mpsi_grid *grid, const mpsi_cell_block *cells) {
   return any;
 }
 
+/* Tiles of the velocities before the forces, where those of the forces were. */
+static void gather_before(const mpsi_transfer *work) {
+  mpsi_worker worker;
+  const mpsi_transfer before = before_forces(work, &worker);
+  const mpsi_cell_block *cells = work->cells;
+  gather_tile(work->grid, cells, false, true, worker.tile);
+  if (cells->thin) gather_tile(work->grid, cells, true, true, worker.across_tile);
+  if (cells->mirrors) mpsi_mpm_unfold(&before);
+}
+
 MPSI_INLINE void g2p_body(const mpsi_transfer *work, int geometry, int spline) {
   mpsi_cell_block *cells = work->cells;
   const mpsi_worker *worker = work->worker;
@@ -502,9 +543,10 @@ MPSI_INLINE void g2p_body(const mpsi_transfer *work, int geometry, int spline) {
   cells->light = is_light(work->grid, cells);
   cells->bad = -1;
   cells->speed = cells->flow = 0.0;
-  gather_tile(work->grid, cells, false, worker->tile);
-  if (cells->thin) gather_tile(work->grid, cells, true, worker->across_tile);
+  gather_tile(work->grid, cells, false, false, worker->tile);
+  if (cells->thin) gather_tile(work->grid, cells, true, false, worker->across_tile);
   if (cells->mirrors) mpsi_mpm_unfold(work);
+  if (work->keep > 0.0) gather_before(work);
   if (cells->cut || cells->light) mpsi_mpm_find_states(work);
   const bool responds = mpsi_pore_responds(work->water) && work->p->laws.at_once;
   if (responds) MPSI_LEVELLED(mpsi_pore_begin_block)(work);

@@ -1,0 +1,133 @@
+/* test_mpm_flip.c - `flip_time`: what a transfer takes from a wave no longer goes with the number
+ * of steps, is what two fractions say, and vanishes for a long time; momentum is conserved;
+ * refusals. docs/theory/transfers.md has the equations. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#include <mps/experimental.h>
+
+#define PI 3.14159265358979323846
+#define CELL 0.02 /* m */
+
+/* ---- a wave without forces ------------------------------------------------------------------- */
+
+/* Kinetic energy left of a shear wave of 12 cells, v_y = cos k x between rollers, after `steps`
+ * steps of dt over that after the first: the block is so soft that nothing but transfers acts. */
+static double energy_left(double flip_time, double dt, int64_t steps) {
+  const double k = 2.0 * PI / (12.0 * CELL), width = 12.0 * CELL;
+  mpm_scene s = mpm_scene_begin(context, 0.5 * CELL, 0.0, 0.0, 1e-6);
+  mpm_scene_box(&s, 0.0, 0.0, width, width);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  for (int64_t p = 0; p < x.shape[0]; p++)
+    *mps_edit_f64(&v, p, 1) = 1e-3 * cos(k * *mps_view_f64(&x, p, 0));
+  mpm_scene_commit(&s, &v);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = CELL, def.dt = dt, def.flip_time = flip_time;
+  def.lower[0] = 0.0, def.upper[0] = width;
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 5)); /* slopes have become those of the wave */
+  const double start = mpm_scene_totals(&s).kinetic;
+  mps_assert_ok(context, mps_mpm_step(s.mpm, steps));
+  const double left = mpm_scene_totals(&s).kinetic / start;
+  mpm_scene_end(&s);
+  return left;
+}
+
+/* Without it twice the steps lose twice as much; with it as much in the same time: (1 - k)/(1 - b)
+ * of that in each step, k = exp(-dt/flip_time), where b is the part of the nodes' velocity that
+ * comes from the slopes: 1 - sinc^8(pi/12) = 0.087 for cubic weights, up to the loss itself. */
+static void loss_is_by_time(void **state) {
+  (void)state;
+  const double dt = 1e-3, time = 20e-3;
+  const double loss = -log(energy_left(0.0, dt, 40)), halved = -log(energy_left(0.0, 0.5 * dt, 80));
+  const double kept = -log(energy_left(time, dt, 40)), fine = -log(energy_left(time, 0.5 * dt, 80));
+  const double sinc = sin(PI / 12.0) / (PI / 12.0), slopes = 1.0 - pow(sinc, 8.0);
+  const double expected = (1.0 - exp(-dt / time)) / (1.0 - slopes);
+  print_message("loss %.5f, at half the step %.5f; with flip_time %.6f, %.6f, ratio %.4f (%.4f)\n",
+                loss, halved, kept, fine, kept / loss, expected);
+  assert_true(loss > 0.1);
+  mps_assert_near(halved / loss, 2.0, 0.05);
+  mps_assert_near(fine / kept, 1.0, 0.05);
+  mps_assert_near(kept / loss, expected, 0.1 * expected);
+}
+
+static void a_long_time_loses_nothing(void **state) {
+  (void)state;
+  mps_assert_near(energy_left(1e9, 1e-3, 40), 1.0, 1e-9);
+}
+
+/* ---- momentum -------------------------------------------------------------------------------- */
+
+/* A soft disc or ball that rotates and shakes in empty space. */
+static mps_totals shaken(int dim, double flip_time, mps_totals *start) {
+  const double v0[] = {0.4, -0.3, 0.2}, centre[] = {0.0, 0.0, 0.0};
+  const double plane[] = {0.5, -6.0, 5.0, -0.8};
+  const double space[] = {0.5, -6.0, 2.0, 5.0, -0.8, 3.0, -1.0, -4.0, 0.3};
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, -0.001, 1e5);
+  mps_assert_ok(context,
+                mps_particles_fill_ball(s.particles, centre, dim == 3 ? 0.06 : 0.12, NULL));
+  mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = dim == 3 ? MPS_MPM_GEOMETRY_SPACE : MPS_MPM_GEOMETRY_PLANE_STRAIN;
+  def.cell = CELL, def.flip_time = flip_time;
+  mpm_scene_solve(&s, &def);
+  *start = mpm_scene_totals(&s);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, dim == 3 ? 300 : 1000));
+  const mps_totals end = mpm_scene_totals(&s);
+  mpm_scene_end(&s);
+  return end;
+}
+
+static void momentum_is_kept(void **state) {
+  (void)state;
+  for (int dim = 2; dim <= 3; dim++) {
+    mps_totals start;
+    const mps_totals without = shaken(dim, 0.0, &start), with = shaken(dim, 0.01, &start);
+    double linear = 0.0, angular = 0.0, size = 0.0, turn = 0.0;
+    for (int c = 0; c < 3; c++) {
+      linear = fmax(linear, fabs(with.linear[c] - start.linear[c]));
+      angular = fmax(angular, fabs(with.angular[c] - start.angular[c]));
+      size = fmax(size, fabs(start.linear[c])), turn = fmax(turn, fabs(start.angular[c]));
+    }
+    print_message("%dD: linear %.2g, angular %.2g; kinetic %.4f and without %.4f of the start\n",
+                  dim, linear / size, angular / turn, with.kinetic / start.kinetic,
+                  without.kinetic / start.kinetic);
+    assert_true(linear <= 1e-12 * size);
+    assert_true(angular <= 5e-3 * turn);
+    assert_true(with.kinetic < start.kinetic);
+  }
+}
+
+/* ---- refusals -------------------------------------------------------------------------------- */
+
+static void times_are_checked(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+  const double bad[] = {-1e-3, NAN, INFINITY, 2e9};
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = CELL;
+  for (int k = 0; k < 4; k++) {
+    def.flip_time = bad[k];
+    mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm),
+                     MPS_ERROR_ARGUMENT, "must be 0 to 1e+09");
+  }
+  def.flip_time = 0.01;
+  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_ARGUMENT,
+                   "flip_time of the definition is 0.01 s");
+  mps_assert_fails(context, mps_experimental_mpm_transfer(s.mpm, MPS_EXPERIMENTAL_TRANSFER_WEIGHT),
+                   MPS_ERROR_ARGUMENT, "flip_time of the definition is 0.01 s");
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
+  mpm_scene_end(&s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(loss_is_by_time), cmocka_unit_test(a_long_time_loses_nothing),
+      cmocka_unit_test(momentum_is_kept), cmocka_unit_test(times_are_checked)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
