@@ -124,7 +124,7 @@ struct mps_fluid {
   mpsi_fluid_system system;
   mpsi_fluid_coarse *coarse;
   mpsi_room lower_col_room, lower_room; /* the sort by cells too, while there is no factor */
-  int64_t most_lower;                   /* room for entries of L, a row on average */
+  int64_t most_lower;                   /* room for entries of L, of eight rows on average */
   void *slab;                           /* of all arrays of fixed size */
   void *cloud;
   double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */

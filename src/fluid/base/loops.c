@@ -168,7 +168,8 @@ static double descend(const mps_fluid *f, int64_t first, int64_t end, int64_t of
                       double beta) {
   const mpsi_fluid_system *y = &f->system;
   double rz = 0.0, *x = y->x, *r = y->r, *z = y->z, *p = y->p, *s = f->u_new[0];
-  const double *q = y->q, *inverse = y->inverse;
+  const double *q = y->q;
+  const float *inverse = y->inverse;
 #pragma omp simd reduction(+ : rz)
   for (int64_t i = first; i < end; i++) {
     p[i] = z[i] + beta * p[i];
@@ -204,7 +205,8 @@ static double outside_block(const mps_fluid *f, int64_t first, int64_t end, int6
 
 static double rise(const mps_fluid *f, int64_t first, int64_t end, int64_t offset) {
   const mpsi_fluid_system *y = &f->system;
-  const double *z = y->z, *r = y->r, *middle = f->u_new[1], *inverse = y->inverse;
+  const double *z = y->z, *r = y->r, *middle = f->u_new[1];
+  const float *inverse = y->inverse;
   double zq = 0.0, *q = y->q;
 #pragma omp simd
   for (int64_t i = first; i < end; i++) q[i] = r[i] + middle[i] * z[i];
@@ -215,7 +217,7 @@ static double rise(const mps_fluid *f, int64_t first, int64_t end, int64_t offse
   forward(f, first, end, offset, q);
 #pragma omp simd reduction(+ : zq)
   for (int64_t i = first; i < end; i++) {
-    q[i] += z[i] / inverse[i];
+    q[i] += z[i] / (double)inverse[i];
     zq += q[i] * inverse[i] * r[i];
   }
   return zq;

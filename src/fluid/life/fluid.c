@@ -164,7 +164,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->l0 = mps_particles_spacing(f->particles);
   f->reach = f->def.radius_ratio * f->l0;
   f->weight = mpsi_fluid_make_weight(f->l0, f->reach, f->reach);
-  f->most_near = 31, f->most_lower = 15;
+  f->most_near = 28, f->most_lower = 8 * 13;
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);
   mps_status status = mpsi_fluid_partition_create(f, function);
@@ -315,7 +315,7 @@ mps_status mps_fluid_get_totals_sized(const mps_fluid *f, mps_totals *out, size_
 
 static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
-  return 8 * (9 * n + 2 * chunks) + 18 * n + f->count * ((int64_t)sizeof *f->local + 3) +
+  return 8 * (8 * n + 2 * chunks) + 22 * n + f->count * ((int64_t)sizeof *f->local + 3) +
          f->cloud_capacity * (5 * 8) + f->ghost_capacity * 16 + f->index_room.capacity * 4 +
          f->w_room.capacity * 4 + f->push_room.capacity * 8 + f->exchange.rows.capacity * 8 +
          f->exchange.sums.capacity * (int64_t)sizeof(mpsi_exact) + f->lower_col_room.capacity * 2 +

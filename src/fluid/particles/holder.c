@@ -20,11 +20,11 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   if (count <= f->capacity) return true;
   mpsi_fluid_system *s = &f->system;
   const int64_t n = (count + 7) / 8 * 8 + 24, chunks = count / MPSI_FLUID_CHUNK + 2;
-  double **doubles[] = {&f->u_new[0], &f->u_new[1], &s->diagonal, &s->right,  &s->r,
-                        &s->z,        &s->q,        &s->p,        &s->inverse};
+  double **doubles[] = {&f->u_new[0], &f->u_new[1], &s->diagonal, &s->right,
+                        &s->r,        &s->z,        &s->q,        &s->p};
   enum { DOUBLES = sizeof doubles / sizeof *doubles };
   double *block =
-      mpsi_alloc(f->context, n * DOUBLES + 2 * chunks + (18 * n + 7) / 8, sizeof *block);
+      mpsi_alloc(f->context, n * DOUBLES + 2 * chunks + (22 * n + 7) / 8, sizeof *block);
   mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
   uint8_t *state = mpsi_alloc(f->context, 3 * count, sizeof *state);
   if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count, room_for_ghosts(count))) {
@@ -44,7 +44,8 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   f->zone_normal[1] = f->zone_normal[0] + n;
   f->start = (int32_t *)(f->zone_normal[1] + n);
   s->lower_end = f->start + n;
-  f->near = (uint16_t *)(s->lower_end + n);
+  s->inverse = (float *)(s->lower_end + n);
+  f->near = (uint16_t *)(s->inverse + n);
   f->company = f->state + count;
   f->zone = (atomic_uchar *)(f->company + count);
   f->capacity = count;

@@ -258,7 +258,7 @@ static mps_status make_rows(mps_fluid *f, const char *function, bool *crowded) {
     status = mpsi_fluid_agree_max(f, function, status, 2, flag);
     *crowded = flag[1] > 0.0;
     if (status != MPS_OK || flag[0] == 0.0) return status;
-    c->most += (c->most + 7) / 8;
+    c->most += 1 + c->most / 32;
   }
 }
 
@@ -304,14 +304,17 @@ static mps_status make_matrix(mps_fluid *f, const char *function) {
   return mpsi_fluid_lost(f, function);
 }
 
+/* Without a surface A is singular but for 1e-10 of its diagonal, and so is E: its solutions add
+ * some 1e-7 of the right side to the residual. */
+bool mpsi_fluid_has_coarse(const mps_fluid *f) {
+  return f->count >= LEAST && (f->report.surface > 0 || f->def.tolerance >= CLOSED);
+}
+
 mps_status mpsi_fluid_coarsen(mps_fluid *f, const char *function, int64_t block, int64_t blocks) {
   mpsi_fluid_coarse *c = f->coarse;
   mps_status status = MPS_OK;
   c->used = false;
-  if (f->count < LEAST) return MPS_OK;
-  /* Without a surface A is singular but for 1e-10 of its diagonal, and so is E: its solutions add
-   * some 1e-7 of the right side to the residual. */
-  if (f->report.surface == 0 && f->def.tolerance < CLOSED) return MPS_OK;
+  if (!mpsi_fluid_has_coarse(f)) return MPS_OK;
   c->block = block, c->blocks = blocks;
   c->side = TILE * f->l0;
   for (bool small = false; status == MPS_OK && !small; c->side *= COARSER) {

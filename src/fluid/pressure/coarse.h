@@ -45,6 +45,8 @@ struct mpsi_fluid_coarse {
   mpsi_envelope matrix; /* E */
 };
 
+/* Whether the present matrix is to have a coarse space. */
+bool mpsi_fluid_has_coarse(const mps_fluid *fluid);
 /* Builds aggregates, A Z and the factors of E for the present matrix; `block`: particles in a block
  * of the preconditioner, of `blocks`. Collective. */
 mps_status mpsi_fluid_coarsen(mps_fluid *fluid, const char *function, int64_t block,

@@ -30,7 +30,11 @@
 
 #include <string.h>
 
-#define MODIFIED 0.95    /* fraction of the fill that is added to the pivots */
+/* Fraction of the fill that is added to the pivots. It serves the smooth error: with a coarse
+ * space, which removes that, less of it takes fewer iterations (4.3 in place of 5.2 with 1e4
+ * particles, 7.7 in place of 9.0 with 1e5). */
+#define MODIFIED 0.95
+#define MODIFIED_DEFLATED 0.8
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
 /* The residual is computed first at LOOK_FROM times the rz at which it would be small enough if
  * both fell in proportion, and again when rz has fallen by LOOK_AGAIN or less. */
@@ -47,12 +51,13 @@
  * before the pressure is known). A neighbour and its image are two entries. Rounding of an entry to
  * single precision is added to the diagonals, so that the row sums stay exact: without a free
  * surface the matrix would become indefinite otherwise. */
-static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, uint16_t *column,
-                         float *lower) {
+static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, double modified,
+                         uint16_t *column, float *lower) {
   const mpsi_fluid_system *s = &f->system;
   const int32_t *index = f->index + mpsi_fluid_pairs(f, i);
   const float *w = f->w + mpsi_fluid_pairs(f, i);
-  const double *inverse = s->inverse, *upper = s->z;
+  const float *inverse = s->inverse;
+  const double *upper = s->z;
   double own = s->diagonal[i], pivot = 0.0, right = 0.0;
   int32_t count = 0;
   bool others = false;
@@ -65,16 +70,17 @@ static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, ui
     if (j == i) own -= w[k];
     if (j > i) right += w[k];
     if (j >= i) continue;
-    const double l = w[k] * inverse[j];
-    pivot -= l * (w[k] + MODIFIED * (upper[j] - w[k]));
+    const double l = w[k] * (double)inverse[j];
+    pivot -= l * (w[k] + modified * (upper[j] - w[k]));
     column[count] = (uint16_t)(j - first), lower[count] = (float)-l;
     const double missed = w[k] + (double)lower[count] * s->r[j];
     own -= missed, f->u_new[1][j] -= missed;
     count++;
   }
   pivot = fmax(own + pivot, LEAST_PIVOT * s->diagonal[i]);
+  s->inverse[i] = (float)(1.0 / pivot);
+  pivot = 1.0 / (double)s->inverse[i];
   s->z[i] = right, s->r[i] = pivot;
-  s->inverse[i] = 1.0 / pivot;
   f->u_new[1][i] = own - 2.0 * pivot;
   f->company[i] =
       (uint8_t)((f->company[i] & ~MPSI_FLUID_NEAR_OTHERS) | (others ? MPSI_FLUID_NEAR_OTHERS : 0));
@@ -96,6 +102,8 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
   const int64_t first = b * p->blocks.size;
   const int64_t end = first + p->blocks.size < f->count ? first + p->blocks.size : f->count;
   const int64_t limit = (b + 1) * p->room < p->all ? (b + 1) * p->room : p->all;
+  const double modified =
+      f->report.surface > 0 && mpsi_fluid_has_coarse(f) ? MODIFIED_DEFLATED : MODIFIED;
   int64_t at = b * p->room;
   for (int64_t i = first; i < end; i++) {
     if (at + f->near[i] > limit) {
@@ -103,9 +111,9 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
       return;
     }
     if (f->state[i] == MPSI_FLUID_APART)
-      s->inverse[i] = 1.0, f->u_new[1][i] = -1.0;
+      s->inverse[i] = 1.0f, f->u_new[1][i] = -1.0;
     else
-      at += lower_row(f, first, end, i, s->lower_col + at, s->lower + at);
+      at += lower_row(f, first, end, i, modified, s->lower_col + at, s->lower + at);
     s->lower_end[i] = (int32_t)(at - b * p->room);
   }
 }
@@ -114,8 +122,8 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
   mpsi_fluid_system *s = &f->system;
   factor_pass p = {.fluid = f, .blocks = mpsi_fluid_cut(f)};
   for (;;) {
-    p.room = f->most_lower * p.blocks.size;
-    p.all = f->most_lower * f->count + p.blocks.size;
+    p.room = f->most_lower * p.blocks.size / 8;
+    p.all = f->most_lower * f->count / 8 + p.blocks.size;
     mps_status status = MPS_OK;
     if (!mpsi_room_fit(f->context, &f->lower_col_room, p.all, sizeof *s->lower_col) ||
         !mpsi_room_fit(f->context, &f->lower_room, p.all, sizeof *s->lower))
@@ -129,7 +137,7 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
     if (status == MPS_OK && full == 0.0)
       return mpsi_fluid_coarsen(f, function, p.blocks.size, p.blocks.count);
     if (status != MPS_OK) return status;
-    f->most_lower += f->most_lower / 8;
+    f->most_lower += 1 + f->most_lower / 128;
   }
 }
 
@@ -242,7 +250,7 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   const double tolerance = f->def.tolerance;
   iteration it = {.fluid = f, .blocks = mpsi_fluid_cut(f)};
-  it.room = f->most_lower * it.blocks.size;
+  it.room = f->most_lower * it.blocks.size / 8;
   int64_t done = 0;
   for (double left = INFINITY;;) {
     mpsi_fluid_send_halo(f, 1, &s->x);

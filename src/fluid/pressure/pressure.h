@@ -13,7 +13,7 @@ typedef struct mpsi_fluid_system {
   int32_t *lower_end;       /* of row i, in its block's stretch of lower_col and lower */
   uint16_t *lower_col;      /* from the first row of the block */
   float *lower;             /* of L */
-  double *inverse;          /* of D */
+  float *inverse;           /* of D, which is what this rounded reciprocal says */
   double *sums;             /* by chunk or block, two values each */
   double mean;              /* of the right side, or the shift of the solution; see closed.c */
 } mpsi_fluid_system;

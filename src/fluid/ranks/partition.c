@@ -375,25 +375,25 @@ void mpsi_fluid_send_sums(mps_fluid *f, int64_t unit) {
   mpsi_fluid_reduce_max(f, 2 * units, sums);
 }
 
-/* In scratch columns, which the pressure has not begun to use: z states and numbers, p and q m,
- * r h. */
+/* In scratch columns, which the pressure has not begun to use: z states and numbers, u_new[0] and q
+ * m, r h. */
 void mpsi_fluid_send_moments(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s) return;
   mpsi_fluid_system *y = &f->system;
   for (int64_t i = f->own[0]; i < f->own[1]; i++) {
     y->z[i] = f->state[i] + 4.0 * f->near[i];
-    y->p[i] = f->local[i].m[0], y->q[i] = f->local[i].m[1], y->r[i] = f->local[i].h;
+    f->u_new[0][i] = f->local[i].m[0], y->q[i] = f->local[i].m[1], y->r[i] = f->local[i].h;
   }
   mpsi_fluid_send_all(f, 1, &y->z);
-  mpsi_fluid_send_halo(f, 3, (double *const[]){y->p, y->q, y->r});
+  mpsi_fluid_send_halo(f, 3, (double *const[]){f->u_new[0], y->q, y->r});
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k], word = (int64_t)y->z[i];
     f->state[i] = (uint8_t)(word % 4), f->near[i] = (uint16_t)(word / 4);
   }
   for (int64_t k = 0; k < s->near.guests; k++) {
     const int64_t i = s->near.guest[k];
-    f->local[i].m[0] = y->p[i], f->local[i].m[1] = y->q[i], f->local[i].h = y->r[i];
+    f->local[i].m[0] = f->u_new[0][i], f->local[i].m[1] = y->q[i], f->local[i].h = y->r[i];
     s->mark[k] = atomic_load_explicit(&f->zone[i], memory_order_relaxed);
   }
   /* several ranks may have copies of a particle: applied in turn */
@@ -404,12 +404,12 @@ void mpsi_fluid_send_moments(mps_fluid *f) {
     if (in[k] > 0.0) atomic_store_explicit(&f->zone[s->back.guest[k]], 1, memory_order_relaxed);
 }
 
-/* In columns that the pressure no longer needs. */
+/* In columns that the pressure no longer needs, and velocities not yet. */
 void mpsi_fluid_send_flux(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s) return;
   mpsi_fluid_system *y = &f->system;
-  double *const column[] = {y->p, y->q, y->r, y->z, y->diagonal};
+  double *const column[] = {f->u_new[0], y->q, y->r, y->z, y->diagonal};
   for (int c = 0; c < 5; c++)
     for (int64_t i = f->own[0]; i < f->own[1]; i++) column[c][i] = f->flux[c][i];
   mpsi_fluid_send_halo(f, 5, column);
@@ -418,21 +418,30 @@ void mpsi_fluid_send_flux(mps_fluid *f) {
       f->flux[c][s->near.guest[k]] = (float)column[c][s->near.guest[k]];
 }
 
+static void send_fill(mps_fluid *f) {
+  const mpsi_fluid_partition *s = f->partition;
+  double *fill = f->system.z;
+  for (int64_t i = f->own[0]; i < f->own[1]; i++) fill[i] = mpsi_fluid_fill(f, i);
+  mpsi_fluid_send_all(f, 1, &fill);
+  for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++)
+    mpsi_fluid_pore_of(f, s->all.guest[k])->fill = fill[s->all.guest[k]];
+}
+
 void mpsi_fluid_send_local(mps_fluid *f) {
   mpsi_fluid_partition *s = f->partition;
   if (!s || s->knows_local) return;
-  mpsi_fluid_system *y = &f->system; /* free after the pressure */
-  double *const column[] = {y->p, y->q, y->r, y->z, f->u_new[0]};
+  mpsi_fluid_system *y = &f->system;
+  double *const column[] = {f->u_new[0], y->q, y->r, y->z}; /* free but in the solution */
   for (int64_t i = f->own[0]; i < f->own[1]; i++) {
     const mpsi_fluid_local *l = &f->local[i];
-    y->p[i] = l->n, y->q[i] = l->m[0], y->r[i] = l->m[1], y->z[i] = l->h;
-    f->u_new[0][i] = mpsi_fluid_fill(f, i); /* free until velocities are found */
+    column[0][i] = l->n, column[1][i] = l->m[0], column[2][i] = l->m[1], column[3][i] = l->h;
   }
-  mpsi_fluid_send_all(f, f->rocks ? 5 : 4, column);
+  mpsi_fluid_send_all(f, 4, column);
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k];
-    f->local[i] = (mpsi_fluid_local){.n = y->p[i], .m = {y->q[i], y->r[i]}, .h = y->z[i]};
-    if (f->rocks) mpsi_fluid_pore_of(f, i)->fill = f->u_new[0][i];
+    f->local[i] =
+        (mpsi_fluid_local){.n = column[0][i], .m = {column[1][i], column[2][i]}, .h = column[3][i]};
   }
+  if (f->rocks) send_fill(f);
   s->knows_local = s->lost == MPS_OK;
 }
