@@ -82,7 +82,8 @@ typedef struct mpsi_law_type {
 extern const mpsi_law_type mpsi_law_types[]; /* by kind */
 extern const char *const mpsi_no_columns[],
     *const mpsi_metal_columns[], *const mpsi_sand_columns[], *const mpsi_clay_columns[],
-    *const mpsi_small_columns[], *const mpsi_cyclic_columns[];
+                                                                 *const mpsi_small_columns[],
+                                                                     *const mpsi_cyclic_columns[];
 /* Columns of Cam-Clay. */
 enum { MPSI_CLAY_STRAIN, MPSI_CLAY_PC, MPSI_CLAY_VOID, MPSI_CLAY_GAP, MPSI_CLAY_COLUMNS };
 /* Columns of the small-strain law: two, and the deviators of its layers (xx, yy, xy, zx, yz). */
@@ -95,7 +96,8 @@ enum {
   MPSI_SMALL_COLUMNS = MPSI_SMALL_FIRST + MPSI_LAYERS * MPSI_LAYER_PARTS
 };
 /* Columns of cyclic sand behind those of sand: contraction now and at the last reversal, half
- * cycles, and two deviators of strain (xx, yy, xy, zx, yz): since the reversal, and its farthest. */
+ * cycles, and two deviators of strain (xx, yy, xy, zx, yz): since the reversal, and its farthest.
+ */
 enum {
   MPSI_CYCLIC_CONTRACTION = 2,
   MPSI_CYCLIC_BEFORE,

@@ -40,13 +40,13 @@ typedef struct mpsi_law {
       log_least;
   /* Cyclic sand: C1 to C4 (C3 0: Byrne's form), least and largest amplitude that counts. */
   double contract[4], threshold, strain_limit;
-  double viscosity;                     /* Pa s */
+  double viscosity; /* Pa s */
   /* Small strain: shear modulus and strength (sqrt(J2)) of each layer, Pa. */
   double layer_shear[MPSI_LAYERS], layer_strength[MPSI_LAYERS];
-  bool tait, no_tension;                /* fluid */
+  bool tait, no_tension;                            /* fluid */
   bool turns_stress, needs_deformation, frictional; /* user */
-  bool softens, softens_linearly;       /* or depends on the rate */
-  int32_t history_count;                /* user */
+  bool softens, softens_linearly;                   /* or depends on the rate */
+  int32_t history_count;                            /* user */
   mps_material_fn update;
   mps_material_moduli_fn moduli;
   void *user;
