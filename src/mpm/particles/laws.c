@@ -144,7 +144,8 @@ static void raise_to_viscous(const mpsi_grid *grid, const mpsi_columns *p, const
  * have the limit 0.3 h^2/(2 dim D), D = k K_w/(n rho_w g), whatever the fraction of the limit that
  * a step takes: cells at a surface, half full, need that. */
 static double stiffen_by_water(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *pores,
-                               const mps_mpm_def *def, int64_t begin, int64_t end, double *moduli) {
+                               const mps_mpm_def *def, int64_t begin, int64_t end,
+                               double *moduli) {
   const mps_pore_water_def *water = &pores->def;
   const double v = 2.0 * grid->dim * def->courant / 0.3 * grid->inverse *
                    (water->bulk / (water->density * MPS_PORE_GRAVITY));
@@ -184,6 +185,5 @@ void mpsi_mpm_find_moduli(const mpsi_grid *grid, const mpsi_columns *p, mpsi_wat
     }
     raise_to_viscous(grid, p, law, k, next, moduli + (k - begin));
   }
-  *flow =
-      mpsi_pore_responds(water) ? stiffen_by_water(grid, p, water, def, begin, end, moduli) : 0.0;
+  *flow = mpsi_pore_responds(water) ? stiffen_by_water(grid, p, water, def, begin, end, moduli) : 0.0;
 }

@@ -26,7 +26,8 @@ static mps_status report_bad(mps_context *context, const mpsi_grid *grid, const 
 
 /* Reduces the results over all ranks. An error of one is that of all. */
 static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, double flow,
-                                int64_t bad, int64_t lost) {
+                                int64_t bad,
+                                int64_t lost) {
   mpsi_partition *partition = mpm->partition;
   enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FLOW, FOUND };
   double most[MPSI_SWEEP_SUMS];

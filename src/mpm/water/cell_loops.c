@@ -103,8 +103,7 @@ MPSI_INLINE void change_porosities(const mpsi_columns *p, const double *former, 
                                    int n) {
   double *porosity = p->n + begin;
   const double *V = p->V + begin;
-  MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] =
-      1.0 - (1.0 - porosity[k]) * (former[k] / V[k]);
+  MPSI_SIMD for (int k = 0; k < n; k++) porosity[k] = 1.0 - (1.0 - porosity[k]) * (former[k] / V[k]);
 }
 
 MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,

@@ -307,7 +307,8 @@ static void find_slopes(void *data, int64_t g, int32_t worker) {
   for (int w = 0; w < MPSI_PORE_WORDS; w++)
     for (uint64_t left = water->block[g].filled[w] & ~whole[w]; left; left &= left - 1) {
       const int k = 64 * w + mpsi_pore_lowest(left);
-      if (cell[k].thin) interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
+      if (cell[k].thin)
+        interpolate(&mpm->grid, water, &mpm->def, g, k, &cell[k]);
       if (cell[k].thin && mpsi_pore_responds(water))
         expel(&mpm->grid, water, g, &cell[k]);
       else if (!cell[k].thin)

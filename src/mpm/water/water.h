@@ -155,8 +155,8 @@ void mpsi_pore_surrounded(const mpsi_grid *grid, const mpsi_water *water, int64_
 static inline double mpsi_pore_squeeze(mpsi_water *water, const mpsi_pore_cell *cell) {
   return -(water->def.bulk * cell->change) / (cell->n * (cell->volume - cell->change));
 }
-/* Whether the pressures of particles follow their volumes in each step, and cells exchange water
- * and smooth pressures every few steps. */
+/* Whether the pressures of particles follow their volumes in each step, and cells exchange water and
+ * smooth pressures every few steps. */
 static inline bool mpsi_pore_responds(const mpsi_water *water) {
   return water && water->def.scheme == MPS_PORE_SCHEME_EXPLICIT;
 }
@@ -164,8 +164,8 @@ static inline bool mpsi_pore_responds(const mpsi_water *water) {
 void mpsi_pore_follow(const mpsi_columns *p, const mpsi_water *water, int64_t k, double former);
 /* update.c: at the beginning of a step of run.dt: whether cells exchange after it. */
 void mpsi_pore_plan(mps_mpm *mpm);
-/* update.c: before the G2P of block of cells b, where pressures are implicit: keeps the volumes of
- * its particles, which are in the cache then. */
+/* update.c: before the G2P of block of cells b, where pressures are implicit: keeps the volumes of its particles, which are in
+ * the cache then. */
 void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b);
 /* cells.c: sums of the particles and their means: which cells are filled, and with what. */
 void mpsi_pore_find_cells(mps_mpm *mpm);
