@@ -7,8 +7,6 @@
 
 #include <string.h>
 
-enum { EVERY = 8 }; /* steps, at most, between two exchanges */
-
 /* ---- before ---------------------------------------------------------------------------------- */
 
 /* Of blocks of cells that have been laid out; those of other ranks come last. */
@@ -81,7 +79,7 @@ static mps_status renew_layers(mps_mpm *mpm, const char *function, mps_status st
 
 void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  if (!mpm->water || mpsi_pore_responds(mpm->water)) return;
+  if (!mpm->water) return;
   memcpy(mpm->water->former + cells->begin, mpm->p.V + cells->begin,
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
@@ -116,14 +114,6 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   return MPS_OK;
 }
 
-void mpsi_pore_plan(mps_mpm *mpm) {
-  mpsi_water *water = mpm->water;
-  if (!water) return;
-  const double after = water->elapsed + 2.0 * mpm->run.dt; /* that of an exchange one step later */
-  const bool short_flow = after * mpm->run.flow > mpm->def.courant * mpm->grid.cell;
-  water->due = !mpsi_pore_responds(water) || water->steps + 1 >= EVERY || short_flow;
-}
-
 static void find_speed(void *data, int64_t b, int32_t worker) {
   mps_mpm *mpm = data;
   const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
@@ -155,16 +145,10 @@ static void sum_outflow(const mpsi_grid *grid, mpsi_water *water, double dt) {
 }
 
 mps_status mpsi_pore_update(mps_mpm *mpm, const char *function) {
-  mpsi_water *water = mpm->water;
-  if (!water) return MPS_OK;
-  water->elapsed += mpm->run.dt;
-  water->steps++;
-  if (!water->due) return MPS_OK;
+  if (!mpm->water) return MPS_OK;
   mpsi_pore_find_cells(mpm);
   mpsi_pore_find_faces(mpm);
   const mps_status status = mpsi_pore_flow(mpm, function);
-  if (status == MPS_OK && water->flows) sum_outflow(&mpm->grid, water, water->elapsed);
-  water->elapsed = 0.0;
-  water->steps = 0;
+  if (status == MPS_OK && mpm->water->flows) sum_outflow(&mpm->grid, mpm->water, mpm->run.dt);
   return status;
 }
