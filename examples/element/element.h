@@ -1,6 +1,5 @@
 /* element.h - the parts of mps-element: options (options.c), the law (law.c), the path of stress
- * and strain (path.c), cycles and what
- * they are drawn and counted by (cycles.c), results (results.c).
+ * and strain (path.c), cyclic paths and their results (cycles.c), results (results.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_ELEMENT_H
 #define EXAMPLES_ELEMENT_H

@@ -1,6 +1,6 @@
-/* warnings.c - what a run of mps-flume makes little of, said before it begins: waves of few
- * spacings or that break on the way, a record of other periods, gauges that count for nothing, a
- * body without rock below. SPDX-License-Identifier: BSD-3-Clause */
+/* warnings.c - warnings of mps-flume before a run: waves of few spacings or that break on the way,
+ * a record of other periods, gauges without use, a body without rock below.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
 #include <math.h>

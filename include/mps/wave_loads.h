@@ -200,13 +200,11 @@ typedef struct mps_overtopping_def {
   int64_t samples;     /* 2 to 2^28 */
   const double *times; /* s, strictly increasing, `samples` values */
   const double *heads; /* m: level at the wall above its crest, `samples` values; NaN as below 0 */
-  const double
-      *volumes;    /* m2: counted so far behind the crest, finite, `samples` values; NULL: none
-                    */
-  double resolved; /* m, > 0: the count resolves events of a higher head; no default */
-  double pause;    /* s, >= 0: heads above 0 that are at most that apart are one event; default 0 */
-  double depth;    /* m, of the water before the wall, > 0: see below; NaN (default): infinite */
-  double gravity;  /* m/s2, > 0; default 9.81 */
+  const double *volumes; /* m2, finite: counted so far behind the crest, as `heads`; or NULL */
+  double resolved;       /* m, > 0: the count resolves events of a higher head; no default */
+  double pause;   /* s, >= 0: heads above 0 that are at most that apart are one event; default 0 */
+  double depth;   /* m, of the water before the wall, > 0: see below; NaN (default): infinite */
+  double gravity; /* m/s2, > 0; default 9.81 */
 } mps_overtopping_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT: NULL, or a size unknown to
