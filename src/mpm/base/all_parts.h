@@ -24,6 +24,11 @@ static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settl
   return energy->counts || settling->on || def->local_damping > 0.0 || def->flip_time > 0.0;
 }
 
+/* Fraction of the velocity that the nodes do not represent that particles keep in a step of dt. */
+static inline double mpsi_kept_fraction(const mps_mpm_def *def, double dt) {
+  return def->flip_time > 0.0 ? exp(-dt / def->flip_time) : 0.0;
+}
+
 static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t particle) {
   return &p->laws.law[p->law ? p->law[particle] : 0];
 }
@@ -63,7 +68,7 @@ static inline int32_t mpsi_reach(const mpsi_grid *grid, int c) { return c == 0 ?
 
 /* Bytes of scratch memory of one worker. */
 static inline size_t mpsi_worker_bytes(const mpsi_grid *grid) {
-  return (size_t)grid->tile_nodes * (2 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
+  return (size_t)grid->tile_nodes * (3 * sizeof(mpsi_node) + 1) + sizeof(uint64_t);
 }
 
 static inline int64_t mpsi_first_node(const mpsi_grid *grid, int64_t g) {
