@@ -158,7 +158,7 @@ static void warn(mps_context *context, const mpsi_columns *p) {
 /* Copies of the columns that `fill` writes, to restore after an error. */
 typedef struct kept {
   double *values;
-  double speed;
+  double speed, flow;
   bool one_modulus;
   int32_t fields;
 } kept;
@@ -171,6 +171,7 @@ static double *written(const mpsi_columns *p, int number) {
 static mps_status keep(mps_context *context, const mpsi_columns *p, const mpsi_run *run,
                        kept *out) {
   *out = (kept){.speed = run->speed,
+                .flow = run->flow,
                 .one_modulus = p->laws.one_modulus,
                 .fields = mps_particles_field_count(p->set)};
   out->values = mpsi_alloc(context, 2 * p->count, sizeof *out->values);
@@ -186,6 +187,7 @@ static void restore(mps_mpm *mpm, const kept *before) {
   mpsi_pore_free(mpm);
   mpsi_particles_drop_fields(mpm->p.set, before->fields);
   mpm->run.speed = before->speed;
+  mpm->run.flow = before->flow;
   mpm->p.laws.one_modulus = before->one_modulus;
   for (int f = 0; f < 2; f++)
     if (written(&mpm->p, f))
