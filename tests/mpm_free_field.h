@@ -20,6 +20,7 @@ typedef struct field_ground {
   mps_signal *motion;  /* of the base, along x; */
   mps_signal *heave;   /* along y */
   mps_material *law;   /* of the layer in place of elasticity */
+  double flip_time;    /* s */
   int32_t budget, spline;
   bool heated; /* the set has the field `temperature` */
 } field_ground;
@@ -65,6 +66,7 @@ static inline mpm_scene field_scene(mps_context *context, const field_ground *of
   def.lower[1] = 0.0;
   def.gravity[1] = -of->gravity;
   def.budget = of->budget;
+  def.flip_time = of->flip_time;
   mps_assert_ok(context,
                 mps_mpm_create(context, s.particles, of->law ? of->law : s.material, &def, &s.mpm));
   if (of->below > 0.0) field_add_rock(&s, of);

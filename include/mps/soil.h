@@ -105,7 +105,8 @@ MPS_API MPS_NODISCARD mps_status mps_material_create_small_strain(
  *  falls as water leaves.
  *  Half cycles end where the deviatoric strain turns back by a tenth of its way from the last
  *  reversal and by two thresholds; g is half of that way, gamma = 2 sqrt(J2), in any direction.
- *  Grains without effective stress do not contract. Of `relative_density`, `blow_count` and `c1`
+ *  Grains without effective stress do not contract. Strains of mps_mpm_settle count: settle ground
+ *  as Mohr-Coulomb, then mps_mpm_set_material. Of `relative_density`, `blow_count` and `c1`
  *  one must be given. Its history is that of Mohr-Coulomb, `contraction` (e), `contraction_before`
  *  (at the last reversal), `half_cycles` and two tensors of strain, 15 columns. */
 typedef struct mps_material_cyclic_sand_def {

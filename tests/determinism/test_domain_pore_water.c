@@ -23,6 +23,7 @@ static mps_mpm_def ground_def(mps_domain *domain, int kind) {
   def.spline = kind == UNDRAINED ? 2 : 3;
   def.cell = kind == BLOCK ? 0.08 : 0.04;
   def.gravity[1] = -9.81;
+  if (kind == SETTLED || kind == UNDRAINED) def.flip_time = 0.02;
   for (int c = 0; c < dim_here(kind); c++) def.lower[c] = 0.0;
   return def;
 }

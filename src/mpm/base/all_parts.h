@@ -24,6 +24,11 @@ static inline bool mpsi_forces_apart(const mpsi_energy *energy, const mpsi_settl
   return energy->counts || settling->on || def->local_damping > 0.0 || def->flip_time > 0.0;
 }
 
+/* Fraction of the velocity that the nodes do not represent that particles keep in a step of dt. */
+static inline double mpsi_kept_fraction(const mps_mpm_def *def, double dt) {
+  return def->flip_time > 0.0 ? exp(-dt / def->flip_time) : 0.0;
+}
+
 static inline const mpsi_law_use *mpsi_law_of(const mpsi_columns *p, int64_t particle) {
   return &p->laws.law[p->law ? p->law[particle] : 0];
 }

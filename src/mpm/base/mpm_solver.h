@@ -36,8 +36,7 @@ struct mps_mpm {
 
 /* While the ground settles nothing is kept: how it moves until it rests has no meaning. */
 static inline double mpsi_kept_velocity(const mps_mpm *mpm) {
-  if (!(mpm->def.flip_time > 0.0) || mpm->settling.on) return 0.0;
-  return exp(-mpm->run.dt / mpm->def.flip_time);
+  return mpm->settling.on ? 0.0 : mpsi_kept_fraction(&mpm->def, mpm->run.dt);
 }
 
 /* The transfer of a solver, of no block of cells yet. */

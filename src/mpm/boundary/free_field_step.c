@@ -246,7 +246,10 @@ static void unfold(const mpsi_boundary_setup *setup, mpsi_free_field *f, int32_t
   int64_t ghost, partner;
   if (!find_mirror(setup, number, keeps, carried)) return;
   for (int64_t layer = 1; find_couple(setup, f, number, layer, &ghost, &partner); layer++)
-    for (int c = 0; c < 2; c++) f->node[ghost].v[c] = keeps[c] * f->node[partner].v[c] + carried[c];
+    for (int c = 0; c < 2; c++) {
+      f->node[ghost].v[c] = keeps[c] * f->node[partner].v[c] + carried[c];
+      f->node[ghost].before[c] = keeps[c] * f->node[partner].before[c] + carried[c];
+    }
 }
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
@@ -338,20 +341,24 @@ static void damp(const mpsi_boundary_setup *setup, mpsi_free_field *f, const int
 
 static void gather(const mpsi_boundary_setup *setup, mpsi_free_field *f) {
   const mpsi_grid *grid = setup->grid;
+  const double keep = mpsi_kept_fraction(setup->def, setup->run->dt);
   for (int64_t k = 0; k < f->count; k++) {
     places w;
     if (!place(grid, f, f->y[k], &w)) continue; /* refused in scatter */
+    double moves[2];
     for (int c = 0; c < 2; c++) {
-      double v = 0.0, slope = 0.0, derivative = 0.0;
+      double v = 0.0, before = 0.0, slope = 0.0, derivative = 0.0;
       for (int i = 0; i <= grid->spline; i++) {
         const double of = f->node[w.at + i].v[c];
         v += w.value[i] * of, slope += w.slope[i] * of, derivative += w.derivative[i] * of;
+        before += w.value[i] * f->node[w.at + i].before[c];
       }
-      f->v[c][k] = v;
+      moves[c] = v;
+      f->v[c][k] = v + keep * (f->v[c][k] - before);
       f->slope[c][k] = slope;
       f->derivative[c][k] = grid->strain_by_fit ? slope : derivative;
     }
-    f->y[k] += setup->run->dt * f->v[Y][k];
+    f->y[k] += setup->run->dt * moves[Y];
     const double low = grid->origin[Y] + grid->cell * (double)grid->low[Y];
     const double high = grid->origin[Y] + grid->cell * (double)grid->high[Y];
     f->y[k] = fmin(fmax(f->y[k], low), high);

@@ -319,7 +319,7 @@ static mps_status check_level(mps_mpm *mpm, const char *function, const double *
   }
   if (square == 0.0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "gravity of the solver is 0: water at rest has no level, must be above 0");
+                     "point gives a level without gravity: that of the solver is 0, must be above 0");
   return MPS_OK;
 }
 
