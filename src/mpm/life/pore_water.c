@@ -318,8 +318,9 @@ static mps_status check_level(mps_mpm *mpm, const char *function, const double *
     square += mpm->def.gravity[c] * mpm->def.gravity[c];
   }
   if (square == 0.0)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "point gives a level without gravity: that of the solver is 0, must be above 0");
+    return mpsi_fail(
+        mpm->context, function, MPS_ERROR_ARGUMENT,
+        "point gives a level without gravity: that of the solver is 0, must be above 0");
   return MPS_OK;
 }
 
