@@ -72,7 +72,7 @@ struct mpsi_water {
   mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
   double *former;                     /* m3, volumes at the beginning of the step */
-  uint16_t *place;         /* of each particle: its cell in the tile of its block, for implicit.c */
+  uint16_t *place; /* of each particle: its cell in the tile of its block, for implicit.c */
   double owed; /* s2, of dt^2 G^T m^-1 G times the particles' `change`: volume owed (implicit.c) */
   double *seepage[3];      /* of the set, or NULL */
   int64_t linked;          /* blocks of nodes for which `beside` was found, */
