@@ -282,73 +282,11 @@ static void undrained_column(void **state) {
   undrained(MPS_PORE_SCHEME_IMPLICIT);
 }
 
-/* ---- a strip on ground that hardly drains ---------------------------------------------------- */
-
-typedef struct strip_result {
-  double load, highest; /* N, Pa */
-} strip_result;
-
-/* Half of a smooth rigid strip, 2.5 m wide, on ground 12 cells deep and wide between rollers, free
- * to heave beside it, that has sunk by 1 mm; `factor` of the limit of the step. */
-static strip_result strip_at_rest(int32_t scheme, double permeability, double factor) {
-  static const double times[] = {0.0, 0.02, 0.021}, speeds[] = {-0.05, -0.05, 0.0};
-  const double lo[] = {0.0, 0.0}, hi[] = {12.0, 12.0};
-  mpm_scene s = mpm_scene_begin_in(context, 2, 0.5, 0.0, 0.0, PORE_YOUNG);
-  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
-  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
-  mps_mpm_def def = mps_mpm_defaults();
-  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 12.0;
-  def.cell = 1.0, def.gravity[1] = 0.0, def.viscous_damping = 30.0, def.courant = factor;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  mps_pore_water_def water = mps_pore_water_defaults();
-  water.scheme = scheme, water.porosity = 0.4, water.permeability = permeability;
-  water.bulk = 0.4 * 50.0 * PORE_YOUNG * 0.7 / (1.3 * 0.4);
-  mps_assert_ok(context, mps_mpm_add_pore_water(s.mpm, &water));
-  mps_body_def shape = mps_body_defaults();
-  mps_body *body = NULL;
-  mps_contact *contact = NULL;
-  mps_signal *signal = NULL;
-  shape.position[1] = 12.5;
-  mps_assert_ok(context, mps_body_create_box(context, &shape, 5.0, 1.0, &body));
-  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, body, NULL, &contact));
-  mps_assert_ok(context, mps_signal_create_table(context, MPS_SIGNAL_QUANTITY_VELOCITY, 3, times,
-                                                 speeds, &signal));
-  mps_assert_ok(context, mps_body_drive(body, 1, signal, 1.0));
-  mps_assert_ok(context, mps_mpm_run(s.mpm, 4.0, 1000000, NULL, NULL));
-  mps_reaction reaction;
-  mps_assert_ok(context, mps_body_get_reaction(body, -1, &reaction));
-  strip_result out = {.load = reaction.force[1]};
-  const mps_view u = mpm_scene_view(&s, "pore_pressure");
-  for (int64_t k = 0; k < u.shape[0]; k++) out.highest = fmax(out.highest, *mps_view_f64(&u, k, 0));
-  print_message("strip, scheme %d, k = %g m/s, %.2f of the limit: %.5g N, highest %.5g Pa\n",
-                scheme, permeability, factor, out.load, out.highest);
-  mpm_scene_end(&s);
-  mps_contact_destroy(&contact);
-  mps_body_destroy(&body);
-  mps_signal_destroy(&signal);
-  return out;
-}
-
-/* The load and the highest pressure do not depend on the scheme, nor on the step: highest
- * pressures are those of particles with explicit ones, of cells with implicit ones. */
-static void strip_bears_alike(void **state) {
-  (void)state;
-  static const double permeability[] = {NAN, 1e-6}, factor[] = {0.7, 0.35};
-  for (int k = 0; k < 2; k++) {
-    const strip_result exact = strip_at_rest(MPS_PORE_SCHEME_EXPLICIT, permeability[k], 0.7);
-    for (int f = 0; f < 2; f++) {
-      const strip_result got = strip_at_rest(MPS_PORE_SCHEME_IMPLICIT, permeability[k], factor[f]);
-      mps_assert_near(got.load, exact.load, 0.02 * exact.load);
-      mps_assert_near(got.highest, exact.highest, 0.05 * exact.highest);
-    }
-  }
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stays_at_rest),          cmocka_unit_test(flows_through_layers),
       cmocka_unit_test(undrained_column),       cmocka_unit_test(consolidates_in_the_plane),
       cmocka_unit_test(consolidates_in_a_ring), cmocka_unit_test(consolidates_in_space),
-      cmocka_unit_test(two_layers_consolidate), cmocka_unit_test(strip_bears_alike)};
+      cmocka_unit_test(two_layers_consolidate)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -108,10 +108,6 @@
     "the caller (initial state); WLS-MPM with pore water", "after a step or a run") \
   X(pore_pressure_gradient, F64, MPSI_PER_DIM, "Pa/m", "gradient of pore_pressure", \
     "WLS-MPM with pore water", "after a step or a run") \
-  X(pore_pressure_change, F64, 1, "Pa", "change of pore_pressure in the last step", \
-    "WLS-MPM with implicit pressures of pore water", "after a step or a run") \
-  X(pore_pressure_ahead, F64, 1, "Pa", "what the forces of the next step add to pore_pressure", \
-    "WLS-MPM with implicit pressures of pore water", "after a step or a run") \
   X(porosity, F64, 1, "-", "volume of the pores over all volume", \
     "the caller (initial state); WLS-MPM with pore water", "after a step or a run") \
   X(permeability, F64, 1, "m/s", "permeability of the ground to water, at the present porosity", \
@@ -139,9 +135,9 @@
   X(shear_velocity, 0.0, 3e8)                                                                      \
   X(pressure_velocity, 0.0, 3e8)                                                                   \
   X(damping, 0.0, 1e6)                                                                             \
-  X(preconsolidation, 0.0, 1e18)                                                                   \
-  X(stiffness_factor, 0.0, 1e9)                                                                    \
-  X(strength_factor, 0.0, 1e9)                                                                     \
+  X(preconsolidation, 0.0, 1e18)                                                                    \
+  X(stiffness_factor, 0.0, 1e9)                                                                     \
+  X(strength_factor, 0.0, 1e9)                                                                      \
   X(void_ratio, 0.0, 1e3)                                                                          \
   X(young, 0.0, 1e24)                                                                              \
   X(poisson, -1.0, 0.5)                                                                            \

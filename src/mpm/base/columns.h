@@ -19,12 +19,10 @@ typedef struct mpsi_columns {
   double *s[6];  /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *u, *g[3]; /* Pa, Pa/m: pressure of pore water, which adds to the forces of s, and its
                        gradient; NULL without water */
-  double *change, *ahead; /* Pa: of u in the last step, and what forces of the next add to u; NULL
-                             where pressures are not implicit */
-  double *n, *k;          /* porosity; permeability, m/s: NULL where water does not flow */
-  double *V, *m;          /* m3, kg */
-  double *J;              /* V/V0 where some law reads it, else NULL */
-  double *F[9];           /* deformation gradient, as L; NULL where no law needs it */
+  double *n, *k;    /* porosity; permeability, m/s: NULL where water does not flow */
+  double *V, *m;    /* m3, kg */
+  double *J;        /* V/V0 where some law reads it, else NULL */
+  double *F[9];     /* deformation gradient, as L; NULL where no law needs it */
   double
       *f[3]; /* N, forces by body accelerations and loads in the step; NULL where there are none */
   int64_t *law; /* number of each particle's law; NULL: one law */

@@ -129,10 +129,6 @@ static mps_status add_fields(mps_mpm *mpm, double *bulk) {
   if (status == MPS_OK) status = fill(mpm->context, &mpm->p, "pore_pressure_gradient", NAN);
   if (status == MPS_OK && mpm->water->flows)
     status = fill(mpm->context, &mpm->p, "permeability", def->permeability);
-  if (status == MPS_OK && def->scheme == MPS_PORE_SCHEME_IMPLICIT)
-    status = fill(mpm->context, &mpm->p, "pore_pressure_change", 0.0);
-  if (status == MPS_OK && def->scheme == MPS_PORE_SCHEME_IMPLICIT)
-    status = fill(mpm->context, &mpm->p, "pore_pressure_ahead", 0.0);
   if (status != MPS_OK) return status;
   mpsi_mpm_bind(&mpm->grid, &mpm->p, mpm->water);
   status = mpsi_pore_check(mpm->context, &mpm->p, mpm->water, add);

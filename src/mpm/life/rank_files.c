@@ -23,7 +23,6 @@ static merging merging_of(const mpsi_value *value) {
   if (strcmp(name, "sizes") == 0) return SIZES;
   if (strcmp(name, "blocks") == 0) return BLOCKS;
   if (strcmp(name, "dashpots") == 0) return DASHES;
-  if (strcmp(name, "water/owed") == 0) return SAME;
   if (strcmp(name, "boundaries_work") == 0 || strcmp(name, "energies") == 0 ||
       strncmp(name, "water/", 6) == 0)
     return EXACT;

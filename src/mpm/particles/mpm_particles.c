@@ -14,8 +14,6 @@
 /* Columns of pore water; NULL without water, though the set may have such fields. */
 static void bind_water(mps_particles *set, mpsi_columns *p, bool water) {
   p->u = water ? mpsi_particles_column(set, "pore_pressure", 0) : NULL;
-  p->change = water ? mpsi_particles_column(set, "pore_pressure_change", 0) : NULL;
-  p->ahead = water ? mpsi_particles_column(set, "pore_pressure_ahead", 0) : NULL;
   p->n = water ? mpsi_particles_column(set, "porosity", 0) : NULL;
   p->k = water ? mpsi_particles_column(set, "permeability", 0) : NULL;
   for (int c = 0; c < 3; c++)

@@ -13,7 +13,6 @@
 
 #include "mpm/base/mpm_solver.h"
 #include "mpm/particles/mpm_particles.h"
-#include "mpm/water/water.h"
 
 #include <string.h>
 
@@ -49,7 +48,6 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   mpm->run.stale = mpm->run.stale || moved;
   if (strcmp(field, "velocity_gradient") == 0) mpm->run.moments = false;
   /* the gradients belong to the former pressures */
-  if (mpm->water && strcmp(field, "pore_pressure") == 0) mpsi_pore_forget_changes(&mpm->p);
   if (mpm->water && strcmp(field, "pore_pressure") == 0)
     for (int c = 0; c < mpm->grid.dim; c++)
       memset(mpm->p.g[c], 0, (size_t)mpm->p.count * sizeof *mpm->p.g[c]);

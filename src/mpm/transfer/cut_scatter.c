@@ -18,8 +18,7 @@ MPSI_INLINE void find_force(const mpsi_transfer *work, int dim, const mpsi_cut *
   const int n = b->lanes;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
   const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
-  mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
-  if (from->ahead) u += mpsi_get_some(from->ahead + p, n);
+  const mpsi_quad u = from->u ? mpsi_get_some(from->u + p, n) : (mpsi_quad){0.0};
   for (int a = 0; a < dim; a++) {
     mpsi_quad body = out->m * work->def->gravity[a];
     if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);

@@ -46,9 +46,7 @@ MPSI_INLINE void find_quad_parts(const sources *s, int geometry, bool split, int
   const mpsi_columns *p = s->p;
   const double dt = s->dt;
   const mpsi_quad zero = {0.0}, m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
-  const mpsi_quad mh = m * s->h, Vs = V * s->stiff;
-  mpsi_quad u = p->u ? mpsi_get(p->u + at) : zero;
-  if (p->ahead) u += mpsi_get(p->ahead + at);
+  const mpsi_quad mh = m * s->h, Vs = V * s->stiff, u = p->u ? mpsi_get(p->u + at) : zero;
   out->sum[0][MPSI_MASS] = m + zero; /* gcc compiles a plain copy to a slow `rep movs` */
   out->force[0][MPSI_EXCESS] = zero;
   MPSI_UNROLL for (int c = 0; c < dim; c++) {

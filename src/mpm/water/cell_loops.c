@@ -4,7 +4,6 @@
 #include "cell_loops.h"
 
 #include "mpm/base/loops.h"
-#include "system.h"
 
 /* ---- places ---------------------------------------------------------------------------------- */
 
@@ -162,18 +161,6 @@ MPSI_INLINE void give_pressures(const mpsi_columns *p, const places *in, const t
   }
 }
 
-/* Implicit pressures: the change d of the step, and what the forces of the next one have in advance
- * (implicit.c). */
-MPSI_INLINE void give_changes(const mpsi_columns *p, const mpsi_pore_system *system,
-                              const places *in, const mpsi_worker *worker, int64_t begin, int n) {
-  double *change = p->change + begin, *ahead = p->ahead + begin;
-  for (int k = 0; k < n; k++) {
-    const double d = worker->force[in->at[k]][1];
-    ahead[k] = MPSI_PORE_AHEAD * d - change[k];
-    change[k] = system->kept * change[k] + system->added * d;
-  }
-}
-
 MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
   const mpsi_columns *p = work->p;
   const mpsi_cell_block *cells = work->cells;
@@ -187,8 +174,6 @@ MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
     find_cells(grid, p, &in, dim, k, n, &at);
     take_cells(&at, n, work->worker, flows, &from);
     give_pressures(p, &at, &from, dim, k, n);
-    if (work->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
-      give_changes(p, work->water->system, &at, work->worker, k, n);
     if (flows) {
       double *m = p->m + k;
       const double *V = p->V + k;

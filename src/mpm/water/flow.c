@@ -343,7 +343,6 @@ static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, cons
     tile[i][0] = centre;
     for (int c = 0; c < 3; c++) tile[i][1 + c] = cell[i].g[c];
     if (water->flows) gain[i][0] = amount * cell[i].gain / cell[i].volume;
-    if (water->system) gain[i][1] = cell[i].thin ? 0.0 : cell[i].now - cell[i].p;
   }
 }
 
@@ -414,7 +413,6 @@ static void find_equations(void *data, int64_t g, int32_t worker) {
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     water->system->scale[first + k] = 0.0; /* no unknown */
     water->system->direction[first + k] = water->system->change[first + k] = 0.0;
-    water->system->past[first + k] = 0.0;
     if (mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin)
       find_equation(mpm, g, k, &cell[k]);
   }

@@ -97,10 +97,8 @@ static void add_particle(mps_mpm *mpm, int64_t b, const mpsi_pore_grain *particl
   const shape n = find_shape(grid, particle->x, cell);
   const int32_t g = mpsi_block_under(cells, at[0], at[1], at[2]);
   const int local = mpsi_local_under(at[0], at[1], at[2]);
-  if (mpsi_mpm_counts_node_block(grid, g)) {
+  if (mpsi_mpm_counts_node_block(grid, g))
     add_forces(grid, particle, &n, mpsi_pore_row(grid, s, mpsi_first_node(grid, g) + local));
-    s->past[mpsi_first_node(grid, g) + local] += particle->V * particle->change;
-  }
   add_masses(grid, s, particle, &n, at,
              s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, local, 1));
 }

@@ -6,16 +6,7 @@
  * cell: a pressure that rises pushes the ground apart, which the last term sees in advance. So
  * neither waves in the water nor its flow limit the step, which is that of the dry ground. The
  * matrix is symmetric and positive definite, and conjugate gradients with its diagonal solve it.
- *
- * Implicit velocities would be v + dt m^-1 G (p' - p*), p' the pressures at the end of the step and
- * p* those of its forces. The particles have moved with v, and the rest comes a step later: the
- * next step's forces have p* = p' + 1.3 d - d', d' of the step before, and its volumes get back
- * dt^2 G^T m^-1 G d. So nothing of the volume is lost at rest, where d = 0. For a wave in elastic
- * ground, a = dt^2 G^T m^-1 G/S, b = dt^2 k^2 M'/rho, the factor z of a step is a root of
- *
- *   (1 + a) z^2 + (b - 2 + a (b - 0.7)) z + 1 + a (0.7 - b) = 0,
- *
- * in the unit circle for all a where 0 < b < 1.2; b is below 0.9 to a Courant number of 0.7.
+ * The forces of the next step are those of the new pressures; velocities are not corrected.
  *
  * G is that of full supports, mirrored at sides of the domain, with the particles where they are at
  * the end of the step: what it lacks beside bodies delays pressures, and changes no steady state.
@@ -201,47 +192,6 @@ static mps_status iterate(mps_mpm *mpm, const char *function, double *rest) {
   return status;
 }
 
-/* `factor` times the mean change of the step before, as a direction. */
-static void recall(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
-  const int64_t first = mpsi_first_node(&mpm->grid, g);
-  const mpsi_pore_cell *cell = mpm->water->cell + first;
-  for (int k = 0; k < mpm->grid.block_nodes; k++)
-    if (mpsi_pore_is_unknown(mpm->water, g, k, cell))
-      s->direction[first + k] = factor * s->past[first + k] / cell[k].volume;
-}
-
-static void give_back(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
-  const int64_t first = mpsi_first_node(&mpm->grid, g);
-  const mpsi_pore_cell *cell = mpm->water->cell + first;
-  int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
-  list_shifts(&mpm->grid, shift);
-  for (int k = 0; k < mpm->grid.block_nodes; k++)
-    if (mpsi_pore_is_unknown(mpm->water, g, k, cell))
-      s->residual[first + k] += squeeze_of(mpm, s, g, k, shift, false);
-}
-
-/* Adds dt^2 G^T m^-1 G d of the step before to the right-hand side, with the dt of that step. After
- * a longer one only as much as with the present dt: more would be a shock to the pressures. The
- * rest is owed on. */
-static mps_status return_volume(mps_mpm *mpm, const char *function) {
-  system_of *s = mpm->water->system;
-  const double now = mpm->run.dt * mpm->run.dt, owed = mpm->water->owed;
-  const double part = owed > now ? now / owed : 1.0; /* that is returned */
-  const double next = (1.0 - part) * owed + part * now;
-  s->kept = (1.0 - part) * owed / next;
-  s->added = now / next;
-  mpm->water->owed = next;
-  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, recall, part * owed / now);
-  if (mpm->partition) {
-    const mps_status status = mpsi_pore_send_direction(mpm, function);
-    if (status != MPS_OK) return status;
-  }
-  mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
-  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, give_back, 0.0);
-  return MPS_OK;
-}
-
 static mps_status find_changes(mps_mpm *mpm, const char *function) {
   system_of *s = mpm->water->system;
   double rest;
@@ -258,7 +208,6 @@ static mps_status find_changes(mps_mpm *mpm, const char *function) {
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function) {
   mpsi_pore_find_tiles(mpm);
   mps_status status = mpsi_pore_find_forces(mpm, function);
-  if (status == MPS_OK) status = return_volume(mpm, function);
   if (status == MPS_OK) status = find_changes(mpm, function);
   if (status == MPS_OK && mpm->partition) status = mpsi_pore_send_changes(mpm, function);
   if (status != MPS_OK) return status;

@@ -16,8 +16,8 @@ enum { MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2, MPSI_PORE_BOX = MPSI_SIDE + 2 * MP
 
 /* What forces and masses need of a particle. */
 typedef struct mpsi_pore_grain {
-  double x[3], V, m, change; /* change: Pa, of the pressure in the last step */
-  int64_t place;             /* as in mpsi_water */
+  double x[3], V, m;
+  int64_t place; /* as in mpsi_water */
 } mpsi_pore_grain;
 
 /* Arrays by nodes of the grid are vectors of the system: values of cells. On several ranks those
@@ -33,12 +33,10 @@ struct mpsi_pore_system {
   double (*conductance)[6]; /* m3/(s Pa), by cells: to those beside */
   double *diagonal, *scale; /* m3/Pa of storage and drained faces; root of space/V */
   double *change, *residual, *direction, *product; /* Pa; m3 */
-  double *past; /* Pa, change in the step before; of counted cells, first the sum of V times that */
-  double *inverse;    /* of the matrix's diagonal */
-  double *part;       /* of sums, by blocks */
-  double kept, added; /* what the particles' `change` becomes: kept change + added d */
-  int64_t iterations; /* of the last step */
-  mpsi_pore_rim *rim; /* on several ranks, else NULL */
+  double *inverse;                                 /* of the matrix's diagonal */
+  double *part;                                    /* of sums, by blocks */
+  int64_t iterations;                              /* of the last step */
+  mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
   mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
   mpsi_room conductance_room, vector_room, tile_room, part_room;
 };
@@ -81,7 +79,6 @@ static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, int64_t k) 
   return (mpsi_pore_grain){.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
                            .V = p->V[k],
                            .m = p->m[k],
-                           .change = p->change[k],
                            .place = mpm->water->place[k]};
 }
 

@@ -84,6 +84,17 @@ void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
          (size_t)(cells->end - cells->begin) * sizeof *mpm->p.V);
 }
 
+/* Each step takes dt^2 G^T m^-1 G d of the changes of volume for a motion to come (implicit.c).
+ * Flow makes up for it; without any it is missing for good. */
+static void warn_of_implicit(mps_mpm *mpm) {
+  mpsi_water *water = mpm->water;
+  if (water->warned || water->flows || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return;
+  water->warned = true;
+  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+           "implicit pressures of undrained ground are too even, beside bodies too low, by the "
+           "square of the step: take explicit ones");
+}
+
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status) {
   if (!mpm->water) return status;
   status = renew_layers(mpm, function, status);
@@ -91,6 +102,7 @@ mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status
   if (mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT)
     status = mpsi_pore_make_system(mpm, function, status);
   if (status != MPS_OK) return status;
+  warn_of_implicit(mpm);
   for (int c = 0; c < 3; c++)
     mpm->water->seepage[c] =
         c < mpm->grid.dim ? mpsi_particles_column(mpm->p.set, "seepage", c) : NULL;
@@ -108,15 +120,7 @@ static void find_speed(void *data, int64_t b, int32_t worker) {
   mpm->kernels->speed(&work);
 }
 
-void mpsi_pore_forget_changes(const mpsi_columns *p) {
-  double *const column[] = {p->change, p->ahead};
-  for (int c = 0; c < 2; c++)
-    if (column[c]) memset(column[c], 0, (size_t)p->count * sizeof(double));
-}
-
 void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme) {
-  mpsi_pore_forget_changes(&mpm->p);
-  mpm->water->owed = 0.0;
   mpm->water->def.scheme = scheme;
   mpsi_mpm_for_cells(mpm->context, &mpm->grid, &mpm->p, find_speed, mpm);
 }

@@ -13,7 +13,6 @@ typedef struct mpsi_pore_layers mpsi_pore_layers; /* layers.h */
 typedef struct mpsi_pore_system mpsi_pore_system; /* implicit.h */
 
 #define MPSI_PORE_FASTEST 1.0 /* m/s, of permeabilities */
-#define MPSI_PORE_AHEAD 1.3   /* times d in the forces of the next step (implicit.c) */
 
 /* What is beyond a face of a cell. */
 enum { MPSI_PORE_CELL, MPSI_PORE_CLOSED, MPSI_PORE_DRAINED };
@@ -60,7 +59,7 @@ enum {
 
 struct mpsi_water {
   mps_pore_water_def def;
-  bool flows;
+  bool flows, warned; /* warned: of steps of undrained ground with implicit pressures */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
@@ -72,8 +71,7 @@ struct mpsi_water {
   mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
   double *former;                     /* m3, volumes at the beginning of the step */
-  uint16_t *place; /* of each particle: its cell in the tile of its block, for implicit.c */
-  double owed; /* s2, of dt^2 G^T m^-1 G times the particles' `change`: volume owed (implicit.c) */
+  uint16_t *place;         /* of each particle: its cell in the tile of its block, for implicit.c */
   double *seepage[3];      /* of the set, or NULL */
   int64_t linked;          /* blocks of nodes for which `beside` was found, */
   int32_t (*linked_at)[3]; /* and where they were */
@@ -167,8 +165,6 @@ mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function);
 /* update.c: before the scatter of a step: room for its cells. On several ranks collective where the
  * blocks are others than in the last step; `status`: of the step so far on this rank. */
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status);
-/* update.c: no changes of pressures in the past, as before the first step. */
-void mpsi_pore_forget_changes(const mpsi_columns *p);
 /* update.c: how the pressures are advanced from now on, with the wave speeds of the blocks. */
 void mpsi_pore_set_scheme(mps_mpm *mpm, int32_t scheme);
 /* update.c: after a step whose values are numbers. Collective. */
