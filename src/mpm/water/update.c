@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#define MOST_LAG 300.0 /* steps by which implicit pressures may lag without a warning */
+
 /* ---- before ---------------------------------------------------------------------------------- */
 
 /* Of blocks of cells that have been laid out; those of other ranks come last. */
@@ -85,14 +87,21 @@ void mpsi_pore_keep_volumes(mps_mpm *mpm, int64_t b) {
 }
 
 /* Each step takes dt^2 G^T m^-1 G d of the changes of volume for a motion to come (implicit.c).
- * Flow makes up for it; without any it is missing for good. */
+ * Flow makes up for it, the later the less it is; without any it is missing for good. */
 static void warn_of_implicit(mps_mpm *mpm) {
   mpsi_water *water = mpm->water;
-  if (water->warned || water->flows || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return;
-  water->warned = true;
-  mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
-           "implicit pressures of undrained ground are too even, beside bodies too low, by the "
-           "square of the step: take explicit ones");
+  const double dt = mpm->run.dt, lag = dt * dt * water->lag; /* dt: of the step before */
+  if (water->warned || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return;
+  if (!water->flows)
+    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+             "implicit pressures of undrained ground are too even, beside bodies too low, by the "
+             "square of the step: take explicit ones");
+  else if (lag > MOST_LAG * dt)
+    mpsi_log(mpm->context, MPS_CONTEXT_LOG_WARNING,
+             "implicit pressures are too even, beside bodies too low, for some %.3g s after a "
+             "change, %.0f steps, where the ground is least permeable: take explicit ones",
+             lag, lag / dt);
+  water->warned = !water->flows || lag > MOST_LAG * dt;
 }
 
 mps_status mpsi_pore_begin(mps_mpm *mpm, const char *function, mps_status status) {

@@ -59,7 +59,8 @@ enum {
 
 struct mpsi_water {
   mps_pore_water_def def;
-  bool flows, warned; /* warned: of steps of undrained ground with implicit pressures */
+  bool flows, warned; /* warned: of the lag of implicit pressures */
+  double lag; /* 1/s, largest rho_w g/(k rho) at the start: pressures lag by dt^2 times that */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
   int64_t faces;
   mpsi_exact start; /* kg, of the measure; on several ranks, as the next two, of what this counts */
