@@ -41,8 +41,7 @@ static stage cyclic_stage(const settings *s, double share, int64_t steps) {
   return g;
 }
 
-/* To one side, then loops to the other and back, a quarter of the steps each way from the middle.
- */
+/* To one side, then loops to the other and back, a quarter of the steps for each half way. */
 int element_cyclic_path(const settings *s, stage *g) {
   const int64_t quarter = (s->steps + 3) / 4;
   int n = 0;

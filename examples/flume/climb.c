@@ -1,7 +1,7 @@
 /* climb.c - how the water climbs the structure of mps-flume: the head of the level before an
  * upright face over its crest, and the tongue on a slope; from their records the discharge of
- * events too low for particles, and run-up beside EurOtop's. SPDX-License-Identifier: BSD-3-Clause
- */
+ * events too low for particles, and run-up beside EurOtop's.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "flume.h"
 
 #include "common/tongue.h"

@@ -94,8 +94,7 @@ static inline mps_material_small_strain_def mps_material_small_strain_defaults(v
 MPS_API MPS_NODISCARD mps_status mps_material_create_small_strain(
     mps_context *context, const mps_material_small_strain_def *def, mps_material **out);
 
-/* ---- sand that contracts under cyclic shear ---------------------------------------------------
- */
+/* ---- sand that contracts under cyclic shear -------------------------------------------------- */
 
 /** Mohr-Coulomb sand (without softening) that contracts in every half cycle of shear of the
  *  amplitude g, engineering strain, by 1/2 C1 g exp(-C2 e/g), e the contraction before it (Byrne
