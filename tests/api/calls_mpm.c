@@ -211,6 +211,8 @@ API_GETTER(mpm_get_pore_water_sized, mps_mpm_get_pore_water_sized, API_MPM, mps_
            mps_pore_water_def)
 API_GETTER(mpm_get_pore_budget_sized, mps_mpm_get_pore_budget_sized, API_MPM, mps_mpm,
            mps_pore_budget)
+API_GETTER(mpm_get_pore_report_sized, mps_mpm_get_pore_report_sized, API_MPM, mps_mpm,
+           mps_pore_report)
 
 static void mpm_add_pore_water(api *a) {
   api_begin(a, "mps_mpm_add_pore_water");
@@ -443,6 +445,7 @@ static const api_call calls[] = {
     {"mps_mpm_set_pore_face", 1, API_MPM, mpm_set_pore_face},
     {"mps_mpm_get_pore_flow", 1, API_MPM, mpm_get_pore_flow},
     {"mps_mpm_get_pore_budget_sized", 1, API_MPM, mpm_get_pore_budget_sized},
+    {"mps_mpm_get_pore_report_sized", 1, API_MPM, mpm_get_pore_report_sized},
     {"mps_contact_def_init", 1, API_NOTHING, init_contact_def},
     {"mps_mpm_create", 8, API_MATERIAL, mpm_create},
     {"mps_mpm_kernel", 1, API_MPM, query_mpm_kernel},

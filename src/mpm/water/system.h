@@ -6,7 +6,8 @@
 
 #include "water.h"
 
-typedef struct mpsi_pore_rim mpsi_pore_rim; /* rim.h */
+typedef struct mpsi_pore_rim mpsi_pore_rim;       /* rim.h */
+typedef struct mpsi_pore_coarse mpsi_pore_coarse; /* solve/coarse.h */
 
 enum { MPSI_PORE_AROUND = 27, MPSI_PORE_SPAN = 4 }; /* blocks; nodes of a cell along each axis */
 enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
@@ -35,8 +36,9 @@ struct mpsi_pore_system {
   double *change, *residual, *direction, *product; /* Pa; m3 */
   double *inverse;                                 /* of the matrix's diagonal */
   double *part;                                    /* of sums, by blocks */
-  int64_t iterations;                              /* of the last step */
+  int64_t unknowns, iterations;                    /* of all ranks; of the last step */
   mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
+  mpsi_pore_coarse *coarse;                        /* NULL: before the first step */
   mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
   mpsi_room conductance_room, vector_room, tile_room, part_room;
 };
