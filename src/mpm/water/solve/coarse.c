@@ -1,7 +1,7 @@
 /* coarse.c - see coarse.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "coarse.h"
 
-#include "operator.h"
+#include "outside.h"
 #include "mpm/water/rim.h"
 
 #include <stdlib.h>
@@ -440,6 +440,7 @@ mps_status mpsi_pore_find_coarse(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   coarse_of *c = mpm->water->system->coarse;
   c->used = false;
+  if (mpsi_pore_solved_outside(mpm->water)) return MPS_OK;
   if (mpm->water->system->unknowns <
       LEAST_TILES * (mpm->grid.dim == 3 ? TILE * TILE * TILE : TILE * TILE))
     return MPS_OK;

@@ -9,8 +9,10 @@
 
 #include "coarse.h"
 #include "operator.h"
+#include "outside.h"
 
 #define TOLERANCE 1e-9 /* of the residual, over the right-hand side */
+#define ALLOWED 1.01   /* times that: of a solution from outside */
 enum { MOST_ITERATIONS = 5000 };
 typedef struct mpsi_pore_system system_of;
 
@@ -91,21 +93,42 @@ static mps_status iterate(mps_mpm *mpm, const char *function, double before, squ
   return status == MPS_OK ? renew(mpm, function, advance, now->all / along, now) : status;
 }
 
-mps_status mpsi_pore_find_changes(mps_mpm *mpm, const char *function) {
+/* The solution of the caller's solver, and whether it is one. */
+static mps_status ask_outside(mps_mpm *mpm, const char *function, double least, squares *now) {
+  double along;
+  mps_status status = mpsi_pore_solve_outside(mpm, function, TOLERANCE);
+  if (status == MPS_OK) status = mpsi_pore_apply(mpm, function, &along);
+  if (status == MPS_OK) status = renew(mpm, function, advance, 1.0, now);
+  if (status != MPS_OK || now->rest <= ALLOWED * ALLOWED * least) return status;
+  status = mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
+                     "step %lld: the pressures of the callback solve have a residual of %g, "
+                     "allowed is %g",
+                     (long long)mpm->run.steps, sqrt(now->rest), sqrt(least));
+  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+}
+
+static mps_status run_iterations(mps_mpm *mpm, const char *function, double least, squares *now) {
   system_of *s = mpm->water->system;
-  squares now;
   double before = 0.0; /* r.z of the iteration before */
+  mps_status status = MPS_OK;
+  for (s->iterations = 0; status == MPS_OK && (now->rest > least || !isfinite(now->rest));
+       s->iterations++) {
+    const double last = now->all;
+    if (s->iterations == MOST_ITERATIONS || !isfinite(now->rest))
+      return refuse(mpm, function, now->rest, least);
+    status = iterate(mpm, function, before, now);
+    before = last;
+  }
+  return status;
+}
+
+mps_status mpsi_pore_find_changes(mps_mpm *mpm, const char *function) {
+  squares now;
   mps_status status = mpsi_pore_find_coarse(mpm, function);
   if (status == MPS_OK) status = renew(mpm, function, start, 0.0, &now);
   if (status != MPS_OK) return status;
   const double least = TOLERANCE * TOLERANCE * now.rest;
-  for (s->iterations = 0; status == MPS_OK && (now.rest > least || !isfinite(now.rest));
-       s->iterations++) {
-    const double last = now.all;
-    if (s->iterations == MOST_ITERATIONS || !isfinite(now.rest))
-      return refuse(mpm, function, now.rest, least);
-    status = iterate(mpm, function, before, &now);
-    before = last;
-  }
-  return status;
+  if (mpsi_pore_solved_outside(mpm->water) && isfinite(now.rest))
+    return ask_outside(mpm, function, least, &now);
+  return run_iterations(mpm, function, least, &now);
 }

@@ -5,14 +5,6 @@
 
 typedef struct mpsi_pore_system system_of;
 
-void mpsi_pore_list_shifts(const mpsi_grid *grid, int *shift) {
-  for (int q = 0; q < mpsi_pore_span_nodes(grid); q++) {
-    int i[3];
-    mpsi_unravel(q, MPSI_PORE_SPAN, i);
-    shift[q] = (i[2] * MPSI_PORE_BOX + i[1]) * MPSI_PORE_BOX + i[0];
-  }
-}
-
 /* Velocities of nodes under the pressures `direction`, per dt, of a block of the grid or the rim.
  * Node k is number q of the cell that lies q places before the last of those in reach. */
 static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor) {

@@ -5,8 +5,6 @@
 
 #include "mpm/water/system.h"
 
-/* How far places q of a span lie from the first in a tile. */
-void mpsi_pore_list_shifts(const mpsi_grid *grid, int *shift);
 /* The matrix's diagonal at cell k of block g, an unknown that this rank counts, m3/Pa. */
 double mpsi_pore_diagonal_of(const mps_mpm *mpm, const mpsi_pore_system *s, int64_t g, int k,
                              const int *shift);
