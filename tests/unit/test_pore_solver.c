@@ -1,6 +1,6 @@
 /* test_pore_solver.c - the solution for implicit pore pressures: the coarse equation is that of the
- * matrix, iterations hardly grow with the number of cells, and the report.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * matrix, iterations hardly grow with the number of cells, a solver of the caller gives the same
+ * pressures, and the report. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
