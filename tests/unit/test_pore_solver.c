@@ -4,6 +4,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
+#include "conjugate.h"
 #include "mpm/base/mpm_solver.h"
 #include "mpm/water/solve/coarse.h"
 #include "mpm/water/solve/operator.h"
@@ -139,6 +140,147 @@ static void orders_by_longest_axis(void **state) {
   mpm_scene_end(&s);
 }
 
+/* ---- a solver of the caller ------------------------------------------------------------------ */
+
+typedef struct plug {
+  mps_mpm *mpm; /* to be stepped from within, where given */
+  int64_t rows, entries;
+  const int64_t *start;
+  const int32_t *column;
+  const double *value;
+  int matrices, solutions, forgotten;
+  double asymmetry, off; /* largest |a_ij - a_ji|, and distance of a diagonal from 1 */
+  double factor;         /* of the answer: 1 */
+  mps_status answer;
+} plug;
+
+static double entry(const plug *p, int64_t i, int64_t j) {
+  for (int64_t k = p->start[i]; k < p->start[i + 1]; k++)
+    if (p->column[k] == j) return p->value[k];
+  return 0.0;
+}
+
+static mps_status take_rows(void *user, int64_t all, int64_t first, int64_t rows,
+                            const int64_t *start, const int32_t *column, const double *value) {
+  plug *p = user;
+  assert_true(first == 0 && rows == all && start[0] == 0);
+  p->matrices++;
+  p->rows = rows, p->entries = start[rows];
+  p->start = start, p->column = column, p->value = value;
+  for (int64_t i = 0; i < rows; i++) {
+    p->off = fmax(p->off, fabs(entry(p, i, i) - 1.0));
+    for (int64_t k = start[i]; k < start[i + 1]; k++) {
+      assert_true(k == start[i] || column[k] > column[k - 1]);
+      p->asymmetry = fmax(p->asymmetry, fabs(value[k] - entry(p, column[k], i)));
+    }
+  }
+  return p->answer;
+}
+
+static mps_status times(const void *matrix, const double *x, double *y) {
+  const plug *p = matrix;
+  for (int64_t i = 0; i < p->rows; i++) {
+    y[i] = 0.0;
+    for (int64_t k = p->start[i]; k < p->start[i + 1]; k++) y[i] += p->value[k] * x[p->column[k]];
+  }
+  return MPS_OK;
+}
+
+static mps_status give_solution(void *user, const double *b, double tolerance, double *x,
+                                int64_t *iterations) {
+  plug *p = user;
+  p->solutions++;
+  if (p->mpm) assert_int_equal(mps_mpm_step(p->mpm, 1), MPS_ERROR_STATE);
+  const mps_status status = test_conjugate(p->rows, times, p, b, tolerance, x, iterations);
+  for (int64_t i = 0; i < p->rows; i++) x[i] *= p->factor;
+  return status;
+}
+
+static mps_status forget(void *user) {
+  ((plug *)user)->forgotten++;
+  return MPS_OK;
+}
+
+static mps_pore_solver_def solver_of(plug *p) {
+  mps_pore_solver_def def = mps_pore_solver_defaults();
+  def.user = p;
+  def.rows = take_rows, def.solve = give_solution, def.forget = forget;
+  return def;
+}
+
+/* The matrix given is symmetric with a diagonal of ones, and its solution that of the library. */
+static void compare_outside(int32_t geometry, int cells, double high) {
+  mpm_scene s[2] = {begin(geometry, cells, high, 200.0), begin(geometry, cells, high, 200.0)};
+  plug p = {.mpm = s[1].mpm, .factor = 1.0};
+  const mps_pore_solver_def def = solver_of(&p);
+  double worst = 0.0;
+  mps_assert_ok(context, mps_mpm_set_pore_solver(s[1].mpm, &def));
+  for (int k = 0; k < 2; k++) mps_assert_ok(context, mps_mpm_step(s[k].mpm, 3));
+  const mps_view u[2] = {mpm_scene_view(&s[0], "pore_pressure"),
+                         mpm_scene_view(&s[1], "pore_pressure")};
+  for (int64_t i = 0; i < u[0].shape[0]; i++)
+    worst = fmax(worst, fabs(*mps_view_f64(&u[1], i, 0) - *mps_view_f64(&u[0], i, 0)) / 1e3);
+  mps_pore_report report;
+  mps_assert_ok(context, mps_mpm_get_pore_report(s[1].mpm, &report));
+  print_message("%d rows, %.1f entries each, asymmetry %.1e; pressures differ by %.1e\n",
+                (int)p.rows, (double)p.entries / (double)p.rows, p.asymmetry, worst);
+  assert_true(p.matrices == 3 && p.solutions == 3 && report.iterations > 0);
+  assert_true(report.unknowns == p.rows && report.coarse == 0);
+  assert_true(p.asymmetry < 1e-14 && p.off < 1e-14);
+  assert_true(worst > 0.0 && worst < 1e-8);
+  for (int k = 0; k < 2; k++) mpm_scene_end(&s[k]);
+}
+
+static void takes_solver_of_caller(void **state) {
+  (void)state;
+  compare_outside(MPS_MPM_GEOMETRY_PLANE_STRAIN, 19, 13.3);
+  compare_outside(MPS_MPM_GEOMETRY_AXISYMMETRIC, 11, 13.3);
+  compare_outside(MPS_MPM_GEOMETRY_SPACE, 6, 9.3);
+}
+
+/* A wrong solution and an error of a callback fail the step; a small system is the library's. */
+static void refuses_wrong_solutions(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    mpm_scene s = begin(MPS_MPM_GEOMETRY_PLANE_STRAIN, 6, 5.3, 200.0);
+    plug p = {.factor = k == 0 ? 1.001 : 1.0, .answer = k == 1 ? MPS_ERROR_CANCELLED : MPS_OK};
+    mps_pore_solver_def def = solver_of(&p);
+    if (k == 2) def.least = 37;
+    mps_assert_ok(context, mps_mpm_set_pore_solver(s.mpm, &def));
+    const mps_status status = mps_mpm_step(s.mpm, 1);
+    assert_int_equal(status, k == 0 ? MPS_ERROR_NUMERIC : k == 1 ? MPS_ERROR_CANCELLED : MPS_OK);
+    assert_int_equal(p.matrices, k == 2 ? 0 : 1);
+    if (k == 0) assert_non_null(strstr(mps_context_error(context)->message, "callback solve"));
+    mpm_scene_end(&s);
+  }
+}
+
+static void solver_is_forgotten(void **state) {
+  (void)state;
+  mpm_scene s = begin(MPS_MPM_GEOMETRY_PLANE_STRAIN, 4, 4.0, 200.0);
+  plug p = {.factor = 1.0};
+  mps_pore_solver_def def = solver_of(&p);
+  mps_snapshot *then = NULL;
+  mps_assert_ok(context, mps_mpm_set_pore_solver(s.mpm, &def));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  assert_int_equal(p.forgotten, 0);
+  mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &then));
+  assert_int_equal(p.forgotten, 1);
+  mps_assert_ok(context, mps_mpm_rollback(s.mpm, then));
+  assert_int_equal(p.forgotten, 2);
+  mps_snapshot_destroy(&then);
+  def.solve = NULL;
+  assert_int_equal(mps_mpm_set_pore_solver(s.mpm, &def), MPS_ERROR_ARGUMENT);
+  def = solver_of(&p), def.least = -1;
+  assert_int_equal(mps_mpm_set_pore_solver(s.mpm, &def), MPS_ERROR_ARGUMENT);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* the former one is still there */
+  assert_int_equal(p.solutions, 2);
+  mps_assert_ok(context, mps_mpm_set_pore_solver(s.mpm, NULL));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  assert_int_equal(p.solutions, 2);
+  mpm_scene_end(&s);
+}
+
 /* ---- report ---------------------------------------------------------------------------------- */
 
 static void reports_errors(void **state) {
@@ -167,7 +309,9 @@ static void reports_errors(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(coarse_equation_is_of_matrix), cmocka_unit_test(iterations_hardly_grow),
-      cmocka_unit_test(orders_by_longest_axis), cmocka_unit_test(reports_errors)};
+      cmocka_unit_test(takes_solver_of_caller), cmocka_unit_test(refuses_wrong_solutions),
+      cmocka_unit_test(solver_is_forgotten),    cmocka_unit_test(coarse_equation_is_of_matrix),
+      cmocka_unit_test(iterations_hardly_grow), cmocka_unit_test(orders_by_longest_axis),
+      cmocka_unit_test(reports_errors)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
