@@ -63,6 +63,10 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("scheme", "explicit|implicit", &s->scheme,
                     "pressures in time: explicit, or by the solution of a system in each step, "
                     "which may then be longer; strip settles, where both are the same"),
+      OPTION_CHOICE("solver", "own|multigrid|direct", &s->solver,
+                    "of implicit pressures: the library's, the same bit for bit on all numbers of "
+                    "ranks, or to compare PETSc's algebraic multigrid or its direct solver, which "
+                    "agree within the tolerance"),
       OPTION_NUMBER("mass-damping", "1/s", OPTION_FROM_TO(0.0, 1e6), &s->damping,
                     "viscous; default half a wave velocity over H; strip none"),
       OPTION_HEADING("Run"),

@@ -14,7 +14,7 @@
 #include <mps/mpm.h>
 #include <mps/mpm_energy.h>
 #include <mps/mpm_settle.h>
-#include <mps/pore_water.h>
+#include <mps/pore_solver.h>
 
 /* What a rank calls functions of: a solver of each kind on one domain. */
 typedef struct subject {
@@ -83,6 +83,7 @@ CALL(mpm_add_pore_water, mps_mpm_add_pore_water(s->mpm, NULL))
 CALL(mpm_set_pore_level, mps_mpm_set_pore_level(s->mpm, low))
 CALL(mpm_add_pore_face, mps_mpm_add_pore_face(s->mpm, NULL, NULL))
 CALL(mpm_set_pore_face, mps_mpm_set_pore_face(s->mpm, 0, NULL))
+CALL(mpm_set_pore_solver, mps_mpm_set_pore_solver(s->mpm, NULL))
 CALL(mpm_get_pore_flow, mps_mpm_get_pore_flow(s->mpm, -1, NULL, NULL))
 CALL(mpm_get_pore_budget, mps_mpm_get_pore_budget(s->mpm, &(mps_pore_budget){0}))
 CALL(grid_get_nodes,
@@ -198,6 +199,7 @@ static const struct {
     ROW(mpm_set_pore_level),
     ROW(mpm_add_pore_face),
     ROW(mpm_set_pore_face),
+    ROW(mpm_set_pore_solver),
     ROW(mpm_get_pore_flow),
     ROW(mpm_get_pore_budget),
     ROW(grid_get_nodes),

@@ -37,7 +37,7 @@ typedef struct app {
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */
   int32_t rank;       /* rank 0 prints and writes; 0 of one process */
-  void *equations;    /* ranks_solve_elastic, ranks_solve_fluid */
+  void *equations;    /* ranks_solve_elastic, ..._fluid, ..._pore_water */
   bool agreed;        /* an error is known to all ranks */
   char line[700];     /* the error line of this rank */
 } app;

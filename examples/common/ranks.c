@@ -175,6 +175,23 @@ bool ranks_solve_fluid(mps_context *context, mps_fluid *fluid, int32_t method, v
   return status == MPS_OK;
 }
 
+typedef mps_status (*solve_pores_fn)(void *solver, mps_mpm *mpm, int64_t least);
+
+bool ranks_solve_pore_water(mps_context *context, mps_mpm *mpm, int32_t method, void **solver,
+                            char *why, size_t size) {
+  create_fn create = NULL;
+  solve_pores_fn solve = NULL;
+  if (!load("mps_petsc_solver_create_world", &create, why, size) ||
+      !load("mps_petsc_solve_pore_water", &solve, why, size))
+    return false;
+  mps_status status = *solver ? MPS_OK : create(context, method, solver);
+  if (status == MPS_OK) status = solve(*solver, mpm, 0);
+  if (status != MPS_OK)
+    snprintf(why, size, "PETSc's solver of the pore pressures cannot be had: %s",
+             reason(context, status));
+  return status == MPS_OK;
+}
+
 void ranks_drop_solver(void **solver) {
   destroy_fn destroy = NULL;
   char why[300];

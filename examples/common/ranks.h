@@ -8,6 +8,7 @@
 #include <mps/domain.h>
 #include <mps/elastic.h>
 #include <mps/fluid.h>
+#include <mps/mpm.h>
 
 #include <stdbool.h>
 
@@ -33,6 +34,9 @@ bool ranks_solve_elastic(mps_context *context, mps_elastic *elastic, void **solv
  * as above. Collective. */
 bool ranks_solve_fluid(mps_context *context, mps_fluid *fluid, int32_t method, void **solver,
                        char *why, size_t size);
+/* The same for the implicit pressures of the pore water of `mpm`. */
+bool ranks_solve_pore_water(mps_context *context, mps_mpm *mpm, int32_t method, void **solver,
+                            char *why, size_t size);
 void ranks_drop_solver(void **solver);
 /* Threads for this rank: the processors that it may use, divided by the number of ranks of its node
  * that may use the same ones. Collective. */

@@ -13,7 +13,7 @@ enum { EXPLICIT, IMPLICIT };
 enum { MOST_TIMES = 32, MOST_POINTS = 1024, MOST_CELLS = 256 };
 
 typedef struct settings {
-  int kase, scheme;
+  int kase, scheme, solver;
   int64_t threads;
   double cells;             /* along H; of the strip along B */
   double nu, young, load;   /* Pa; load: u0 */

@@ -8,6 +8,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "consolidation.h"
 
+#include "common/ranks.h"
+
 #include <mps/mpm_settle.h>
 #include <mps/soil.h>
 
@@ -85,6 +87,9 @@ const char *consolidation_settle(simulation *sim, const option *table) {
   if (s->cells != floor(s->cells)) return "--cells must be a whole number";
   unused = check_drain(s, table);
   if (unused) return unused;
+  if (s->solver != 0 && s->scheme != IMPLICIT)
+    return "--solver multigrid and direct are for --scheme implicit, whose pressures are solved "
+           "for";
   if (s->kase == MCC) {
     if (isnan(s->load)) s->load = s->initial;
     if (!(s->e0 - s->lambda * log(1.0 + s->load / s->initial) > 0.05))
@@ -212,6 +217,15 @@ static mps_status add_water(simulation *sim) {
   return mps_mpm_add_pore_water(sim->m.mpm, &water);
 }
 
+/* Choices of --solver after the first are those of mps_petsc_method. */
+static mps_status choose_solver(mps_context *context, simulation *sim) {
+  mpm_model *m = &sim->m;
+  if (sim->s.solver == 0 || ranks_solve_pore_water(context, m->mpm, sim->s.solver - 1,
+                                                   &m->a->equations, m->why, sizeof m->why))
+    return MPS_OK;
+  return MPS_ERROR_UNSUPPORTED;
+}
+
 static mps_status drain_surface(simulation *sim) {
   mps_pore_face_def face = mps_pore_face_defaults();
   face.kind = MPS_PORE_FACE_DRAINED;
@@ -307,6 +321,7 @@ static mps_status load_strip(simulation *sim) {
 
 static mps_status add_case(mps_context *context, simulation *sim) {
   mps_status status = add_water(sim);
+  if (status == MPS_OK) status = choose_solver(context, sim);
   if (status != MPS_OK) return status;
   if (sim->s.kase == STRIP) return load_strip(sim);
   if (sim->s.kase == MCC)

@@ -17,7 +17,7 @@
  *   grid.h        its grid: nodes, fields at points
  *   mpm_energy.h  where the energy of a run of WLS-MPM goes
  *   mpm_settle.h  static equilibrium of WLS-MPM
- *   pore_water.h  water in the pores of its ground
+ *   pore_water.h  water in the pores of its ground;  pore_solver.h  the solution for its pressures
  *   dynamics.h    explicit elastodynamics;  dynamics_limit.h  its stable step
  *   elastic.h     implicit elasticity;  elastic_motion.h  its motions, vibration;
  *                 elastic_solver.h  another solver of its equations
@@ -63,6 +63,7 @@
 #include "mpm_settle.h"
 #include "neighbours.h"
 #include "particles.h"
+#include "pore_solver.h"
 #include "pore_water.h"
 #include "signal.h"
 #include "soil.h"

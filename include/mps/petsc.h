@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "elastic_solver.h"
 #include "fluid_solver.h"
+#include "pore_solver.h"
 
 #define MPS_PETSC_API MPS_API
 
@@ -88,6 +89,14 @@ MPS_PETSC_API void mps_petsc_solver_destroy(mps_petsc_solver **solver);
  *  depend on the number of ranks within the tolerance. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver,
                                                              mps_fluid *fluid, int64_t least);
+
+/** Sets `solver` for the implicit pressures of the pore water of `mpm`, of at least `least` (>= 0)
+ *  cells, as mps_mpm_set_pore_solver; docs/pore-water.md compares it with the library's own. The
+ *  processes of the solver must be those of the domain of `mpm` in the same order, or its one
+ *  process (MPS_ERROR_ARGUMENT); results then depend on the number of ranks within the tolerance.
+ */
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_pore_water(mps_petsc_solver *solver,
+                                                                  mps_mpm *mpm, int64_t least);
 
 /** Sets `solver` for the equations of implicit elasticity, as mps_elastic_set_solver. With a solver
  *  of several processes these must be the ranks of the body's domain, in the same order

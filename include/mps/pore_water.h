@@ -17,6 +17,9 @@
  * `seepage` (m/s, q), written where the set has it. Water that leaves the ground takes its mass
  * from the particles, at their velocity.
  *
+ * Implicit pressures are solved for by conjugate gradients, or by a solver of the caller
+ * (mps/pore_solver.h).
+ *
  * A cell's face is impervious at sides of the domain and at bodies, and drained at the free surface
  * with the pressure 0, unless a face (mps_mpm_add_pore_face) says otherwise. Thin bodies do not
  * part the water of the cells that they cross.

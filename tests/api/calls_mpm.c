@@ -207,10 +207,13 @@ static void mpm_settle_sized(api *a) {
 
 API_INIT(pore_water_def)
 API_INIT(pore_face_def)
+API_INIT(pore_solver_def)
 API_GETTER(mpm_get_pore_water_sized, mps_mpm_get_pore_water_sized, API_MPM, mps_mpm,
            mps_pore_water_def)
 API_GETTER(mpm_get_pore_budget_sized, mps_mpm_get_pore_budget_sized, API_MPM, mps_mpm,
            mps_pore_budget)
+API_GETTER(mpm_get_pore_report_sized, mps_mpm_get_pore_report_sized, API_MPM, mps_mpm,
+           mps_pore_report)
 
 static void mpm_add_pore_water(api *a) {
   api_begin(a, "mps_mpm_add_pore_water");
@@ -257,6 +260,34 @@ static void mpm_set_pore_face(api *a) {
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
   const mps_pore_face_def def = draw_face(a);
   (void)api_end(a, mps_mpm_set_pore_face(mpm, number, &def));
+}
+
+/* A solver that does not solve. */
+static mps_status take_pore_rows(void *user, int64_t all, int64_t first, int64_t rows,
+                                 const int64_t *start, const int32_t *column, const double *value) {
+  (void)all, (void)first, (void)rows, (void)start, (void)column, (void)value;
+  return api_callback(user, NULL, 0);
+}
+static mps_status give_pore_start(void *user, const double *b, double tolerance, double *x,
+                                  int64_t *iterations) {
+  (void)b, (void)tolerance;
+  *iterations = 1;
+  return api_callback(user, x, 1);
+}
+static mps_status forget_pores(void *user) { return api_callback(user, NULL, 0); }
+
+static void mpm_set_pore_solver(api *a) {
+  api_begin(a, "mps_mpm_set_pore_solver");
+  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  mps_pore_solver_def def = mps_pore_solver_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.user = a;
+  def.rows = api_null(a, "rows") ? NULL : take_pore_rows;
+  def.solve = api_null(a, "solve") ? NULL : give_pore_start;
+  def.least = api_least(a, "least", 0, 40);
+  if (api_chance(a, 50)) def.forget = forget_pores;
+  const bool out = a->wrong == 0 && api_chance(a, 60);
+  (void)api_end(a, mps_mpm_set_pore_solver(mpm, out ? NULL : &def));
 }
 
 static void mpm_get_pore_flow(api *a) {
@@ -436,13 +467,16 @@ static const api_call calls[] = {
     {"mps_mpm_settle_def_init", 1, API_NOTHING, init_mpm_settle_def},
     {"mps_pore_water_def_init", 1, API_NOTHING, init_pore_water_def},
     {"mps_pore_face_def_init", 1, API_NOTHING, init_pore_face_def},
+    {"mps_pore_solver_def_init", 1, API_NOTHING, init_pore_solver_def},
     {"mps_mpm_add_pore_water", 2, API_MPM, mpm_add_pore_water},
     {"mps_mpm_get_pore_water_sized", 1, API_MPM, mpm_get_pore_water_sized},
     {"mps_mpm_set_pore_level", 1, API_MPM, mpm_set_pore_level},
     {"mps_mpm_add_pore_face", 2, API_MPM, mpm_add_pore_face},
     {"mps_mpm_set_pore_face", 1, API_MPM, mpm_set_pore_face},
+    {"mps_mpm_set_pore_solver", 1, API_MPM, mpm_set_pore_solver},
     {"mps_mpm_get_pore_flow", 1, API_MPM, mpm_get_pore_flow},
     {"mps_mpm_get_pore_budget_sized", 1, API_MPM, mpm_get_pore_budget_sized},
+    {"mps_mpm_get_pore_report_sized", 1, API_MPM, mpm_get_pore_report_sized},
     {"mps_contact_def_init", 1, API_NOTHING, init_contact_def},
     {"mps_mpm_create", 8, API_MATERIAL, mpm_create},
     {"mps_mpm_kernel", 1, API_MPM, query_mpm_kernel},

@@ -4,7 +4,7 @@
 #include "test_fixture.h"
 
 #include "conjugate.h"
-#include "fluid/pressure/envelope.h"
+#include "core/base/envelope.h"
 #include "fluid_tank.h"
 
 #include <mps/fluid_solver.h>

@@ -24,7 +24,7 @@
 #include <mps/mpm_settle.h>
 #include <mps/neighbours.h>
 #include <mps/particles.h>
-#include <mps/pore_water.h>
+#include <mps/pore_solver.h>
 #include <mps/signal.h>
 #include <mps/wave_loads.h>
 #include <mps/waves.h>
@@ -178,8 +178,11 @@ static mps_status use_mpm_settle(const void *def) {
   return status;
 }
 
-/* Of a solver with water where the definition is of faces. */
-static mps_status use_water(const void *def, bool faces) {
+/* What a definition of water is of. */
+typedef enum wet { WATER, FACES, SOLVER } wet;
+
+/* Of a solver with water where the definition is not that of the water itself. */
+static mps_status use_water(const void *def, wet what) {
   mps_particles *set = square();
   mps_material *material = NULL;
   mps_mpm_def solver = mps_mpm_defaults();
@@ -189,9 +192,10 @@ static mps_status use_water(const void *def, bool faces) {
   water.porosity = 0.4;
   mps_assert_ok(context, mps_material_create_linear_elastic(context, 1e7, 0.3, &material));
   mps_assert_ok(context, mps_mpm_create(context, set, material, &solver, &made));
-  if (faces) mps_assert_ok(context, mps_mpm_add_pore_water(made, &water));
-  const mps_status status =
-      faces ? mps_mpm_add_pore_face(made, def, NULL) : mps_mpm_add_pore_water(made, def);
+  if (what != WATER) mps_assert_ok(context, mps_mpm_add_pore_water(made, &water));
+  const mps_status status = what == WATER   ? mps_mpm_add_pore_water(made, def)
+                            : what == FACES ? mps_mpm_add_pore_face(made, def, NULL)
+                                            : mps_mpm_set_pore_solver(made, def);
   mps_mpm_destroy(&made);
   mps_material_destroy(&material);
   mps_particles_destroy(&set);
@@ -199,8 +203,9 @@ static mps_status use_water(const void *def, bool faces) {
 }
 
 static void need_pore_water(void *def) { ((mps_pore_water_def *)def)->porosity = 0.4; }
-static mps_status use_pore_water(const void *def) { return use_water(def, false); }
-static mps_status use_pore_face(const void *def) { return use_water(def, true); }
+static mps_status use_pore_water(const void *def) { return use_water(def, WATER); }
+static mps_status use_pore_face(const void *def) { return use_water(def, FACES); }
+static mps_status use_pore_solver(const void *def) { return use_water(def, SOLVER); }
 
 static mps_status use_dynamics(const void *def) {
   mps_particles *set = square();
@@ -660,6 +665,17 @@ static void need_elastic_solver(void *def) {
   d->matrix = no_elastic_matrix, d->solve = no_solution;
 }
 
+static mps_status no_pore_rows(void *user, int64_t all, int64_t first, int64_t rows,
+                               const int64_t *start, const int32_t *column, const double *value) {
+  (void)user, (void)all, (void)first, (void)rows, (void)start, (void)column, (void)value;
+  return MPS_OK;
+}
+
+static void need_pore_solver(void *def) {
+  mps_pore_solver_def *d = def;
+  d->rows = no_pore_rows, d->solve = no_solution;
+}
+
 static void need_fluid_solver(void *def) {
   mps_fluid_solver_def *d = def;
   d->matrix = no_matrix, d->solve = no_solution;
@@ -727,6 +743,7 @@ static const user users[] = {
     {"mps_mpm_def", need_mpm, use_mpm},
     {"mps_mpm_settle_def", need_nothing, use_mpm_settle},
     {"mps_pore_face_def", need_nothing, use_pore_face},
+    {"mps_pore_solver_def", need_pore_solver, use_pore_solver},
     {"mps_pore_water_def", need_pore_water, use_pore_water},
     {"mps_neighbours_def", need_neighbours, use_neighbours},
     {"mps_material_newtonian_def", need_newtonian, use_newtonian},

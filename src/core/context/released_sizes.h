@@ -54,6 +54,7 @@
   X(mps_overtopping_def, mps_overtopping_def_init, "0.3", 72) \
   X(mps_particles_def, mps_particles_def_init, "0.3", 40) \
   X(mps_pore_face_def, mps_pore_face_def_init, "0.3", 72) \
+  X(mps_pore_solver_def, mps_pore_solver_def_init, "0.3", 48) \
   X(mps_pore_water_def, mps_pore_water_def_init, "0.3", 56) \
   X(mps_recorder_def, mps_recorder_def_init, "0.3", 40) \
   X(mps_sainflou_def, mps_sainflou_def_init, "0.3", 48) \

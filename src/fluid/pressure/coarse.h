@@ -16,7 +16,7 @@
 #ifndef MPSI_FLUID_COARSE_H
 #define MPSI_FLUID_COARSE_H
 
-#include "envelope.h"
+#include "core/base/envelope.h"
 #include "fluid/base/flow_solver.h"
 
 /* Where an entry of A Z is in its block: the row from the block's first on, the column's slot. */

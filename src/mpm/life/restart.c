@@ -6,7 +6,7 @@
 #include "mpm/boundary/free_field.h"
 #include "mpm/particles/mpm_particles.h"
 #include "mpm/step/insertion.h"
-#include "mpm/water/water.h"
+#include "mpm/water/solve/outside.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -478,7 +478,10 @@ static mps_status make_whole(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_apply_edits(mpm, function);
   if (status != MPS_OK) return status;
   const mpsi_boundary_setup setup = mpsi_boundary_setup_of(mpm);
-  if (!mpm->run.broken) return mpsi_mpm_update_boundaries(&setup, function, MPS_OK);
+  if (!mpm->run.broken) {
+    status = mpsi_mpm_update_boundaries(&setup, function, MPS_OK);
+    return status == MPS_OK ? mpsi_pore_forget(mpm, function) : status;
+  }
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "step %lld has failed: there is no state to go on from",
                    (long long)mpm->run.steps);
@@ -499,6 +502,7 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
+  if (status == MPS_OK) status = mpsi_pore_forget(mpm, __func__);
   if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
   return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
 }
@@ -521,6 +525,7 @@ mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info)
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_mpm_between_steps(mpm->context, &mpm->run, __func__);
   const mpsi_state_of of = state_of(mpm);
+  if (status == MPS_OK) status = mpsi_pore_forget(mpm, __func__);
   if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
   return status == MPS_OK ? restore_dashpots(mpm, __func__) : status;
 }

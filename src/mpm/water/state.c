@@ -2,6 +2,8 @@
  * what snapshots and checkpoints keep besides the fields. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit.h"
 #include "layers.h"
+#include "solve/coarse.h"
+#include "solve/outside.h"
 #include "water.h"
 
 static mps_status refuse_particle(mps_context *context, const mpsi_columns *p, const char *function,
@@ -48,7 +50,9 @@ void mpsi_pore_free(mps_mpm *mpm) {
   mpsi_free(mpm->context, mpm->water->former_room.item);
   mpsi_free(mpm->context, mpm->water->place_room.item);
   mpsi_pore_free_layers(mpm->context, &mpm->water->layers);
+  if (mpm->water->system) mpsi_pore_free_coarse(mpm->context, &mpm->water->system->coarse);
   mpsi_pore_free_system(mpm->context, &mpm->water->system);
+  mpsi_pore_drop_solver(mpm->context, mpm->water);
   mpsi_free(mpm->context, mpm->water);
   mpm->water = NULL;
 }

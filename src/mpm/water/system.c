@@ -122,8 +122,7 @@ int64_t mpsi_pore_number(const mpsi_grid *grid, const system_of *s, int64_t g, i
   return cell < 0 ? -1 : grid->node_count * grid->block_nodes + cell;
 }
 
-/* The node or cell at `offset` from the first of block g, or -1. */
-static int64_t find_at(const mpsi_grid *grid, const system_of *s, int64_t g, const int *offset) {
+int64_t mpsi_pore_at(const mpsi_grid *grid, const system_of *s, int64_t g, const int *offset) {
   int block = 0, local = 0;
   for (int c = 2; c >= 0; c--) {
     const int place = c < grid->dim ? offset[c] : 0;
@@ -185,7 +184,7 @@ static void find_tile(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
     int offset[3];
     mpsi_unravel(t, MPSI_PORE_BOX, offset);
     for (int c = 0; c < 3; c++) offset[c] -= MPSI_PORE_BEFORE;
-    tile[t] = (int32_t)find_at(grid, s, g, offset);
+    tile[t] = (int32_t)mpsi_pore_at(grid, s, g, offset);
   }
 }
 

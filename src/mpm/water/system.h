@@ -6,7 +6,8 @@
 
 #include "water.h"
 
-typedef struct mpsi_pore_rim mpsi_pore_rim; /* rim.h */
+typedef struct mpsi_pore_rim mpsi_pore_rim;       /* rim.h */
+typedef struct mpsi_pore_coarse mpsi_pore_coarse; /* solve/coarse.h */
 
 enum { MPSI_PORE_AROUND = 27, MPSI_PORE_SPAN = 4 }; /* blocks; nodes of a cell along each axis */
 enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
@@ -35,8 +36,9 @@ struct mpsi_pore_system {
   double *change, *residual, *direction, *product; /* Pa; m3 */
   double *inverse;                                 /* of the matrix's diagonal */
   double *part;                                    /* of sums, by blocks */
-  int64_t iterations;                              /* of the last step */
+  int64_t unknowns, iterations;                    /* of all ranks; of the last step */
   mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
+  mpsi_pore_coarse *coarse;                        /* NULL: before the first step */
   mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
   mpsi_room conductance_room, vector_room, tile_room, part_room;
 };
@@ -48,6 +50,15 @@ static inline int mpsi_pore_box_places(const mpsi_grid *grid) {
 
 static inline int mpsi_pore_span_nodes(const mpsi_grid *grid) {
   return grid->dim == 3 ? MPSI_PORE_MOST_SPAN : MPSI_PORE_SPAN * MPSI_PORE_SPAN;
+}
+
+/* How far places q of a span lie from the first in a tile. */
+static inline void mpsi_pore_list_shifts(const mpsi_grid *grid, int *shift) {
+  for (int q = 0; q < mpsi_pore_span_nodes(grid); q++) {
+    int i[3];
+    mpsi_unravel(q, MPSI_PORE_SPAN, i);
+    shift[q] = (i[2] * MPSI_PORE_BOX + i[1]) * MPSI_PORE_BOX + i[0];
+  }
 }
 
 /* The place in a tile of what is `before` places before place k of the block along each axis. */
@@ -90,6 +101,9 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **system);
 /* Node or cell `local` of block g of the grid or, behind those, of the rim; -1 where the rim has
  * none. */
 int64_t mpsi_pore_number(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g, int local);
+/* The node or cell at `offset` from the first of block g, in that block or one around it; or -1. */
+int64_t mpsi_pore_at(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g,
+                     const int *offset);
 /* What is in reach of each block, once a step: iterations look nothing up. */
 void mpsi_pore_find_tiles(mps_mpm *mpm);
 

@@ -9,8 +9,9 @@
 
 #include <mps/pore_water.h>
 
-typedef struct mpsi_pore_layers mpsi_pore_layers; /* layers.h */
-typedef struct mpsi_pore_system mpsi_pore_system; /* implicit.h */
+typedef struct mpsi_pore_layers mpsi_pore_layers;   /* layers.h */
+typedef struct mpsi_pore_system mpsi_pore_system;   /* implicit.h */
+typedef struct mpsi_pore_outside mpsi_pore_outside; /* solve/outside.h */
 
 #define MPSI_PORE_FASTEST 1.0 /* m/s, of permeabilities */
 
@@ -77,8 +78,9 @@ struct mpsi_water {
   int64_t linked;          /* blocks of nodes for which `beside` was found, */
   int32_t (*linked_at)[3]; /* and where they were */
   mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, place_room, linked_room;
-  mpsi_pore_layers *layers; /* on several ranks, else NULL */
-  mpsi_pore_system *system; /* where pressures are implicit, else NULL */
+  mpsi_pore_layers *layers;   /* on several ranks, else NULL */
+  mpsi_pore_system *system;   /* where pressures are implicit, else NULL */
+  mpsi_pore_outside *outside; /* a solver of the caller for these, or NULL */
 };
 
 /* Number of the rank's own block of nodes at `at`, or -1: the list is in order. */

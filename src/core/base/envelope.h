@@ -1,10 +1,10 @@
 /* envelope.h - a small symmetric matrix in envelope storage, each row from its first entry to the
- * diagonal, and its factors L D L^T in the same place: the coarse equation of coarse.h.
+ * diagonal, and its factors L D L^T in the same place: the equation of a coarse space.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPSI_FLUID_ENVELOPE_H
-#define MPSI_FLUID_ENVELOPE_H
+#ifndef MPSI_ENVELOPE_H
+#define MPSI_ENVELOPE_H
 
-#include "core/base/room.h"
+#include "room.h"
 
 typedef struct mpsi_envelope {
   int64_t rows;

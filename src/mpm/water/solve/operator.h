@@ -1,0 +1,14 @@
+/* operator.h - the matrix of the pressures that are implicit in time (implicit.c), as a product
+ * with `direction`. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_WATER_SOLVE_OPERATOR_H
+#define MPSI_MPM_WATER_SOLVE_OPERATOR_H
+
+#include "mpm/water/system.h"
+
+/* The matrix's diagonal at cell k of block g, an unknown that this rank counts, m3/Pa. */
+double mpsi_pore_diagonal_of(const mps_mpm *mpm, const mpsi_pore_system *s, int64_t g, int k,
+                             const int *shift);
+/* `product`: the matrix times `direction`; `*along`: their product. Collective. */
+mps_status mpsi_pore_apply(mps_mpm *mpm, const char *function, double *along);
+
+#endif

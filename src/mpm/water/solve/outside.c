@@ -1,0 +1,292 @@
+/* outside.c - see outside.h. An entry of the matrix joins two cells with a node in reach of both,
+ * which are within three cells along each axis: sum over these nodes of dt^2 G_i m^-1 G_j. Rows and
+ * columns are divided by the roots of their diagonals: a solver that ends on the sum of squares of
+ * its residual then ends where the library's own does, on r.D^-1 r.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "outside.h"
+
+#include "mpm/water/rim.h"
+
+#include <string.h>
+
+enum { REACH = MPSI_PORE_SPAN - 1, SIDE = 2 * REACH + 1, MOST = SIDE * SIDE * SIDE };
+
+typedef struct mpsi_pore_system system_of;
+typedef struct mpsi_pore_outside outside_of;
+
+bool mpsi_pore_solved_outside(const mpsi_water *water) {
+  return water->outside && water->system->unknowns >= water->outside->def.least;
+}
+
+mps_status mpsi_pore_forget(mps_mpm *mpm, const char *function) {
+  const outside_of *o = mpm->water ? mpm->water->outside : NULL;
+  if (!o || !o->def.forget) return MPS_OK;
+  mpsi_guard_enter(&mpm->run.guard, mpm->context, "the callback forget of mps_mpm_set_pore_solver");
+  const mps_status status = o->def.forget(o->def.user);
+  return mpsi_guard_leave(&mpm->run.guard, mpm->context, function, status);
+}
+
+void mpsi_pore_drop_solver(mps_context *context, mpsi_water *water) {
+  outside_of *o = water->outside;
+  water->outside = NULL;
+  if (!o) return;
+  mpsi_free(context, o->start_room.item);
+  mpsi_free(context, o->column_room.item);
+  mpsi_free(context, o->value_room.item);
+  mpsi_free(context, o->vector_room.item);
+  mpsi_free(context, o);
+}
+
+/* ---- numbers of rows ------------------------------------------------------------------------- */
+
+/* Calls `task` with the unknowns that this rank counts, in order. */
+typedef void unknown_task(mps_mpm *mpm, int64_t cell, int64_t number);
+
+static int64_t for_unknowns(mps_mpm *mpm, unknown_task *task) {
+  const mpsi_grid *grid = &mpm->grid;
+  int64_t number = 0;
+  for (int64_t g = 0; g < grid->node_count; g++) {
+    const int64_t first = mpsi_first_node(grid, g);
+    for (int k = 0; mpsi_mpm_counts_node_block(grid, g) && k < grid->block_nodes; k++)
+      if (mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + first))
+        task(mpm, first + k, number++);
+  }
+  return number;
+}
+
+static void count(mps_mpm *mpm, int64_t cell, int64_t number) {
+  (void)mpm, (void)cell, (void)number;
+}
+
+/* The root of the reciprocal diagonal. */
+static void set_root(mps_mpm *mpm, int64_t cell, int64_t number) {
+  system_of *s = mpm->water->system;
+  (void)number;
+  s->direction[cell] = s->product[cell] = sqrt(s->inverse[cell]);
+}
+
+static void set_number(mps_mpm *mpm, int64_t cell, int64_t number) {
+  mpm->water->system->direction[cell] = (double)(mpm->water->outside->first + number);
+}
+
+static void set_right(mps_mpm *mpm, int64_t cell, int64_t number) {
+  const system_of *s = mpm->water->system;
+  outside_of *o = mpm->water->outside;
+  o->right[o->first + number] = s->residual[cell] * s->product[cell];
+  o->solution[o->first + number] = 0.0;
+}
+
+static void take_solution(mps_mpm *mpm, int64_t cell, int64_t number) {
+  system_of *s = mpm->water->system;
+  const outside_of *o = mpm->water->outside;
+  s->direction[cell] = o->solution[o->first + number] * s->product[cell];
+}
+
+/* This rank's rows among those of all. */
+static mps_status find_place(mps_mpm *mpm, const char *function) {
+  outside_of *o = mpm->water->outside;
+  mps_domain *domain = mpm->partition ? mpm->partition->domain : NULL;
+  o->rows = o->all = for_unknowns(mpm, count);
+  o->first = 0;
+  if (!domain) return MPS_OK;
+  const int32_t ranks = mps_domain_size(domain), rank = mps_domain_rank(domain);
+  int64_t *rows = mpsi_alloc(mpm->context, ranks, sizeof *rows);
+  mps_status status =
+      rows ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)ranks * sizeof *rows);
+  status = mpsi_domain_agree(domain, function, status);
+  if (status == MPS_OK) {
+    memset(rows, 0, (size_t)ranks * sizeof *rows);
+    rows[rank] = o->rows;
+    status = mpsi_domain_sum(domain, function, ranks, rows);
+  }
+  o->all = 0;
+  for (int32_t r = 0; status == MPS_OK && r < ranks; r++) {
+    if (r < rank) o->first += rows[r];
+    o->all += rows[r];
+  }
+  mpsi_free(mpm->context, rows);
+  return status;
+}
+
+/* `product`: roots of the reciprocal diagonals, `direction`: numbers of the rows, or -1; both in
+ * the rim too. */
+static mps_status send_numbers(mps_mpm *mpm, const char *function) {
+  system_of *s = mpm->water->system;
+  const int64_t own = mpm->grid.node_count * mpm->grid.block_nodes,
+                rim = s->rim ? s->rim->cells : 0;
+  mps_status status = MPS_OK;
+  for (int64_t k = 0; k < own; k++) s->direction[k] = 0.0;
+  (void)for_unknowns(mpm, set_root);
+  if (mpm->partition) status = mpsi_pore_send_direction(mpm, function);
+  if (status != MPS_OK) return status;
+  if (rim > 0) memcpy(s->product + own, s->direction + own, (size_t)rim * sizeof *s->product);
+  for (int64_t k = 0; k < own; k++) s->direction[k] = -1.0;
+  (void)for_unknowns(mpm, set_number);
+  return mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
+}
+
+/* ---- rows ------------------------------------------------------------------------------------ */
+
+static int box_cells(const mpsi_grid *grid) { return grid->dim == 3 ? MOST : SIDE * SIDE; }
+static int box_middle(const mpsi_grid *grid) { return box_cells(grid) / 2; }
+
+/* Cells within reach of cell k of block g; returns how many of these are unknowns. */
+static int find_box(const mpsi_grid *grid, const system_of *s, int64_t g, int k, int64_t *cell) {
+  int at[3], unknowns = 0;
+  mpsi_unravel(k, MPSI_SIDE, at);
+  for (int e = 0; e < box_cells(grid); e++) {
+    int offset[3];
+    mpsi_unravel(e, SIDE, offset);
+    for (int c = 0; c < 3; c++) offset[c] = c < grid->dim ? at[c] + offset[c] - REACH : 0;
+    cell[e] = mpsi_pore_at(grid, s, g, offset);
+    if (cell[e] >= 0 && !(s->direction[cell[e]] >= 0.0)) cell[e] = -1;
+    unknowns += cell[e] >= 0;
+  }
+  return unknowns;
+}
+
+/* dt^2 G^T m^-1 G, without the scale of the row's own cell. */
+static void add_node(const mpsi_grid *grid, const system_of *s, int64_t node, int q,
+                     const double *own, const int64_t *cell, double *value) {
+  static const int stride[3] = {1, SIDE, SIDE * SIDE};
+  const int nodes = mpsi_pore_span_nodes(grid);
+  int i[3];
+  mpsi_unravel(q, MPSI_PORE_SPAN, i);
+  for (int p = 0; p < nodes; p++) {
+    int j[3], e = 0;
+    double sum = 0.0;
+    mpsi_unravel(p, MPSI_PORE_SPAN, j);
+    for (int c = 0; c < grid->dim; c++) e += stride[c] * (i[c] - j[c] + REACH);
+    if (cell[e] < 0) continue;
+    const double *force = mpsi_pore_row(grid, s, cell[e]);
+    for (int c = 0; c < grid->dim; c++)
+      if (!(s->held[node] >> c & 1)) sum += own[c * nodes + q] * force[c * nodes + p];
+    value[e] += sum * s->scale[cell[e]] / s->mass[node];
+  }
+}
+
+/* The row of cell k of block g, by the cells of its box. */
+static void find_row(const mps_mpm *mpm, int64_t g, int k, const int *shift, const int64_t *cell,
+                     double *value) {
+  static const int stride[3] = {1, SIDE, SIDE * SIDE};
+  const mpsi_grid *grid = &mpm->grid;
+  const system_of *s = mpm->water->system;
+  const int middle = box_middle(grid);
+  const int64_t here = mpsi_first_node(grid, g) + k;
+  const double dt = mpm->run.dt, factor = dt * dt * s->scale[here] / grid->measure;
+  const int32_t *near = s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
+  memset(value, 0, (size_t)box_cells(grid) * sizeof *value);
+  for (int q = 0; q < mpsi_pore_span_nodes(grid); q++) {
+    const int64_t node = near[shift[q]];
+    if (node >= 0 && s->mass[node] > 0.0)
+      add_node(grid, s, node, q, mpsi_pore_row(grid, s, here), cell, value);
+  }
+  for (int e = 0; e < box_cells(grid); e++) value[e] *= factor;
+  value[middle] += s->diagonal[here];
+  for (int d = 0; d < 2 * grid->dim; d++) {
+    const double flow = dt * s->conductance[here][d];
+    value[middle] += flow;
+    value[middle + (d & 1 ? stride[d / 2] : -stride[d / 2])] -= flow;
+  }
+  for (int e = 0; e < box_cells(grid); e++)
+    if (cell[e] >= 0) value[e] *= s->product[here] * s->product[cell[e]];
+}
+
+static void count_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+  const outside_of *o = mpm->water->outside;
+  const int64_t first = mpsi_first_node(&mpm->grid, g);
+  int64_t cell[MOST];
+  (void)factor;
+  for (int k = 0; k < mpm->grid.block_nodes; k++)
+    if (mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + first))
+      o->start[(int64_t)s->direction[first + k] - o->first + 1] =
+          find_box(&mpm->grid, s, g, k, cell);
+}
+
+static void fill_rows(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+  const mpsi_grid *grid = &mpm->grid;
+  const outside_of *o = mpm->water->outside;
+  const int64_t first = mpsi_first_node(grid, g);
+  int shift[MPSI_PORE_MOST_SPAN];
+  int64_t cell[MOST];
+  double row[MOST];
+  (void)factor;
+  mpsi_pore_list_shifts(grid, shift);
+  for (int k = 0; k < grid->block_nodes; k++) {
+    if (!mpsi_pore_is_unknown(mpm->water, g, k, mpm->water->cell + first)) continue;
+    const int64_t from = o->start[(int64_t)s->direction[first + k] - o->first];
+    int64_t count = 0;
+    (void)find_box(grid, s, g, k, cell);
+    find_row(mpm, g, k, shift, cell, row);
+    for (int e = 0; e < box_cells(grid); e++) {
+      if (cell[e] < 0) continue;
+      const int32_t number = (int32_t)s->direction[cell[e]];
+      int64_t at = from + count++;
+      for (; at > from && o->column[at - 1] > number; at--)
+        o->column[at] = o->column[at - 1], o->value[at] = o->value[at - 1];
+      o->column[at] = number, o->value[at] = row[e];
+    }
+  }
+}
+
+static mps_status make_vectors(mps_mpm *mpm, const char *function) {
+  outside_of *o = mpm->water->outside;
+  if (!mpsi_room_ensure(mpm->context, &o->start_room, o->rows + 1, sizeof *o->start) ||
+      !mpsi_room_ensure(mpm->context, &o->vector_room, 2 * o->all, sizeof *o->right))
+    return mpsi_fail_memory(mpm->context, function, (size_t)o->all * 2 * sizeof *o->right);
+  o->start = o->start_room.item;
+  o->right = o->vector_room.item;
+  o->solution = o->right + o->all;
+  return MPS_OK;
+}
+
+static mps_status make_entries(mps_mpm *mpm, const char *function) {
+  outside_of *o = mpm->water->outside;
+  const int64_t entries = o->start[o->rows];
+  if (!mpsi_room_ensure(mpm->context, &o->column_room, entries, sizeof *o->column) ||
+      !mpsi_room_ensure(mpm->context, &o->value_room, entries, sizeof *o->value))
+    return mpsi_fail_memory(mpm->context, function, (size_t)entries * 12);
+  o->column = o->column_room.item;
+  o->value = o->value_room.item;
+  return MPS_OK;
+}
+
+static mps_status agree(mps_mpm *mpm, const char *function, mps_status status) {
+  return mpm->partition ? mpsi_domain_agree(mpm->partition->domain, function, status) : status;
+}
+
+static mps_status make_rows(mps_mpm *mpm, const char *function) {
+  outside_of *o = mpm->water->outside;
+  mps_status status = find_place(mpm, function);
+  if (status != MPS_OK) return status;
+  status = agree(mpm, function, make_vectors(mpm, function));
+  if (status == MPS_OK) status = send_numbers(mpm, function);
+  if (status != MPS_OK) return status;
+  o->start[0] = 0;
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, count_rows, 0.0);
+  for (int64_t k = 0; k < o->rows; k++) o->start[k + 1] += o->start[k];
+  status = agree(mpm, function, make_entries(mpm, function));
+  if (status == MPS_OK) mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, fill_rows, 0.0);
+  return status;
+}
+
+/* ---- solution -------------------------------------------------------------------------------- */
+
+mps_status mpsi_pore_solve_outside(mps_mpm *mpm, const char *function, double tolerance) {
+  outside_of *o = mpm->water->outside;
+  int64_t *iterations = &mpm->water->system->iterations;
+  mpsi_guard *guard = &mpm->run.guard;
+  mps_status status = make_rows(mpm, function);
+  if (status != MPS_OK) return status;
+  mpsi_guard_enter(guard, mpm->context, "the callback rows of mps_mpm_set_pore_solver");
+  status = o->def.rows(o->def.user, o->all, o->first, o->rows, o->start, o->column, o->value);
+  status = agree(mpm, function, mpsi_guard_leave(guard, mpm->context, function, status));
+  if (status != MPS_OK) return status;
+  (void)for_unknowns(mpm, set_right);
+  *iterations = 0;
+  mpsi_guard_enter(guard, mpm->context, "the callback solve of mps_mpm_set_pore_solver");
+  status = o->def.solve(o->def.user, o->right, tolerance, o->solution, iterations);
+  status = agree(mpm, function, mpsi_guard_leave(guard, mpm->context, function, status));
+  if (status == MPS_OK) (void)for_unknowns(mpm, take_solution);
+  return status;
+}
