@@ -86,7 +86,16 @@ static mps_status transfer(mps_mpm *mpm, const char *function, double dt) {
   mpsi_pass pass = mpsi_step_scatter_pass(mpm);
   pass.between = mpm->contact.bodies > 0 ? find_masses : NULL;
   pass.step = &step;
-  if (mpm->contact.cell_pair_count == 0) {
+  if (mpsi_pore_predicts(mpm)) {
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
+    if (mpm->contact.cell_pair_count == 0)
+      mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
+    else if (!solve_contacts(&step))
+      return step.status;
+    step.status = mpsi_step_predict(mpm, function);
+    if (step.status != MPS_OK) return step.status;
+    pass = (mpsi_pass){.data = mpm};
+  } else if (mpm->contact.cell_pair_count == 0) {
     mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
   } else if (can_solve_in_one_wave(&mpm->grid, &mpm->p, &mpm->contact)) {
     wait_for_constraints(&mpm->grid, &mpm->contact);

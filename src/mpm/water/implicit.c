@@ -44,7 +44,7 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
   const int nodes = mpsi_pore_span_nodes(grid);
   const int32_t *tile = s->tile + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
-  (void)factor;
+  const bool all = factor != 0.0;
   list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     const int64_t node = mpsi_pore_number(grid, s, g, k);
@@ -59,17 +59,18 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
       const double *force = mpsi_pore_row(grid, s, cell), d = s->scale[cell] * s->direction[cell];
       for (int c = 0; c < grid->dim; c++) v[c] += force[c * nodes + q] * d;
     }
-    for (int c = 0; c < grid->dim; c++) v[c] = s->held[node] >> c & 1 ? 0.0 : v[c] / s->mass[node];
+    for (int c = 0; c < grid->dim; c++)
+      v[c] = s->held[node] >> c & 1 && !all ? 0.0 : v[c] / s->mass[node];
   }
 }
 
-/* dt^2 G^T v of a cell, m3. */
+/* G^T v of a cell, m3/s; or of the matrix's diagonal. */
 static double squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int k, const int *shift,
                          bool diagonal) {
   const mpsi_grid *grid = &mpm->grid;
   const int nodes = mpsi_pore_span_nodes(grid);
   const int64_t cell = mpsi_first_node(grid, g) + k;
-  const double *force = mpsi_pore_row(grid, s, cell), dt = mpm->run.dt;
+  const double *force = mpsi_pore_row(grid, s, cell);
   double sum = 0.0;
   const int32_t *near = s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
   for (int q = 0; q < nodes; q++) {
@@ -83,7 +84,7 @@ static double squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int 
         sum += f * f * s->scale[cell] / s->mass[node];
     }
   }
-  return dt * dt * s->scale[cell] * sum / grid->measure;
+  return s->scale[cell] * sum / grid->measure;
 }
 
 /* The matrix times `direction`; their product to the sums. Cells that water flows to are in reach.
@@ -108,7 +109,7 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
       const int64_t beside = here[d & 1 ? stride[d / 2] : -stride[d / 2]];
       sum += mpm->run.dt * s->conductance[first + k][d] * (own - s->direction[beside]);
     }
-    sum += squeeze_of(mpm, s, g, k, shift, false);
+    sum += mpm->run.dt * mpm->run.dt * squeeze_of(mpm, s, g, k, shift, false);
     s->product[first + k] = sum;
     s->part[g] += own * sum;
   }
@@ -126,9 +127,11 @@ static void start(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   s->part[g] = 0.0;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (!mpsi_pore_is_unknown(mpm->water, g, k, cell)) continue;
-    double diagonal = s->diagonal[first + k] + squeeze_of(mpm, s, g, k, shift, true);
+    double diagonal = s->diagonal[first + k] + mpm->run.dt * mpm->run.dt * squeeze_of(mpm, s, g, k, shift, true);
     for (int d = 0; d < 2 * mpm->grid.dim; d++)
       diagonal += mpm->run.dt * s->conductance[first + k][d];
+    s->squeeze[first + k] = mpm->run.dt * squeeze_of(mpm, s, g, k, shift, false);
+    s->residual[first + k] -= s->squeeze[first + k];
     s->inverse[first + k] = 1.0 / diagonal;
     s->change[first + k] = 0.0;
     s->direction[first + k] = s->inverse[first + k] * s->residual[first + k];
@@ -168,6 +171,36 @@ static void take(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
       cell[k].now = cell[k].p + s->change[first + k];
 }
 
+/* What the corrected motion takes of the cells of a block, over their space. */
+static void find_squeeze(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+  const int64_t first = mpsi_first_node(&mpm->grid, g);
+  const mpsi_pore_cell *cell = mpm->water->cell + first;
+  const double dt = mpm->run.dt;
+  int shift[MPSI_PORE_MOST_SPAN];
+  (void)factor;
+  list_shifts(&mpm->grid, shift);
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    if (!mpsi_pore_is_unknown(mpm->water, g, k, cell)) continue;
+    const double own = s->squeeze[first + k] + dt * dt * squeeze_of(mpm, s, g, k, shift, false);
+    s->squeeze[first + k] = own / s->space[first + k];
+  }
+}
+
+/* Corrects the velocities of the nodes of a block. */
+static void correct(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
+  const mpsi_grid *grid = &mpm->grid;
+  const int64_t first = mpsi_first_node(grid, g);
+  const int32_t across = grid->nodes[g].across;
+  for (int k = 0; k < grid->block_nodes; k++) {
+    if (!(s->mass[first + k] > 0.0)) continue;
+    for (int c = 0; c < grid->dim; c++)
+      grid->node[first + k][MPSI_VECTOR + c] += factor * s->velocity[first + k][c];
+    double *other = across < 0 ? NULL : grid->node[mpsi_first_node(grid, across) + k];
+    for (int c = 0; c < grid->dim && other && other[MPSI_MASS] > 0.0; c++)
+      other[MPSI_VECTOR + c] += factor * s->velocity[first + k][c];
+  }
+}
+
 static mps_status refuse(mps_mpm *mpm, const char *function, double rest, double least) {
   const mps_status status =
       mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
@@ -205,13 +238,28 @@ static mps_status find_changes(mps_mpm *mpm, const char *function) {
   return status;
 }
 
+/* Velocities and volumes by the changes of the pressures that have been found. */
+static mps_status move_nodes(mps_mpm *mpm, const char *function) {
+  system_of *s = mpm->water->system;
+  memcpy(s->direction, s->change,
+         (size_t)(mpm->grid.node_count * mpm->grid.block_nodes) * sizeof *s->change);
+  mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
+  if (status != MPS_OK) return status;
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_squeeze, 0.0);
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_velocities, 1.0);
+  return MPS_OK;
+}
+
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function) {
   mpsi_pore_find_tiles(mpm);
   mps_status status = mpsi_pore_find_forces(mpm, function);
   if (status == MPS_OK) status = find_changes(mpm, function);
+  if (status == MPS_OK) status = move_nodes(mpm, function);
   if (status == MPS_OK && mpm->partition) status = mpsi_pore_send_changes(mpm, function);
   if (status != MPS_OK) return status;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COMPUTED, take, 0.0);
+  mpsi_pore_for_blocks(mpm, MPSI_PORE_COMPUTED, correct, mpm->run.dt);
   mpsi_pore_exchange(mpm, MPSI_PORE_NOW);
   return MPS_OK;
 }

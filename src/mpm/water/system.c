@@ -40,7 +40,7 @@ static void find_around(const mpsi_grid *grid, system_of *s) {
 }
 
 static mps_status make_room(mps_mpm *mpm, const char *function) {
-  enum { VECTORS = 7 };
+  enum { VECTORS = 9 };
   system_of *s = mpm->water->system;
   const int64_t blocks = mpm->grid.node_count, all = blocks + (s->rim ? s->rim->blocks : 0);
   const int64_t nodes = blocks * mpm->grid.block_nodes + (s->rim ? s->rim->cells : 0);
@@ -65,7 +65,8 @@ static mps_status make_room(mps_mpm *mpm, const char *function) {
   s->tile = s->tile_room.item;
   s->part = s->part_room.item;
   double **const vector[VECTORS] = {&s->diagonal,  &s->scale,   &s->change, &s->residual,
-                                    &s->direction, &s->product, &s->inverse};
+                                    &s->direction, &s->product, &s->inverse,
+                                    &s->squeeze,   &s->space};
   for (int k = 0; k < VECTORS; k++) *vector[k] = (double *)s->vector_room.item + k * nodes;
   return MPS_OK;
 }

@@ -34,6 +34,8 @@ struct mpsi_pore_system {
   double *diagonal, *scale; /* m3/Pa of storage and drained faces; root of space/V */
   double *change, *residual, *direction, *product; /* Pa; m3 */
   double *inverse;                                 /* of the matrix's diagonal */
+  double *space;   /* m3, that stores water */
+  double *squeeze; /* m3: what the predicted motion takes of a cell; then that over its space */
   double *part;                                    /* of sums, by blocks */
   int64_t iterations;                              /* of the last step */
   mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
