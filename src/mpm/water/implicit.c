@@ -16,6 +16,7 @@
  * them. SPDX-License-Identifier: BSD-3-Clause */
 #include "implicit.h"
 
+#include "contacts.h"
 #include "forces.h"
 #include "layers.h"
 #include "rim.h"
@@ -219,6 +220,7 @@ static mps_status iterate(mps_mpm *mpm, const char *function, double *rest) {
   mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
   if (status != MPS_OK) return status;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
+  mpsi_pore_hold_contacts(mpm);
   status = mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, &along);
   if (status == MPS_OK) status = mpsi_pore_sum_blocks(mpm, function, advance, before / along, rest);
   if (status == MPS_OK) mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, turn, *rest / before);
@@ -246,14 +248,16 @@ static mps_status move_nodes(mps_mpm *mpm, const char *function) {
   mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
   if (status != MPS_OK) return status;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
+  mpsi_pore_hold_contacts(mpm);
+  mpsi_pore_bear_contacts(mpm);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_squeeze, 0.0);
-  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_velocities, 1.0);
   return MPS_OK;
 }
 
 mps_status mpsi_pore_solve(mps_mpm *mpm, const char *function) {
   mpsi_pore_find_tiles(mpm);
   mps_status status = mpsi_pore_find_forces(mpm, function);
+  if (status == MPS_OK) status = mpsi_pore_find_contacts(mpm, function);
   if (status == MPS_OK) status = find_changes(mpm, function);
   if (status == MPS_OK) status = move_nodes(mpm, function);
   if (status == MPS_OK && mpm->partition) status = mpsi_pore_send_changes(mpm, function);

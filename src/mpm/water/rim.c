@@ -261,8 +261,8 @@ static void pack_grains(void *data, int64_t k, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[mpm->partition->border[k]];
   mpsi_pore_grain *out = (void *)((char *)rim->out_room.item + k * grain_bytes(rim));
   (void)number;
-  *out = (mpsi_pore_grain){.place = cells->end - cells->begin};
-  for (int64_t i = cells->begin; i < cells->end; i++) *++out = mpsi_pore_grain_of(mpm, i);
+  *out = (mpsi_pore_grain){.place = (int32_t)(cells->end - cells->begin)};
+  for (int64_t i = cells->begin; i < cells->end; i++) *++out = mpsi_pore_grain_of(mpm, cells, i);
 }
 
 void mpsi_pore_send_grains(mps_mpm *mpm) {

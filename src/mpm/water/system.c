@@ -1,6 +1,7 @@
 /* system.c - see system.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "system.h"
 
+#include "contacts.h"
 #include "rim.h"
 
 #include <string.h>
@@ -108,6 +109,7 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
   *pointer = NULL;
   if (!s) return;
   mpsi_pore_free_rim(context, &s->rim);
+  mpsi_pore_free_contacts(context, &s->contacts);
   const mpsi_room room[] = {s->around_room, s->mass_room,  s->velocity_room, s->held_room,
                             s->row_room,    s->force_room, s->vector_room,   s->conductance_room,
                             s->tile_room,   s->part_room};

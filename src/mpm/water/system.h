@@ -14,10 +14,30 @@ enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
 /* The box of nodes or cells in reach of a block's own: from BEFORE places before it on. */
 enum { MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2, MPSI_PORE_BOX = MPSI_SIDE + 2 * MPSI_PORE_BEFORE };
 
-/* What forces and masses need of a particle. */
+/* A contact that bears in the step: entries [first, first + nodes) of the lists of its nodes. */
+typedef struct mpsi_pore_contact {
+  double normal[3]; /* outward unit vector of the surface */
+  double yield;     /* kg: impulse per velocity that is taken away */
+  int64_t constraint; /* its number among those of the step */
+  int32_t first, nodes;
+  bool sticks; /* all components are held, else the normal one */
+} mpsi_pore_contact;
+
+typedef struct mpsi_pore_contacts {
+  mpsi_pore_contact *contact;
+  int32_t *node;       /* numbers in the system */
+  double (*weight)[3]; /* psi of each component, 0 where it is prescribed */
+  double *left;        /* by contacts and components: velocities, N s/kg */
+  int64_t count;
+  mpsi_room contact_room, node_room, weight_room, left_room, share_room;
+} mpsi_pore_contacts;
+
+/* What forces need of a particle. */
 typedef struct mpsi_pore_grain {
-  double x[3], V, m;
-  int64_t place; /* as in mpsi_water */
+  double x[3], V;
+  int32_t place;     /* as in mpsi_water */
+  bool fitted, light; /* a body or two sides cut its support: by `fit`; see mpsi_cell_block.light */
+  mpsi_kept_fit fit;
 } mpsi_pore_grain;
 
 /* Arrays by nodes of the grid are vectors of the system: values of cells. On several ranks those
@@ -38,6 +58,7 @@ struct mpsi_pore_system {
   double *squeeze; /* m3: what the predicted motion takes of a cell; then that over its space */
   double *part;                                    /* of sums, by blocks */
   int64_t iterations;                              /* of the last step */
+  mpsi_pore_contacts contacts;
   mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
   mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
   mpsi_room conductance_room, vector_room, tile_room, part_room;
@@ -75,13 +96,20 @@ static inline bool mpsi_pore_is_unknown(const mpsi_water *water, int64_t g, int 
   return mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin;
 }
 
-/* Particle k. */
-static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, int64_t k) {
+/* Particle k of a block of cells, after the scatter. */
+static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                 int64_t k) {
   const mpsi_columns *p = &mpm->p;
-  return (mpsi_pore_grain){.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
-                           .V = p->V[k],
-                           .m = p->m[k],
-                           .place = mpm->water->place[k]};
+  mpsi_pore_grain out = {
+      .x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
+      .V = p->V[k],
+      .place = mpm->water->place[k]};
+  for (int q = 0; q < 1 << mpm->grid.dim; q++)
+    out.light = out.light || mpm->grid.nodes[cells->to[q]].light;
+  const int64_t slot = cells->first_fit < 0 ? -1 : cells->first_fit + (k - cells->begin);
+  out.fitted = slot >= 0 && mpm->grid.fitted[slot] == MPSI_FITTED_CUT;
+  if (out.fitted) out.fit = mpm->grid.fit[slot];
+  return out;
 }
 
 /* Room for the present blocks. `status`: of the step so far on this rank; on several ranks
