@@ -1,134 +1,288 @@
-/* contacts.c - contacts with bodies in the operator of implicit pressures. Where the ground bears on
- * a body its velocity is that of the surface, whatever the pressures: with the rows C of the
- * contacts (psi n at their nodes, constraints.c) a correction m^-1 G d of the velocities is
- * projected,
+/* contacts.c - contacts with bodies in the operator of implicit pressures. Where the ground bears
+ * on a body its velocity is that of the surface, whatever the pressures. With the rows C of the
+ * contacts (psi n at their nodes, contact/constraints.c) a correction w = m^-1 G d of the velocities
+ * becomes
  *
- *   (1 - m^-1 C^T Y C) m^-1 G d,   Y = diag(1/sum over k of |C m^-1 C^T|_jk)
+ *   w - m^-1 C^T Y C w,   Y nearly (C m^-1 C^T)^-1
  *
- * Y is the inverse of C m^-1 C^T for a motion that neighbouring contacts share, and never more, so
- * that the operator stays symmetric and positive definite. A body that pushes the ground thus
- * raises the pressures at once; with contacts left out these lagged by as many steps as forces of
- * the water are stiffer than its storage. SPDX-License-Identifier: BSD-3-Clause */
+ * by symmetric Gauss-Seidel sweeps from zero, so that Y is symmetric and the operator stays positive
+ * definite. What bears the correction is added to the impulses of the contacts. Without this the
+ * pressure that a body raises comes as many steps late as the water's forces are stiffer than its
+ * storage; a motion that Y leaves opens and closes contacts in turn, and grows.
+ *
+ * On several ranks partners have the same contacts (contact/exchange.h) and sweep alike; each
+ * iteration takes the velocities of their nodes from the rank that counts these, as a sum of bits
+ * over all ranks to which one alone contributes. SPDX-License-Identifier: BSD-3-Clause */
 #include "contacts.h"
 
-#include "mpm/contact/exchange.h"
 #include "mpm/contact/pairs.h"
 
+#include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* Of what a sliding contact may bear, above which it slides. */
+/* Symmetric sweeps of an iteration. */
+enum { SWEEPS = 6 };
+/* A contact that bears this part of what it can in shear slides. */
 #define SLIDES 0.999999
 
-static bool does_stick(const mpsi_impulse *c) {
-  const double most = c->friction * c->normal_impulse + c->adhesion;
-  return most > 0.0 && mpsi_dot3(c->tangent_impulse, c->tangent_impulse) <
-                           SLIDES * SLIDES * most * most &&
-         c->strength == INFINITY;
+/* ---- nodes ----------------------------------------------------------------------------------- */
+
+/* Where a rank counts a node of contacts, as all ranks know it; bit c of `held`: component c is
+ * prescribed. */
+typedef struct known_node {
+  int32_t at[3], held;
+  int32_t slot;
+} known_node;
+
+enum { WORDS = 2 }; /* of a node in the sum that makes it known */
+
+static int by_place(const void *left, const void *right) {
+  return memcmp(((const known_node *)left)->at, ((const known_node *)right)->at,
+                sizeof(int32_t[3]));
+}
+
+/* The replica that a constraint's node is on several ranks. */
+static const mpsi_shared_node *shared_at(const double *value) {
+  return (const void *)((const char *)value - offsetof(mpsi_shared_node, value));
+}
+
+/* Number of a constraint's node in the list of all nodes of the step, -1 of one across a thin body. */
+static int64_t index_of(const mps_mpm *mpm, const double *value) {
+  if (mpm->partition) {
+    const mpsi_shared_node *shared = shared_at(value);
+    if (shared->kind != MPSI_SHARED_NODE) return -1;
+    return shared - (const mpsi_shared_node *)mpm->contact.exchange.shared.item;
+  }
+  const int64_t node = (const double(*)[4])value - (const double(*)[4])mpm->grid.node;
+  return node < mpm->grid.node_count * mpm->grid.block_nodes ? node : -1;
 }
 
 static bool make_room(mps_mpm *mpm, mpsi_pore_contacts *out) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   mps_context *context = mpm->context;
-  int64_t most = all->constraint_count * all->stride;
-  const int64_t nodes = mpm->grid.node_count * mpm->grid.block_nodes;
-  const bool good =
-      mpsi_room_ensure(context, &out->contact_room, all->constraint_count, sizeof *out->contact) &&
-      mpsi_room_ensure(context, &out->node_room, most, sizeof *out->node) &&
-      mpsi_room_ensure(context, &out->weight_room, most, sizeof *out->weight) &&
-      mpsi_room_ensure(context, &out->left_room, 3 * all->constraint_count, sizeof *out->left) &&
-      mpsi_room_ensure(context, &out->share_room, nodes, 3 * sizeof(double));
+  const int64_t count = all->constraint_count, most = count * all->stride;
+  out->indices = mpm->partition ? mpm->contact.exchange.nodes
+                                : mpm->grid.node_count * mpm->grid.block_nodes;
+  const bool good = mpsi_room_ensure(context, &out->contact_room, count, sizeof *out->contact) &&
+                    mpsi_room_ensure(context, &out->entry_room, most, sizeof *out->entry) &&
+                    mpsi_room_ensure(context, &out->node_room, most, sizeof *out->node) &&
+                    mpsi_room_ensure(context, &out->index_room, out->indices, sizeof *out->index);
   out->contact = out->contact_room.item;
+  out->entry = out->entry_room.item;
   out->node = out->node_room.item;
-  out->weight = out->weight_room.item;
-  out->left = out->left_room.item;
+  out->index = out->index_room.item;
   return good;
 }
 
-/* Component a of what the contact holds, along the axis or of the normal. */
-static double part_of(const mpsi_pore_contact *c, int a) {
-  return c->sticks ? 1.0 : fabs(c->normal[a]);
+/* The node of a constraint, made at its first use; -1: none. */
+static int32_t take_node(const mps_mpm *mpm, mpsi_pore_contacts *out, const double *value) {
+  const mpsi_pore_system *s = mpm->water->system;
+  const int64_t index = index_of(mpm, value);
+  if (index < 0 || out->index[index] >= 0) return index < 0 ? -1 : out->index[index];
+  mpsi_pore_contact_node *node = &out->node[out->nodes];
+  *node = (mpsi_pore_contact_node){.number = index, .slot = -1, .mass = value[MPSI_MASS]};
+  if (mpm->partition) {
+    memcpy(node->at, shared_at(value)->at, sizeof node->at);
+    node->number = mpsi_pore_node_at(&mpm->grid, s, node->at, &node->counted);
+  } else {
+    node->held = s->held[index];
+  }
+  return out->index[index] = (int32_t)out->nodes++;
 }
 
-static void add_contact(const mps_mpm *mpm, int64_t n, int32_t *entries, mpsi_pore_contacts *out) {
+/* ---- the contacts of a step ------------------------------------------------------------------ */
+
+static bool does_stick(const mpsi_impulse *c) {
+  const double most = SLIDES * (c->friction * c->normal_impulse + c->adhesion);
+  const double square = mpsi_dot3(c->tangent_impulse, c->tangent_impulse);
+  return square < most * most && square < SLIDES * c->strength * c->strength;
+}
+
+static void add_contact(const mps_mpm *mpm, int64_t n, mpsi_pore_contacts *out) {
   const mpsi_impulses *all = &mpm->contact.impulses;
-  const mpsi_pore_system *s = mpm->water->system;
   const mpsi_constraint *from = &all->constraint[n];
   const double *weight = all->weight[n * all->stride];
   mpsi_pore_contact *to = &out->contact[out->count++];
-  *to = (mpsi_pore_contact){.constraint = n, .first = *entries, .sticks = does_stick(&from->impulse)};
+  *to = (mpsi_pore_contact){
+      .constraint = n, .first = out->entries, .sticks = does_stick(&from->impulse)};
   memcpy(to->normal, from->impulse.normal, sizeof to->normal);
   for (int32_t i = 0; i < from->nodes; i++) {
-    const int64_t node = (double(*)[4])all->node[n * all->stride + i] - mpm->grid.node;
-    if (node >= mpm->grid.node_count * mpm->grid.block_nodes) continue; /* across a thin body */
-    out->node[*entries] = (int32_t)node;
+    mpsi_pore_contact_entry *entry = &out->entry[out->entries];
+    entry->node = take_node(mpm, out, all->node[n * all->stride + i]);
+    if (entry->node < 0) continue;
     for (int a = 0; a < 3; a++)
-      out->weight[*entries][a] = s->held[node] >> a & 1 ? 0.0
-                                 : from->even           ? weight[2 * i + 1]
-                                                        : weight[4 * i + MPSI_VECTOR + a];
-    to->nodes++;
-    ++*entries;
+      entry->psi[a] = from->even ? weight[2 * i + 1] : weight[4 * i + MPSI_VECTOR + a];
+    to->entries++, out->entries++;
   }
 }
 
-/* Y of all contacts. */
+/* Prescribed components do not move; then 1/m_c of each contact. */
 static void find_yields(const mps_mpm *mpm, mpsi_pore_contacts *all) {
-  const mpsi_pore_system *s = mpm->water->system;
-  double(*share)[3] = all->share_room.item;
-  for (int64_t k = 0; k < all->count; k++)
-    for (int32_t e = all->contact[k].first; e < all->contact[k].first + all->contact[k].nodes; e++)
-      memset(share[all->node[e]], 0, sizeof *share);
-  for (int64_t k = 0; k < all->count; k++)
-    for (int32_t e = all->contact[k].first; e < all->contact[k].first + all->contact[k].nodes; e++)
-      for (int a = 0; a < 3; a++)
-        share[all->node[e]][a] += part_of(&all->contact[k], a) * fabs(all->weight[e][a]);
   for (int64_t k = 0; k < all->count; k++) {
     mpsi_pore_contact *c = &all->contact[k];
-    double sum[3] = {0.0};
-    for (int32_t e = c->first; e < c->first + c->nodes; e++)
-      for (int a = 0; a < mpm->grid.dim; a++)
-        sum[a] += part_of(c, a) * fabs(all->weight[e][a]) * share[all->node[e]][a] /
-                  s->mass[all->node[e]];
-    const double most = c->sticks ? fmax(sum[0], fmax(sum[1], sum[2])) : sum[0] + sum[1] + sum[2];
-    c->yield = most > 0.0 ? 1.0 / most : 0.0;
+    double sum[3] = {0.0}, across = 0.0;
+    for (int64_t e = c->first; e < c->first + c->entries; e++) {
+      const mpsi_pore_contact_node *node = &all->node[all->entry[e].node];
+      for (int a = 0; a < 3; a++) {
+        double *psi = &all->entry[e].psi[a];
+        if (a >= mpm->grid.dim || node->held >> a & 1) *psi = 0.0;
+        sum[a] += *psi * *psi / node->mass;
+        across += *psi * *psi * c->normal[a] * c->normal[a] / node->mass;
+      }
+    }
+    for (int a = 0; a < 3; a++) {
+      const double yields = c->sticks ? sum[a] : across;
+      c->yield[a] = yields > 0.0 ? 1.0 / yields : 0.0;
+    }
   }
+}
+
+/* Sums over ranks of words to which one rank contributes. */
+static mps_status share(mps_mpm *mpm, const char *function, int64_t words, int64_t *word) {
+  return mpsi_domain_sum(mpm->partition->domain, function, (int32_t)words, word);
+}
+
+/* The nodes that all ranks count, each with its slot, in order of places. */
+static void list_known(const int64_t *word, int64_t known, known_node *out) {
+  for (int64_t k = 0; k < known; k++, word += WORDS)
+    out[k] = (known_node){.at = {(int32_t)(uint32_t)(word[0] & UINT32_MAX), (int32_t)(word[0] >> 32),
+                                 (int32_t)(uint32_t)(word[1] & UINT32_MAX)},
+                          .held = (int32_t)(word[1] >> 32),
+                          .slot = (int32_t)k};
+  qsort(out, (size_t)known, sizeof *out, by_place);
+}
+
+static int64_t pack(int64_t low, int64_t high) {
+  return (int64_t)((uint64_t)high << 32 | ((uint64_t)low & UINT32_MAX));
+}
+
+/* Gives the nodes of all ranks their slots: those that rank 0 counts first. Collective. */
+static mps_status find_slots(mps_mpm *mpm, const char *function, mpsi_pore_contacts *out) {
+  mps_domain *domain = mpm->partition->domain;
+  const mpsi_pore_system *s = mpm->water->system;
+  const int32_t ranks = mps_domain_size(domain), own = mps_domain_rank(domain);
+  int64_t first = 0;
+  bool good = mpsi_room_ensure(mpm->context, &out->word_room, ranks, sizeof(int64_t));
+  mps_status status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, 8);
+  status = mpsi_domain_agree(domain, function, status);
+  if (status != MPS_OK) return status;
+  int64_t *word = out->word_room.item;
+  memset(word, 0, (size_t)ranks * sizeof *word);
+  for (int64_t k = 0; k < out->nodes; k++) word[own] += out->node[k].counted;
+  status = share(mpm, function, ranks, word);
+  if (status != MPS_OK) return status;
+  out->slots = 0;
+  for (int32_t r = 0; r < ranks; r++) {
+    if (r < own) first += word[r];
+    out->slots += word[r];
+  }
+  good = mpsi_room_ensure(mpm->context, &out->word_room, 3 * out->slots, sizeof(int64_t)) &&
+         mpsi_room_ensure(mpm->context, &out->known_room, out->slots, sizeof(known_node));
+  status = good ? MPS_OK : mpsi_fail_memory(mpm->context, function, (size_t)out->slots * 24);
+  status = mpsi_domain_agree(domain, function, status);
+  if (status != MPS_OK) return status;
+  word = out->word_room.item;
+  memset(word, 0, (size_t)(WORDS * out->slots) * sizeof *word);
+  for (int64_t k = 0; k < out->nodes; k++) {
+    const mpsi_pore_contact_node *node = &out->node[k];
+    if (!node->counted) continue;
+    word[WORDS * first] = pack(node->at[0], node->at[1]);
+    word[WORDS * first++ + 1] = pack(node->at[2], s->held[node->number]);
+  }
+  status = share(mpm, function, WORDS * out->slots, word);
+  if (status != MPS_OK) return status;
+  known_node *known = out->known_room.item;
+  list_known(word, out->slots, known);
+  for (int64_t k = 0; k < out->nodes; k++) {
+    known_node like;
+    memcpy(like.at, out->node[k].at, sizeof like.at);
+    const known_node *found =
+        bsearch(&like, known, (size_t)out->slots, sizeof *known, by_place);
+    if (!found) continue; /* without particles: does not move */
+    out->node[k].slot = found->slot;
+    out->node[k].held = (uint8_t)found->held;
+  }
+  return MPS_OK;
 }
 
 mps_status mpsi_pore_find_contacts(mps_mpm *mpm, const char *function) {
   mpsi_pore_contacts *out = &mpm->water->system->contacts;
   const mpsi_impulses *all = &mpm->contact.impulses;
-  int32_t entries = 0;
-  out->count = 0;
-  if (mpm->contact.bodies == 0 || mpm->contact.cell_pair_count == 0 || all->constraint_count == 0)
-    return MPS_OK;
+  const bool any = mpm->contact.bodies > 0 &&
+                   (mpm->partition ? mpm->contact.exchange.constraints > 0
+                                   : mpm->contact.cell_pair_count > 0 && all->constraint_count > 0);
+  mps_status status = MPS_OK;
+  out->count = out->nodes = out->entries = out->slots = 0;
+  if (!any) return MPS_OK;
   if (!make_room(mpm, out))
-    return mpsi_fail_memory(mpm->context, function,
-                            (size_t)all->constraint_count * sizeof *out->contact);
+    status = mpsi_fail_memory(mpm->context, function,
+                              (size_t)all->constraint_count * sizeof *out->contact);
+  if (mpm->partition) status = mpsi_domain_agree(mpm->partition->domain, function, status);
+  if (status != MPS_OK) return status;
+  memset(out->index, -1, (size_t)out->indices * sizeof *out->index);
   for (int64_t n = 0; n < all->constraint_count; n++)
-    if (all->constraint[n].impulse.normal_impulse > 0.0) add_contact(mpm, n, &entries, out);
-  find_yields(mpm, out);
-  return MPS_OK;
+    if (all->constraint[n].impulse.normal_impulse > 0.0) add_contact(mpm, n, out);
+  if (mpm->partition) status = find_slots(mpm, function, out);
+  if (status == MPS_OK) find_yields(mpm, out);
+  return status;
 }
 
-void mpsi_pore_hold_contacts(mps_mpm *mpm) {
+/* ---- an iteration ---------------------------------------------------------------------------- */
+
+static mps_status take_velocities(mps_mpm *mpm, const char *function, mpsi_pore_contacts *all) {
+  const mpsi_pore_system *s = mpm->water->system;
+  if (!mpm->partition) {
+    for (int64_t k = 0; k < all->nodes; k++)
+      memcpy(all->node[k].v, s->velocity[all->node[k].number], sizeof all->node[k].v);
+    return MPS_OK;
+  }
+  int64_t *word = all->word_room.item;
+  memset(word, 0, (size_t)(3 * all->slots) * sizeof *word);
+  for (int64_t k = 0; k < all->nodes; k++)
+    if (all->node[k].counted)
+      memcpy(word + 3 * all->node[k].slot, s->velocity[all->node[k].number], 3 * sizeof *word);
+  const mps_status status = share(mpm, function, 3 * all->slots, word);
+  for (int64_t k = 0; k < all->nodes; k++) {
+    memset(all->node[k].v, 0, sizeof all->node[k].v);
+    if (all->node[k].slot >= 0)
+      memcpy(all->node[k].v, word + 3 * all->node[k].slot, 3 * sizeof *word);
+  }
+  return status;
+}
+
+/* One Gauss-Seidel update: the contact's own motion is taken away. */
+static void stop(mpsi_pore_contacts *all, mpsi_pore_contact *c) {
+  double v[3] = {0.0}, by[3];
+  for (int64_t e = c->first; e < c->first + c->entries; e++)
+    for (int a = 0; a < 3; a++) v[a] += all->entry[e].psi[a] * all->node[all->entry[e].node].v[a];
+  const double across = mpsi_dot3(v, c->normal);
+  for (int a = 0; a < 3; a++) {
+    by[a] = c->yield[a] * (c->sticks ? v[a] : across * c->normal[a]);
+    c->left[a] += by[a];
+  }
+  for (int64_t e = c->first; e < c->first + c->entries; e++) {
+    mpsi_pore_contact_node *node = &all->node[all->entry[e].node];
+    for (int a = 0; a < 3; a++) node->v[a] -= all->entry[e].psi[a] * by[a] / node->mass;
+  }
+}
+
+mps_status mpsi_pore_hold_contacts(mps_mpm *mpm, const char *function) {
   mpsi_pore_system *s = mpm->water->system;
-  const mpsi_pore_contacts *all = &s->contacts;
-  for (int64_t k = 0; k < all->count; k++) {
-    const mpsi_pore_contact *c = &all->contact[k];
-    double v[3] = {0.0};
-    for (int32_t e = c->first; e < c->first + c->nodes; e++)
-      for (int a = 0; a < mpm->grid.dim; a++)
-        v[a] += all->weight[e][a] * s->velocity[all->node[e]][a];
-    const double across = mpsi_dot3(v, c->normal);
-    for (int a = 0; a < 3; a++)
-      all->left[3 * k + a] = c->yield * (c->sticks ? v[a] : across * c->normal[a]);
+  mpsi_pore_contacts *all = &s->contacts;
+  if (mpm->partition ? all->slots == 0 : all->count == 0) return MPS_OK;
+  const mps_status status = take_velocities(mpm, function, all);
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < all->count; k++)
+    memset(all->contact[k].left, 0, sizeof all->contact[k].left);
+  for (int sweep = 0; sweep < SWEEPS; sweep++) {
+    for (int64_t k = 0; k < all->count; k++) stop(all, &all->contact[k]);
+    for (int64_t k = all->count - 1; k >= 0; k--) stop(all, &all->contact[k]);
   }
-  for (int64_t k = 0; k < all->count; k++) {
-    const mpsi_pore_contact *c = &all->contact[k];
-    for (int32_t e = c->first; e < c->first + c->nodes; e++)
-      for (int a = 0; a < mpm->grid.dim; a++)
-        s->velocity[all->node[e]][a] -=
-            all->weight[e][a] * all->left[3 * k + a] / s->mass[all->node[e]];
-  }
+  for (int64_t k = 0; k < all->nodes; k++)
+    if (all->node[k].number >= 0)
+      memcpy(s->velocity[all->node[k].number], all->node[k].v, sizeof all->node[k].v);
+  return MPS_OK;
 }
 
 void mpsi_pore_bear_contacts(mps_mpm *mpm) {
@@ -136,7 +290,7 @@ void mpsi_pore_bear_contacts(mps_mpm *mpm) {
   for (int64_t k = 0; k < all->count; k++) {
     mpsi_impulse *c = &mpm->contact.impulses.constraint[all->contact[k].constraint].impulse;
     double by[3];
-    for (int a = 0; a < 3; a++) by[a] = -mpm->run.dt * all->left[3 * k + a];
+    for (int a = 0; a < 3; a++) by[a] = -mpm->run.dt * all->contact[k].left[a];
     const double across = mpsi_dot3(by, c->normal);
     c->normal_impulse = fmax(0.0, c->normal_impulse + across);
     for (int a = 0; a < 3; a++) c->tangent_impulse[a] += by[a] - across * c->normal[a];
@@ -144,7 +298,7 @@ void mpsi_pore_bear_contacts(mps_mpm *mpm) {
 }
 
 void mpsi_pore_free_contacts(mps_context *context, mpsi_pore_contacts *contacts) {
-  const mpsi_room room[] = {contacts->contact_room, contacts->node_room, contacts->weight_room,
-                            contacts->left_room, contacts->share_room};
+  const mpsi_room room[] = {contacts->contact_room, contacts->entry_room, contacts->node_room,
+                            contacts->index_room,   contacts->word_room,  contacts->known_room};
   for (size_t k = 0; k < sizeof room / sizeof *room; k++) mpsi_free(context, room[k].item);
 }

@@ -10,148 +10,157 @@
 
 #include <string.h>
 
-/* A particle in its cell: along each axis, of the four nodes from the one below the cell on, the
- * derivatives (1/m) and weights that the gather takes for its strain: `along` a wall and `value` at
- * it (wall_support.h). Nodes beyond a mirror are added to their images, where velocities across it
- * have the other sign. */
-typedef struct shape {
-  double slope[3][MPSI_PORE_SPAN], along[3][MPSI_PORE_SPAN], value[3][MPSI_PORE_SPAN];
-  double odd[MPSI_PORE_SPAN]; /* value along x, of the velocity along x */
-  int cut;                    /* axes along which sides of the domain cut the stencil */
-} shape;
+/* A particle's stencil along each axis: its nodes from `base` on, the derivatives (1/m) and the
+ * weights that the gather takes for its strain, `along` a wall and `value` at it (wall_support.h).
+ * Places are those of its cell: a particle on a face keeps to the cell that it is summed in. */
+typedef struct stencil {
+  int64_t base[3];
+  double w[3][4], s[3][4]; /* weights, and distances of the nodes (cells) */
+  double slope[3][4], along[3][4], value[3][4];
+  int cut; /* axes along which sides of the domain cut it */
+} stencil;
 
-/* What a side makes of the weights w, of nodes that are s cells away, and their slopes. */
-static void fit_to_side(const double *s, double *w, double *slope, double *value) {
+/* What a side makes of weights and derivatives along its axis. */
+static void fit_to_side(const double *w, const double *s, double inverse, double *slope,
+                        double *along, double *value) {
   double M[3] = {0.0};
   for (int i = 0; i < 4; i++)
     for (int k = 0; k < 3; k++) M[k] += w[i] * (k == 0 ? 1.0 : k == 1 ? s[i] : s[i] * s[i]);
-  const double inverse = 1.0 / (M[0] * M[2] - M[1] * M[1]);
+  const double by = 1.0 / (M[0] * M[2] - M[1] * M[1]);
   for (int i = 0; i < 4; i++) {
-    value[i] = w[i] * (M[2] - M[1] * s[i]) * inverse;
-    slope[i] = w[i] * (M[0] * s[i] - M[1]) * inverse;
-    w[i] /= M[0];
+    value[i] = w[i] * (M[2] - M[1] * s[i]) * by;
+    slope[i] = w[i] * (M[0] * s[i] - M[1]) * by * inverse;
+    along[i] = w[i] / M[0];
   }
 }
 
-static void find_along(const mpsi_grid *grid, int c, double X, int64_t cell, shape *out) {
-  X = fmin(fmax(X, (double)cell), (double)cell + 1.0);
-  const int64_t lowest = (int64_t)mpsi_base(grid->spline, X);
-  const int64_t base = lowest < cell - 1 ? cell - 1 : lowest > cell ? cell : lowest;
-  double w[4], slope[4], value[4], s[4];
+static void find_along(const mpsi_grid *grid, int c, double X, stencil *out) {
+  double *w = out->w[c], *s = out->s[c], *slope = out->slope[c];
+  const int64_t base = (int64_t)mpsi_base(grid->spline, X);
   bool cut = false;
+  out->base[c] = base;
   mpsi_weights(grid->spline, X - (double)base, w);
   mpsi_slopes(grid->spline, X - (double)base, slope);
   for (int i = 0; i < 4; i++) {
     s[i] = (double)(base + i) - X;
-    if (i > grid->spline || (base + i >= grid->use_low[c] && base + i <= grid->use_high[c])) continue;
+    slope[i] *= grid->inverse;
+    if (i > grid->spline || (base + i >= grid->use_low[c] && base + i <= grid->use_high[c]))
+      continue;
     w[i] = slope[i] = 0.0;
     cut = true;
   }
-  memcpy(value, w, sizeof value);
-  if (cut && !grid->standard) fit_to_side(s, w, slope, value);
-  out->cut += cut && !grid->standard;
-  for (int i = 0; i <= grid->spline; i++) {
-    const int64_t node = base + i;
-    const bool below = node<grid->low[c], above = node> grid->high[c];
-    const int64_t to = below ? 2 * grid->low[c] - node : above ? 2 * grid->high[c] - node : node;
-    const int at = (int)(to - (cell - 1));
-    const double sign = below || above ? -1.0 : 1.0;
-    if (at < 0 || at >= MPSI_PORE_SPAN) continue;
-    out->slope[c][at] += sign * slope[i] * grid->inverse;
-    out->along[c][at] += w[i];
-    out->value[c][at] += value[i];
-    if (c == 0) out->odd[at] += sign * value[i];
-  }
+  memcpy(out->along[c], w, sizeof out->along[c]);
+  memcpy(out->value[c], w, sizeof out->value[c]);
+  if (!cut || grid->standard) return;
+  fit_to_side(w, s, grid->inverse, slope, out->along[c], out->value[c]);
+  out->cut++;
 }
-
-static shape find_shape(const mpsi_grid *grid, const double *x, const int64_t *cell) {
-  shape out = {.cut = 0};
-  if (grid->dim == 2) out.along[2][0] = out.value[2][0] = 1.0;
-  for (int c = 0; c < grid->dim; c++)
-    find_along(grid, c, mpsi_grid_at(grid, c, x[c]), cell[c], &out);
-  return out;
-}
-
-/* Adds to the forces of the particle's cell, at axes [dim][nodes]. */
-static void add_forces(const mpsi_grid *grid, const mpsi_pore_grain *particle, const shape *n,
-                       double *force) {
-  const int nodes = mpsi_pore_span_nodes(grid);
-  const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  const bool fits = n->cut > 1 || particle->light || grid->by_weight;
-  const double V = particle->V;
-  for (int q = 0; q < nodes; q++) {
-    int i[3];
-    mpsi_unravel(q, MPSI_PORE_SPAN, i);
-    double w[3];
-    for (int c = 0; c < 3; c++) w[c] = fits ? n->value[c][i[c]] : n->along[c][i[c]];
-    const double hoop = ring ? n->odd[i[0]] * n->value[1][i[1]] / particle->x[0] : 0.0;
-    force[q] += V * (n->slope[0][i[0]] * w[1] * w[2] + hoop);
-    force[nodes + q] += V * w[0] * n->slope[1][i[1]] * w[2];
-    if (grid->dim == 3) force[2 * nodes + q] += V * w[0] * w[1] * n->slope[2][i[2]];
-  }
-}
-
-/* The nodes of a stencil that are in use, as mpsi_kept_fit.active has them. */
-static uint64_t nodes_in_use(const mpsi_grid *grid, const int64_t *base) {
-  const int last = grid->spline, planes = grid->dim == 3 ? last : 0;
-  uint64_t out = 0;
-  for (int k = 0; k <= planes; k++)
-    for (int j = 0; j <= last; j++)
-      for (int i = 0; i <= last; i++) {
-        const int64_t at[3] = {base[0] + i, base[1] + j, base[2] + k};
-        bool in = true;
-        for (int c = 0; c < grid->dim; c++)
-          in = in && at[c] >= grid->use_low[c] && at[c] <= grid->use_high[c];
-        if (in) out |= UINT64_C(1) << (16 * k + 4 * j + i);
-      }
-  return out;
-}
-
-/* The stencil of a particle as the transfers have it. */
-typedef struct stencil {
-  int64_t base[3];
-  double w[3][4], s[3][4];
-} stencil;
 
 static stencil find_stencil(const mpsi_grid *grid, const double *x) {
-  stencil out = {.w[2][0] = 1.0};
-  for (int c = 0; c < grid->dim; c++) {
-    const double X = mpsi_grid_at(grid, c, x[c]), base = mpsi_base(grid->spline, X);
-    out.base[c] = (int64_t)base;
-    mpsi_weights(grid->spline, X - base, out.w[c]);
-    for (int i = 0; i < 4; i++) out.s[c][i] = (double)i - (X - base);
-  }
+  stencil out = {.cut = 0};
+  for (int c = 0; c < grid->dim; c++) find_along(grid, c, mpsi_grid_at(grid, c, x[c]), &out);
+  for (int c = grid->dim; c < 3; c++) out.w[c][0] = out.along[c][0] = out.value[c][0] = 1.0;
   return out;
 }
 
-/* As add_forces, of a particle whose support a body cuts: by the fit of the step. */
-static void add_fitted(const mpsi_grid *grid, const mpsi_pore_grain *particle, const stencil *at,
-                       const int64_t *cell, double *force) {
-  const int nodes = mpsi_pore_span_nodes(grid), dim = grid->dim;
+/* Number n = 16 k + 4 j + i of a stencil: its weights, its place, whether it is in use. */
+static bool find_node(const mpsi_grid *grid, const stencil *at, int n, int *i, int64_t *node) {
+  bool in = true;
+  i[0] = n % 4, i[1] = n / 4 % 4, i[2] = n / 16;
+  for (int c = 0; c < 3; c++) {
+    node[c] = at->base[c] + i[c];
+    in = in && i[c] <= (c < grid->dim ? grid->spline : 0);
+    if (c < grid->dim) in = in && node[c] >= grid->use_low[c] && node[c] <= grid->use_high[c];
+  }
+  return in;
+}
+
+/* The row of a cell: forces at axes [dim][nodes], m3/s that moving sides bring in as mirrors. */
+typedef struct row {
+  int64_t cell[3];
+  double *force, *carried;
+} row;
+
+/* Adds V grad phi of a node, which beyond a mirror is its image there (boundary/mirror.c). */
+static void add_node(const mps_mpm *mpm, const row *to, int64_t *node, double *gradient) {
+  const mpsi_grid *grid = &mpm->grid;
+  int place = 0;
+  for (int c = 0; c < grid->dim; c++) {
+    const bool above = node[c] > grid->high[c];
+    if (!above && node[c] >= grid->low[c]) continue;
+    const mpsi_boundary *side = &mpm->boundaries.hold[2 * c + above];
+    node[c] = 2 * (above ? grid->high[c] : grid->low[c]) - node[c];
+    for (int a = 0; a < grid->dim; a++) {
+      const bool turns = side->kind == MPS_BOUNDARY_HELD ||
+                         (a == c && side->kind != MPS_BOUNDARY_FREE_FIELD);
+      if (!turns) continue;
+      *to->carried += 2.0 * gradient[a] * side->v[a];
+      gradient[a] = -gradient[a];
+    }
+  }
+  for (int c = grid->dim - 1; c >= 0; c--) {
+    const int64_t at = node[c] - (to->cell[c] - 1);
+    if (at < 0 || at >= MPSI_PORE_SPAN) return;
+    place = MPSI_PORE_SPAN * place + (int)at;
+  }
+  for (int a = 0; a < grid->dim; a++)
+    to->force[a * mpsi_pore_span_nodes(grid) + place] += gradient[a];
+}
+
+/* By full supports, and such as sides cut. */
+static void add_forces(const mps_mpm *mpm, const mpsi_pore_grain *particle, const stencil *at,
+                       const row *to) {
+  const mpsi_grid *grid = &mpm->grid;
+  const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  const bool fits = at->cut > 1 || particle->light || grid->by_weight;
+  for (int n = 0; n < (grid->dim == 3 ? 64 : 16); n++) {
+    int i[3];
+    int64_t node[3];
+    double w[3], gradient[3];
+    if (!find_node(grid, at, n, i, node)) continue;
+    for (int c = 0; c < 3; c++) w[c] = fits ? at->value[c][i[c]] : at->along[c][i[c]];
+    for (int c = 0; c < grid->dim; c++)
+      gradient[c] = particle->V * at->slope[c][i[c]] * w[(c + 1) % 3] * w[(c + 2) % 3];
+    if (ring)
+      gradient[0] += particle->V * at->value[0][i[0]] * at->value[1][i[1]] / particle->x[0];
+    add_node(mpm, to, node, gradient);
+  }
+}
+
+/* By the fit of the step, of a particle whose support a body cuts. */
+static void add_fitted(const mps_mpm *mpm, const mpsi_pore_grain *particle, const stencil *at,
+                       const row *to) {
+  const mpsi_grid *grid = &mpm->grid;
+  const int dim = grid->dim;
   const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
   double q[4][4];
   for (int r = 0, n = 0; r <= dim; r++)
     for (int c = r; c <= dim; c++, n++) q[r][c] = q[c][r] = particle->fit.q[n];
   for (uint64_t left = particle->fit.active; left; left &= left - 1) {
-    const int n = __builtin_ctzll(left), i[3] = {n % 4, n / 4 % 4, n / 16};
-    double w = 1.0, by[4] = {0.0};
-    int place = 0;
-    bool in = true;
-    for (int c = 2; c >= 0; c--) {
-      const int64_t to = c < dim ? at->base[c] + i[c] - (cell[c] - 1) : 0;
-      in = in && to >= 0 && to < MPSI_PORE_SPAN;
-      place = MPSI_PORE_SPAN * place + (int)to;
-      w *= at->w[c][i[c]];
-    }
-    if (!in) continue;
+    int i[3];
+    int64_t node[3];
+    double by[4], gradient[3];
+    (void)find_node(grid, at, __builtin_ctzll(left), i, node);
+    const double w = particle->V * at->w[0][i[0]] * at->w[1][i[1]] * at->w[2][i[2]];
     for (int r = 0; r <= dim; r++) {
       by[r] = q[r][0];
       for (int c = 0; c < dim; c++) by[r] += q[r][1 + c] * at->s[c][i[c]];
     }
-    for (int c = 0; c < dim; c++)
-      force[c * nodes + place] += particle->V * w * by[1 + c] * grid->inverse;
-    if (ring) force[place] += particle->V * w * by[0] / particle->x[0];
+    for (int c = 0; c < dim; c++) gradient[c] = w * by[1 + c] * grid->inverse;
+    if (ring) gradient[0] += w * by[0] / particle->x[0];
+    add_node(mpm, to, node, gradient);
   }
+}
+
+/* Whether the nodes of the particle's fit are all that its stencil has: no body cuts it. */
+static bool uses_all(const mpsi_grid *grid, const mpsi_pore_grain *particle, const stencil *at) {
+  uint64_t all = 0;
+  for (int n = 0; n < (grid->dim == 3 ? 64 : 16); n++) {
+    int i[3];
+    int64_t node[3];
+    if (find_node(grid, at, n, i, node)) all |= UINT64_C(1) << n;
+  }
+  return all == particle->fit.active;
 }
 
 static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells,
@@ -159,22 +168,19 @@ static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells,
   const mpsi_grid *grid = &mpm->grid;
   mpsi_pore_system *s = mpm->water->system;
   int at[3];
-  int64_t cell[3] = {0};
-  mpsi_unravel((int)particle->place, MPSI_TILE_SIDE, at);
-  for (int c = 0; c < grid->dim; c++) cell[c] = (int64_t)cells->at[c] * MPSI_SIDE + at[c];
+  row to = {{0}, NULL, NULL};
+  mpsi_unravel(particle->place, MPSI_TILE_SIDE, at);
+  for (int c = 0; c < grid->dim; c++) to.cell[c] = (int64_t)cells->at[c] * MPSI_SIDE + at[c];
   const int32_t g = mpsi_block_under(cells, at[0], at[1], at[2]);
-  const int local = mpsi_local_under(at[0], at[1], at[2]);
   if (!mpsi_mpm_counts_node_block(grid, g)) return;
-  double *force = mpsi_pore_row(grid, s, mpsi_first_node(grid, g) + local);
-  if (particle->fitted) {
-    const stencil own = find_stencil(grid, particle->x);
-    if (particle->fit.active != nodes_in_use(grid, own.base)) {
-      add_fitted(grid, particle, &own, cell, force);
-      return;
-    }
-  }
-  const shape n = find_shape(grid, particle->x, cell);
-  add_forces(grid, particle, &n, force);
+  const int64_t cell = mpsi_first_node(grid, g) + mpsi_local_under(at[0], at[1], at[2]);
+  to.force = mpsi_pore_row(grid, s, cell);
+  to.carried = &s->carried[cell];
+  const stencil nodes = find_stencil(grid, particle->x);
+  if (particle->fitted && !uses_all(grid, particle, &nodes))
+    add_fitted(mpm, particle, &nodes, &to);
+  else
+    add_forces(mpm, particle, &nodes, &to);
 }
 
 static void add_particles(void *data, int64_t b, int32_t worker) {
@@ -235,6 +241,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
   for (int64_t g = 0; g < grid->node_count; g++)
     for (int k = 0; k < grid->block_nodes && mpsi_mpm_counts_node_block(grid, g); k++)
       if (mpsi_pore_marked(mpm->water->block[g].filled, k))
+        s->carried[mpsi_first_node(grid, g) + k] = 0.0,
         s->row[mpsi_first_node(grid, g) + k] = rows++;
   for (int64_t k = 0; s->rim && k < s->rim->cells; k++)
     s->row[grid->node_count * grid->block_nodes + k] = rows++;

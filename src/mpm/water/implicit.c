@@ -131,7 +131,9 @@ static void start(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
     double diagonal = s->diagonal[first + k] + mpm->run.dt * mpm->run.dt * squeeze_of(mpm, s, g, k, shift, true);
     for (int d = 0; d < 2 * mpm->grid.dim; d++)
       diagonal += mpm->run.dt * s->conductance[first + k][d];
-    s->squeeze[first + k] = mpm->run.dt * squeeze_of(mpm, s, g, k, shift, false);
+    const double carried = s->scale[first + k] * s->carried[first + k] / mpm->grid.measure;
+    s->squeeze[first + k] =
+        mpm->run.dt * (squeeze_of(mpm, s, g, k, shift, false) + carried);
     s->residual[first + k] -= s->squeeze[first + k];
     s->inverse[first + k] = 1.0 / diagonal;
     s->change[first + k] = 0.0;
@@ -220,8 +222,8 @@ static mps_status iterate(mps_mpm *mpm, const char *function, double *rest) {
   mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
   if (status != MPS_OK) return status;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
-  mpsi_pore_hold_contacts(mpm);
-  status = mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, &along);
+  status = mpsi_pore_hold_contacts(mpm, function);
+  if (status == MPS_OK) status = mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, &along);
   if (status == MPS_OK) status = mpsi_pore_sum_blocks(mpm, function, advance, before / along, rest);
   if (status == MPS_OK) mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, turn, *rest / before);
   return status;
@@ -248,7 +250,8 @@ static mps_status move_nodes(mps_mpm *mpm, const char *function) {
   mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
   if (status != MPS_OK) return status;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
-  mpsi_pore_hold_contacts(mpm);
+  status = mpsi_pore_hold_contacts(mpm, function);
+  if (status != MPS_OK) return status;
   mpsi_pore_bear_contacts(mpm);
   mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_squeeze, 0.0);
   return MPS_OK;

@@ -14,22 +14,37 @@ enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
 /* The box of nodes or cells in reach of a block's own: from BEFORE places before it on. */
 enum { MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2, MPSI_PORE_BOX = MPSI_SIDE + 2 * MPSI_PORE_BEFORE };
 
-/* A contact that bears in the step: entries [first, first + nodes) of the lists of its nodes. */
+/* A contact that bears in the step, with entries [first, first + entries) (contacts.c). */
 typedef struct mpsi_pore_contact {
   double normal[3]; /* outward unit vector of the surface */
-  double yield;     /* kg: impulse per velocity that is taken away */
-  int64_t constraint; /* its number among those of the step */
-  int32_t first, nodes;
+  double yield[3];  /* kg, 1 over the mobility of the ground's side, along the normal or each axis */
+  double left[3];   /* N s/kg, what it has taken of a correction */
+  int64_t constraint, first;
+  int32_t entries;
   bool sticks; /* all components are held, else the normal one */
 } mpsi_pore_contact;
 
+typedef struct mpsi_pore_contact_entry {
+  double psi[3]; /* of each component of the node's velocity, 0 where that is prescribed */
+  int32_t node;
+} mpsi_pore_contact_entry;
+
+typedef struct mpsi_pore_contact_node {
+  double mass, v[3]; /* kg; correction, m/s per s */
+  int64_t number;    /* in the system, -1: not of this rank */
+  int32_t at[3];     /* on several ranks: in the whole grid, in cells */
+  int32_t slot;      /* and its place in their sums, -1: none */
+  uint8_t held;      /* bit c: component c is prescribed */
+  bool counted;      /* by this rank */
+} mpsi_pore_contact_node;
+
 typedef struct mpsi_pore_contacts {
   mpsi_pore_contact *contact;
-  int32_t *node;       /* numbers in the system */
-  double (*weight)[3]; /* psi of each component, 0 where it is prescribed */
-  double *left;        /* by contacts and components: velocities, N s/kg */
-  int64_t count;
-  mpsi_room contact_room, node_room, weight_room, left_room, share_room;
+  mpsi_pore_contact_entry *entry;
+  mpsi_pore_contact_node *node;
+  int32_t *index; /* of the nodes of the grid, or of the replicas: number among `node`, or -1 */
+  int64_t count, entries, nodes, indices, slots;
+  mpsi_room contact_room, entry_room, node_room, index_room, word_room, known_room;
 } mpsi_pore_contacts;
 
 /* What forces need of a particle. */
@@ -55,6 +70,7 @@ struct mpsi_pore_system {
   double *change, *residual, *direction, *product; /* Pa; m3 */
   double *inverse;                                 /* of the matrix's diagonal */
   double *space;   /* m3, that stores water */
+  double *carried; /* m3/s, by cells: G^T v of the images of moving sides */
   double *squeeze; /* m3: what the predicted motion takes of a cell; then that over its space */
   double *part;                                    /* of sums, by blocks */
   int64_t iterations;                              /* of the last step */
@@ -120,6 +136,10 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **system);
 /* Node or cell `local` of block g of the grid or, behind those, of the rim; -1 where the rim has
  * none. */
 int64_t mpsi_pore_number(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g, int local);
+/* Number of the node at `at` (in the whole grid, in cells), -1: not known here; whether this rank
+ * counts it. */
+int64_t mpsi_pore_node_at(const mpsi_grid *grid, const mpsi_pore_system *s, const int32_t *at,
+                          bool *counted);
 /* What is in reach of each block, once a step: iterations look nothing up. */
 void mpsi_pore_find_tiles(mps_mpm *mpm);
 
