@@ -42,28 +42,35 @@ static int by_place(const void *left, const void *right) {
                 sizeof(int32_t[3]));
 }
 
-/* The replica that a constraint's node is on several ranks. */
-static const mpsi_shared_node *shared_at(const double *value) {
-  return (const void *)((const char *)value - offsetof(mpsi_shared_node, value));
-}
-
-/* Number of a constraint's node in the list of all nodes of the step, -1 of one across a thin body. */
-static int64_t index_of(const mps_mpm *mpm, const double *value) {
-  if (mpm->partition) {
-    const mpsi_shared_node *shared = shared_at(value);
+/* A node of a constraint: its number in the grid or, of a replica that has none there, behind those
+ * (contact/exchange.h); -1 of one across a thin body. `at`: its place in the whole grid, cells. */
+static int64_t index_of(const mps_mpm *mpm, int64_t n, const double *value, int32_t *at) {
+  const mpsi_grid *grid = &mpm->grid;
+  const int64_t nodes = grid->node_count * grid->block_nodes;
+  if (mpm->contact.impulses.constraint[n].pair < 0) {
+    const mpsi_shared_node *shared =
+        (const void *)((const char *)value - offsetof(mpsi_shared_node, value));
     if (shared->kind != MPSI_SHARED_NODE) return -1;
-    return shared - (const mpsi_shared_node *)mpm->contact.exchange.shared.item;
+    memcpy(at, shared->at, sizeof shared->at);
+    if (!shared->home)
+      return nodes + (shared - (const mpsi_shared_node *)mpm->contact.exchange.shared.item);
+    value = shared->home;
   }
-  const int64_t node = (const double(*)[4])value - (const double(*)[4])mpm->grid.node;
-  return node < mpm->grid.node_count * mpm->grid.block_nodes ? node : -1;
+  const int64_t node = (const double(*)[4])value - (const double(*)[4])grid->node;
+  if (node >= nodes) return -1;
+  int local[3];
+  mpsi_unravel((int)(node % grid->block_nodes), MPSI_SIDE, local);
+  for (int c = 0; c < 3; c++)
+    at[c] = grid->nodes[node / grid->block_nodes].at[c] * MPSI_SIDE + local[c];
+  return node;
 }
 
 static bool make_room(mps_mpm *mpm, mpsi_pore_contacts *out) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   mps_context *context = mpm->context;
   const int64_t count = all->constraint_count, most = count * all->stride;
-  out->indices = mpm->partition ? mpm->contact.exchange.nodes
-                                : mpm->grid.node_count * mpm->grid.block_nodes;
+  out->indices = mpm->grid.node_count * mpm->grid.block_nodes +
+                 (mpm->partition ? mpm->contact.exchange.nodes : 0);
   const bool good = mpsi_room_ensure(context, &out->contact_room, count, sizeof *out->contact) &&
                     mpsi_room_ensure(context, &out->entry_room, most, sizeof *out->entry) &&
                     mpsi_room_ensure(context, &out->node_room, most, sizeof *out->node) &&
@@ -75,19 +82,20 @@ static bool make_room(mps_mpm *mpm, mpsi_pore_contacts *out) {
   return good;
 }
 
-/* The node of a constraint, made at its first use; -1: none. */
-static int32_t take_node(const mps_mpm *mpm, mpsi_pore_contacts *out, const double *value) {
+/* Node `value` of constraint n, made at its first use; -1: none. */
+static int32_t take_node(const mps_mpm *mpm, mpsi_pore_contacts *out, int64_t n,
+                         const double *value) {
   const mpsi_pore_system *s = mpm->water->system;
-  const int64_t index = index_of(mpm, value);
+  int32_t at[3];
+  const int64_t index = index_of(mpm, n, value, at);
   if (index < 0 || out->index[index] >= 0) return index < 0 ? -1 : out->index[index];
   mpsi_pore_contact_node *node = &out->node[out->nodes];
-  *node = (mpsi_pore_contact_node){.number = index, .slot = -1, .mass = value[MPSI_MASS]};
-  if (mpm->partition) {
-    memcpy(node->at, shared_at(value)->at, sizeof node->at);
-    node->number = mpsi_pore_node_at(&mpm->grid, s, node->at, &node->counted);
-  } else {
+  *node = (mpsi_pore_contact_node){
+      .at = {at[0], at[1], at[2]}, .number = index, .slot = -1, .mass = value[MPSI_MASS]};
+  if (mpm->partition)
+    node->number = mpsi_pore_node_at(&mpm->grid, s, at, &node->counted);
+  else
     node->held = s->held[index];
-  }
   return out->index[index] = (int32_t)out->nodes++;
 }
 
@@ -109,7 +117,7 @@ static void add_contact(const mps_mpm *mpm, int64_t n, mpsi_pore_contacts *out) 
   memcpy(to->normal, from->impulse.normal, sizeof to->normal);
   for (int32_t i = 0; i < from->nodes; i++) {
     mpsi_pore_contact_entry *entry = &out->entry[out->entries];
-    entry->node = take_node(mpm, out, all->node[n * all->stride + i]);
+    entry->node = take_node(mpm, out, n, all->node[n * all->stride + i]);
     if (entry->node < 0) continue;
     for (int a = 0; a < 3; a++)
       entry->psi[a] = from->even ? weight[2 * i + 1] : weight[4 * i + MPSI_VECTOR + a];

@@ -45,7 +45,7 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
   const int nodes = mpsi_pore_span_nodes(grid);
   const int32_t *tile = s->tile + g * mpsi_pore_box_places(grid);
   int shift[MPSI_PORE_MOST_SPAN];
-  const bool all = factor != 0.0;
+  (void)factor;
   list_shifts(grid, shift);
   for (int k = 0; k < grid->block_nodes; k++) {
     const int64_t node = mpsi_pore_number(grid, s, g, k);
@@ -60,8 +60,7 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
       const double *force = mpsi_pore_row(grid, s, cell), d = s->scale[cell] * s->direction[cell];
       for (int c = 0; c < grid->dim; c++) v[c] += force[c * nodes + q] * d;
     }
-    for (int c = 0; c < grid->dim; c++)
-      v[c] = s->held[node] >> c & 1 && !all ? 0.0 : v[c] / s->mass[node];
+    for (int c = 0; c < grid->dim; c++) v[c] = s->held[node] >> c & 1 ? 0.0 : v[c] / s->mass[node];
   }
 }
 
@@ -195,7 +194,7 @@ static void correct(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   const int64_t first = mpsi_first_node(grid, g);
   const int32_t across = grid->nodes[g].across;
   for (int k = 0; k < grid->block_nodes; k++) {
-    if (!(s->mass[first + k] > 0.0)) continue;
+    if (!(grid->node[first + k][MPSI_MASS] > 0.0)) continue;
     for (int c = 0; c < grid->dim; c++)
       grid->node[first + k][MPSI_VECTOR + c] += factor * s->velocity[first + k][c];
     double *other = across < 0 ? NULL : grid->node[mpsi_first_node(grid, across) + k];
