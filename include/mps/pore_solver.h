@@ -63,9 +63,10 @@ static inline mps_pore_solver_def mps_pore_solver_defaults(void) {
 /** Sets a solver, between steps; `def` NULL: the library's own. The callbacks may query the solver
  *  of the ground, not step or destroy it. A status of a callback fails the step, as does a residual
  *  above the tolerance (MPS_ERROR_NUMERIC). The solver is part of no snapshot and no file, and
- *  is not called with explicit pressures. MPS_ERROR_ARGUMENT: a member of `def` missing or out of
- *  range; MPS_ERROR_STATE: no water, a step has failed, or a callback is running;
- *  MPS_ERROR_MEMORY. Collective. */
+ *  is not called with explicit pressures, nor in steps in which ground that water fills bears on a
+ *  body: contacts there are part of the matrix and join cells far apart. MPS_ERROR_ARGUMENT: a
+ * member of `def` missing or out of range; MPS_ERROR_STATE: no water, a step has failed, or a
+ * callback is running; MPS_ERROR_MEMORY. Collective. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_pore_solver(mps_mpm *mpm,
                                                          const mps_pore_solver_def *def);
 

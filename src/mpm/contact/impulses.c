@@ -156,6 +156,9 @@ void mpsi_mpm_apply_impulses(const mpsi_contact_stage *stage) {
     find_change(stage->contact, stage->partition, tolerance > 0.0);
     if (!(all->left > tolerance)) break;
   }
+}
+
+void mpsi_mpm_end_impulses(const mpsi_contact_stage *stage) {
   mpsi_mpm_mirror_constraints(stage);
   store_impulses(stage->contact, stage->dt);
 }

@@ -108,9 +108,11 @@ const mpsi_warm_impulse *mpsi_mpm_warm_impulse(const mpsi_contacts *contacts, in
 mpsi_bearing mpsi_mpm_bearing(const mpsi_grid *grid, const mpsi_columns *p,
                               const mps_contact *contact, int64_t particle, const double *x);
 void mpsi_mpm_forget_impulses(mpsi_contacts *contacts, int32_t body);
-/* impulses.c: sweeps over the constraints and adds their impulses to nodes and pairs; then, with
- * the final velocities of the nodes, the energy lost in the contacts. */
+/* impulses.c: sweeps over the constraints and adds their impulses to nodes; adds them to pairs, and
+ * keeps them for the next step; then, with the final velocities of the nodes, the energy lost in
+ * the contacts. */
 void mpsi_mpm_apply_impulses(const mpsi_contact_stage *stage);
+void mpsi_mpm_end_impulses(const mpsi_contact_stage *stage);
 void mpsi_mpm_find_impulse_loss(const mpsi_grid *grid, const mpsi_contacts *contacts,
                                 mpsi_energy *energy, const mpsi_kernels *kernels);
 void mpsi_mpm_free_impulses(mps_context *context, mpsi_contacts *contacts);

@@ -61,9 +61,16 @@ void mpsi_step_begin(mps_mpm *mpm, double dt) {
 static void gather(void *solver, int64_t b, int32_t worker) {
   mps_mpm *mpm = solver;
   const mpsi_transfer work = mpsi_transfer_of(mpm, b, worker);
-  if (mpm->undo.on) mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
+  if (mpm->undo.on && !mpsi_pore_predicts(mpm))
+    mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
   mpsi_pore_keep_volumes(mpm, b);
   mpm->kernels->g2p[mpm->grid.geometry][mpm->grid.spline - 2](&work);
+}
+
+mps_status mpsi_step_predict(mps_mpm *mpm, const char *function) {
+  for (int64_t b = 0; b < mpm->grid.cell_count && mpm->undo.on; b++)
+    mpsi_mpm_save_block(&mpm->grid, &mpm->p, &mpm->undo, b);
+  return mpsi_pore_predict(mpm, function);
 }
 
 mpsi_pass mpsi_step_scatter_pass(mps_mpm *mpm) {

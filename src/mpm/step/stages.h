@@ -20,6 +20,8 @@ mps_status mpsi_step_begin_sums(mps_mpm *mpm, const char *function);
 /* Sets the dt of the step; warns once of one that is too long for the Courant limit or for a
  * penalty contact. */
 void mpsi_step_begin(mps_mpm *mpm, double dt);
+/* Pressures of pore water that are implicit, and the velocities of nodes that they correct. */
+mps_status mpsi_step_predict(mps_mpm *mpm, const char *function);
 /* Particles to nodes in one process: clear, scatter, update. */
 mpsi_pass mpsi_step_scatter_pass(mps_mpm *mpm);
 /* Nodes to particles: adds finish and gather to the pass. */

@@ -58,8 +58,10 @@ static bool solve_contacts(void *data) {
       mpsi_mpm_check_depth(mpm->context, &mpm->p, &mpm->contact, &mpm->run, step->function);
   if (step->status != MPS_OK) return false;
   mpsi_mpm_apply_impulses(&stage);
+  step->status = mpsi_step_predict(mpm, step->function);
+  mpsi_mpm_end_impulses(&stage);
   mpsi_mpm_begin_boundaries(&mpm->boundaries, step->dt);
-  return true;
+  return step->status == MPS_OK;
 }
 
 /* One thread can scatter the blocks near bodies first, solve the contacts, and then go over all
@@ -86,9 +88,16 @@ static mps_status transfer(mps_mpm *mpm, const char *function, double dt) {
   mpsi_pass pass = mpsi_step_scatter_pass(mpm);
   pass.between = mpm->contact.bodies > 0 ? find_masses : NULL;
   pass.step = &step;
-  if (mpm->contact.cell_pair_count == 0) {
+  const bool contacts = mpm->contact.cell_pair_count > 0, predicts = mpsi_pore_predicts(mpm);
+  if (predicts && !contacts) {
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
     mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
-  } else if (can_solve_in_one_wave(&mpm->grid, &mpm->p, &mpm->contact)) {
+    step.status = mpsi_step_predict(mpm, function);
+    if (step.status != MPS_OK) return step.status;
+    pass = (mpsi_pass){.data = mpm};
+  } else if (!contacts) {
+    mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
+  } else if (!predicts && can_solve_in_one_wave(&mpm->grid, &mpm->p, &mpm->contact)) {
     wait_for_constraints(&mpm->grid, &mpm->contact);
     pass.between = solve_contacts;
   } else {

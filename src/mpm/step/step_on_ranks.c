@@ -57,8 +57,10 @@ static mps_status solve_contacts(mps_mpm *mpm, const char *function, double dt, 
   if (status != MPS_OK) return status;
   mpsi_mpm_apply_impulses(&stage);
   mpsi_mpm_end_contact_exchange(&mpm->contact);
+  status = mpsi_step_predict(mpm, function);
+  mpsi_mpm_end_impulses(&stage);
   mpsi_mpm_begin_boundaries(&mpm->boundaries, dt);
-  return MPS_OK;
+  return status;
 }
 
 /* P2G, contact and G2P. `status`: of the search for constraints on this rank, on which ranks agree
@@ -72,6 +74,12 @@ static mps_status transfer(mps_mpm *mpm, const char *function, double dt, mps_st
   if (mpm->contact.cell_pair_count > 0 || mpm->contact.bodies > 0) {
     mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
     status = solve_contacts(mpm, function, dt, status);
+    if (status != MPS_OK) return status;
+    pass = (mpsi_pass){.data = mpm};
+  } else if (mpsi_pore_predicts(mpm)) {
+    mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
+    mpsi_step_without_contact(&mpm->boundaries, &mpm->contact, dt);
+    status = mpsi_step_predict(mpm, function);
     if (status != MPS_OK) return status;
     pass = (mpsi_pass){.data = mpm};
   } else {

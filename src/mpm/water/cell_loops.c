@@ -58,11 +58,11 @@ typedef struct sums {
   double part[8][MPSI_COLUMN] MPSI_LINE;
 } sums;
 
-MPSI_INLINE void find_sums(const mpsi_columns *p, const double *former, const places *in, int dim,
+MPSI_INLINE void find_sums(const mpsi_columns *p, const double *expected, const places *in, int dim,
                            int64_t begin, int n, sums *out) {
   const double *V = p->V + begin, *u = p->u + begin, *porosity = p->n + begin;
   const double *g0 = p->g[0] + begin, *g1 = p->g[1] + begin, *g2 = dim == 3 ? p->g[2] + begin : g1;
-  const double *past = former + begin;
+  const double *past = expected + begin;
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double there = u[k] - (g0[k] * in->from[0][k] + g1[k] * in->from[1][k]);
     if (dim == 3) there -= g2[k] * in->from[2][k];
@@ -107,13 +107,15 @@ MPSI_INLINE void change_porosities(const mpsi_columns *p, const double *former, 
 MPSI_INLINE void sum_body(const mpsi_grid *grid, const mpsi_columns *p, mpsi_water *water,
                           const mpsi_cell_block *cells, const mpsi_worker *worker, int dim) {
   const region in = region_of(grid, cells);
+  const bool implicit = water->def.scheme == MPS_PORE_SCHEME_IMPLICIT;
+  const double *expected = implicit ? water->expected : water->former;
   places at;
   sums part;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     find_cells(grid, p, &in, dim, k, n, &at);
-    find_sums(p, water->former, &at, dim, k, n, &part);
-    for (int i = 0; water->system && i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
+    find_sums(p, expected, &at, dim, k, n, &part);
+    for (int i = 0; implicit && i < n; i++) water->place[k + i] = (uint16_t)at.at[i];
     add_sums(&at, n, &part, worker);
     if (water->flows) mpsi_pore_change_permeability(p, water, k, k + n);
     change_porosities(p, water->former, k, n);
@@ -131,11 +133,11 @@ void MPSI_LEVELLED(mpsi_pore_sum)(const mpsi_transfer *work) {
 
 /* What the particles of a chunk take from their cells. */
 typedef struct taken {
-  double p[MPSI_COLUMN] MPSI_LINE, g[3][MPSI_COLUMN], gain[MPSI_COLUMN];
+  double p[MPSI_COLUMN] MPSI_LINE, g[3][MPSI_COLUMN], gain[MPSI_COLUMN], more[MPSI_COLUMN];
 } taken;
 
 MPSI_INLINE void take_cells(const places *in, int n, const mpsi_worker *worker, bool flows,
-                            taken *out) {
+                            bool expecting, taken *out) {
   for (int k = 0; k < n; k += 4) {
     mpsi_quad a[4];
     MPSI_UNROLL for (int i = 0; i < 4; i++) a[i] =
@@ -145,6 +147,7 @@ MPSI_INLINE void take_cells(const places *in, int n, const mpsi_worker *worker, 
     MPSI_UNROLL for (int c = 0; c < 3; c++) mpsi_put(out->g[c] + k, a[1 + c]);
   }
   for (int k = 0; flows && k < n; k++) out->gain[k] = worker->force[in->at[k]][0];
+  for (int k = 0; expecting && k < n; k++) out->more[k] = worker->force[in->at[k]][1];
 }
 
 MPSI_INLINE void give_pressures(const mpsi_columns *p, const places *in, const taken *from, int dim,
@@ -166,14 +169,19 @@ MPSI_INLINE void give_body(const mpsi_transfer *work, int dim) {
   const mpsi_cell_block *cells = work->cells;
   const mpsi_grid *grid = work->grid;
   const region in = region_of(grid, cells);
-  const bool flows = work->water->flows;
+  const bool flows = work->water->flows, expecting = work->water->expecting;
   places at;
   taken from;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     find_cells(grid, p, &in, dim, k, n, &at);
-    take_cells(&at, n, work->worker, flows, &from);
+    take_cells(&at, n, work->worker, flows, expecting, &from);
     give_pressures(p, &at, &from, dim, k, n);
+    if (expecting) {
+      double *after = work->water->expected + k;
+      const double *V = p->V + k;
+      MPSI_SIMD for (int i = 0; i < n; i++) after[i] = V[i] * (1.0 + from.more[i]);
+    }
     if (flows) {
       double *m = p->m + k;
       const double *V = p->V + k;

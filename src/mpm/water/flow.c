@@ -331,6 +331,11 @@ void mpsi_pore_give_flow(const mpsi_transfer *work, int64_t begin, int64_t end) 
           -p->k[k] / weight * (p->g[c][k] - def->density * work->def->gravity[c]);
 }
 
+/* Part of its volume that the cell is expected to gain in the step: what its pressures know. */
+static double expected_of(const mpsi_water *water, const mpsi_pore_cell *cell) {
+  return cell->thin ? 0.0 : water->system->squeeze[cell - water->cell];
+}
+
 static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, const uint64_t *filled,
                      int local, int cells, mpsi_node *tile, mpsi_node *gain) {
   mpsi_water *water = work->water;
@@ -343,6 +348,7 @@ static void load_row(const mpsi_transfer *work, const mpsi_pore_cell *cell, cons
     tile[i][0] = centre;
     for (int c = 0; c < 3; c++) tile[i][1 + c] = cell[i].g[c];
     if (water->flows) gain[i][0] = amount * cell[i].gain / cell[i].volume;
+    if (water->expecting) gain[i][1] = expected_of(water, cell + i);
   }
 }
 
@@ -387,6 +393,7 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
                                     : space_of(mpsi_pore_edge_of(water, cell));
   const double storage = space * cell->n / water->def.bulk;
   s->scale[at] = sqrt(space / V);
+  s->space[at] = space;
   s->diagonal[at] = storage;
   for (int d = 0; d < 2 * mpm->grid.dim; d++) {
     s->conductance[at][d] = 0.0;
@@ -399,7 +406,7 @@ static void find_equation(mps_mpm *mpm, int64_t g, int k, const mpsi_pore_cell *
     else
       s->conductance[at][d] = f.conductance;
   }
-  s->residual[at] = dt * flux + storage * mpsi_pore_squeeze(water, cell);
+  s->residual[at] = dt * flux;
 }
 
 static void find_equations(void *data, int64_t g, int32_t worker) {
@@ -445,16 +452,50 @@ static mps_status find_implicit(mps_mpm *mpm, const char *function) {
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
-mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function) {
-  const mpsi_pass pressures = {.data = mpm, .finish = find_pressures};
+static void give(mps_mpm *mpm) {
   const mpsi_pass particles = {.data = mpm, .finish = find_slopes, .gather = give_to_particles};
-  mps_status status = MPS_OK;
-  if (mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT) {
-    status = find_implicit(mpm, function);
-  } else if (mpm->water->flows) {
+  mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &particles);
+}
+
+mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function) {
+  mpsi_water *water = mpm->water;
+  if (!water || water->def.scheme != MPS_PORE_SCHEME_IMPLICIT) return MPS_OK;
+  const size_t bytes = (size_t)mpm->p.count * sizeof *mpm->p.V;
+  memcpy(water->former, mpm->p.V, bytes);
+  memcpy(water->expected, mpm->p.V, bytes);
+  mpsi_pore_find_cells(mpm);
+  mpsi_pore_find_faces(mpm);
+  const mps_status status = find_implicit(mpm, function);
+  if (status != MPS_OK) return status;
+  water->expecting = true;
+  give(mpm);
+  water->expecting = false;
+  return MPS_OK;
+}
+
+/* Pressures after the motion: by what it has taken of the volumes besides what was expected. */
+static void find_rest(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
+  mpsi_water *water = mpm->water;
+  mpsi_pore_cell *cell = water->cell + mpsi_first_node(&mpm->grid, g);
+  (void)worker;
+  for (int w = 0; w < MPSI_PORE_WORDS; w++)
+    for (uint64_t left = water->block[g].filled[w]; left; left &= left - 1) {
+      const int k = 64 * w + mpsi_pore_lowest(left);
+      cell[k].gain = 0.0;
+      if (cell[k].thin)
+        squeeze(&mpm->grid, water, mpm->run.dt, g, &cell[k]);
+      else
+        cell[k].now = cell[k].p + mpsi_pore_squeeze(water, &cell[k]);
+    }
+}
+
+void mpsi_pore_flow(mps_mpm *mpm) {
+  const bool implicit = mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT;
+  const mpsi_pass pressures = {.data = mpm, .finish = implicit ? find_rest : find_pressures};
+  if (mpm->water->flows) {
     mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pressures);
     mpsi_pore_exchange(mpm, MPSI_PORE_NOW);
   }
-  if (status == MPS_OK) mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &particles);
-  return status;
+  give(mpm);
 }

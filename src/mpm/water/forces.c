@@ -5,102 +5,181 @@
  * have the bits of one process. SPDX-License-Identifier: BSD-3-Clause */
 #include "forces.h"
 
-#include "mpm/base/shape.h"
+#include "mpm/base/kernels.h"
 #include "rim.h"
 
 #include <string.h>
 
-static void clear_masses(void *data, int64_t g, int32_t worker) {
-  mps_mpm *mpm = data;
-  mpsi_pore_system *s = mpm->water->system;
-  const int64_t first = mpsi_first_node(&mpm->grid, g);
-  (void)worker;
-  memset(s->mass + first, 0, (size_t)mpm->grid.block_nodes * sizeof *s->mass);
+/* A particle's stencil along each axis: its nodes from `base` on, the derivatives (1/m) and the
+ * weights that the gather takes for its strain, `along` a wall and `value` at it (wall_support.h).
+ * Places are those of its cell: a particle on a face keeps to the cell that it is summed in. */
+typedef struct stencil {
+  int64_t base[3];
+  double w[3][4], s[3][4]; /* weights, and distances of the nodes (cells) */
+  double slope[3][4], along[3][4], value[3][4];
+  int cut; /* axes along which sides of the domain cut it */
+} stencil;
+
+/* What a side makes of weights and derivatives along its axis. */
+static void fit_to_side(const double *w, const double *s, double inverse, double *slope,
+                        double *along, double *value) {
+  double M[3] = {0.0};
+  for (int i = 0; i < 4; i++)
+    for (int k = 0; k < 3; k++) M[k] += w[i] * (k == 0 ? 1.0 : k == 1 ? s[i] : s[i] * s[i]);
+  const double by = 1.0 / (M[0] * M[2] - M[1] * M[1]);
+  for (int i = 0; i < 4; i++) {
+    value[i] = w[i] * (M[2] - M[1] * s[i]) * by;
+    slope[i] = w[i] * (M[0] * s[i] - M[1]) * by * inverse;
+    along[i] = w[i] / M[0];
+  }
 }
 
-/* A particle in its cell: along each axis weights and slopes of the four nodes from the one below
- * the cell on, those beyond a side of the domain added to their mirror images, where velocities
- * across it have the other sign. */
-typedef struct shape {
-  double w[3][MPSI_PORE_SPAN], slope[3][MPSI_PORE_SPAN];
-} shape;
-
-static shape find_shape(const mpsi_grid *grid, const double *x, const int64_t *cell) {
-  const double moment = mpsi_inverse_moment(grid->spline) * grid->inverse;
-  shape out = {.w = {{0.0}}};
-  if (grid->dim == 2) out.w[2][0] = 1.0;
-  for (int c = 0; c < grid->dim; c++) {
-    double X = mpsi_grid_at(grid, c, x[c]), w[4];
-    X = fmin(fmax(X, (double)cell[c]), (double)cell[c] + 1.0);
-    const int64_t lowest = (int64_t)mpsi_base(grid->spline, X);
-    const int64_t base = lowest < cell[c] - 1 ? cell[c] - 1 : lowest > cell[c] ? cell[c] : lowest;
-    const double t = X - (double)base;
-    mpsi_weights(grid->spline, t, w);
-    for (int i = 0; i <= grid->spline; i++) {
-      const int64_t node = base + i;
-      if (node > cell[c] + 2) continue;
-      const bool below = node<grid->low[c], above = node> grid->high[c];
-      const int64_t to = below ? 2 * grid->low[c] - node : above ? 2 * grid->high[c] - node : node;
-      const int at = (int)(to - (cell[c] - 1));
-      const double sign = below || above ? -1.0 : 1.0, slope = w[i] * (i - t) * moment;
-      if (at < 0 || at >= MPSI_PORE_SPAN) continue;
-      out.w[c][at] += w[i];
-      out.slope[c][at] += sign * slope;
-    }
+static void find_along(const mpsi_grid *grid, int c, double X, stencil *out) {
+  double *w = out->w[c], *s = out->s[c], *slope = out->slope[c];
+  const int64_t base = (int64_t)mpsi_base(grid->spline, X);
+  bool cut = false;
+  out->base[c] = base;
+  mpsi_weights(grid->spline, X - (double)base, w);
+  mpsi_slopes(grid->spline, X - (double)base, slope);
+  for (int i = 0; i < 4; i++) {
+    s[i] = (double)(base + i) - X;
+    slope[i] *= grid->inverse;
+    if (i > grid->spline || (base + i >= grid->use_low[c] && base + i <= grid->use_high[c]))
+      continue;
+    w[i] = slope[i] = 0.0;
+    cut = true;
   }
+  memcpy(out->along[c], w, sizeof out->along[c]);
+  memcpy(out->value[c], w, sizeof out->value[c]);
+  if (!cut || grid->standard) return;
+  fit_to_side(w, s, grid->inverse, slope, out->along[c], out->value[c]);
+  out->cut++;
+}
+
+static stencil find_stencil(const mpsi_grid *grid, const double *x) {
+  stencil out = {.cut = 0};
+  for (int c = 0; c < grid->dim; c++) find_along(grid, c, mpsi_grid_at(grid, c, x[c]), &out);
+  for (int c = grid->dim; c < 3; c++) out.w[c][0] = out.along[c][0] = out.value[c][0] = 1.0;
   return out;
 }
 
-/* Adds to the forces of the particle's cell, at axes [dim][nodes]. */
-static void add_forces(const mpsi_grid *grid, const mpsi_pore_grain *particle, const shape *n,
-                       double *force) {
-  const int nodes = mpsi_pore_span_nodes(grid);
-  const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
-  const double V = particle->V;
-  for (int q = 0; q < nodes; q++) {
-    int i[3];
-    mpsi_unravel(q, MPSI_PORE_SPAN, i);
-    const double w[3] = {n->w[0][i[0]], n->w[1][i[1]], n->w[2][i[2]]};
-    const double all = w[0] * w[1] * w[2];
-    force[q] += V * n->slope[0][i[0]] * w[1] * w[2] + (ring ? V * all / particle->x[0] : 0.0);
-    force[nodes + q] += V * w[0] * n->slope[1][i[1]] * w[2];
-    if (grid->dim == 3) force[2 * nodes + q] += V * w[0] * w[1] * n->slope[2][i[2]];
+/* Number n = 16 k + 4 j + i of a stencil: its weights, its place, whether it is in use. */
+static bool find_node(const mpsi_grid *grid, const stencil *at, int n, int *i, int64_t *node) {
+  bool in = true;
+  i[0] = n % 4, i[1] = n / 4 % 4, i[2] = n / 16;
+  for (int c = 0; c < 3; c++) {
+    node[c] = at->base[c] + i[c];
+    in = in && i[c] <= (c < grid->dim ? grid->spline : 0);
+    if (c < grid->dim) in = in && node[c] >= grid->use_low[c] && node[c] <= grid->use_high[c];
   }
+  return in;
 }
 
-/* Adds to the masses of the particle's nodes that this rank counts; `at`: its cell in the tile of
- * its block, `near`: numbers of the nodes. A particle that has left its block in the step may reach
- * nodes below the tile: other blocks add to those at the same time, and they go without it. */
-static void add_masses(const mpsi_grid *grid, mpsi_pore_system *s, const mpsi_pore_grain *particle,
-                       const shape *n, const int *at, const int32_t *near) {
-  const int64_t own = grid->node_count * grid->block_nodes;
-  for (int q = 0; q < mpsi_pore_span_nodes(grid); q++) {
-    int i[3];
-    bool in = true;
-    mpsi_unravel(q, MPSI_PORE_SPAN, i);
-    for (int c = 0; c < grid->dim; c++) in = in && at[c] + i[c] >= 1;
-    const double all = n->w[0][i[0]] * n->w[1][i[1]] * n->w[2][i[2]];
-    if (!in || !(all > 0.0)) continue;
-    const int64_t node = near[(i[2] * MPSI_PORE_BOX + i[1]) * MPSI_PORE_BOX + i[0]];
-    if (node >= 0 && node < own) s->mass[node] += particle->m * all;
-  }
-}
+/* The row of a cell: forces at axes [dim][nodes], m3/s that moving sides bring in as mirrors. */
+typedef struct row {
+  int64_t cell[3];
+  double *force, *carried;
+} row;
 
-static void add_particle(mps_mpm *mpm, int64_t b, const mpsi_pore_grain *particle) {
+/* Adds V grad phi of a node, which beyond a mirror is its image there (boundary/mirror.c). */
+static void add_node(const mps_mpm *mpm, const row *to, int64_t *node, double *gradient) {
   const mpsi_grid *grid = &mpm->grid;
-  const mpsi_cell_block *cells = &grid->cells[b];
+  int place = 0;
+  for (int c = 0; c < grid->dim; c++) {
+    const bool above = node[c] > grid->high[c];
+    if (!above && node[c] >= grid->low[c]) continue;
+    const mpsi_boundary *side = &mpm->boundaries.hold[2 * c + above];
+    node[c] = 2 * (above ? grid->high[c] : grid->low[c]) - node[c];
+    for (int a = 0; a < grid->dim; a++) {
+      const bool turns =
+          side->kind == MPS_BOUNDARY_HELD || (a == c && side->kind != MPS_BOUNDARY_FREE_FIELD);
+      if (!turns) continue;
+      *to->carried += 2.0 * gradient[a] * side->v[a];
+      gradient[a] = -gradient[a];
+    }
+  }
+  for (int c = grid->dim - 1; c >= 0; c--) {
+    const int64_t at = node[c] - (to->cell[c] - 1);
+    if (at < 0 || at >= MPSI_PORE_SPAN) return;
+    place = MPSI_PORE_SPAN * place + (int)at;
+  }
+  for (int a = 0; a < grid->dim; a++)
+    to->force[a * mpsi_pore_span_nodes(grid) + place] += gradient[a];
+}
+
+/* By full supports, and such as sides cut. */
+static void add_forces(const mps_mpm *mpm, const mpsi_pore_grain *particle, const stencil *at,
+                       const row *to) {
+  const mpsi_grid *grid = &mpm->grid;
+  const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  const bool fits = at->cut > 1 || particle->light || grid->by_weight;
+  for (int n = 0; n < (grid->dim == 3 ? 64 : 16); n++) {
+    int i[3];
+    int64_t node[3];
+    double w[3], gradient[3];
+    if (!find_node(grid, at, n, i, node)) continue;
+    for (int c = 0; c < 3; c++) w[c] = fits ? at->value[c][i[c]] : at->along[c][i[c]];
+    for (int c = 0; c < grid->dim; c++)
+      gradient[c] = particle->V * at->slope[c][i[c]] * w[(c + 1) % 3] * w[(c + 2) % 3];
+    if (ring) gradient[0] += particle->V * at->value[0][i[0]] * at->value[1][i[1]] / particle->x[0];
+    add_node(mpm, to, node, gradient);
+  }
+}
+
+/* By the fit of the step, of a particle whose support a body cuts. */
+static void add_fitted(const mps_mpm *mpm, const mpsi_pore_grain *particle, const stencil *at,
+                       const row *to) {
+  const mpsi_grid *grid = &mpm->grid;
+  const int dim = grid->dim;
+  const bool ring = grid->geometry == MPS_MPM_GEOMETRY_AXISYMMETRIC;
+  double q[4][4];
+  for (int r = 0, n = 0; r <= dim; r++)
+    for (int c = r; c <= dim; c++, n++) q[r][c] = q[c][r] = particle->fit.q[n];
+  for (uint64_t left = particle->fit.active; left; left &= left - 1) {
+    int i[3];
+    int64_t node[3];
+    double by[4], gradient[3];
+    (void)find_node(grid, at, __builtin_ctzll(left), i, node);
+    const double w = particle->V * at->w[0][i[0]] * at->w[1][i[1]] * at->w[2][i[2]];
+    for (int r = 0; r <= dim; r++) {
+      by[r] = q[r][0];
+      for (int c = 0; c < dim; c++) by[r] += q[r][1 + c] * at->s[c][i[c]];
+    }
+    for (int c = 0; c < dim; c++) gradient[c] = w * by[1 + c] * grid->inverse;
+    if (ring) gradient[0] += w * by[0] / particle->x[0];
+    add_node(mpm, to, node, gradient);
+  }
+}
+
+/* Whether the nodes of the particle's fit are all that its stencil has: no body cuts it. */
+static bool uses_all(const mpsi_grid *grid, const mpsi_pore_grain *particle, const stencil *at) {
+  uint64_t all = 0;
+  for (int n = 0; n < (grid->dim == 3 ? 64 : 16); n++) {
+    int i[3];
+    int64_t node[3];
+    if (find_node(grid, at, n, i, node)) all |= UINT64_C(1) << n;
+  }
+  return all == particle->fit.active;
+}
+
+static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_pore_grain *particle) {
+  const mpsi_grid *grid = &mpm->grid;
   mpsi_pore_system *s = mpm->water->system;
   int at[3];
-  int64_t cell[3] = {0};
-  mpsi_unravel((int)particle->place, MPSI_TILE_SIDE, at);
-  for (int c = 0; c < grid->dim; c++) cell[c] = (int64_t)cells->at[c] * MPSI_SIDE + at[c];
-  const shape n = find_shape(grid, particle->x, cell);
+  row to = {{0}, NULL, NULL};
+  mpsi_unravel(particle->place, MPSI_TILE_SIDE, at);
+  for (int c = 0; c < grid->dim; c++) to.cell[c] = (int64_t)cells->at[c] * MPSI_SIDE + at[c];
   const int32_t g = mpsi_block_under(cells, at[0], at[1], at[2]);
-  const int local = mpsi_local_under(at[0], at[1], at[2]);
-  if (mpsi_mpm_counts_node_block(grid, g))
-    add_forces(grid, particle, &n, mpsi_pore_row(grid, s, mpsi_first_node(grid, g) + local));
-  add_masses(grid, s, particle, &n, at,
-             s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, local, 1));
+  if (!mpsi_mpm_counts_node_block(grid, g)) return;
+  const int64_t cell = mpsi_first_node(grid, g) + mpsi_local_under(at[0], at[1], at[2]);
+  to.force = mpsi_pore_row(grid, s, cell);
+  to.carried = &s->carried[cell];
+  const stencil nodes = find_stencil(grid, particle->x);
+  if (particle->fitted && !uses_all(grid, particle, &nodes))
+    add_fitted(mpm, particle, &nodes, &to);
+  else
+    add_forces(mpm, particle, &nodes, &to);
 }
 
 static void add_particles(void *data, int64_t b, int32_t worker) {
@@ -108,21 +187,30 @@ static void add_particles(void *data, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   (void)worker;
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    const mpsi_pore_grain particle = mpsi_pore_grain_of(mpm, k);
-    add_particle(mpm, b, &particle);
+    const mpsi_pore_grain particle = mpsi_pore_grain_of(mpm, cells, k);
+    add_particle(mpm, cells, &particle);
   }
   if (!cells->ghost) return;
   int64_t count;
   const mpsi_pore_grain *particle = mpsi_pore_grains_of(mpm, b, &count);
-  for (int64_t k = 0; k < count; k++) add_particle(mpm, b, &particle[k]);
+  for (int64_t k = 0; k < count; k++) add_particle(mpm, cells, &particle[k]);
 }
 
-/* Which components of the nodes of a block are prescribed. */
-static void find_held(mps_mpm *mpm, mpsi_pore_system *s, int64_t g, double factor) {
+/* Masses and velocities of the nodes of a block without a correction, and which components are
+ * prescribed. */
+static void find_nodes(void *data, int64_t g, int32_t worker) {
+  mps_mpm *mpm = data;
+  mpsi_pore_system *s = mpm->water->system;
   const mpsi_grid *grid = &mpm->grid;
-  uint8_t *held = s->held + mpsi_first_node(grid, g);
-  (void)factor;
+  const int64_t first = mpsi_first_node(grid, g);
+  uint8_t *held = s->held + first;
+  (void)worker;
   memset(held, 0, (size_t)grid->block_nodes);
+  for (int k = 0; k < grid->block_nodes; k++) {
+    const double *node = grid->node[first + k];
+    s->mass[first + k] = node[MPSI_MASS];
+    for (int c = 0; c < 3; c++) s->velocity[first + k][c] = node[MPSI_VECTOR + c];
+  }
   for (int32_t t = 0; t < grid->nodes[g].holds; t++) {
     const mpsi_held *at = &mpm->boundaries.held[grid->nodes[g].first_held + t];
     const mpsi_boundary *hold = &mpm->boundaries.hold[at->hold];
@@ -132,10 +220,15 @@ static void find_held(mps_mpm *mpm, mpsi_pore_system *s, int64_t g, double facto
       continue;
     const bool whole = hold->kind == MPS_BOUNDARY_HELD || hold->kind == MPS_BOUNDARY_DRIVEN;
     const uint32_t dofs = at->hold < MPSI_SIDES && !whole ? 1u << hold->axis : hold->dofs;
+    const bool moves = hold->kind == MPS_BOUNDARY_FREE_FIELD;
     for (int k = in.low[2]; k <= in.high[2]; k++)
       for (int j = in.low[1]; j <= in.high[1]; j++)
-        for (int i = in.low[0]; i <= in.high[0]; i++)
-          held[mpsi_local_under(i, j, k)] |= (uint8_t)dofs;
+        for (int i = in.low[0]; i <= in.high[0]; i++) {
+          const int local = mpsi_local_under(i, j, k);
+          held[local] |= (uint8_t)dofs;
+          for (int c = 0; c < grid->dim && !moves; c++)
+            if (dofs >> c & 1) s->velocity[first + local][c] = hold->v[c];
+        }
   }
 }
 
@@ -147,7 +240,8 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
   for (int64_t g = 0; g < grid->node_count; g++)
     for (int k = 0; k < grid->block_nodes && mpsi_mpm_counts_node_block(grid, g); k++)
       if (mpsi_pore_marked(mpm->water->block[g].filled, k))
-        s->row[mpsi_first_node(grid, g) + k] = rows++;
+        s->carried[mpsi_first_node(grid, g) + k] = 0.0,
+                                              s->row[mpsi_first_node(grid, g) + k] = rows++;
   for (int64_t k = 0; s->rim && k < s->rim->cells; k++)
     s->row[grid->node_count * grid->block_nodes + k] = rows++;
   const int64_t numbers = rows * mpsi_pore_row_numbers(grid);
@@ -161,7 +255,7 @@ static mps_status make_rows(mps_mpm *mpm, const char *function) {
 mps_status mpsi_pore_find_forces(mps_mpm *mpm, const char *function) {
   const mpsi_partition *partition = mpm->partition;
   const mpsi_pass pass = {.data = mpm,
-                          .clear = clear_masses,
+                          .clear = find_nodes,
                           .scatter = add_particles,
                           .arrive = partition ? mpsi_pore_receive_grains : NULL};
   mps_status status = make_rows(mpm, function);
@@ -169,7 +263,6 @@ mps_status mpsi_pore_find_forces(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK) return status;
   if (partition) mpsi_pore_send_grains(mpm);
   mpsi_mpm_run_pass(mpm->context, &mpm->grid, &mpm->p, &pass);
-  mpsi_pore_for_blocks(mpm, MPSI_PORE_COUNTED, find_held, 0.0);
   if (!partition) return MPS_OK;
   return partition->lost == MPS_OK ? mpsi_pore_send_forces(mpm, function) : partition->lost;
 }

@@ -149,15 +149,18 @@ int32_t mpsi_pore_rim_block_at(const mpsi_pore_rim *rim, const int32_t *at) {
 
 /* ---- messages: room -------------------------------------------------------------------------- */
 
-/* Of a cell in a message: mass and held components of its node, its scale, its forces. */
-enum { MASS, HELD, SCALE, HEAD };
+/* Of a cell in a message: mass, held components and velocity of its node, its scale, its forces. */
+enum { MASS, HELD, SCALE, VELOCITY, HEAD = VELOCITY + 3 };
 
 static int64_t force_bytes(const mpsi_grid *grid) {
   return (HEAD + mpsi_pore_row_numbers(grid)) * (int64_t)sizeof(double);
 }
 
+/* Of a cell: change of its pressure, volume that it has gained; correction of its node. */
+enum { CHANGES = 2 + 3 };
+
 static int64_t change_bytes(const mpsi_grid *grid) {
-  return grid->block_nodes * (int64_t)sizeof(double);
+  return CHANGES * grid->block_nodes * (int64_t)sizeof(double);
 }
 
 /* The first of a parcel has the number of those that follow. */
@@ -261,8 +264,8 @@ static void pack_grains(void *data, int64_t k, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[mpm->partition->border[k]];
   mpsi_pore_grain *out = (void *)((char *)rim->out_room.item + k * grain_bytes(rim));
   (void)number;
-  *out = (mpsi_pore_grain){.place = cells->end - cells->begin};
-  for (int64_t i = cells->begin; i < cells->end; i++) *++out = mpsi_pore_grain_of(mpm, i);
+  *out = (mpsi_pore_grain){.place = (int32_t)(cells->end - cells->begin)};
+  for (int64_t i = cells->begin; i < cells->end; i++) *++out = mpsi_pore_grain_of(mpm, cells, i);
 }
 
 void mpsi_pore_send_grains(mps_mpm *mpm) {
@@ -299,6 +302,7 @@ static void pack_cell(const mps_mpm *mpm, int64_t cell, double *out) {
   out[MASS] = s->mass[cell];
   out[HELD] = s->held[cell];
   out[SCALE] = s->scale[cell];
+  memcpy(out + VELOCITY, s->velocity[cell], sizeof s->velocity[cell]);
   if (mpsi_pore_marked(block->filled, (int)(cell % grid->block_nodes)))
     memcpy(out + HEAD, mpsi_pore_row(grid, s, cell), bytes);
   else
@@ -313,6 +317,7 @@ static void unpack_cell(const mps_mpm *mpm, int64_t number, const double *in) {
   s->mass[cell] = s->rim->reached[number] ? in[MASS] : 0.0;
   s->held[cell] = (uint8_t)in[HELD];
   s->scale[cell] = in[SCALE];
+  memcpy(s->velocity[cell], in + VELOCITY, sizeof s->velocity[cell]);
   memcpy(mpsi_pore_row(grid, s, cell), in + HEAD, (size_t)mpsi_pore_row_numbers(grid) * sizeof *in);
 }
 
@@ -336,17 +341,35 @@ mps_status mpsi_pore_send_direction(mps_mpm *mpm, const char *function) {
   return status == MPS_OK ? mpsi_halo_end(halo, function, column) : status;
 }
 
+/* The parts of a block's message: where they are in the system, and how long. */
+static int64_t list_changes(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g,
+                            double **part, int64_t *numbers) {
+  const int64_t first = mpsi_first_node(grid, g);
+  part[0] = s->change + first, numbers[0] = grid->block_nodes;
+  part[1] = s->squeeze + first, numbers[1] = grid->block_nodes;
+  part[2] = s->velocity[first], numbers[2] = 3 * grid->block_nodes;
+  return 3;
+}
+
+static void copy_changes(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g, double *box,
+                         bool back) {
+  double *part[3];
+  int64_t numbers[3];
+  const int64_t parts = list_changes(grid, s, g, part, numbers);
+  for (int64_t k = 0; k < parts; box += numbers[k++])
+    memcpy(back ? part[k] : box, back ? box : part[k], (size_t)numbers[k] * sizeof *box);
+}
+
 mps_status mpsi_pore_send_changes(mps_mpm *mpm, const char *function) {
   const mpsi_grid *grid = &mpm->grid;
   mpsi_pore_system *s = mpm->water->system;
-  const int64_t *item, items = mpsi_halo_items(s->rim->whole, &item), bytes = change_bytes(grid);
-  char *out = s->rim->out_room.item, *in = s->rim->in_room.item;
-  for (int64_t k = 0; k < items; k++)
-    memcpy(out + k * bytes, s->change + mpsi_first_node(grid, item[k]), (size_t)bytes);
+  const int64_t *item, items = mpsi_halo_items(s->rim->whole, &item);
+  const int64_t bytes = change_bytes(grid), numbers = bytes / (int64_t)sizeof(double);
+  double *out = s->rim->out_room.item, *in = s->rim->in_room.item;
+  for (int64_t k = 0; k < items; k++) copy_changes(grid, s, item[k], out + k * numbers, false);
   mps_status status = mpsi_halo_begin_bytes(s->rim->whole, function, (int32_t)bytes, out, in);
   if (status == MPS_OK) status = mpsi_halo_end_bytes(s->rim->whole, function);
   for (int64_t k = 0; status == MPS_OK && k < s->rim->wholes; k++)
-    memcpy(s->change + mpsi_first_node(grid, s->rim->whole_block[k]), in + k * bytes,
-           (size_t)bytes);
+    copy_changes(grid, s, s->rim->whole_block[k], in + k * numbers, true);
   return status;
 }

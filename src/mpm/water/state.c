@@ -48,6 +48,7 @@ void mpsi_pore_free(mps_mpm *mpm) {
   mpsi_free(mpm->context, mpm->water->linked_room.item);
   mpsi_free(mpm->context, mpm->water->outflow_room.item);
   mpsi_free(mpm->context, mpm->water->former_room.item);
+  mpsi_free(mpm->context, mpm->water->expected_room.item);
   mpsi_free(mpm->context, mpm->water->place_room.item);
   mpsi_pore_free_layers(mpm->context, &mpm->water->layers);
   if (mpm->water->system) mpsi_pore_free_coarse(mpm->context, &mpm->water->system->coarse);

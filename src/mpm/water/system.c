@@ -1,6 +1,7 @@
 /* system.c - see system.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "system.h"
 
+#include "contacts.h"
 #include "rim.h"
 
 #include <string.h>
@@ -40,7 +41,7 @@ static void find_around(const mpsi_grid *grid, system_of *s) {
 }
 
 static mps_status make_room(mps_mpm *mpm, const char *function) {
-  enum { VECTORS = 7 };
+  enum { VECTORS = 10 };
   system_of *s = mpm->water->system;
   const int64_t blocks = mpm->grid.node_count, all = blocks + (s->rim ? s->rim->blocks : 0);
   const int64_t nodes = blocks * mpm->grid.block_nodes + (s->rim ? s->rim->cells : 0);
@@ -64,8 +65,9 @@ static mps_status make_room(mps_mpm *mpm, const char *function) {
   s->conductance = s->conductance_room.item;
   s->tile = s->tile_room.item;
   s->part = s->part_room.item;
-  double **const vector[VECTORS] = {&s->diagonal,  &s->scale,   &s->change, &s->residual,
-                                    &s->direction, &s->product, &s->inverse};
+  double **const vector[VECTORS] = {&s->diagonal,  &s->scale,   &s->change,  &s->residual,
+                                    &s->direction, &s->product, &s->inverse, &s->squeeze,
+                                    &s->space,     &s->carried};
   for (int k = 0; k < VECTORS; k++) *vector[k] = (double *)s->vector_room.item + k * nodes;
   return MPS_OK;
 }
@@ -107,6 +109,7 @@ void mpsi_pore_free_system(mps_context *context, mpsi_pore_system **pointer) {
   *pointer = NULL;
   if (!s) return;
   mpsi_pore_free_rim(context, &s->rim);
+  mpsi_pore_free_contacts(context, &s->contacts);
   const mpsi_room room[] = {s->around_room, s->mass_room,  s->velocity_room, s->held_room,
                             s->row_room,    s->force_room, s->vector_room,   s->conductance_room,
                             s->tile_room,   s->part_room};
@@ -120,6 +123,20 @@ int64_t mpsi_pore_number(const mpsi_grid *grid, const system_of *s, int64_t g, i
   if (g < grid->node_count) return mpsi_first_node(grid, g) + local;
   const int32_t cell = s->rim->cell[(g - grid->node_count) * grid->block_nodes + local];
   return cell < 0 ? -1 : grid->node_count * grid->block_nodes + cell;
+}
+
+int64_t mpsi_pore_node_at(const mpsi_grid *grid, const system_of *s, const int32_t *at,
+                          bool *counted) {
+  int32_t block[3] = {0};
+  int local = 0;
+  for (int c = 2; c >= 0; c--) {
+    const int32_t place = c < grid->dim ? at[c] & (MPSI_SIDE - 1) : 0;
+    block[c] = c < grid->dim ? (at[c] - place) / MPSI_SIDE : 0;
+    local = MPSI_SIDE * local + place;
+  }
+  const int32_t g = find_block(grid, s, block);
+  *counted = g >= 0 && g < grid->node_count;
+  return g < 0 ? -1 : mpsi_pore_number(grid, s, g, local);
 }
 
 int64_t mpsi_pore_at(const mpsi_grid *grid, const system_of *s, int64_t g, const int *offset) {

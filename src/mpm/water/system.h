@@ -15,10 +15,46 @@ enum { MPSI_PORE_MOST_SPAN = MPSI_PORE_SPAN * MPSI_PORE_SPAN * MPSI_PORE_SPAN };
 /* The box of nodes or cells in reach of a block's own: from BEFORE places before it on. */
 enum { MPSI_PORE_BEFORE = MPSI_PORE_SPAN - 2, MPSI_PORE_BOX = MPSI_SIDE + 2 * MPSI_PORE_BEFORE };
 
-/* What forces and masses need of a particle. */
+/* A contact that bears in the step, with entries [first, first + entries) (contacts.c). */
+typedef struct mpsi_pore_contact {
+  double normal[3]; /* outward unit vector of the surface */
+  double yield[3]; /* kg, 1 over the mobility of the ground's side, along the normal or each axis */
+  double left[3];  /* N s/kg, what it has taken of a correction */
+  int64_t constraint, first;
+  int32_t entries;
+  bool sticks; /* all components are held, else the normal one */
+} mpsi_pore_contact;
+
+typedef struct mpsi_pore_contact_entry {
+  double psi[3]; /* of each component of the node's velocity, 0 where that is prescribed */
+  int32_t node;
+} mpsi_pore_contact_entry;
+
+typedef struct mpsi_pore_contact_node {
+  double mass, v[3]; /* kg; correction, m/s per s */
+  int64_t number;    /* in the system, -1: not of this rank */
+  int32_t at[3];     /* on several ranks: in the whole grid, in cells */
+  int32_t slot;      /* and its place in their sums, -1: none */
+  uint8_t held;      /* bit c: component c is prescribed */
+  bool counted;      /* by this rank */
+} mpsi_pore_contact_node;
+
+typedef struct mpsi_pore_contacts {
+  mpsi_pore_contact *contact;
+  mpsi_pore_contact_entry *entry;
+  mpsi_pore_contact_node *node;
+  int32_t *index; /* of the nodes of the grid, or of the replicas: number among `node`, or -1 */
+  int64_t count, entries, nodes, indices, slots;
+  bool any; /* on some rank */
+  mpsi_room contact_room, entry_room, node_room, index_room, word_room, known_room;
+} mpsi_pore_contacts;
+
+/* What forces need of a particle. */
 typedef struct mpsi_pore_grain {
-  double x[3], V, m;
-  int64_t place; /* as in mpsi_water */
+  double x[3], V;
+  int32_t place;      /* as in mpsi_water */
+  bool fitted, light; /* a body or two sides cut its support: by `fit`; see mpsi_cell_block.light */
+  mpsi_kept_fit fit;
 } mpsi_pore_grain;
 
 /* Arrays by nodes of the grid are vectors of the system: values of cells. On several ranks those
@@ -35,10 +71,14 @@ struct mpsi_pore_system {
   double *diagonal, *scale; /* m3/Pa of storage and drained faces; root of space/V */
   double *change, *residual, *direction, *product; /* Pa; m3 */
   double *inverse;                                 /* of the matrix's diagonal */
-  double *part;                                    /* of sums, by blocks */
-  int64_t unknowns, iterations;                    /* of all ranks; of the last step */
-  mpsi_pore_rim *rim;                              /* on several ranks, else NULL */
-  mpsi_pore_coarse *coarse;                        /* NULL: before the first step */
+  double *space;                                   /* m3, that stores water */
+  double *carried; /* m3/s, by cells: G^T v of the images of moving sides */
+  double *squeeze; /* m3: what the predicted motion takes of a cell; then that over its space */
+  double *part;    /* of sums, by blocks */
+  int64_t unknowns, iterations; /* of all ranks; of the last step */
+  mpsi_pore_contacts contacts;
+  mpsi_pore_rim *rim;       /* on several ranks, else NULL */
+  mpsi_pore_coarse *coarse; /* NULL: before the first step */
   mpsi_room around_room, mass_room, velocity_room, held_room, row_room, force_room;
   mpsi_room conductance_room, vector_room, tile_room, part_room;
 };
@@ -84,13 +124,19 @@ static inline bool mpsi_pore_is_unknown(const mpsi_water *water, int64_t g, int 
   return mpsi_pore_marked(water->block[g].filled, k) && !cell[k].thin;
 }
 
-/* Particle k. */
-static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, int64_t k) {
+/* Particle k of a block of cells, after the scatter. */
+static inline mpsi_pore_grain mpsi_pore_grain_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                 int64_t k) {
   const mpsi_columns *p = &mpm->p;
-  return (mpsi_pore_grain){.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
-                           .V = p->V[k],
-                           .m = p->m[k],
-                           .place = mpm->water->place[k]};
+  mpsi_pore_grain out = {.x = {p->x[0][k], p->x[1][k], mpm->grid.dim == 3 ? p->x[2][k] : 0.0},
+                         .V = p->V[k],
+                         .place = mpm->water->place[k]};
+  for (int q = 0; q < 1 << mpm->grid.dim; q++)
+    out.light = out.light || mpm->grid.nodes[cells->to[q]].light;
+  const int64_t slot = cells->first_fit < 0 ? -1 : cells->first_fit + (k - cells->begin);
+  out.fitted = slot >= 0 && mpm->grid.fitted[slot] == MPSI_FITTED_CUT;
+  if (out.fitted) out.fit = mpm->grid.fit[slot];
+  return out;
 }
 
 /* Room for the present blocks. `status`: of the step so far on this rank; on several ranks
@@ -104,6 +150,10 @@ int64_t mpsi_pore_number(const mpsi_grid *grid, const mpsi_pore_system *s, int64
 /* The node or cell at `offset` from the first of block g, in that block or one around it; or -1. */
 int64_t mpsi_pore_at(const mpsi_grid *grid, const mpsi_pore_system *s, int64_t g,
                      const int *offset);
+/* Number of the node at `at` (in the whole grid, in cells), -1: not known here; whether this rank
+ * counts it. */
+int64_t mpsi_pore_node_at(const mpsi_grid *grid, const mpsi_pore_system *s, const int32_t *at,
+                          bool *counted);
 /* What is in reach of each block, once a step: iterations look nothing up. */
 void mpsi_pore_find_tiles(mps_mpm *mpm);
 

@@ -60,6 +60,7 @@ enum {
 
 struct mpsi_water {
   mps_pore_water_def def;
+  bool expecting;     /* what particles take of their cells is before the motion (flow.c) */
   bool flows, warned; /* warned: of the lag of implicit pressures */
   double lag; /* 1/s, largest rho_w g/(k rho) at the start: pressures lag by dt^2 times that */
   mps_pore_face_def face[MPS_PORE_MAX_FACES];
@@ -73,11 +74,13 @@ struct mpsi_water {
   mpsi_pore_block *block; /* by blocks of nodes, then those of other ranks */
   double (*outflow)[MPSI_PORE_RATES]; /* m3/s, by blocks of nodes: of each face, and what enters */
   double *former;                     /* m3, volumes at the beginning of the step */
+  double *expected;        /* m3, volumes after it as the pressures have them; implicit alone */
   uint16_t *place;         /* of each particle: its cell in the tile of its block, for implicit.c */
   double *seepage[3];      /* of the set, or NULL */
   int64_t linked;          /* blocks of nodes for which `beside` was found, */
   int32_t (*linked_at)[3]; /* and where they were */
-  mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, place_room, linked_room;
+  mpsi_room cell_room, edge_room, block_room, outflow_room, former_room, expected_room, place_room,
+      linked_room;
   mpsi_pore_layers *layers;   /* on several ranks, else NULL */
   mpsi_pore_system *system;   /* where pressures are implicit, else NULL */
   mpsi_pore_outside *outside; /* a solver of the caller for these, or NULL */
@@ -163,7 +166,13 @@ void mpsi_pore_find_cells(mps_mpm *mpm);
  * pressures at the end of the step. */
 void mpsi_pore_find_faces(mps_mpm *mpm);
 /* flow.c: pressures at the end of the step; then their slopes, and what the particles take. */
-mps_status mpsi_pore_flow(mps_mpm *mpm, const char *function);
+void mpsi_pore_flow(mps_mpm *mpm);
+/* Whether pressures are found before the particles move. */
+static inline bool mpsi_pore_predicts(const mps_mpm *mpm) {
+  return mpm->water && mpm->water->def.scheme == MPS_PORE_SCHEME_IMPLICIT;
+}
+/* flow.c: before the particles move. */
+mps_status mpsi_pore_predict(mps_mpm *mpm, const char *function);
 
 /* update.c: before the scatter of a step: room for its cells. On several ranks collective where the
  * blocks are others than in the last step; `status`: of the step so far on this rank. */

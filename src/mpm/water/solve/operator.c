@@ -1,6 +1,7 @@
 /* operator.c - see operator.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "operator.h"
 
+#include "mpm/water/contacts.h"
 #include "mpm/water/rim.h"
 
 typedef struct mpsi_pore_system system_of;
@@ -31,13 +32,13 @@ static void find_velocities(mps_mpm *mpm, system_of *s, int64_t g, double factor
   }
 }
 
-/* dt^2 G^T v of a cell, m3. */
+/* G^T v of a cell, m3/s, or the diagonal of G^T m^-1 G. */
 static double squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int k, const int *shift,
                          bool diagonal) {
   const mpsi_grid *grid = &mpm->grid;
   const int nodes = mpsi_pore_span_nodes(grid);
   const int64_t cell = mpsi_first_node(grid, g) + k;
-  const double *force = mpsi_pore_row(grid, s, cell), dt = mpm->run.dt;
+  const double *force = mpsi_pore_row(grid, s, cell);
   double sum = 0.0;
   const int32_t *near = s->tile + g * mpsi_pore_box_places(grid) + mpsi_pore_place(grid, k, 1);
   for (int q = 0; q < nodes; q++) {
@@ -51,7 +52,12 @@ static double squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int 
         sum += f * f * s->scale[cell] / s->mass[node];
     }
   }
-  return dt * dt * s->scale[cell] * sum / grid->measure;
+  return s->scale[cell] * sum / grid->measure;
+}
+
+double mpsi_pore_squeeze_of(const mps_mpm *mpm, const system_of *s, int64_t g, int k,
+                            const int *shift) {
+  return squeeze_of(mpm, s, g, k, shift, false);
 }
 
 /* The matrix times `direction`; their product to the sums. Cells that water flows to are in reach.
@@ -62,6 +68,7 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
   mpsi_water *water = mpm->water;
   const int64_t first = mpsi_first_node(grid, g);
   const mpsi_pore_cell *cell = water->cell + first;
+  const double dt = mpm->run.dt;
   int shift[MPSI_PORE_MOST_SPAN];
   (void)factor;
   mpsi_pore_list_shifts(grid, shift);
@@ -74,9 +81,9 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
     for (int d = 0; d < 2 * grid->dim; d++) {
       if (s->conductance[first + k][d] == 0.0) continue;
       const int64_t beside = here[d & 1 ? stride[d / 2] : -stride[d / 2]];
-      sum += mpm->run.dt * s->conductance[first + k][d] * (own - s->direction[beside]);
+      sum += dt * s->conductance[first + k][d] * (own - s->direction[beside]);
     }
-    sum += squeeze_of(mpm, s, g, k, shift, false);
+    sum += dt * dt * squeeze_of(mpm, s, g, k, shift, false);
     s->product[first + k] = sum;
     s->part[g] += own * sum;
   }
@@ -85,14 +92,20 @@ static void multiply(mps_mpm *mpm, system_of *s, int64_t g, double factor) {
 double mpsi_pore_diagonal_of(const mps_mpm *mpm, const system_of *s, int64_t g, int k,
                              const int *shift) {
   const int64_t cell = mpsi_first_node(&mpm->grid, g) + k;
-  double diagonal = s->diagonal[cell] + squeeze_of(mpm, s, g, k, shift, true);
-  for (int d = 0; d < 2 * mpm->grid.dim; d++) diagonal += mpm->run.dt * s->conductance[cell][d];
+  const double dt = mpm->run.dt;
+  double diagonal = s->diagonal[cell] + dt * dt * squeeze_of(mpm, s, g, k, shift, true);
+  for (int d = 0; d < 2 * mpm->grid.dim; d++) diagonal += dt * s->conductance[cell][d];
   return diagonal;
 }
 
-mps_status mpsi_pore_apply(mps_mpm *mpm, const char *function, double *along) {
+mps_status mpsi_pore_find_motion(mps_mpm *mpm, const char *function) {
   const mps_status status = mpm->partition ? mpsi_pore_send_direction(mpm, function) : MPS_OK;
   if (status != MPS_OK) return status;
   mpsi_pore_for_blocks(mpm, MPSI_PORE_NEAR, find_velocities, 0.0);
-  return mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, along);
+  return mpsi_pore_hold_contacts(mpm, function);
+}
+
+mps_status mpsi_pore_apply(mps_mpm *mpm, const char *function, double *along) {
+  const mps_status status = mpsi_pore_find_motion(mpm, function);
+  return status == MPS_OK ? mpsi_pore_sum_blocks(mpm, function, multiply, 0.0, along) : status;
 }

@@ -15,7 +15,8 @@ typedef struct mpsi_pore_system system_of;
 typedef struct mpsi_pore_outside outside_of;
 
 bool mpsi_pore_solved_outside(const mpsi_water *water) {
-  return water->outside && water->system->unknowns >= water->outside->def.least;
+  return water->outside && !water->system->contacts.any &&
+         water->system->unknowns >= water->outside->def.least;
 }
 
 mps_status mpsi_pore_forget(mps_mpm *mpm, const char *function) {
