@@ -27,12 +27,14 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Ground"),
-      OPTION_TEXT("layers", "FILE", &s->layers,
-                  "layers from the surface down, a line each, of words name=value: thickness, "
-                  "density, vs, law=elastic|smallstrain|mohrcoulomb|cyclicsand, poisson, k0, "
-                  "permeability, porosity; smallstrain: reference-strain, curvature, strength; the "
-                  "others: phi, psi, cohesion; cyclicsand: relative-density or blow-count. The "
-                  "line \"halfspace density=... vs=...\" is the last, of --base compliant"),
+      OPTION_TEXT(
+          "layers", "FILE", &s->layers,
+          "layers from the surface down, a line each, of words name=value: thickness, "
+          "density, vs, law=elastic|smallstrain|mohrcoulomb|cyclicsand, poisson, k0, "
+          "permeability, porosity; smallstrain also: reference-strain, curvature, strength; "
+          "mohrcoulomb and cyclicsand: phi, psi, cohesion; cyclicsand: relative-density or "
+          "blow-count. The last line of --base compliant is \"halfspace density=... "
+          "vs=...\""),
       OPTION_CHOICE("base", "compliant|rigid", &s->base,
                     "elastic half space, whose outcrop moves as the record; or a base that moves "
                     "as the record"),
@@ -40,7 +42,8 @@ int main(int argc, char **argv) {
       OPTION_FLAG("undrained", &s->undrained, "water in the pores that does not flow"),
       OPTION_NUMBER("permeability", "m/s", OPTION_ABOVE_TO(0.0, 1.0), &s->permeability,
                     "of layers without one of their own; without any the ground is dry"),
-      OPTION_NUMBER("porosity", "1", OPTION_FROM_TO(0.01, 0.95), &s->porosity, "likewise"),
+      OPTION_NUMBER("porosity", "1", OPTION_FROM_TO(0.01, 0.95), &s->porosity,
+                    "of layers without one of their own"),
       OPTION_NUMBER("water-bulk", "Pa", OPTION_FROM_TO(1e4, 1e11), &s->bulk,
                     "K_w, bulk modulus of the water"),
       OPTION_HEADING("Motion"),

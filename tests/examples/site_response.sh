@@ -25,6 +25,13 @@ printf 'thickness=12m density=1800 vs=120\n' >"$work/bare"
   --out "$work/rigid" >"$work/log" || exit 1
 in_range "$work/rigid/summary.json" peak_acceleration 1.045 1.065 # 1/cos(0.1 pi) = 1.0515
 
+# Spectra of 25 cycles of 2 Hz near resonance: 1/sqrt((1 - r^2)^2 + (2 h r)^2), r = T/0.5 s, h = 0.05.
+"$program" --layers "$work/bare" --base rigid --record sine --frequency 2 --cycles 25 --amplitude 0.5 --max-frequency 2 \
+  --threads 1 --out "$work/sine" >"$work/log" || exit 1
+awk -F, 'NR > 1 && $1 > 0.48 && $1 < 0.51 { r = 2 * $1; exact = 0.5 / sqrt((1 - r * r) ^ 2 + (0.1 * r) ^ 2)
+  print "period " $1 ": " $3 " of " exact; count++; if (($3 / exact - 1) ^ 2 > 0.02 ^ 2) wrong = 1 }
+  END { exit wrong || count < 2 }' "$work/sine/spectrum.csv" || fail "response spectrum of a sine"
+
 # Soil by Hardin and Drnevich: G0 = 40.5 MPa, gamma_r = 0.05 %.
 printf 'thickness=10m density=1800 vs=150 law=smallstrain reference-strain=5e-4\nhalfspace density=2200 vs=600\n' \
   >"$work/soil"
