@@ -23,6 +23,7 @@ typedef struct field_ground {
   double flip_time;    /* s */
   int32_t budget, spline;
   bool heated; /* the set has the field `temperature` */
+  bool lid;    /* a roller on the surface */
 } field_ground;
 
 static inline double field_young(double vs) { return 2.0 * (1.0 + FIELD_NU) * FIELD_RHO * vs * vs; }
@@ -64,6 +65,7 @@ static inline mpm_scene field_scene(mps_context *context, const field_ground *of
   def.origin[0] = def.lower[0] = of->shift;
   def.upper[0] = of->shift + of->width;
   def.lower[1] = 0.0;
+  if (of->lid) def.upper[1] = of->height;
   def.gravity[1] = -of->gravity;
   def.budget = of->budget;
   def.flip_time = of->flip_time;
@@ -129,11 +131,33 @@ static inline mps_signal *field_shaking(mps_context *context, double frequency, 
 
 typedef struct field_response {
   int shear;
+  double flip_time;     /* s */
   double share;         /* of the layer's lowest frequency, c/4H */
   double amplification; /* of the surface over the outcrop of the half space */
   double exact;
   double apart; /* largest difference of velocities along x over their largest value */
+  double rough; /* amplitude of a velocity that alternates from row to row in the layer, over the
+                   largest velocity */
 } field_response;
+
+/* Root mean square of the velocity that alternates along y from one particle of the first column to
+ * the next, above `from`: a quarter of the second differences less those of the standing wave
+ * v = cos k y, -(k d)^2 v. Ids ascend with height by `across`. */
+static inline double field_roughness(mpm_scene *s, int c, int64_t across, double from,
+                                     double wave_number) {
+  const mps_view x = mpm_scene_view(s, "position"), v = mpm_scene_view(s, "velocity");
+  const double d = wave_number * mps_particles_spacing(s->particles);
+  double sum = 0.0, count = 0.0;
+  for (int64_t id = across; id + across < x.shape[0]; id += across) {
+    double at[3];
+    for (int q = 0; q < 3; q++)
+      at[q] = *mps_view_f64(&v, mps_particles_index(s->particles, id + (q - 1) * across), c);
+    if (*mps_view_f64(&x, mps_particles_index(s->particles, id), 1) < from) continue;
+    const double rest = 0.25 * (at[0] - 2.0 * at[1] + at[2] + d * d * at[1]);
+    sum += rest * rest, count += 1.0;
+  }
+  return sqrt(sum / count);
+}
 
 /* |u_surface| over |u| of the half space's outcrop, of an undamped layer of height H and wave
  * velocity c (Kramer 1996, Geotechnical Earthquake Engineering, 7.2.1.3): 1/sqrt(cos^2 kH + a^2
@@ -143,14 +167,15 @@ static inline double field_amplification(double k_H, double ratio) {
 }
 
 /* A layer of 12 m and 120 m/s over 4 m of rock of 480 m/s on an absorbing base, from which a wave
- * of a steady frequency comes; S (`shear`) or P. */
+ * of a steady frequency comes; S (`shear`) or P. flip_time: s. */
 static inline field_response field_shake_layer(mps_context *context, double spacing, double share,
-                                               int shear) {
+                                               int shear, double flip_time) {
   const double H = 12.0, below = 4.0, vs = 120.0, rock = 480.0, v = 1e-4;
   const double faster = shear ? 1.0 : sqrt(2.0 * (1.0 - FIELD_NU) / (1.0 - 2.0 * FIELD_NU));
   const double f = share * faster * vs / (4.0 * H);
   const double end = 6.0 / f + 12.0 * 2.0 * H / (vs * faster);
-  field_response out = {shear, share, 0.0, field_amplification(0.5 * PI * share, vs / rock), 0.0};
+  field_response out = {shear, flip_time, share, 0.0, field_amplification(0.5 * PI * share, vs / rock),
+                        0.0,   0.0};
   field_ground of = {.width = 4.0,
                      .height = below + H,
                      .spacing = spacing,
@@ -158,7 +183,8 @@ static inline field_response field_shake_layer(mps_context *context, double spac
                      .rock = rock,
                      .below = below,
                      .sides = MPS_BOUNDARY_FREE_FIELD,
-                     .base = MPS_BOUNDARY_ABSORBING};
+                     .base = MPS_BOUNDARY_ABSORBING,
+                     .flip_time = flip_time};
   mps_signal *signal = field_shaking(context, f, v, end + 1.0);
   *(shear ? &of.motion : &of.heave) = signal;
   mpm_scene s = field_scene(context, &of);
@@ -168,6 +194,9 @@ static inline field_response field_shake_layer(mps_context *context, double spac
     out.apart = fmax(out.apart, field_spread(&s, shear ? 0 : 1, below + H - 0.5 * spacing, &now));
     if (mps_mpm_time(s.mpm) > end - 1.0 / f) peak = fmax(peak, now);
   }
+  out.rough = field_roughness(&s, shear ? 0 : 1, llround(of.width / spacing), below + 1.0,
+                              2.0 * PI * f / (vs * faster)) /
+              peak;
   out.amplification = peak / v;
   out.apart /= peak;
   mps_signal_destroy(&signal);
@@ -176,11 +205,13 @@ static inline field_response field_shake_layer(mps_context *context, double spac
 }
 
 static inline void field_print_response(const field_response *r) {
+  char flip[40] = "";
+  if (r->flip_time > 0.0) (void)snprintf(flip, sizeof flip, ", flip_time %g s", r->flip_time);
   print_message(
-      "%s wave, %.1f of the layer's frequency: amplification %.4f, exact %.4f (%+.2f %%); "
-      "along x it differs by %.2g of the amplitude\n",
-      r->shear ? "S" : "P", r->share, r->amplification, r->exact,
-      100.0 * (r->amplification / r->exact - 1.0), r->apart);
+      "%s wave%s, %.1f of the layer's frequency: amplification %.4f, exact %.4f (%+.2f %%); "
+      "along x it differs by %.2g of the amplitude; along y %.2g of it alternates\n",
+      r->shear ? "S" : "P", flip, r->share, r->amplification, r->exact,
+      100.0 * (r->amplification / r->exact - 1.0), r->apart, r->rough);
 }
 
 #endif

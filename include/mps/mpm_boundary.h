@@ -38,23 +38,23 @@ typedef enum mps_mpm_side {
  *               material may separate
  *   ABSORBING   Lysmer dashpots: traction R - rho c_p v across and R - rho c_s v along, with rho,
  *               c_p and c_s of the particles in the cells at the side (elastic; under a user's law
- *               c_s = c_p/sqrt(3)). The constant R is the traction at rest: see `settle`. Nodes
- *               that become active later carry no R. Stable for every dt. Particles move with the
- *               waves: one that passes the side has left the domain. A signal's velocity v enters
- *               as a wave of v/2
+ *               c_s = c_p/sqrt(3); c_p with K_w/n of water in the pores). The constant R is the
+ *               traction at rest: see `settle`. Nodes that become active later carry no R. Stable
+ *               for every dt. Particles move with the waves: one that passes the side has left the
+ *               domain. A signal's velocity v enters as a wave of v/2
  *   FREE_FIELD  in plane strain, across x: beside the side is a column of soil, level ground that
  *               moves as if it went on without end, under the present kind of the sides across y
  *               (all but FRICTIONAL). The side has the tractions of the column's stresses, and
- *               dashpots rho c_p across and rho c_s along on the difference between the velocities
- *               of column and side. The column is made of the particles in the cells at the side
- *               when the side is set, with their stresses, histories and laws, and the loads and
- *               temperatures that these particles have in each step; it does not feel boxes, lists
- *               of particles or bodies. For a law it lies at the x of the side. Set it again where
- *               ground, laws or `volume` have been changed. Each particle of the column has its own
- *               change of volume (MPS_MPM_VOLUMETRIC_POINT). The column has the pore pressures of
- *               the particles that it was made of. Displacements across the side must stay below
- *               half a spacing. Not on several ranks or with the standard method, nor in
- *               mps_mpm_settle
+ *               dashpots rho c_p across and rho c_s along, as those of ABSORBING, on the difference
+ *               between the velocities of column and side. The column is made of the particles in
+ *               the cells at the side when the side is set, with their stresses, histories and
+ *               laws, and the loads and temperatures that these particles have in each step; it
+ *               does not feel boxes, lists of particles or bodies. For a law it lies at the x of
+ *               the side. Set it again where ground, laws or `volume` have been changed. Each
+ *               particle of the column has its own change of volume (MPS_MPM_VOLUMETRIC_POINT). The
+ *               column has the pore pressures of the particles that it was made of. Displacements
+ *               across the side must stay below half a spacing. Not on several ranks or with the
+ *               standard method, nor in mps_mpm_settle
  *   FREE        an edge of the grid without constraint
  *   OPEN        the same; particles that pass it are removed at the end of the step. The reaction's
  *               `removed` and `removed_mass` count them, its `count` those of the last step; its

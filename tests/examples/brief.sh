@@ -23,6 +23,10 @@ run mps-consolidation --cells 3 --stiffness 10 --times 0.01
 run mps-consolidation --case mandel --cells 3 --stiffness 10 --times 0.001
 run mps-slope --h 2 --factor 1.5 --falls 0.5
 run mps-slope --runout --h 2 --phi 0 --cohesion 20kPa --residual-cohesion 5kPa --falls 0.5
+printf 'thickness=4m density=1.9t/m3 vs=100 law=cyclicsand phi=33deg relative-density=0.5\nhalfspace density=2t/m3 vs=300\n' \
+  >"$work/layers"
+run mps-site-response --layers "$work/layers" --undrained --max-frequency 5 --duration 0.1
+run mps-site-response --layers "$work/layers" --max-frequency 5 --duration 0.2 --loop 2
 run mps-wall --h 0.2 --path 2mm --rate 0.2
 run mps-pile --h 0.02 --wall 0.04 --soil 0.4x0.8 --depth 0.01
 run mps-penetrometer --soil 2x2x2 --depth 0.002

@@ -40,12 +40,12 @@ done
 [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "mps-penetrometer: long lines"
 # The same weights as the library, wherever they can be chosen.
 for program in mps-sliding-box mps-rolling-disc mps-footing mps-pile mps-dam-break \
-  mps-column-collapse mps-penetrometer mps-slope mps-wall; do
+  mps-column-collapse mps-penetrometer mps-slope mps-site-response mps-wall; do
   "$1/$program" --help >"$work/help"
   has "$work/help" "degree of the weights (default 3)"
 done
 for program in mps-tank mps-flume mps-seawall mps-dam-break mps-wave mps-pile mps-footing mps-consolidation mps-penetrometer \
-  mps-slope mps-wall \
+  mps-slope mps-site-response mps-wall \
   mps-column-collapse mps-sliding-box mps-rolling-disc; do
   [ -x "$1/$program" ] || continue
   "$1/$program" --help >"$work/help" || fail "$program --help"

@@ -75,6 +75,9 @@ interrupt footing 1 mps-footing
 wrote footing pressure.csv particles.csv summary.json
 interrupt slope 1 mps-slope --h 0.5
 wrote slope motion.csv particles.csv summary.json
+printf 'thickness=20m density=1900 vs=150\n' >"$work/layers"
+interrupt site 1 mps-site-response --layers "$work/layers" --base rigid --duration 1000
+wrote site surface.csv spectrum.csv amplification.csv profile.csv summary.json
 interrupt wall 1 mps-wall --pressure passive
 wrote wall pressure.csv particles.csv summary.json
 interrupt layer 1 mps-consolidation --cells 40 --times 0.0001,0.0002,0.0003,10

@@ -48,6 +48,15 @@ static inline void mpsi_mpm_elastic(const mpsi_columns *p, int64_t particle, dou
   *shear = factor * mpsi_material_shear(material);
 }
 
+/* K + 4G/3 and G (Pa) of dashpots: waves go through the water of saturated ground too. Where it
+ * flows as well: it hardly does within a wave of several cells, whose period is far below (a wave
+ * length)^2/c_v. */
+static inline void mpsi_mpm_saturated(const mpsi_columns *p, int64_t particle, double *wave,
+                                      double *shear) {
+  mpsi_mpm_elastic(p, particle, wave, shear);
+  if (p->n) *wave += p->K_w / p->n[particle];
+}
+
 /* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
 static inline int64_t mpsi_own_cell(const mpsi_grid *grid, int c, double X) {
   const int64_t cell = (int64_t)floor(X);

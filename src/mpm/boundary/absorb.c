@@ -89,7 +89,7 @@ static void add_particle(const mpsi_grid *grid, const mpsi_columns *p,
   const int axis = boundaries->hold[number].axis;
   const double per_area = p->m[k] * grid->inverse, density = p->m[k] / p->V[k];
   double wave, shear;
-  mpsi_mpm_elastic(p, k, &wave, &shear);
+  mpsi_mpm_saturated(p, k, &wave, &shear);
   const double across = per_area * sqrt(wave / density), along = per_area * sqrt(shear / density);
   int64_t base[3] = {0};
   double phi[3][4] = {{1.0}, {1.0}, {1.0}};

@@ -157,7 +157,7 @@ static void copy_particle(const mpsi_columns *p, int64_t k, int64_t to, mpsi_fre
   f->J[to] = p->J ? p->J[k] : 1.0;
   for (int c = 0; c < 5; c++) f->F[c][to] = p->F[c] ? p->F[c][k] : c == 0 || c >= 3 ? 1.0 : 0.0;
   double wave, shear;
-  mpsi_mpm_elastic(p, k, &wave, &shear);
+  mpsi_mpm_saturated(p, k, &wave, &shear);
   f->cp[to] = sqrt(wave * p->V[k] / p->m[k]);
   f->cs[to] = sqrt(shear * p->V[k] / p->m[k]);
   f->u[to] = p->u ? p->u[k] : 0.0;

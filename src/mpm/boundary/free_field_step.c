@@ -74,13 +74,17 @@ static mps_status refuse_place(mps_context *context, const mpsi_run *run, const 
 
 /* ---- water ----------------------------------------------------------------------------------- */
 
-/* Pressures and masses of the particles that were copied, while they are there. */
+/* Pressures, masses and wave velocities of the particles that were copied, while they are there:
+ * the column may be older than the water. */
 static void take_water(const mpsi_columns *p, mpsi_free_field *f) {
   for (int64_t k = 0; p->u && k < f->count; k++) {
     const int64_t from = mps_particles_index(p->set, f->id[k]);
+    double wave, shear;
     if (from < 0) continue;
+    mpsi_mpm_saturated(p, from, &wave, &shear);
     f->u[k] = p->u[from] + p->g[Y][from] * (f->y[k] - p->x[Y][from]);
     f->m[k] = p->m[from];
+    f->cp[k] = sqrt(wave * f->V[k] / f->m[k]);
   }
 }
 
@@ -168,20 +172,33 @@ static mps_status find_traction(const mpsi_boundary_setup *setup, const char *fu
 
 /* ---- particles to nodes ---------------------------------------------------------------------- */
 
+/* Velocity (m/s) of the dashpots across the side. The pressure of the water in column and ground is
+ * the same, that of a wave which leaves included, so that only the effective stress of the wave acts
+ * on the dashpots: rho c_p times the skeleton's part of the modulus. */
+static double across_side(const mpsi_columns *p, const mpsi_free_field *f, int64_t k,
+                          int64_t from) {
+  double wave, shear;
+  if (!p->u || from < 0) return f->cp[k];
+  mpsi_mpm_elastic(p, from, &wave, &shear);
+  return wave * f->V[k] / (f->m[k] * f->cp[k]);
+}
+
 static void scatter_particle(const mpsi_boundary_setup *setup, mpsi_free_field *f, int64_t k,
                              const places *w) {
   const mpsi_grid *grid = setup->grid;
-  const int64_t from = setup->p->f[0] ? mps_particles_index(setup->p->set, f->id[k]) : -1;
+  const mpsi_columns *p = setup->p;
+  const int64_t from = p->f[0] || p->u ? mps_particles_index(p->set, f->id[k]) : -1;
+  const double across = across_side(p, f, k, from);
   const double per_area = f->m[k] * grid->inverse;
   for (int i = 0; i <= grid->spline; i++) {
     mpsi_field_node *node = &f->node[w->at + i];
     node->mass += f->m[k] * w->value[i];
-    node->across += per_area * f->cp[k] * w->value[i];
+    node->across += per_area * across * w->value[i];
     node->along += per_area * f->cs[k] * w->value[i];
     for (int c = 0; c < 2; c++) {
       const double stress = c == Y ? f->s[1][k] - f->u[k] : f->s[3][k];
       const double load =
-          f->m[k] * setup->def->gravity[c] + (from >= 0 ? setup->p->f[c][from] : 0.0);
+          f->m[k] * setup->def->gravity[c] + (from >= 0 && p->f[0] ? p->f[c][from] : 0.0);
       node->v[c] += f->m[k] * w->value[i] * (f->v[c][k] + f->slope[c][k] * grid->cell * w->s[i]);
       node->force[c] += w->value[i] * load - f->V[k] * stress * w->slope[i];
     }

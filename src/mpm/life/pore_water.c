@@ -151,6 +151,7 @@ static mps_status begin(mps_mpm *mpm, mps_status status) {
   if (mpm->partition) status = mpsi_domain_agree_max(mpm->partition->domain, add, status, 2, most);
   if (status != MPS_OK) return status;
   if (isnan(mpm->water->def.bulk)) mpm->water->def.bulk = most[0];
+  mpm->p.K_w = mpm->water->def.bulk;
   mpm->water->lag = most[1];
   return renew_limit(mpm);
 }
@@ -238,10 +239,12 @@ mps_status mps_mpm_add_pore_water(mps_mpm *mpm, const mps_pore_water_def *user_d
   if (mpm->water) mpm->water->def = def;
   const bool kept_values = before.values != NULL;
   status = begin(mpm, status);
-  if (status == MPS_OK)
+  if (status == MPS_OK) {
     warn(mpm->context, &mpm->p);
-  else if (kept_values)
+    mpm->boundaries.outdated = true; /* dashpots */
+  } else if (kept_values) {
     restore(mpm, &before);
+  }
   mpsi_free(mpm->context, before.values);
   return status;
 }

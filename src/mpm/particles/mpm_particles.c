@@ -3,6 +3,7 @@
 #include "mpm_particles.h"
 
 #include "mpm/contact/particle.h"
+#include "mpm/water/water.h"
 
 #include <string.h>
 
@@ -12,7 +13,7 @@
 /* ---- columns --------------------------------------------------------------------------------- */
 
 /* Columns of pore water; NULL without water, though the set may have such fields. */
-static void bind_water(mps_particles *set, mpsi_columns *p, bool water) {
+static void bind_water(mps_particles *set, mpsi_columns *p, const mpsi_water *water) {
   p->u = water ? mpsi_particles_column(set, "pore_pressure", 0) : NULL;
   p->n = water ? mpsi_particles_column(set, "porosity", 0) : NULL;
   p->k = water ? mpsi_particles_column(set, "permeability", 0) : NULL;
@@ -28,7 +29,8 @@ void mpsi_mpm_bind(const mpsi_grid *grid, mpsi_columns *p, mpsi_water *water) {
     p->v[c] = mpsi_particles_column(set, "velocity", c);
   }
   for (int c = 0; c < 2 * grid->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
-  bind_water(set, p, water != NULL);
+  bind_water(set, p, water);
+  p->K_w = water ? water->def.bulk : 0.0;
   for (int c = 0; c < 9; c++) /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
   p->V = mpsi_particles_column(set, "volume", 0);

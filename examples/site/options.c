@@ -1,0 +1,38 @@
+/* options.c - the options of mps-site-response, and what they exclude.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "site.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Options of the pulses or of a record alone. */
+static const char *check_motion(const settings *s, const option *table) {
+  static const char *const record[] = {"record-unit", "record-scale", "baseline"};
+  static const char *const pulse[] = {"frequency", "amplitude"};
+  const bool sine = strcmp(s->record, "sine") == 0;
+  const bool file = !sine && strcmp(s->record, "ricker") != 0;
+  for (int k = 0; k < 3; k++)
+    if (!file && options_given(table, record[k]))
+      return "--record-unit, --record-scale and --baseline are for --record FILE";
+  for (int k = 0; k < 2; k++)
+    if (file && options_given(table, pulse[k]))
+      return "--frequency and --amplitude are for --record ricker and sine";
+  if (!sine && options_given(table, "cycles")) return "--cycles is for --record sine";
+  if (s->amplitude == 0.0) return "--amplitude must not be 0 m/s2";
+  if (s->scale == 0.0) return "--record-scale must not be 0";
+  if (s->cycles != floor(s->cycles)) return "--cycles must be a whole number";
+  return NULL;
+}
+
+const char *site_settle(settings *s, const option *table) {
+  const char *reason = check_motion(s, table);
+  if (reason) return reason;
+  if (!s->layers) return "--layers is missing: the file of the layers, see --help";
+  if (s->undrained && !isnan(s->permeability))
+    return "--undrained and --permeability exclude each other";
+  if (s->sample > 0.1 / s->highest)
+    return "--sample must be at most a tenth of the period of --max-frequency";
+  if (!isnan(s->duration) && s->duration < 10.0 * s->sample)
+    return "--duration must be at least ten times --sample";
+  return NULL;
+}

@@ -1,0 +1,143 @@
+/* record.c - what mps-site-response records of the rows of particles: the history of the surface
+ * and of one depth, largest values by depth, and a file to restart from.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "site.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Means over the particles of a row, in the frame of the input. */
+typedef struct means {
+  double x, y, v;            /* m, m, m/s */
+  double shear, vertical, u; /* Pa: tau, effective compression, water */
+} means;
+
+/* Particles have their ids by rows from below. */
+static mps_status find_means(const simulation *sim, means *out) {
+  mps_particles *set = sim->m.particles;
+  mps_view id, x, v, stress, u = {0};
+  mps_status status = mps_particles_view(set, "id", &id);
+  if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(set, "velocity", &v);
+  if (status == MPS_OK) status = mps_particles_view(set, "stress", &stress);
+  if (status == MPS_OK && sim->wet) status = mps_particles_view(set, "pore_pressure", &u);
+  if (status != MPS_OK) return status;
+  const double share = 1.0 / (double)sim->across;
+  memset(out, 0, (size_t)sim->rows * sizeof *out);
+  for (int64_t k = 0; k < id.shape[0]; k++) {
+    means *row = &out[*mps_view_i64(&id, k, 0) / sim->across];
+    row->x += share * *mps_view_f64(&x, k, 0), row->y += share * *mps_view_f64(&x, k, 1);
+    row->v += share * *mps_view_f64(&v, k, 0);
+    row->shear += share * *mps_view_f64(&stress, k, 3);
+    row->vertical -= share * *mps_view_f64(&stress, k, 1);
+    if (sim->wet) row->u += share * *mps_view_f64(&u, k, 0);
+  }
+  return MPS_OK;
+}
+
+mps_status site_begin_record(simulation *sim) {
+  sim->across = llround(sim->width / sim->spacing);
+  sim->rows = mps_particles_count(sim->m.particles) / sim->across;
+  sim->row = calloc((size_t)sim->rows, sizeof *sim->row);
+  sim->sample = calloc((size_t)sim->samples + 1, sizeof *sim->sample);
+  sim->loop_row = -1;
+  if (!sim->row || !sim->sample) return MPS_ERROR_MEMORY;
+  for (int64_t r = 0; r < sim->rows; r++) {
+    sim->row[r].depth = sim->height + sim->below - ((double)r + 0.5) * sim->spacing;
+    if (!isnan(sim->s.loop) &&
+        (sim->loop_row < 0 ||
+         fabs(sim->row[r].depth - sim->s.loop) < fabs(sim->row[sim->loop_row].depth - sim->s.loop)))
+      sim->loop_row = r;
+  }
+  return MPS_OK;
+}
+
+/* The rows as they are when the motion begins. */
+static void note_rest(simulation *sim, const means *now) {
+  for (int64_t r = 0; r < sim->rows; r++) {
+    sim->row[r].x = now[r].x, sim->row[r].y = now[r].y;
+    sim->row[r].vertical = now[r].vertical, sim->row[r].pressure = now[r].u;
+  }
+}
+
+/* Engineering shear strain by the displacements of the rows above and below. */
+static double strain_of(const simulation *sim, const means *now, int64_t r) {
+  const int64_t a = r > 0 ? r - 1 : r, b = r + 1 < sim->rows ? r + 1 : r;
+  return (now[b].x - sim->row[b].x - now[a].x + sim->row[a].x) / (sim->row[b].y - sim->row[a].y);
+}
+
+double site_slope(const double v[5], double step) {
+  return (8.0 * (v[3] - v[1]) - (v[4] - v[0])) / (12.0 * step);
+}
+
+static void update_row(const simulation *sim, const means *now, int64_t r, double t) {
+  site_row *row = &sim->row[r];
+  const double step = sim->s.sample, middle = t - 2.0 * step;
+  const double moved = now[r].x - row->x;
+  memmove(row->v, row->v + 1, 4 * sizeof *row->v);
+  row->v[4] = now[r].v;
+  if (sim->count >= 4)
+    row->acceleration =
+        fmax(row->acceleration, fabs(site_slope(row->v, step) + site_input(sim, middle)));
+  row->velocity = fmax(row->velocity, fabs(now[r].v + mps_signal_velocity(sim->motion, t)));
+  row->displacement = fmax(row->displacement, fabs(moved));
+  row->strain = fmax(row->strain, fabs(strain_of(sim, now, r)));
+  row->stress = fmax(row->stress, fabs(now[r].shear));
+  row->last_ru = sim->wet ? (now[r].u - row->pressure) / row->vertical : 0.0;
+  memmove(row->u, row->u + 1, 4 * sizeof *row->u);
+  row->u[4] = row->last_ru;
+  if (sim->count >= 4) /* pressure waves are shorter */
+    row->ru = fmax(row->ru, 0.2 * (row->u[0] + row->u[1] + row->u[2] + row->u[3] + row->u[4]));
+  row->settlement = row->y - now[r].y;
+  row->last_displacement = moved;
+}
+
+mps_status site_take_sample(simulation *sim) {
+  means *now = malloc((size_t)sim->rows * sizeof *now);
+  const mps_status status = now ? find_means(sim, now) : MPS_ERROR_MEMORY;
+  if (status == MPS_OK) {
+    const double t = sim->s.sample * (double)sim->count;
+    if (sim->count == 0) note_rest(sim, now);
+    for (int64_t r = 0; r < sim->rows; r++) update_row(sim, now, r, t);
+    const site_row *top = &sim->row[sim->rows - 1];
+    site_sample *sample = &sim->sample[sim->count];
+    *sample = (site_sample){
+        .t = t, .v = top->v[4], .u = top->last_displacement, .settlement = top->settlement};
+    if (sim->loop_row >= 0) {
+      sample->strain = strain_of(sim, now, sim->loop_row);
+      sample->stress = now[sim->loop_row].shear;
+      sample->ru = sim->row[sim->loop_row].last_ru;
+    }
+    sim->m.samples = ++sim->count;
+  }
+  free(now);
+  return status;
+}
+
+/* The layers and the record stand in files that may have changed: they must be those of the start.
+ */
+void site_pass(void *user, resume_bytes *b) {
+  simulation *sim = user;
+  const site_ground ground = sim->ground;
+  const double record[3] = {sim->record_end, sim->record_peak, sim->duration};
+  double former[3] = {record[0], record[1], record[2]};
+  const int64_t rows = sim->rows;
+  resume_pass(b, &sim->ground, sizeof sim->ground);
+  resume_pass(b, former, sizeof former);
+  resume_pass(b, &sim->rows, sizeof sim->rows);
+  resume_pass(b, &sim->count, sizeof sim->count);
+  const bool same = memcmp(&ground, &sim->ground, sizeof ground) == 0 &&
+                    memcmp(record, former, sizeof record) == 0;
+  if (!same)
+    site_refuse(&sim->m,
+                "the layers or the record have changed since the checkpoint %s was written",
+                sim->s.course.restart);
+  if (resume_wrong(b,
+                   !same || sim->rows != rows || sim->count < 0 || sim->count > sim->samples + 1)) {
+    sim->rows = rows, sim->count = 0;
+    return;
+  }
+  resume_pass(b, sim->row, (size_t)sim->rows * sizeof *sim->row);
+  resume_pass(b, sim->sample, (size_t)sim->count * sizeof *sim->sample);
+}

@@ -1,0 +1,248 @@
+/* results.c - tables and summary of mps-site-response.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "site.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define DAMPING 0.05
+#define LEAST_INPUT 0.01 /* of the largest Fourier amplitude: ratios of less are noise */
+
+/* What is found from the history. */
+typedef struct findings {
+  site_series series;
+  site_fourier fourier;
+  double period[SITE_PERIODS], surface[SITE_PERIODS], input[SITE_PERIODS]; /* s, m/s2 */
+  double peak, peak_time;    /* m/s2, s: of the surface */
+  double largest, frequency; /* ratio of Fourier amplitudes, Hz where */
+  double exact_at, error;    /* of elastic layers there; largest difference, relative */
+} findings;
+
+static findings found;
+
+/* Derivative of the relative velocity of the surface; of lower order at the ends. */
+static double surface_slope(const simulation *sim, int64_t k) {
+  const site_sample *s = sim->sample;
+  const int64_t last = sim->count - 1;
+  if (k >= 2 && k + 2 <= last) {
+    const double v[5] = {s[k - 2].v, s[k - 1].v, s[k].v, s[k + 1].v, s[k + 2].v};
+    return site_slope(v, sim->s.sample);
+  }
+  const int64_t a = k > 0 ? k - 1 : 0, b = k < last ? k + 1 : last;
+  return b > a ? (s[b].v - s[a].v) / (s[b].t - s[a].t) : 0.0;
+}
+
+static bool make_series(app *a, const simulation *sim, site_series *out) {
+  *out = (site_series){.count = sim->count, .step = sim->s.sample};
+  out->surface = malloc((size_t)sim->count * sizeof *out->surface);
+  out->input = malloc((size_t)sim->count * sizeof *out->input);
+  if (!out->surface || !out->input) return app_no_memory(a);
+  for (int64_t k = 0; k < sim->count; k++) {
+    out->input[k] = site_input(sim, sim->sample[k].t);
+    out->surface[k] = out->input[k] + surface_slope(sim, k);
+  }
+  return true;
+}
+
+/* ---- spectra --------------------------------------------------------------------------------- */
+
+static void find_response(const simulation *sim, findings *f) {
+  const double shortest = 0.5 / sim->s.highest, longest = fmax(4.0, 8.0 * shortest);
+  for (int k = 0; k < SITE_PERIODS; k++) {
+    const double T = shortest * pow(longest / shortest, (double)k / (SITE_PERIODS - 1));
+    f->period[k] = T;
+    f->surface[k] = site_response(f->series.surface, f->series.count, f->series.step, T, DAMPING);
+    f->input[k] = site_response(f->series.input, f->series.count, f->series.step, T, DAMPING);
+  }
+}
+
+static double largest_of(const double *x, int64_t count) {
+  double most = 0.0;
+  for (int64_t k = 0; k < count; k++) most = fmax(most, x[k]);
+  return most;
+}
+
+static bool counts(const findings *f, int64_t k) {
+  return f->fourier.input[k] > LEAST_INPUT * largest_of(f->fourier.input, f->fourier.count);
+}
+
+static void find_amplification(const simulation *sim, findings *f) {
+  const bool exact = site_has_exact(sim);
+  site_transform(&f->series, sim->s.highest, &f->fourier);
+  for (int64_t k = 0; k < f->fourier.count; k++)
+    f->fourier.exact[k] = exact ? site_exact(sim, (double)(k + 1) * f->fourier.step) : NAN;
+  site_smooth(&f->fourier);
+  f->largest = f->frequency = f->exact_at = f->error = NAN;
+  for (int64_t k = 0; k < f->fourier.count; k++) {
+    const double ratio = f->fourier.surface[k] / f->fourier.input[k];
+    if (!counts(f, k)) continue;
+    f->error = fmax(isnan(f->error) ? 0.0 : f->error, fabs(ratio / f->fourier.exact[k] - 1.0));
+    if (ratio <= f->largest) continue;
+    f->largest = ratio, f->frequency = (double)(k + 1) * f->fourier.step;
+    f->exact_at = f->fourier.exact[k];
+  }
+  if (!exact) f->error = NAN;
+}
+
+static void find_peak(const simulation *sim, findings *f) {
+  f->peak = f->peak_time = 0.0;
+  for (int64_t k = 0; k < f->series.count; k++)
+    if (fabs(f->series.surface[k]) > f->peak)
+      f->peak = fabs(f->series.surface[k]), f->peak_time = sim->sample[k].t;
+}
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+static bool write_surface(app *a, const simulation *sim, const findings *f) {
+  output file;
+  if (!output_open(&file, a, sim->s.out, "surface.csv")) return false;
+  csv_header(&file, "time_s,acceleration_m_s2,velocity_m_s,displacement_m,input_acceleration_m_s2,"
+                    "input_velocity_m_s,input_displacement_m,settlement_m");
+  for (int64_t k = 0; k < sim->count; k++) {
+    const site_sample *s = &sim->sample[k];
+    const double v = mps_signal_velocity(sim->motion, s->t);
+    const double u = mps_signal_displacement(sim->motion, s->t);
+    const double line[] = {s->t, f->series.surface[k], s->v + v, s->u + u, f->series.input[k], v,
+                           u,    s->settlement};
+    csv_row(&file, 8, line);
+  }
+  return output_close(&file);
+}
+
+static bool write_spectrum(app *a, const simulation *sim, const findings *f) {
+  output file;
+  if (!output_open(&file, a, sim->s.out, "spectrum.csv")) return false;
+  csv_header(&file, "period_s,surface_m_s2,input_m_s2,ratio");
+  for (int k = 0; k < SITE_PERIODS; k++) {
+    const double line[] = {f->period[k], f->surface[k], f->input[k], f->surface[k] / f->input[k]};
+    csv_row(&file, 4, line);
+  }
+  return output_close(&file);
+}
+
+static bool write_amplification(app *a, const simulation *sim, const findings *f) {
+  output file;
+  if (!output_open(&file, a, sim->s.out, "amplification.csv")) return false;
+  csv_header(&file, "frequency_Hz,surface_over_input,exact?");
+  for (int64_t k = 0; k < f->fourier.count; k++) {
+    const double line[] = {(double)(k + 1) * f->fourier.step,
+                           f->fourier.surface[k] / f->fourier.input[k], f->fourier.exact[k]};
+    if (counts(f, k)) csv_row(&file, 3, line);
+  }
+  return output_close(&file);
+}
+
+static bool write_profile(app *a, const simulation *sim) {
+  output file;
+  if (!output_open(&file, a, sim->s.out, "profile.csv")) return false;
+  csv_header(&file, "depth_m,layer,acceleration_m_s2,velocity_m_s,relative_displacement_m,"
+                    "shear_strain,shear_stress_Pa,ru,last_ru,settlement_m,last_displacement_m");
+  for (int64_t r = sim->rows - 1; r >= 0; r--) {
+    const site_row *row = &sim->row[r];
+    const site_layer *l = site_layer_at(&sim->ground, row->depth);
+    const double line[] = {row->depth,
+                           (double)(l - sim->ground.layer + 1),
+                           row->acceleration,
+                           row->velocity,
+                           row->displacement,
+                           row->strain,
+                           row->stress,
+                           row->ru,
+                           row->last_ru,
+                           row->settlement,
+                           row->last_displacement};
+    csv_row(&file, 11, line);
+  }
+  return output_close(&file);
+}
+
+static bool write_loop(app *a, const simulation *sim) {
+  output file;
+  if (sim->loop_row < 0) return true;
+  if (!output_open(&file, a, sim->s.out, "loop.csv")) return false;
+  csv_header(&file, "time_s,shear_strain,shear_stress_Pa,ru");
+  for (int64_t k = 0; k < sim->count; k++) {
+    const site_sample *s = &sim->sample[k];
+    const double line[] = {s->t, s->strain, s->stress, s->ru};
+    csv_row(&file, 4, line);
+  }
+  return output_close(&file);
+}
+
+/* Largest over the soil, below the highest cell, where stresses are those of half a cell. */
+static double largest_ru(const simulation *sim) {
+  double most = 0.0;
+  for (int64_t r = 0; r < sim->rows; r++)
+    if (sim->row[r].depth > sim->cell && sim->row[r].depth < sim->height)
+      most = fmax(most, sim->row[r].ru);
+  return most;
+}
+
+static double largest_strain(const simulation *sim) {
+  double most = 0.0;
+  for (int64_t r = 0; r < sim->rows; r++)
+    if (sim->row[r].depth < sim->height) most = fmax(most, sim->row[r].strain);
+  return most;
+}
+
+static bool write_summary(app *a, const simulation *sim, const findings *f) {
+  const site_row *top = &sim->row[sim->rows - 1];
+  output file;
+  if (!mpm_model_summary(a, &sim->m, sim->s.out, &file)) return false;
+  json_number(&file, "time", sim->sample[sim->count - 1].t);
+  json_number(&file, "height", sim->height);
+  json_number(&file, "cell", sim->cell);
+  json_number(&file, "flip_time_used", sim->flip_time);
+  json_number(&file, "travel_time", site_travel_time(&sim->ground));
+  json_number(&file, "record_duration", sim->record_end);
+  json_number(&file, "input_peak_acceleration", sim->record_peak);
+  json_number(&file, "peak_acceleration", f->peak);
+  json_number(&file, "peak_time", f->peak_time);
+  json_number(&file, "peak_velocity", top->velocity);
+  json_number(&file, "response_ratio",
+              largest_of(f->surface, SITE_PERIODS) / largest_of(f->input, SITE_PERIODS));
+  json_number(&file, "amplification", f->largest);
+  json_number(&file, "amplification_frequency", f->frequency);
+  json_number(&file, "amplification_exact", f->exact_at);
+  json_number(&file, "amplification_error", f->error);
+  json_number(&file, "shear_strain", largest_strain(sim));
+  json_number_if(&file, sim->wet, "ru", largest_ru(sim));
+  json_number(&file, "settlement", top->settlement);
+  json_number(&file, "last_displacement", top->last_displacement);
+  json_end(&file);
+  return output_close(&file);
+}
+
+static void report(const simulation *sim, const findings *f) {
+  printf("peak acceleration %.3g m/s2 at the surface (%.2f s), %.3g m/s2 of the input\n", f->peak,
+         f->peak_time, sim->record_peak);
+  if (!isnan(f->largest)) {
+    printf("largest amplification %.3f at %.3g Hz", f->largest, f->frequency);
+    if (!isnan(f->error))
+      printf(" (exact %.3f; all frequencies within %.1f %%)", f->exact_at, 100.0 * f->error);
+    printf("\n");
+  }
+  printf("largest shear strain %.3g", largest_strain(sim));
+  if (sim->wet) printf(", r_u %.3f", largest_ru(sim));
+  printf(", settlement %.3g mm\n", 1e3 * sim->row[sim->rows - 1].settlement);
+}
+
+bool site_finish(app *a, void *user) {
+  simulation *sim = user;
+  findings *f = &found;
+  bool ok = make_series(a, sim, &f->series);
+  if (ok) {
+    find_response(sim, f);
+    find_amplification(sim, f);
+    find_peak(sim, f);
+    ok = write_surface(a, sim, f) && write_spectrum(a, sim, f) && write_amplification(a, sim, f) &&
+         write_profile(a, sim) && write_loop(a, sim) && write_summary(a, sim, f) &&
+         site_draw(a, sim, site_has_exact(sim));
+  }
+  if (ok) app_tell_results(a, sim->s.out);
+  if (ok) report(sim, f);
+  free(f->series.surface);
+  free(f->series.input);
+  return ok;
+}
