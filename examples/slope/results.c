@@ -30,6 +30,12 @@ static double found_factor(const simulation *sim) {
   return sqrt(stands * fails);
 }
 
+/* Of slip circles; NaN in a run-out, whose strength softens, and where there is none. */
+static double circles_factor(const settings *s, slope_circle *circle) {
+  const double factor = s->runout ? NAN : slope_circles(s, circle);
+  return isinf(factor) ? NAN : factor;
+}
+
 /* ---- tables ---------------------------------------------------------------------------------- */
 
 static bool write_trials(app *a, const simulation *sim) {
@@ -80,6 +86,12 @@ static bool write_summary(app *a, const simulation *sim) {
   json_number_if(&f, stands > 0.0, "stands", stands);
   json_number(&f, "fails", fails);
   json_number(&f, "stability_number", stability_number(s, factor));
+  slope_circle circle;
+  const double circles = circles_factor(s, &circle);
+  json_number(&f, "slip_circles", circles);
+  json_number_if(&f, !isnan(circles), "circle_x", circle.x + s->crest);
+  json_number_if(&f, !isnan(circles), "circle_y", circle.y + s->base);
+  json_number_if(&f, !isnan(circles), "circle_radius", circle.radius);
   json_number_if(&f, s->runout && ended(sim) > 0, "runout", sim->front);
   json_number_if(&f, s->runout && ended(sim) > 0, "lost_behind_crest", sim->lost);
   json_end(&f);
@@ -168,6 +180,9 @@ static void print(const simulation *sim) {
   else
     printf("factor of safety %.3f: stands with the strength divided by %.4g, fails with %.4g\n",
            found_factor(sim), stands, fails);
+  slope_circle circle;
+  const double circles = circles_factor(s, &circle);
+  if (!isnan(circles)) printf("slip circles (Bishop's simplified method): %.3f\n", circles);
 }
 
 /* The first stress is no equilibrium: ground that stands moves, in proportion to 1/E, until it has

@@ -1,5 +1,5 @@
-/* test_strata.c - the exact consolidation of layered columns against numbers of textbooks and finite
- * differences. SPDX-License-Identifier: BSD-3-Clause */
+/* test_strata.c - the exact consolidation of layered columns against numbers of textbooks and
+ * finite differences. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
 #include "consolidation/strata.h"
@@ -55,8 +55,7 @@ static void agree(const strata *s, double T, double ramp, double most) {
   const double h = 1.0 / (NODES - 1), applied = ramp > 0.0 ? fmin(1.0, T / ramp) : 1.0;
   double left = 0.0;
   march(s, T, ramp, u);
-  for (int i = 0; i < NODES; i++)
-    mps_assert_near(strata_pressure(s, i * h, T, ramp), u[i], most);
+  for (int i = 0; i < NODES; i++) mps_assert_near(strata_pressure(s, i * h, T, ramp), u[i], most);
   for (int i = 0; i + 1 < NODES; i++)
     left += 0.5 * h * (u[i] + u[i + 1]) / at_depth(s, (i + 0.5) * h)->modulus;
   mps_assert_near(strata_degree(s, T, ramp), applied - left, most);
