@@ -422,7 +422,9 @@ static mps_status set_layer(mps_context *context, simulation *sim, const stratum
       ids[count++] = *mps_view_i64(&id, k, 0);
   if (status == MPS_OK)
     status = mps_material_create_linear_elastic(context, young_of(sim, layer), sim->s.nu, &law);
-  if (status == MPS_OK && count > 0) status = mps_mpm_set_material(sim->m.mpm, law, count, ids);
+  int64_t all = count;
+  if (status == MPS_OK) status = mpm_model_sum(&sim->m, &all);
+  if (status == MPS_OK && all > 0) status = mps_mpm_set_material(sim->m.mpm, law, count, ids);
   mps_material_destroy(&law);
   free(ids);
   return status;

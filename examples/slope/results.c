@@ -129,6 +129,24 @@ static double greatest(const mpm_snapshot *shot, int column) {
   return most;
 }
 
+/* The water table, and the level of the pool before a drawdown. */
+static void draw_water(output *f, const settings *s, double wide) {
+  static const char arrow[] = "set arrow from %.9g,%.9g to %.9g,%.9g nohead linewidth 2 linecolor "
+                              "rgb '#2e86c1'%s front\n";
+  if (!isnan(s->drawdown))
+    output_text(f, arrow, 0.0, s->drawdown + s->base, wide, s->drawdown + s->base,
+                " dashtype '..'");
+  if (s->points == 0 && isnan(s->table)) return;
+  double from = 0.0;
+  for (int64_t k = 0; k <= s->points; k++) {
+    const double to = k < s->points ? s->line[2 * k] + s->crest : wide;
+    if (!(to > from && to <= wide)) continue;
+    output_text(f, arrow, from, slope_table(s, from - s->crest) + s->base, to,
+                slope_table(s, to - s->crest) + s->base, "");
+    from = to;
+  }
+}
+
 static bool draw_slope(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   const double foot = s->crest + s->slope * s->height, top = s->base + s->height;
@@ -152,6 +170,7 @@ static bool draw_slope(app *a, const simulation *sim) {
               sim->shot.time, wide, high);
   output_text(&f, "set arrow from %.9g,%.9g to %.9g,%.9g nohead dashtype '--' front\n", s->crest,
               top, foot, s->base);
+  draw_water(&f, s, wide);
   plot_colours(&f, 0.0, 0.5 * greatest(&sim->shot, 2), image.least, image.most);
   output_text(&f, "plot ");
   area_plot(&f, "slope.bin", &image, 1.0, 1.0);

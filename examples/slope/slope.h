@@ -66,6 +66,7 @@ bool slope_found(const simulation *sim, int trials);
 const char *slope_settle_water(settings *s, const option *table);
 bool slope_is_wet(const settings *s);
 double slope_surface(const settings *s, double x);
+double slope_table(const settings *s, double x); /* level; -infinity: none */
 double slope_pool(const settings *s); /* level of water that stands at the toe; -infinity: none */
 double slope_density(const settings *s, double x, double y);
 double slope_overburden(const settings *s, double x, double y); /* Pa, ground and pool above */

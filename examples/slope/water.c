@@ -43,9 +43,13 @@ static double table_at(const settings *s, double x, double *flat) {
   return p[1];
 }
 
-double slope_pool(const settings *s) {
+double slope_table(const settings *s, double x) {
   double flat;
-  const double level = table_at(s, INFINITY, &flat);
+  return table_at(s, x, &flat);
+}
+
+double slope_pool(const settings *s) {
+  const double level = slope_table(s, INFINITY);
   return level > 0.0 ? level : DRY;
 }
 
@@ -60,8 +64,7 @@ static double pool_load(const settings *s, double level, double x) {
 
 /* Level below which the ground is saturated. */
 static double saturated_to(const settings *s, double x) {
-  double flat;
-  const double level = table_at(s, x, &flat);
+  const double level = slope_table(s, x);
   return isnan(s->drawdown) ? level : fmax(level, s->drawdown);
 }
 
