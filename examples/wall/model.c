@@ -68,22 +68,17 @@ static mps_status make_ground(mps_context *context, settings *s, mpm_model *m) {
   return wall_is_plain(s) ? set_stress(s, m->particles) : wall_set_ground(s, m->particles);
 }
 
+static bool is_above(const void *level, const double *x) { return x[1] > *(const double *)level; }
+
 /* The surcharge is a load on the uppermost particles, which it follows. */
 static mps_status press(const settings *s, mpm_model *m) {
-  mps_view x, id;
-  mps_mpm_load_def load = mps_mpm_load_defaults();
-  int64_t count = 0;
-  mps_status status = mps_particles_view(m->particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(m->particles, "id", &id);
-  if (status != MPS_OK) return status;
-  int64_t *ids = malloc((size_t)(x.shape[0] + 1) * sizeof *ids);
-  if (!ids) return MPS_ERROR_MEMORY;
   const double top = s->base + s->height - mps_particles_spacing(m->particles);
-  for (int64_t k = 0; k < x.shape[0]; k++)
-    if (*mps_view_f64(&x, k, 1) > top) ids[count++] = *mps_view_i64(&id, k, 0);
-  load.ids = ids, load.id_count = count;
+  mps_mpm_load_def load = mps_mpm_load_defaults();
+  int64_t *ids;
+  mps_status status = mpm_model_list(m, is_above, &top, &load.id_count, &ids);
+  load.ids = ids;
   load.traction[1] = -s->surcharge;
-  status = mps_mpm_add_load(m->mpm, &load, NULL);
+  if (status == MPS_OK) status = mps_mpm_add_load(m->mpm, &load, NULL);
   free(ids);
   return status;
 }
